@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "fcl_artic/joint_motion.h"
+#include "fcl_artic/kinematic_tree.h"
+#include "fcl_artic/manager.h"
+#include "fcl_artic/request.h"
+#include "fcl_artic/result.h"

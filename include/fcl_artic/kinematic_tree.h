@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "fcl_artic/export.h"
+
+namespace fcl_artic {
+
+/// Index of a link in its KinematicTree; links are numbered in the order of addLink().
+using LinkId = int;
+/// Index of a joint in its KinematicTree; joints are numbered in the order of addJoint().
+using JointId = int;
+
+/// `continuous` is a revolute joint without limits: the factory JointMotion::shortest() may wrap it.
+enum class JointType { fixed, revolute, continuous, prismatic };
+
+/// q_this = multiplier * q_master + offset, as in URDF. The master may not be a mimic joint itself.
+struct Mimic {
+  std::string master;  ///< name of the joint that is followed
+  double multiplier = 1;
+  double offset = 0;  ///< rad or m
+};
+
+/// One joint, as in URDF: the child link's frame is the joint's frame.
+struct Joint {
+  std::string name;
+  JointType type = JointType::fixed;
+  std::string parent;  ///< parent link
+  std::string child;   ///< child link
+  /// Pose of the joint's frame in the parent link's frame at q = 0.
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  /// Axis in the joint's frame; normalised by addJoint(). Unused when fixed.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double lower = 0, upper = 0;  ///< limits, rad or m; lower > upper or both 0: none
+  bool mimics = false;
+  Mimic mimic;
+};
+
+/// A forest of links carried by joints: one robot or several, each with its own root. Constant during
+/// queries and shared by threads.
+class FCL_ARTIC_EXPORT KinematicTree {
+ public:
+  explicit KinematicTree(std::string name = "robot") : name_(std::move(name)) {}
+
+  /// @throws std::invalid_argument for an empty or repeated name.
+  LinkId addLink(const std::string& name);
+  /// Adds a joint between two known links. The tree is unchanged when this throws.
+  /// @throws std::invalid_argument, naming joint and reason: repeated name, unknown link, a child that has a parent
+  ///   already, a loop, a zero or non-finite axis, a rotation that is not orthonormal to 1e-9, an unknown or mimicking
+  ///   master.
+  JointId addJoint(const Joint& joint);
+
+  const std::string& name() const { return name_; }
+  int numLinks() const { return static_cast<int>(link_names_.size()); }
+  int numJoints() const { return static_cast<int>(joints_.size()); }
+  /// Number of joint variables: joints that are neither fixed nor mimic, in the order of addJoint().
+  int dof() const { return static_cast<int>(variables_.size()); }
+
+  const std::string& linkName(LinkId link) const { return link_names_.at(static_cast<std::size_t>(link)); }
+  const Joint& joint(JointId joint) const { return joints_.at(static_cast<std::size_t>(joint)); }
+  /// Joint that variable v drives (mimic joints follow it).
+  JointId variableJoint(int v) const { return variables_.at(static_cast<std::size_t>(v)); }
+  const std::string& variableName(int v) const { return joint(variableJoint(v)).name; }
+  /// Variable that drives the joint, -1 when fixed; for a mimic joint that of its master.
+  int jointVariable(JointId j) const { return joint_variable_.at(static_cast<std::size_t>(j)); }
+  /// Joint whose child the link is, -1 for a root.
+  JointId parentJoint(LinkId link) const { return parent_joint_.at(static_cast<std::size_t>(link)); }
+  /// Parent link, -1 for a root.
+  LinkId parentLink(LinkId link) const;
+  /// Links in an order in which parents come before children.
+  std::vector<LinkId> topologicalOrder() const;
+
+  /// @throws std::out_of_range naming the link and the robot.
+  LinkId link(std::string_view name) const;
+  /// @throws std::out_of_range naming the joint and the robot.
+  JointId jointId(std::string_view name) const;
+  bool hasLink(std::string_view name) const { return findLink(name) >= 0; }
+
+  /// Value of the joint (rad or m) for the variables q; mimic applied; 0 when fixed.
+  double jointValue(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
+  /// Pose of every link in the world, roots at identity.
+  /// @param q  dof() joint variables, rad or m.
+  /// @param[out] M_0  link to world, numLinks() entries.
+  /// @throws std::invalid_argument when q has another size or is not finite.
+  void forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& M_0) const;
+
+  /// Refuses a configuration of the wrong size or with a value that is not finite, naming `what` and the joint.
+  /// @throws std::invalid_argument
+  void requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const;
+  /// One line for each variable that is beyond its limits (they are accepted).
+  std::vector<std::string> limitNotes(const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
+ private:
+  int findLink(std::string_view name) const;
+  std::string name_;
+  std::vector<std::string> link_names_;
+  std::vector<JointId> parent_joint_;
+  std::vector<Joint> joints_;
+  std::vector<int> joint_parent_, joint_child_, joint_variable_;
+  std::vector<JointId> variables_;
+  friend class FrameSweep;
+};
+
+}  // namespace fcl_artic

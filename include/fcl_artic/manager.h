@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fcl_artic/joint_motion.h"
+#include "fcl_artic/request.h"
+#include "fcl_artic/result.h"
+
+namespace fcl_artic {
+
+/// Pairs of names (links or obstacles) that may touch: they are not checked.
+class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
+ public:
+  void allow(const std::string& a, const std::string& b) { pairs_.insert(key(a, b)); }
+  void disallow(const std::string& a, const std::string& b) { pairs_.erase(key(a, b)); }
+  bool allowed(const std::string& a, const std::string& b) const { return pairs_.count(key(a, b)) != 0; }
+  const std::set<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
+
+ private:
+  static std::pair<std::string, std::string> key(const std::string& a, const std::string& b) {
+    return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
+  }
+  std::set<std::pair<std::string, std::string>> pairs_;
+};
+
+/// Certified continuous collision detection of a forest of links against obstacles and against itself, in FCL's
+/// manager idiom. Objects and geometries stay the caller's and are never written to; their geometry is read by
+/// setup() and update().
+///
+/// After setup() all const members may be called from many threads at once.
+class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
+ public:
+  /// @throws std::invalid_argument when tree is null.
+  explicit ArticulatedCollisionManager(std::shared_ptr<const KinematicTree> tree);
+  ~ArticulatedCollisionManager();
+  ArticulatedCollisionManager(ArticulatedCollisionManager&&) noexcept;
+  ArticulatedCollisionManager& operator=(ArticulatedCollisionManager&&) noexcept;
+
+  const KinematicTree& tree() const;
+  std::shared_ptr<const KinematicTree> sharedTree() const;
+
+  /// Adds an obstacle that stands still at its own transform. An empty name becomes "obstacle<N>".
+  /// @throws std::invalid_argument: null, registered or bound already, repeated name, geometry that is unsupported,
+  ///   empty, degenerate (no triangle) or not finite.
+  void registerObject(fcl::CollisionObjectd* object, const std::string& name = {});
+  void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
+  /// @throws std::invalid_argument when it is not registered.
+  void unregisterObject(fcl::CollisionObjectd* object);
+
+  /// Fixes a geometry to a link; the object's own transform is not used.
+  /// @param offset  geometry frame in the link's frame.
+  /// @throws std::invalid_argument as registerObject(), and for an unknown link or an offset that is not rigid.
+  void bind(LinkId link, fcl::CollisionObjectd* object,
+            const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
+  void bind(const std::string& link, fcl::CollisionObjectd* object,
+            const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
+  void unbind(fcl::CollisionObjectd* object);
+
+  /// Pairs that may touch, by link and obstacle name. Links joined by a joint (also over links without geometry that
+  /// are rigidly attached) may always touch.
+  void setAllowedCollisions(AllowedCollisionMatrix matrix);
+  const AllowedCollisionMatrix& allowedCollisions() const;
+
+  /// Makes all changes effective; needed before the first query and after register, bind or allow.
+  void setup();
+  /// Reads the transforms (and geometry, when it is another one) of the obstacles again.
+  void update();
+  void update(fcl::CollisionObjectd* object);
+  void update(const std::vector<fcl::CollisionObjectd*>& objects);
+  /// Removes all obstacles and all bindings.
+  void clear();
+
+  /// The obstacles.
+  void getObjects(std::vector<fcl::CollisionObjectd*>& objects) const;
+  std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> boundObjects() const;
+  /// Pose of a bound geometry's frame in its link's frame.
+  Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;
+  /// Number of obstacles.
+  std::size_t size() const;
+  bool empty() const { return size() == 0; }
+
+  /// First contact of the motion, or the proof that there is none (METHOD: "The promise").
+  /// @throws std::invalid_argument when the motion is not one of this tree, or for a tolerance or margin that is
+  ///   negative or not finite.
+  /// @throws std::logic_error when changes were made after the last setup() or update().
+  void continuousCollide(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
+
+  /// The same for one configuration that stands still.
+  void collide(const Eigen::VectorXd& q, const CertifiedRequest& request, CertifiedResult& result) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fcl_artic

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+
+namespace fcl_artic {
+
+/// What to look for.
+enum class ContactMode {
+  first,             ///< the first contact of the whole motion
+  firstOfEveryPair,  ///< the first contact of every pair of bodies that touches
+};
+
+/// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.
+struct CertifiedRequest {
+  /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1.
+  double tolerance_time = 1e-6;
+  /// A pair counts as touching (with certain = false) only when its gap is below this, in m.
+  double tolerance_distance = 1e-6;
+  /// Bodies nearer than this, in m, count as touching.
+  double margin = 0;
+  bool check_scene = true;  ///< links against obstacles
+  bool check_self = true;   ///< links against links
+  ContactMode mode = ContactMode::first;
+  /// At most so many contacts are reported. They all lie in [t_lower, t_upper] with mode `first`.
+  std::size_t max_contacts = 1;
+  /// Node and leaf tests after which the answer is `undecided`; 0: no limit. Counted work, not time, so that the
+  /// answer does not depend on the machine.
+  std::uint64_t work_budget = 0;
+  /// Pairs that touch at t = 0 may separate; they are watched from the moment they have.
+  bool ignore_initial_contact = false;
+  /// Measure the time of each stage too (counts are always there).
+  bool measure_times = false;
+  /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far.
+  std::function<void(double t_lower)> progress;
+};
+
+}  // namespace fcl_artic

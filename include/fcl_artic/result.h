@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <fcl/narrowphase/collision_object.h>
+
+#include "fcl_artic/kinematic_tree.h"
+
+namespace fcl_artic {
+
+enum class Status {
+  free,       ///< proven: no checked pair touches in [0, 1]
+  contact,    ///< first contact within [t_lower, t_upper] (see `certain`)
+  undecided,  ///< the work budget ran out; free on [0, t_lower) is proven
+};
+
+/// Features that meet, body 1's first. `volume`: at least one of the bodies is not a triangle there.
+enum class FeatureKind { vertexVertex, vertexEdge, edgeVertex, vertexFace, faceVertex, edgeEdge, edgeFace, faceEdge, faceFace, volume };
+
+/// A body of a query: a geometry bound to a link, or an obstacle.
+struct BodyRef {
+  LinkId link = -1;                               ///< -1 for an obstacle
+  const fcl::CollisionObjectd* object = nullptr;  ///< as registered or bound
+  std::string name;                               ///< link name, or the obstacle's
+};
+
+/// One contact. As in FCL, `normal` points from body 1 to body 2.
+struct CertifiedContact {
+  BodyRef body1, body2;
+  const fcl::CollisionGeometryd* o1 = nullptr;
+  const fcl::CollisionGeometryd* o2 = nullptr;
+  std::intptr_t b1 = -1, b2 = -1;  ///< triangle index in a mesh, fcl::Contactd::NONE (-1) for a shape
+  FeatureKind feature = FeatureKind::volume;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< world, at t_upper when certain, else at t_lower
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< world, unit
+  double t_lower = 0, t_upper = 1;
+  bool certain = false;
+};
+
+/// Work of a query, by stage. Times only with CertifiedRequest::measure_times.
+struct QueryStatistics {
+  std::uint64_t pairs = 0;              ///< body pairs that the request asks about
+  std::uint64_t pairs_after_culling = 0;  ///< of these, left by the swept bounds (stage 1)
+  std::uint64_t batches = 0;            ///< batches of eight time intervals
+  std::uint64_t motion_evaluations = 0;  ///< (frame, batch) evaluations
+  std::uint64_t node_tests = 0;         ///< bounding volume pairs, eight intervals each
+  std::uint64_t leaf_tests = 0;         ///< pairs of convex pieces, eight intervals each
+  std::uint64_t certificates = 0;       ///< directions checked, eight intervals each
+  std::uint64_t gjk = 0;                ///< witness searches
+  std::uint64_t contact_proofs = 0;     ///< poses for which a proof of contact was tried
+  double culling_us = 0, narrowphase_us = 0, report_us = 0, total_us = 0;
+};
+
+/// The answer. Always written in full.
+struct CertifiedResult {
+  Status status = Status::undecided;
+  /// The motion is proven free on [0, t_lower).
+  double t_lower = 0;
+  /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise 1, or the time of a later
+  /// proven contact.
+  double t_upper = 1;
+  /// Contact is proven, not only undecidable within the tolerances.
+  bool certain = false;
+  std::vector<CertifiedContact> contacts;
+  /// Pose of every link in the world at t_lower.
+  std::vector<Eigen::Isometry3d> M_0_at_lower;
+  /// Pairs that touch at t = 0 and were ignored (ignore_initial_contact).
+  std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
+  QueryStatistics statistics;
+
+  bool isFree() const { return status == Status::free; }
+};
+
+}  // namespace fcl_artic

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fcl/narrowphase/collision_object.h>
+
+#include "fcl_artic/manager.h"
+
+namespace fcl_artic {
+
+/// A geometry of a robot's link, ready for ArticulatedCollisionManager::bind().
+struct LinkGeometry {
+  LinkId link = -1;
+  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< geometry in the link's frame
+  std::shared_ptr<fcl::CollisionObjectd> object;              ///< mesh: BVHModel<OBBRSSd>; or Box, Cylinder, Sphere
+  std::string source;                                         ///< mesh file, or "box", "cylinder", "sphere"
+};
+
+/// A robot read from URDF: its tree and the collision geometry of its links.
+struct Robot {
+  std::shared_ptr<const KinematicTree> tree;
+  std::vector<LinkGeometry> geometry;
+  AllowedCollisionMatrix allowed;  ///< from loadSrdf() or generateAllowedCollisions(); adjacent links need no entry
+  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
+
+  /// Binds every geometry and sets the allowed collisions. setup() is left to the caller.
+  void addTo(ArticulatedCollisionManager& manager) const;
+};
+
+struct UrdfOptions {
+  /// Folders that stand for "package://NAME/": name to folder. A package that isn't named is looked for in the URDF's
+  /// folder and its parents, by folder name.
+  std::map<std::string, std::string> packages;
+};
+
+/// Reads a robot. Meshes (what assimp reads) come with their scale, by absolute path, path relative to the URDF's
+/// folder, file:// or package://. Degenerate triangles stay out, with a note.
+/// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing
+///   or empty mesh, mesh without a triangle of positive area.
+FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
+
+/// Reads the disabled pairs of an SRDF (`disable_collisions`), as MoveIt's assistant writes them.
+/// @throws std::runtime_error naming file and reason; an unknown link is an error.
+FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree);
+
+struct AllowedPair {
+  std::string link1, link2;
+  std::string reason;  ///< "Adjacent", "Always", "Default" or "Never", as MoveIt's assistant writes them
+};
+
+/// Pairs that need no check, found as MoveIt's assistant does: adjacent, in contact in all of `samples` random
+/// configurations within the limits (continuous joints: [-π, π]), at q = 0, or in none of them.
+/// Sampled, not proven: 'never' is for speed, and a pair that does collide rarely may be among them.
+FCL_ARTIC_EXPORT std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int samples = 10000,
+                                                                  std::uint64_t seed = 1);
+/// Writes an SRDF with these pairs.
+FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name,
+                                const std::vector<AllowedPair>& pairs);
+
+/// Obstacles read from a scene file; the objects live as long as the scene.
+struct Scene {
+  struct Obstacle {
+    std::string name;
+    std::shared_ptr<fcl::CollisionObjectd> object;
+  };
+  std::vector<Obstacle> obstacles;
+  std::vector<std::string> notes;
+  void addTo(ArticulatedCollisionManager& manager) const;
+};
+
+/// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
+/// URDF (.urdf: all links at q = 0 as obstacles); MoveIt scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes.
+/// @throws std::runtime_error naming file and reason.
+FCL_ARTIC_EXPORT Scene loadScene(const std::string& path);
+
+/// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.
+/// @throws std::runtime_error as loadUrdf().
+FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path,
+                                                                 const Eigen::Vector3d& scale,
+                                                                 std::vector<std::string>* notes = nullptr);
+
+}  // namespace fcl_artic
