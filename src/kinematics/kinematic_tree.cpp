@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/kinematic_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace fcl_artic {
+namespace {
+
+/// How far R^T R of a joint's origin may be from the identity, in each entry; the bounds on motion allow for it.
+constexpr double kOrthonormal = 1e-9;
+
+bool isRotation(const Eigen::Matrix3d& R) {
+  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  return error <= kOrthonormal && R.determinant() > 0;  // false for NaN
+}
+
+bool hasLimits(const Joint& joint) {
+  return joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
+}
+
+}  // namespace
+
+int KinematicTree::findLink(std::string_view name) const {
+  const auto it = std::find(link_names_.begin(), link_names_.end(), name);
+  return it == link_names_.end() ? -1 : static_cast<int>(it - link_names_.begin());
+}
+
+LinkId KinematicTree::addLink(const std::string& name) {
+  if (name.empty()) throw std::invalid_argument("robot '" + name_ + "': a link has no name");
+  if (findLink(name) >= 0) throw std::invalid_argument("robot '" + name_ + "': two links are named '" + name + "'");
+  link_names_.push_back(name);
+  parent_joint_.push_back(-1);
+  return numLinks() - 1;
+}
+
+JointId KinematicTree::addJoint(const Joint& joint) {
+  const auto refuse = [&](const std::string& reason) {
+    throw std::invalid_argument("robot '" + name_ + "': joint '" + joint.name + "' " + reason);
+  };
+  const auto findJoint = [&](const std::string& name) {
+    const auto it = std::find_if(joints_.begin(), joints_.end(), [&](const Joint& j) { return j.name == name; });
+    return it == joints_.end() ? -1 : static_cast<JointId>(it - joints_.begin());
+  };
+
+  if (joint.name.empty()) refuse("has no name");
+  if (findJoint(joint.name) >= 0) refuse("exists already");
+  const LinkId parent = findLink(joint.parent), child = findLink(joint.child);
+  if (parent < 0) refuse("has an unknown parent link '" + joint.parent + "'");
+  if (child < 0) refuse("has an unknown child link '" + joint.child + "'");
+  if (const JointId other = parentJoint(child); other >= 0) {
+    refuse("would be a second parent of link '" + joint.child + "', which joint '" + joints_[other].name +
+           "' carries already");
+  }
+  for (LinkId link = parent; link >= 0; link = parentLink(link)) {
+    if (link == child) refuse("closes a loop at link '" + joint.child + "'");
+  }
+  if (!joint.origin.translation().allFinite() || !isRotation(joint.origin.linear())) {
+    refuse("has an origin that is no rigid transform");
+  }
+  const bool moves = joint.type != JointType::fixed;
+  if (moves && (!joint.axis.allFinite() || joint.axis.isZero(0))) refuse("has an axis that is zero or not finite");
+  if (std::isnan(joint.lower) || std::isnan(joint.upper)) refuse("has a limit that is not a number");
+
+  int variable = moves ? dof() : -1;
+  if (joint.mimics) {
+    if (!moves) refuse("is fixed and cannot mimic");
+    if (!std::isfinite(joint.mimic.multiplier) || !std::isfinite(joint.mimic.offset)) {
+      refuse("mimics with a multiplier or offset that is not finite");
+    }
+    const JointId master = findJoint(joint.mimic.master);
+    if (master < 0) refuse("mimics an unknown joint '" + joint.mimic.master + "'");
+    if (joints_[master].mimics) refuse("mimics joint '" + joint.mimic.master + "', which is a mimic joint itself");
+    variable = joint_variable_[master];
+    if (variable < 0) refuse("mimics joint '" + joint.mimic.master + "', which is fixed");
+  }
+
+  const JointId id = numJoints();
+  joints_.push_back(joint);
+  if (moves) joints_.back().axis.stableNormalize();
+  joint_parent_.push_back(parent);
+  joint_child_.push_back(child);
+  joint_variable_.push_back(variable);
+  if (moves && !joint.mimics) variables_.push_back(id);
+  parent_joint_[child] = id;
+  return id;
+}
+
+LinkId KinematicTree::parentLink(LinkId link) const {
+  const JointId joint = parentJoint(link);
+  return joint < 0 ? -1 : joint_parent_[joint];
+}
+
+std::vector<LinkId> KinematicTree::topologicalOrder() const {
+  std::vector<std::vector<LinkId>> children(link_names_.size());
+  std::vector<LinkId> order;
+  order.reserve(link_names_.size());
+  for (LinkId link = 0; link < numLinks(); ++link) {
+    if (const LinkId parent = parentLink(link); parent < 0) {
+      order.push_back(link);
+    } else {
+      children[parent].push_back(link);
+    }
+  }
+  for (std::size_t i = 0; i < order.size(); ++i) {  // grows while it runs: breadth first
+    const auto& next = children[order[i]];
+    order.insert(order.end(), next.begin(), next.end());
+  }
+  return order;
+}
+
+LinkId KinematicTree::link(std::string_view name) const {
+  const LinkId id = findLink(name);
+  if (id < 0) throw std::out_of_range("robot '" + name_ + "' has no link '" + std::string(name) + "'");
+  return id;
+}
+
+JointId KinematicTree::jointId(std::string_view name) const {
+  for (JointId j = 0; j < numJoints(); ++j) {
+    if (joints_[j].name == name) return j;
+  }
+  throw std::out_of_range("robot '" + name_ + "' has no joint '" + std::string(name) + "'");
+}
+
+double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  const int variable = jointVariable(j);
+  if (variable < 0) return 0;
+  const Joint& joint = joints_[j];
+  return joint.mimics ? joint.mimic.multiplier * q[variable] + joint.mimic.offset : q[variable];
+}
+
+void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q,
+                                      std::vector<Eigen::Isometry3d>& M_0) const {
+  requireConfiguration(q, "q");
+  M_0.assign(link_names_.size(), Eigen::Isometry3d::Identity());
+  for (const LinkId link : topologicalOrder()) {
+    const JointId j = parent_joint_[link];
+    if (j < 0) continue;
+    const Joint& joint = joints_[j];
+    M_0[link] = M_0[joint_parent_[j]] * joint.origin;
+    switch (joint.type) {
+      case JointType::fixed: break;
+      case JointType::prismatic: M_0[link].translate(jointValue(j, q) * joint.axis); break;
+      case JointType::revolute:
+      case JointType::continuous: M_0[link].rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis)); break;
+    }
+  }
+}
+
+void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {
+  if (q.size() != dof()) {
+    throw std::invalid_argument(what + " has " + std::to_string(q.size()) + " entries, robot '" + name_ + "' has " +
+                                std::to_string(dof()));
+  }
+  for (int v = 0; v < dof(); ++v) {
+    if (!std::isfinite(q[v])) {
+      throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + variableName(v) +
+                                  "' is not finite");
+    }
+  }
+}
+
+std::vector<std::string> KinematicTree::limitNotes(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  requireConfiguration(q, "q");
+  std::vector<std::string> notes;
+  for (int v = 0; v < dof(); ++v) {
+    const Joint& joint = joints_[variables_[v]];
+    if (!hasLimits(joint) || (q[v] >= joint.lower && q[v] <= joint.upper)) continue;
+    std::ostringstream note;
+    note << "joint '" << joint.name << "' at " << q[v] << " is beyond its limits [" << joint.lower << ", "
+         << joint.upper << "]";
+    notes.push_back(note.str());
+  }
+  return notes;
+}
+
+}  // namespace fcl_artic
