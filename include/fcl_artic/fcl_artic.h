@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "fcl_artic/fcl_link_motion.h"
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/manager.h"
