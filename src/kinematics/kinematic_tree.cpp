@@ -141,10 +141,15 @@ void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q
     const Joint& joint = joints_[j];
     M_0[link] = M_0[joint_parent_[j]] * joint.origin;
     switch (joint.type) {
-      case JointType::fixed: break;
-      case JointType::prismatic: M_0[link].translate(jointValue(j, q) * joint.axis); break;
+      case JointType::fixed:
+        break;
+      case JointType::prismatic:
+        M_0[link].translate(jointValue(j, q) * joint.axis);
+        break;
       case JointType::revolute:
-      case JointType::continuous: M_0[link].rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis)); break;
+      case JointType::continuous:
+        M_0[link].rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis));
+        break;
     }
   }
 }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <fcl/geometry/collision_geometry.h>
+#include <fcl/math/triangle.h>
+
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace fcl_artic::detail {
+
+using GeometryPtr = std::shared_ptr<fcl::CollisionGeometryd>;
+
+/// Throws what all loaders throw. @param where  names file and part, such as "'a.urdf': link 'b'".
+[[noreturn]] inline void fail(const std::string& where, const std::string& reason) {
+  throw std::runtime_error(where + ": " + reason);
+}
+
+/// @throws std::runtime_error naming the file.
+std::string readFile(const std::string& path);
+
+/// A number as messages show it.
+std::string text(double value);
+
+/// @param size  full lengths, m. @throws std::runtime_error naming `where` unless all are positive and finite.
+GeometryPtr makeBox(const Eigen::Vector3d& size, const std::string& where);
+GeometryPtr makeSphere(double radius, const std::string& where);
+/// Centred at the origin, axis z, as in FCL, URDF and MoveIt.
+GeometryPtr makeCylinder(double radius, double length, const std::string& where);
+GeometryPtr makeCone(double radius, double length, const std::string& where);
+/// A BVHModel<OBBRSSd> of the triangles that have an area; what is dropped is noted.
+/// @throws std::runtime_error naming `where` for an index out of range, a vertex that is not finite or no triangle
+/// left.
+GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
+                     const std::string& where, std::vector<std::string>* notes);
+
+}  // namespace fcl_artic::detail

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "detail.h"
+#include "fcl_artic/urdf/urdf.h"
+
+namespace fcl_artic {
+namespace detail {
+namespace {
+
+void requireLength(double value, const std::string& what, const std::string& where) {
+  if (!(value > 0 && std::isfinite(value))) fail(where, what + " " + text(value) + " is not a positive length");
+}
+
+/// No area beyond the rounding of its own edges.
+bool isDegenerate(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const Eigen::Vector3d u = b - a, v = c - a;
+  return !(u.cross(v).norm() > 8 * std::numeric_limits<double>::epsilon() * u.norm() * v.norm());
+}
+
+}  // namespace
+
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string readFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream content;
+  if (!in || std::filesystem::is_directory(path) || !(content << in.rdbuf())) {
+    fail("'" + path + "'", "cannot be read, or is empty");
+  }
+  return content.str();
+}
+
+GeometryPtr makeBox(const Eigen::Vector3d& size, const std::string& where) {
+  for (const double length : size) requireLength(length, "box size", where);
+  return std::make_shared<fcl::Boxd>(size);
+}
+
+GeometryPtr makeSphere(double radius, const std::string& where) {
+  requireLength(radius, "sphere radius", where);
+  return std::make_shared<fcl::Sphered>(radius);
+}
+
+GeometryPtr makeCylinder(double radius, double length, const std::string& where) {
+  requireLength(radius, "cylinder radius", where);
+  requireLength(length, "cylinder length", where);
+  return std::make_shared<fcl::Cylinderd>(radius, length);
+}
+
+GeometryPtr makeCone(double radius, double length, const std::string& where) {
+  requireLength(radius, "cone radius", where);
+  requireLength(length, "cone length", where);
+  return std::make_shared<fcl::Coned>(radius, length);
+}
+
+GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
+                     const std::string& where, std::vector<std::string>* notes) {
+  if (triangles.empty()) fail(where, "has no triangles");
+  std::vector<fcl::Triangle> kept;
+  kept.reserve(triangles.size());
+  for (const fcl::Triangle& triangle : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      if (triangle[k] >= vertices.size()) {
+        fail(where,
+             "has a triangle with vertex " + std::to_string(triangle[k]) + " of " + std::to_string(vertices.size()));
+      }
+      if (!vertices[triangle[k]].allFinite()) {
+        fail(where, "vertex " + std::to_string(triangle[k]) + " is not finite");
+      }
+    }
+    if (!isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]])) kept.push_back(triangle);
+  }
+  if (kept.empty()) fail(where, "has no triangle with an area");
+  if (notes && kept.size() < triangles.size()) {
+    notes->push_back(where + ": " + std::to_string(triangles.size() - kept.size()) + " of " +
+                     std::to_string(triangles.size()) + " triangles have no area and were left out");
+  }
+  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  if (model->beginModel(static_cast<int>(kept.size()), static_cast<int>(vertices.size())) != fcl::BVH_OK ||
+      model->addSubModel(vertices, kept) != fcl::BVH_OK || model->endModel() != fcl::BVH_OK) {
+    fail(where, "FCL cannot build its tree");
+  }
+  model->computeLocalAABB();
+  return model;
+}
+
+}  // namespace detail
+
+namespace {
+
+struct TriangleSoup {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+};
+
+/// assimp keeps the parts of a file in the frames of its nodes.
+void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_parent, TriangleSoup& soup) {
+  const Eigen::Matrix4d M =
+      M_parent *
+      Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1).cast<double>();
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+    const aiMesh& part = *scene.mMeshes[node.mMeshes[m]];
+    const std::size_t first = soup.vertices.size();
+    for (unsigned v = 0; v < part.mNumVertices; ++v) {
+      const Eigen::Vector4d x(part.mVertices[v].x, part.mVertices[v].y, part.mVertices[v].z, 1);
+      soup.vertices.push_back((M * x).head<3>());
+    }
+    for (unsigned f = 0; f < part.mNumFaces; ++f) {
+      const aiFace& face = part.mFaces[f];
+      if (face.mNumIndices != 3) continue;  // points and lines
+      soup.triangles.emplace_back(first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]);
+    }
+  }
+  for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], M, soup);
+}
+
+}  // namespace
+
+std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const Eigen::Vector3d& scale,
+                                                  std::vector<std::string>* notes) {
+  const std::string where = "mesh '" + path + "'";
+  if (!scale.allFinite() || (scale.array() == 0).any()) {
+    detail::fail(where, "its scale has an entry that is zero or not finite");
+  }
+  if (std::error_code error; !std::filesystem::is_regular_file(path, error)) detail::fail(where, "no such file");
+
+  Assimp::Importer importer;
+  // As in ROS, a COLLADA file's unit counts and its up axis does not.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
+
+  TriangleSoup soup;
+  collect(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), soup);
+  for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
+  return detail::makeMesh(soup.vertices, soup.triangles, where, notes);
+}
+
+}  // namespace fcl_artic

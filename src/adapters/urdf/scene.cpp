@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <map>
+#include <sstream>
+
+#include "detail.h"
+#include "fcl_artic/urdf/urdf.h"
+
+namespace fcl_artic {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::fail;
+
+/// Collects obstacles; those that come with a name in use become NAME#2, NAME#3, ...
+class SceneBuilder {
+ public:
+  void add(const std::string& name, const detail::GeometryPtr& geometry, const Eigen::Isometry3d& M_0) {
+    const int count = ++uses_[name];
+    auto object = std::make_shared<fcl::CollisionObjectd>(geometry, M_0);
+    scene.obstacles.push_back({count == 1 ? name : name + "#" + std::to_string(count), std::move(object)});
+  }
+  Scene scene;
+
+ private:
+  std::map<std::string, int> uses_;
+};
+
+// --- MoveIt's scene text: objects of shapes, each with a pose (position, quaternion xyzw) and a colour.
+// ---------------
+
+class MoveItSceneReader {
+ public:
+  MoveItSceneReader(const std::string& path, SceneBuilder& builder)
+      : where_("'" + path + "'"), in_(detail::readFile(path)), builder_(builder) {
+    in_.imbue(std::locale::classic());
+  }
+
+  void read() {
+    std::string scene_name;
+    std::getline(in_, scene_name);
+    const bool has_poses = objectsHavePoses();
+    for (;;) {
+      std::string marker;
+      if (!(in_ >> marker)) fail(where_, "ends before the '.' that closes a scene");
+      if (marker == ".") return;
+      if (marker != "*") fail(where_, "has '" + marker + "' where an object ('* name') or the end ('.') belongs");
+      readObject(has_poses);
+    }
+  }
+
+ private:
+  /// Newer files give each object a pose before its shapes: the line after the name holds more than the shape count.
+  bool objectsHavePoses() {
+    const auto start = in_.tellg();
+    std::string line;
+    while (std::getline(in_, line) && (line.empty() || line[0] != '*')) {
+    }
+    std::getline(in_, line);
+    in_.clear();
+    in_.seekg(start);
+    std::istringstream words(line);
+    std::string word;
+    return words >> word && words >> word;
+  }
+
+  void readObject(bool has_pose) {
+    std::string name;
+    std::getline(in_ >> std::ws, name);
+    name.erase(name.find_last_not_of(" \t\r") + 1);
+    const std::string part = where_ + ": object '" + name + "'";
+    const Eigen::Isometry3d M_object = has_pose ? pose(part) : Eigen::Isometry3d::Identity();
+    const auto shapes = count(part, "number of shapes");
+    for (std::size_t i = 0; i < shapes; ++i) {
+      const auto geometry = shape(part);
+      const Eigen::Isometry3d M_shape = pose(part);
+      for (int channel = 0; channel < 4; ++channel) number(part, "colour");
+      builder_.add(name, geometry, M_object * M_shape);
+    }
+    if (!has_pose) return;
+    const auto subframes = count(part, "number of subframes");
+    for (std::size_t i = 0; i < subframes; ++i) {
+      std::string subframe;
+      in_ >> subframe;
+      pose(part);
+    }
+  }
+
+  detail::GeometryPtr shape(const std::string& part) {
+    std::string kind;
+    in_ >> kind;
+    const auto length = [&] { return number(part, kind + "'s size"); };
+    if (kind == "box") {
+      const double x = length(), y = length(), z = length();
+      return detail::makeBox({x, y, z}, part);
+    }
+    if (kind == "sphere") return detail::makeSphere(length(), part);
+    if (kind == "cylinder" || kind == "cone") {
+      const double radius = length(), height = length();
+      return kind == "cone" ? detail::makeCone(radius, height, part) : detail::makeCylinder(radius, height, part);
+    }
+    if (kind == "mesh") {
+      const auto num_vertices = count(part, "number of vertices"), num_triangles = count(part, "number of triangles");
+      std::vector<Eigen::Vector3d> vertices;  // grow as they are read: a wrong count must not take all memory
+      for (std::size_t i = 0; i < num_vertices; ++i) {
+        const double x = number(part, "vertex"), y = number(part, "vertex"), z = number(part, "vertex");
+        vertices.emplace_back(x, y, z);
+      }
+      std::vector<fcl::Triangle> triangles;
+      for (std::size_t i = 0; i < num_triangles; ++i) {
+        const auto a = count(part, "triangle"), b = count(part, "triangle"), c = count(part, "triangle");
+        triangles.emplace_back(a, b, c);
+      }
+      return detail::makeMesh(vertices, triangles, part, &builder_.scene.notes);
+    }
+    fail(part, "has a shape '" + kind + "'; box, sphere, cylinder, cone and mesh are read");
+  }
+
+  Eigen::Isometry3d pose(const std::string& part) {
+    Eigen::Vector3d position;
+    for (double& x : position) x = number(part, "position");
+    Eigen::Quaterniond rotation;
+    for (double& x : rotation.coeffs()) x = number(part, "quaternion");  // x y z w, as Eigen keeps it
+    if (!(rotation.norm() > 1e-6)) fail(part, "has a zero quaternion");
+    return Eigen::Translation3d(position) * rotation.normalized();
+  }
+
+  double number(const std::string& part, const std::string& what) {
+    double value;
+    if (!(in_ >> value)) fail(part, "its " + what + " is cut short or not a number");
+    return value;
+  }
+  std::size_t count(const std::string& part, const std::string& what) {
+    long long value;
+    if (!(in_ >> value) || value < 0) fail(part, "its " + what + " is cut short or not a count");
+    return static_cast<std::size_t>(value);
+  }
+
+  std::string where_;
+  std::istringstream in_;
+  SceneBuilder& builder_;
+};
+
+// --- OctoMap
+// ----------------------------------------------------------------------------------------------------------
+
+template <class Tree>
+void addOccupiedCells(const Tree& tree, const std::string& name, SceneBuilder& builder) {
+  std::map<double, detail::GeometryPtr> boxes;  // cells of one size share their box
+  for (auto cell = tree.begin_leafs(); cell != tree.end_leafs(); ++cell) {
+    if (!tree.isNodeOccupied(*cell)) continue;
+    auto& box = boxes[cell.getSize()];
+    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(cell.getSize()), name);
+    builder.add(name, box, Eigen::Isometry3d(Eigen::Translation3d(cell.getX(), cell.getY(), cell.getZ())));
+  }
+}
+
+void readOctoMap(const std::string& path, bool binary, SceneBuilder& builder) {
+  const std::string where = "'" + path + "'";
+  std::istringstream in(detail::readFile(path), std::ios::binary);
+  // OctoMap reads on past the end of a file that is cut short, over and over; with exceptions it stops there.
+  in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+  std::unique_ptr<octomap::AbstractOcTree> tree;
+  try {
+    if (binary) {
+      auto occupancy = std::make_unique<octomap::OcTree>(1.0);  // the resolution comes with the file
+      if (occupancy->readBinary(in)) tree = std::move(occupancy);
+    } else {
+      tree.reset(octomap::AbstractOcTree::read(in));
+    }
+  } catch (const std::ios::failure&) {
+    fail(where, "is not an OctoMap file or is cut short");
+  }
+  if (!tree)
+    fail(where, std::string("is not an OctoMap file of the kind its ending tells: ") + (binary ? ".bt" : ".ot"));
+
+  const std::string name = fs::path(path).stem().string();
+  if (const auto* plain = dynamic_cast<const octomap::OcTree*>(tree.get())) {
+    addOccupiedCells(*plain, name, builder);
+  } else if (const auto* colour = dynamic_cast<const octomap::ColorOcTree*>(tree.get())) {
+    addOccupiedCells(*colour, name, builder);
+  } else {
+    fail(where, "holds a " + tree->getTreeType() + "; OcTree and ColorOcTree are read");
+  }
+  if (builder.scene.obstacles.empty()) builder.scene.notes.push_back(where + ": no cell is occupied");
+}
+
+// --- URDF
+// -------------------------------------------------------------------------------------------------------------
+
+void readRobot(const std::string& path, SceneBuilder& builder) {
+  const Robot robot = loadUrdf(path);
+  std::vector<Eigen::Isometry3d> M_0;
+  robot.tree->forwardKinematics(Eigen::VectorXd::Zero(robot.tree->dof()), M_0);
+  for (const LinkGeometry& g : robot.geometry) {
+    builder.add(robot.tree->linkName(g.link),
+                std::const_pointer_cast<fcl::CollisionGeometryd>(g.object->collisionGeometry()),
+                M_0[g.link] * g.offset);
+  }
+  builder.scene.notes.insert(builder.scene.notes.end(), robot.notes.begin(), robot.notes.end());
+}
+
+}  // namespace
+
+FCL_ARTIC_EXPORT void Scene::addTo(ArticulatedCollisionManager& manager) const {
+  for (const Obstacle& obstacle : obstacles) manager.registerObject(obstacle.object.get(), obstacle.name);
+}
+
+Scene loadScene(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  SceneBuilder builder;
+  if (ending == ".urdf") {
+    readRobot(path, builder);
+  } else if (ending == ".scene") {
+    MoveItSceneReader(path, builder).read();
+  } else if (ending == ".bt" || ending == ".ot") {
+    readOctoMap(path, ending == ".bt", builder);
+  } else {
+    builder.add(fs::path(path).stem().string(), loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes),
+                Eigen::Isometry3d::Identity());
+  }
+  return std::move(builder.scene);
+}
+
+}  // namespace fcl_artic

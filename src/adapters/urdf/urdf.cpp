@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/urdf/urdf.h"
+
+#include <console_bridge/console.h>
+#include <tinyxml2.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <tuple>
+
+#include "detail.h"
+
+namespace fcl_artic {
+namespace {
+
+namespace fs = std::filesystem;
+using detail::fail;
+
+/// Catches what urdfdom has to say while it lives: urdfdom prints its reasons, and returns only null.
+class ParserMessages : public console_bridge::OutputHandler {
+ public:
+  ParserMessages() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
+  ~ParserMessages() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& message, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_WARN) messages_.push_back(message);
+  }
+  const std::vector<std::string>& lines() const { return messages_; }
+  std::string joined() const {
+    std::string all;
+    for (const std::string& message : messages_) all += (all.empty() ? "" : "; ") + message;
+    return all.empty() ? "urdfdom gives no reason" : all;
+  }
+
+ private:
+  static std::mutex& mutex() {  // console_bridge has one handler for the process
+    static std::mutex instance;
+    return instance;
+  }
+  std::lock_guard<std::mutex> lock_;
+  std::vector<std::string> messages_;
+};
+
+/// Names of links and joints in the order of the file; urdfdom sorts them by name.
+struct DocumentOrder {
+  std::vector<std::string> links, joints;
+};
+
+DocumentOrder readOrder(const std::string& where, const std::string& xml) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
+  const tinyxml2::XMLElement* robot = document.RootElement();
+  if (!robot || std::string(robot->Name()) != "robot") {
+    fail(where, "is not a URDF: the root element is not <robot>");
+  }
+  DocumentOrder order;
+  for (auto* e = robot->FirstChildElement(); e; e = e->NextSiblingElement()) {
+    const std::string kind = e->Name();
+    if (kind.rfind("xacro:", 0) == 0) fail(where, "is a xacro file; expand it to URDF first");
+    const char* name = e->Attribute("name");
+    if (kind == "link" && name) order.links.push_back(name);
+    if (kind == "joint" && name) order.joints.push_back(name);
+  }
+  return order;
+}
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& where, const std::string& xml, std::vector<std::string>& notes) {
+  ParserMessages messages;
+  try {
+    if (auto model = urdf::parseURDF(xml)) {
+      for (const std::string& line : messages.lines()) notes.push_back(where + ": " + line);
+      return model;
+    }
+  } catch (const std::exception& error) {
+    fail(where, error.what());
+  }
+  fail(where, messages.joined());
+}
+
+Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
+  const Eigen::Quaterniond rotation(pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z);
+  return Eigen::Translation3d(pose.position.x, pose.position.y, pose.position.z) * rotation.normalized();
+}
+
+Joint toJoint(const std::string& where, const urdf::Joint& in) {
+  Joint out;
+  out.name = in.name;
+  out.parent = in.parent_link_name;
+  out.child = in.child_link_name;
+  out.origin = toEigen(in.parent_to_joint_origin_transform);
+  out.axis = {in.axis.x, in.axis.y, in.axis.z};
+  switch (in.type) {
+    case urdf::Joint::FIXED:
+      out.type = JointType::fixed;
+      break;
+    case urdf::Joint::REVOLUTE:
+      out.type = JointType::revolute;
+      break;
+    case urdf::Joint::CONTINUOUS:
+      out.type = JointType::continuous;
+      break;
+    case urdf::Joint::PRISMATIC:
+      out.type = JointType::prismatic;
+      break;
+    case urdf::Joint::FLOATING:
+      fail(where, "joint '" + in.name + "' is of type floating, which is not supported");
+    case urdf::Joint::PLANAR:
+      fail(where, "joint '" + in.name + "' is of type planar, which is not supported");
+    default:
+      fail(where, "joint '" + in.name + "' is of an unknown type");
+  }
+  if (in.limits && out.type != JointType::continuous) {
+    out.lower = in.limits->lower;
+    out.upper = in.limits->upper;
+  }
+  if (in.mimic && out.type != JointType::fixed) {
+    out.mimics = true;
+    out.mimic = {in.mimic->joint_name, in.mimic->multiplier, in.mimic->offset};
+  }
+  return out;
+}
+
+/// A joint that follows a fixed one stands still where its offset puts it.
+void freeze(Joint& joint) {
+  if (joint.type == JointType::prismatic) {
+    joint.origin.translate(joint.mimic.offset * joint.axis.normalized());
+  } else {
+    joint.origin.rotate(Eigen::AngleAxisd(joint.mimic.offset, joint.axis.normalized()));
+  }
+  joint.type = JointType::fixed;
+  joint.mimics = false;
+}
+
+std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const urdf::ModelInterface& model,
+                                              const DocumentOrder& order, std::vector<std::string>& notes) {
+  auto tree = std::make_shared<KinematicTree>(model.getName());
+  try {
+    for (const std::string& name : order.links) tree->addLink(name);
+    std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
+    for (const std::string& name : order.joints) {
+      const Joint joint = toJoint(where, *model.getJoint(name));
+      if (joint.mimics) {
+        mimics.push_back(joint);
+      } else {
+        tree->addJoint(joint);
+      }
+    }
+    for (Joint& joint : mimics) {
+      const urdf::JointConstSharedPtr master = model.getJoint(joint.mimic.master);
+      if (master && master->type == urdf::Joint::FIXED) {
+        freeze(joint);
+        notes.push_back("joint '" + joint.name + "' mimics the fixed joint '" + master->name + "' and is fixed too");
+      }
+      tree->addJoint(joint);
+    }
+  } catch (const std::invalid_argument& error) {
+    fail(where, error.what());
+  }
+  return tree;
+}
+
+/// Turns the paths of a URDF into paths of files.
+class MeshFinder {
+ public:
+  MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
+      : folder_(fs::absolute(urdf_path).parent_path()), packages_(options.packages) {}
+
+  std::string find(const std::string& where, const std::string& uri) const {
+    const auto after = [&](const std::string& scheme) { return uri.substr(scheme.size()); };
+    const auto starts = [&](const std::string& scheme) { return uri.rfind(scheme, 0) == 0; };
+    if (starts("package://")) return inPackage(where, after("package://"));
+    if (starts("file://")) return existing(where, after("file://"));
+    if (uri.find("://") != std::string::npos) fail(where, "mesh '" + uri + "': only file:// and package:// are read");
+    return existing(where, folder_ / uri);  // an absolute path stays as it is
+  }
+
+ private:
+  static std::string existing(const std::string& where, const fs::path& path) {
+    if (std::error_code error; !fs::is_regular_file(path, error)) {
+      fail(where, "mesh '" + path.string() + "': no such file");
+    }
+    return path.lexically_normal().string();
+  }
+
+  std::string inPackage(const std::string& where, const std::string& path) const {
+    const auto slash = path.find('/');
+    if (slash == std::string::npos) fail(where, "mesh 'package://" + path + "': names no file");
+    const std::string name = path.substr(0, slash), rest = path.substr(slash + 1);
+    if (const auto it = packages_.find(name); it != packages_.end())
+      return existing(where, fs::path(it->second) / rest);
+    for (fs::path dir = folder_;; dir = dir.parent_path()) {
+      std::error_code error;
+      if (dir.filename() == name) return existing(where, dir / rest);
+      if (fs::is_directory(dir / name, error)) return existing(where, dir / name / rest);
+      if (dir == dir.parent_path()) break;
+    }
+    fail(where, "mesh 'package://" + path + "': package '" + name +
+                    "' is not named in the options, nor is a folder of " + "that name at or above '" +
+                    folder_.string() + "'");
+  }
+
+  fs::path folder_;
+  std::map<std::string, std::string> packages_;
+};
+
+/// Makes geometries, each mesh file and scale once.
+class GeometryFactory {
+ public:
+  GeometryFactory(MeshFinder finder, std::vector<std::string>& notes) : finder_(std::move(finder)), notes_(notes) {}
+
+  struct Made {
+    detail::GeometryPtr geometry;
+    std::string source;
+  };
+  Made make(const std::string& where, const urdf::Geometry& in) {
+    switch (in.type) {
+      case urdf::Geometry::BOX: {
+        const urdf::Vector3& size = static_cast<const urdf::Box&>(in).dim;
+        return {detail::makeBox({size.x, size.y, size.z}, where), "box"};
+      }
+      case urdf::Geometry::SPHERE:
+        return {detail::makeSphere(static_cast<const urdf::Sphere&>(in).radius, where), "sphere"};
+      case urdf::Geometry::CYLINDER: {
+        const auto& cylinder = static_cast<const urdf::Cylinder&>(in);
+        return {detail::makeCylinder(cylinder.radius, cylinder.length, where), "cylinder"};
+      }
+      case urdf::Geometry::MESH:
+        return mesh(where, static_cast<const urdf::Mesh&>(in));
+    }
+    fail(where, "has a geometry of an unknown kind");
+  }
+
+ private:
+  Made mesh(const std::string& where, const urdf::Mesh& in) {
+    const std::string path = finder_.find(where, in.filename);
+    auto& geometry = meshes_[{path, in.scale.x, in.scale.y, in.scale.z}];
+    if (!geometry) {
+      try {
+        geometry = loadMesh(path, {in.scale.x, in.scale.y, in.scale.z}, &notes_);
+      } catch (const std::runtime_error& error) {
+        fail(where, error.what());
+      }
+    }
+    return {geometry, path};
+  }
+
+  MeshFinder finder_;
+  std::vector<std::string>& notes_;
+  std::map<std::tuple<std::string, double, double, double>, detail::GeometryPtr> meshes_;
+};
+
+}  // namespace
+
+FCL_ARTIC_EXPORT void Robot::addTo(ArticulatedCollisionManager& manager) const {
+  for (const LinkGeometry& g : geometry) manager.bind(g.link, g.object.get(), g.offset);
+  manager.setAllowedCollisions(allowed);
+}
+
+Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
+  const std::string where = "'" + path + "'";
+  const std::string xml = detail::readFile(path);
+  const DocumentOrder order = readOrder(where, xml);
+  Robot robot;
+  const urdf::ModelInterfaceSharedPtr model = parse(where, xml, robot.notes);
+  robot.tree = makeTree(where, *model, order, robot.notes);
+
+  GeometryFactory factory(MeshFinder(path, options), robot.notes);
+  for (LinkId id = 0; id < robot.tree->numLinks(); ++id) {
+    const urdf::Link& link = *model->getLink(robot.tree->linkName(id));
+    const std::string part = where + ": link '" + link.name + "'";
+    for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+      if (!collision->geometry) fail(part, "has a collision element without geometry");
+      const auto made = factory.make(part, *collision->geometry);
+      robot.geometry.push_back(
+          {id, toEigen(collision->origin), std::make_shared<fcl::CollisionObjectd>(made.geometry), made.source});
+    }
+    if (link.collision_array.empty() && !link.visual_array.empty()) {
+      robot.notes.push_back("link '" + link.name + "' has a visual but no collision geometry: it is not checked");
+    }
+  }
+  if (robot.geometry.empty()) robot.notes.push_back("robot '" + robot.tree->name() + "' has no collision geometry");
+  return robot;
+}
+
+}  // namespace fcl_artic
