@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "check.h"
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "configuration.h"
+#include "exit_status.h"
+#include "fcl_artic/fcl_artic.h"
+#include "fcl_artic/urdf/urdf.h"
+#include "progress.h"
+#include "render/picture.h"
+#include "report.h"
+
+namespace fcl_artic::app {
+namespace {
+
+struct Options {
+  std::string robot, srdf, auto_srdf, image;
+  std::vector<std::string> scenes, packages, from, to;
+  std::string size = "1600x1000", camera;
+  CertifiedRequest request;
+  bool every_pair = false, no_self = false, no_scene = false;
+  bool shortest = false, json = false;
+};
+
+/// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
+std::optional<std::array<double, 2>> numberPair(const std::string& text, char separator) {
+  const char* at = text.c_str();
+  char* end = nullptr;
+  std::array<double, 2> out{};
+  out[0] = std::strtod(at, &end);
+  if (end == at || *end != separator) return std::nullopt;
+  at = end + 1;
+  out[1] = std::strtod(at, &end);
+  if (end == at || *end != '\0') return std::nullopt;
+  return out;
+}
+
+std::string requireSize(const std::string& text) {
+  const auto size = numberPair(text, 'x');
+  const bool good = size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= 8192 && (*size)[1] <= 8192;
+  return good ? "" : "'" + text + "' is not a size WxH in pixels from 64x64 to 8192x8192";
+}
+
+std::string requireCamera(const std::string& text) {
+  const auto angles = numberPair(text, ',');
+  const bool good = angles && std::abs((*angles)[0]) <= 360 && std::abs((*angles)[1]) <= 90;
+  return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
+}
+
+std::string requirePackage(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool good = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
+  return good ? "" : "'" + text + "' is not NAME=DIR";
+}
+
+UrdfOptions urdfOptions(const Options& options) {
+  UrdfOptions out;
+  for (const std::string& package : options.packages) {
+    const std::size_t equals = package.find('=');
+    out.packages[package.substr(0, equals)] = package.substr(equals + 1);
+  }
+  return out;
+}
+
+/// The obstacles of all scene files in one scene. Names must differ from one another and from the links', since the
+/// allowed pairs go by name; a name that is taken gets a number.
+Scene loadScenes(const std::vector<std::string>& paths, const KinematicTree& tree) {
+  Scene all;
+  std::set<std::string> taken;
+  for (LinkId link = 0; link < tree.numLinks(); ++link) taken.insert(tree.linkName(link));
+  for (const std::string& path : paths) {
+    Scene scene = loadScene(path);
+    for (const std::string& note : scene.notes) all.notes.push_back(note);
+    for (Scene::Obstacle& obstacle : scene.obstacles) {
+      std::string name = obstacle.name;
+      for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}#{}", obstacle.name, number);
+      if (name != obstacle.name) {
+        all.notes.push_back(
+            fmt::format("{}: obstacle '{}' is called '{}' here, the name is taken", path, obstacle.name, name));
+      }
+      all.obstacles.push_back({name, std::move(obstacle.object)});
+    }
+  }
+  return all;
+}
+
+Robot loadRobot(const Options& options) {
+  Robot robot = loadUrdf(options.robot, urdfOptions(options));
+  if (!options.srdf.empty()) robot.allowed = loadSrdf(options.srdf, *robot.tree);
+  if (!options.auto_srdf.empty()) {
+    const std::vector<AllowedPair> pairs = generateAllowedCollisions(robot);
+    writeSrdf(options.auto_srdf, robot.tree->name(), pairs);
+    for (const AllowedPair& pair : pairs) robot.allowed.allow(pair.link1, pair.link2);
+    robot.notes.push_back(fmt::format("{} allowed pairs, found by sampling and not proven, written to {}",
+                                      pairs.size(), options.auto_srdf));
+  }
+  return robot;
+}
+
+int exitStatus(Status status) {
+  switch (status) {
+    case Status::free: return kExitFree;
+    case Status::contact: return kExitContact;
+    case Status::undecided: return kExitUndecided;
+  }
+  return kExitError;
+}
+
+int run(const Options& options) {
+  if (!options.image.empty()) render::requirePictures();
+  const Robot robot = loadRobot(options);
+  const KinematicTree& tree = *robot.tree;
+  const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
+  const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
+  const JointMotion motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+  const Scene scene = loadScenes(options.scenes, tree);
+
+  ArticulatedCollisionManager manager(robot.tree);
+  robot.addTo(manager);
+  scene.addTo(manager);
+  manager.setup();
+
+  CertifiedRequest request = options.request;
+  request.check_self = !options.no_self;
+  request.check_scene = !options.no_scene;
+  request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
+  request.measure_times = true;
+  CertifiedResult result;
+  {
+    ProgressBar bar;
+    request.progress = [&bar](double t_lower) { bar.show(t_lower); };
+    manager.continuousCollide(motion, request, result);
+  }
+
+  std::vector<std::string> notes = robot.notes;
+  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  for (const std::string& note : tree.limitNotes(motion.configuration(0))) notes.push_back("--from: " + note);
+  for (const std::string& note : tree.limitNotes(motion.configuration(1))) notes.push_back("--to: " + note);
+  const Report report{tree, motion, request, result, notes};
+
+  if (!options.image.empty()) {
+    const auto size = *numberPair(options.size, 'x');
+    render::PictureOptions picture;
+    picture.width = static_cast<int>(size[0]);
+    picture.height = static_cast<int>(size[1]);
+    picture.title = titleLine(report);
+    if (!options.camera.empty()) picture.camera = numberPair(options.camera, ',');
+    render::writePicture(options.image, robot, scene.obstacles, motion, result, picture);
+  }
+  if (options.json) {
+    fmt::print("{}\n", jsonReport(report).dump(2));
+  } else {
+    fmt::print("{}", textReport(report));
+  }
+  return exitStatus(result.status);
+}
+
+}  // namespace
+
+void addCheck(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<Options>();
+  Options& o = *options;
+  CertifiedRequest& request = o.request;
+  CLI::App* check = program.add_subcommand(
+      "check", "Does anything touch while every joint goes straight from one configuration to another?");
+  check->footer(
+      "A configuration is a list of all joint values (\"0, 1.57, -90deg\") or name=value pairs, joints that are not\n"
+      "named at 0; rad or m, angles also as 90deg.\n"
+      "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget).");
+
+  check->add_option("--robot", o.robot, "Robot (URDF)")->required()->group("Robot and scene")->type_name("FILE");
+  CLI::Option* srdf = check->add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
+                          ->group("Robot and scene")->type_name("FILE");
+  check->add_option("--auto-srdf", o.auto_srdf, "Find the pairs of links that may touch by sampling, write them to "
+                                                "FILE and use them")
+      ->group("Robot and scene")->type_name("FILE")->excludes(srdf);
+  check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
+      ->group("Robot and scene")->type_name("FILE...");
+  check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
+      ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");
+
+  check->add_option("--from", o.from, "Configuration at t = 0")->required()->group("Motion")->type_name("Q");
+  check->add_option("--to", o.to, "Configuration at t = 1")->required()->group("Motion")->type_name("Q");
+  check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
+
+  const auto number = [&](const std::string& name, double& value, const std::string& help) {
+    return check->add_option(name, value, help)->check(CLI::NonNegativeNumber)->group("Query")->capture_default_str();
+  };
+  number("--margin", request.margin, "Nearer than this counts as touching, in m");
+  number("--tolerance-time", request.tolerance_time, "Wanted width of the bracket of the contact time");
+  number("--tolerance-distance", request.tolerance_distance,
+         "A gap below this, in m, may be taken for a contact that is not certain");
+  check->add_option("--budget", request.work_budget, "Tests after which the answer is 'undecided'; 0: no limit")
+      ->group("Query")->capture_default_str();
+  check->add_option("--max-contacts", request.max_contacts, "Contacts to report at most")
+      ->check(CLI::PositiveNumber)->group("Query")->capture_default_str();
+  check->add_flag("--every-pair", o.every_pair, "The first contact of every pair of bodies that touches")
+      ->group("Query");
+  check->add_flag("--ignore-initial-contact", request.ignore_initial_contact,
+                  "Pairs that touch at t = 0 may separate; they are watched from then on")->group("Query");
+  check->add_flag("--no-self", o.no_self, "Do not check links against links")->group("Query");
+  check->add_flag("--no-scene", o.no_scene, "Do not check links against obstacles")->group("Query");
+
+  check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
+  CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and contact as PNG")
+                           ->group("Output")->type_name("FILE");
+  check->add_option("--size", o.size, "Size of the picture in pixels")
+      ->check(requireSize)->needs(image)->group("Output")->type_name("WxH")->capture_default_str();
+  check->add_option("--camera", o.camera, "Where the picture is seen from: azimuth from +x and elevation, in degrees; "
+                                          "without it a view that shows the contact is chosen")
+      ->check(requireCamera)->needs(image)->group("Output")->type_name("AZ,EL");
+
+  check->callback([options, &exit_status] {
+    try {
+      exit_status = run(*options);
+    } catch (const std::exception& error) {
+      if (options->json) fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));
+      throw;
+    }
+  });
+}
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program fcl_artic: verbs in files of their own, errors in one place.
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "check.h"
+#include "exit_status.h"
+#include "generate.h"
+
+int main(int argc, char** argv) {
+  using namespace fcl_artic::app;
+  CLI::App program("Certified continuous collision detection for articulated robots.", "fcl_artic");
+  program.set_version_flag("--version", std::string("fcl_artic ") + FCL_ARTIC_VERSION);
+  program.require_subcommand(1);
+  program.get_formatter()->column_width(34);
+  int exit_status = kExitError;
+  addCheck(program, exit_status);
+  addGenerate(program, exit_status);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : kExitError;  // help and version are no errors
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
+    return kExitError;
+  }
+  return exit_status;
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fcl_artic/joint_motion.h"
+#include "fcl_artic/result.h"
+#include "fcl_artic/urdf/urdf.h"
+
+namespace fcl_artic::render {
+
+struct PictureOptions {
+  int width = 1600, height = 1000;                ///< pixels
+  std::optional<std::array<double, 2>> camera;    ///< azimuth from +x and elevation, degrees; none: chosen
+  std::string title;                              ///< one line; empty: none
+};
+
+/// @throws std::runtime_error when this program was built without OSMesa.
+void requirePictures();
+
+/// Draws an answer, off screen, as PNG: the robot at t_lower, the obstacles, the sweep as translucent poses (paler
+/// after the contact), and the first contact with its normal. The bodies that touch are highlighted.
+/// @throws std::runtime_error naming the file when it can't be written, or the reason when nothing can be drawn.
+void writePicture(const std::string& path, const Robot& robot, const std::vector<Scene::Obstacle>& obstacles,
+                  const JointMotion& motion, const CertifiedResult& result, const PictureOptions& options);
+
+}  // namespace fcl_artic::render

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for picture.cpp where OSMesa or libpng was not found.
+#include <stdexcept>
+
+#include "picture.h"
+
+namespace fcl_artic::render {
+
+void requirePictures() {
+  throw std::runtime_error("--image: this program was built without OSMesa and libpng and can't draw pictures");
+}
+
+void writePicture(const std::string&, const Robot&, const std::vector<Scene::Obstacle>&, const JointMotion&,
+                  const CertifiedResult&, const PictureOptions&) {
+  requirePictures();
+}
+
+}  // namespace fcl_artic::render

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/osmesa.h>
+#include <GL/glext.h>
+
+#include "shaders.h"
+
+namespace fcl_artic::render {
+namespace {
+
+using Eigen::Matrix4f;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr int kSupersampling = 2;  // kResolveFragment averages 2 x 2
+constexpr int kShadowSize = 4096;
+constexpr float kCreaseCosine = 0.77f;  // edges sharper than 40 degrees stay sharp
+const Vector3d kSun = Vector3d(0.38, -0.52, 0.92).normalized();  // direction to the sun
+
+class Program {
+ public:
+  Program(const std::string& vertex, const std::string& fragment) : id_(glCreateProgram()) {
+    const GLuint v = compile(GL_VERTEX_SHADER, vertex), f = compile(GL_FRAGMENT_SHADER, fragment);
+    glAttachShader(id_, v);
+    glAttachShader(id_, f);
+    glLinkProgram(id_);
+    glDeleteShader(v);
+    glDeleteShader(f);
+    GLint good = 0;
+    glGetProgramiv(id_, GL_LINK_STATUS, &good);
+    if (!good) {
+      char log[2048] = "";
+      glGetProgramInfoLog(id_, sizeof log, nullptr, log);
+      throw std::runtime_error(std::string("can't link a shader: ") + log);
+    }
+  }
+  void use() const { glUseProgram(id_); }
+  void set(const char* name, float x) const { glUniform1f(at(name), x); }
+  void set(const char* name, int x) const { glUniform1i(at(name), x); }
+  void set(const char* name, const Vector3f& v) const { glUniform3fv(at(name), 1, v.data()); }
+  void set(const char* name, float x, float y) const { glUniform2f(at(name), x, y); }
+  void set(const char* name, const Matrix4f& m) const { glUniformMatrix4fv(at(name), 1, GL_FALSE, m.data()); }
+
+ private:
+  GLint at(const char* name) const { return glGetUniformLocation(id_, name); }
+  static GLuint compile(GLenum kind, const std::string& source) {
+    const GLuint shader = glCreateShader(kind);
+    const char* text = source.c_str();
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint good = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good) return shader;
+    char log[2048] = "";
+    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+    throw std::runtime_error(std::string("can't compile a shader: ") + log);
+  }
+  GLuint id_;
+};
+
+class Texture {
+ public:
+  Texture(int width, int height, GLint internal, GLenum format, GLenum type, GLint filter) {
+    glGenTextures(1, &id);
+    glBindTexture(GL_TEXTURE_2D, id);
+    glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, type, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  }
+  ~Texture() { glDeleteTextures(1, &id); }
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+  void bind(int unit) const {
+    glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+    glBindTexture(GL_TEXTURE_2D, id);
+  }
+  GLuint id = 0;
+};
+
+Texture colorTexture(int w, int h) { return {w, h, GL_RGBA16F, GL_RGBA, GL_FLOAT, GL_LINEAR}; }
+Texture depthTexture(int w, int h, GLint filter) {
+  return {w, h, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, filter};
+}
+
+/// Where a pass draws to.
+class Target {
+ public:
+  Target(int width, int height, const Texture* color, const Texture* depth) : width_(width), height_(height) {
+    glGenFramebuffers(1, &id);
+    glBindFramebuffer(GL_FRAMEBUFFER, id);
+    if (color) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color->id, 0);
+    if (depth) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth->id, 0);
+    glDrawBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
+    glReadBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw std::runtime_error("OSMesa can't draw to a buffer of " + std::to_string(width) + "x" +
+                               std::to_string(height) + " pixels");
+    }
+  }
+  ~Target() { glDeleteFramebuffers(1, &id); }
+  Target(const Target&) = delete;
+  Target& operator=(const Target&) = delete;
+  void begin() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, id);
+    glViewport(0, 0, width_, height_);
+  }
+  GLuint id = 0;
+
+ private:
+  int width_, height_;
+};
+
+/// A surface in OpenGL's memory.
+struct Buffers {
+  GLuint array = 0, data[2] = {0, 0};
+  GLsizei corners = 0;
+  explicit Buffers(const Surface& surface) : corners(static_cast<GLsizei>(surface.corners.size())) {
+    glGenVertexArrays(1, &array);
+    glGenBuffers(2, data);
+    glBindVertexArray(array);
+    const std::vector<Vector3f>* sources[2] = {&surface.corners, &surface.normals};
+    for (GLuint i = 0; i < 2; ++i) {
+      glBindBuffer(GL_ARRAY_BUFFER, data[i]);
+      glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sources[i]->size() * sizeof(Vector3f)),
+                   sources[i]->data(), GL_STATIC_DRAW);
+      glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+      glEnableVertexAttribArray(i);
+    }
+  }
+  ~Buffers() {
+    glDeleteVertexArrays(1, &array);
+    glDeleteBuffers(2, data);
+  }
+  Buffers(const Buffers&) = delete;
+  Buffers& operator=(const Buffers&) = delete;
+};
+
+Matrix4f lookAt(const Vector3d& eye, const Vector3d& target) {
+  const Vector3d back = (eye - target).normalized();
+  const Vector3d up = std::abs(back.z()) > 0.9999 ? Vector3d::UnitY() : Vector3d::UnitZ();
+  Eigen::Matrix3d rotation;
+  rotation.row(0) = up.cross(back).normalized();
+  rotation.row(2) = back;
+  rotation.row(1) = back.cross(Vector3d(rotation.row(0)));
+  Eigen::Matrix4d view = Eigen::Matrix4d::Identity();
+  view.topLeftCorner<3, 3>() = rotation;
+  view.topRightCorner<3, 1>() = -rotation * eye;
+  return view.cast<float>();
+}
+
+Matrix4f perspective(double aspect, double near, double far) {
+  const double f = 1 / std::tan(kFieldOfView / 2);
+  Matrix4f m = Matrix4f::Zero();
+  m(0, 0) = static_cast<float>(f / aspect);
+  m(1, 1) = static_cast<float>(f);
+  m(2, 2) = static_cast<float>((far + near) / (near - far));
+  m(2, 3) = static_cast<float>(2 * far * near / (near - far));
+  m(3, 2) = -1;
+  return m;
+}
+
+Matrix4f orthographic(double half_width, double near, double far) {
+  Matrix4f m = Matrix4f::Identity();
+  m(0, 0) = m(1, 1) = static_cast<float>(1 / half_width);
+  m(2, 2) = static_cast<float>(-2 / (far - near));
+  m(2, 3) = static_cast<float>(-(far + near) / (far - near));
+  return m;
+}
+
+/// A square around `center` in a horizontal plane.
+Surface groundSurface(const Vector3d& center, double z, double half_width) {
+  Surface out;
+  for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}}) {
+    out.corners.push_back(Vector3d(center.x() + x * half_width, center.y() + y * half_width, z).cast<float>());
+    out.normals.push_back(Vector3f::UnitZ());
+  }
+  return out;
+}
+
+/// 1, 2 or 5 times a power of ten, at most x.
+double roundStep(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {5.0, 2.0}) {
+    if (step * power <= x) return step * power;
+  }
+  return power;
+}
+
+}  // namespace
+
+std::shared_ptr<const Surface> makeSurface(const Triangles& triangles) {
+  const std::size_t faces = triangles.faces.size();
+  // Vertices at one place are one vertex, whatever the mesh's numbering says (an STL shares none).
+  struct Hash {
+    std::size_t operator()(const Vector3d& v) const {
+      std::size_t h = 0;
+      for (int i = 0; i < 3; ++i) h = h * 1099511628211u ^ std::hash<double>()(v[i] + 0.0);  // + 0.0: -0 is 0
+      return h;
+    }
+  };
+  std::unordered_map<Vector3d, int, Hash> places;
+  places.reserve(triangles.vertices.size());
+  std::vector<int> place(triangles.vertices.size());
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    place[i] = places.emplace(triangles.vertices[i], static_cast<int>(places.size())).first->second;
+  }
+  std::vector<Vector3f> area_normal(faces);
+  std::vector<std::vector<int>> around(places.size());
+  for (std::size_t f = 0; f < faces; ++f) {
+    const auto& [a, b, c] = triangles.faces[f];
+    const auto& v = triangles.vertices;
+    const auto at = [&](int i) -> const Vector3d& { return v[static_cast<std::size_t>(i)]; };
+    area_normal[f] = (at(b) - at(a)).cross(at(c) - at(a)).cast<float>();
+    for (const int i : triangles.faces[f]) {
+      around[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])].push_back(static_cast<int>(f));
+    }
+  }
+  auto surface = std::make_shared<Surface>();
+  surface->corners.reserve(3 * faces);
+  surface->normals.reserve(3 * faces);
+  for (std::size_t f = 0; f < faces; ++f) {
+    const float size = area_normal[f].norm();
+    for (const int i : triangles.faces[f]) {
+      Vector3f normal = area_normal[f];
+      for (const int other : around[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]) {
+        const Vector3f& n = area_normal[static_cast<std::size_t>(other)];
+        if (static_cast<std::size_t>(other) != f && n.dot(area_normal[f]) > kCreaseCosine * n.norm() * size) normal += n;
+      }
+      surface->corners.push_back(triangles.vertices[static_cast<std::size_t>(i)].cast<float>());
+      surface->normals.push_back(size > 0 ? normal.normalized() : Vector3f::UnitZ());
+    }
+  }
+  return surface;
+}
+
+struct Renderer::Impl {
+  std::vector<unsigned char> canvas;  // OSMesa wants one; all passes draw to buffers of their own
+  OSMesaContext context;
+
+  struct Programs {
+    Program depth{shaders::kBodyVertex, shaders::kEmptyFragment};
+    Program group{shaders::kBodyVertex, shaders::kGroupFragment};
+    Program normal{shaders::kBodyVertex, shaders::kNormalFragment};
+    Program body{shaders::kBodyVertex, std::string(shaders::kLight) + shaders::kBodyFragment};
+    Program ground{shaders::kBodyVertex, std::string(shaders::kLight) + shaders::kGroundFragment};
+    Program background{shaders::kScreenVertex, shaders::kBackgroundFragment};
+    Program occlusion{shaders::kScreenVertex, shaders::kOcclusionFragment};
+    Program blur{shaders::kScreenVertex, shaders::kBlurFragment};
+    Program layer{shaders::kScreenVertex, shaders::kLayerFragment};
+    Program resolve{shaders::kScreenVertex, shaders::kResolveFragment};
+  };
+  std::unique_ptr<Programs> programs;
+  GLuint empty_array = 0;
+  // Kept with their surfaces, so that an address is not used again for another one.
+  std::map<std::shared_ptr<const Surface>, std::unique_ptr<Buffers>> buffers;
+
+  Impl() : canvas(16 * 16 * 4) {
+    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
+                          OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+    context = OSMesaCreateContextAttribs(wanted, nullptr);
+    if (!context || !OSMesaMakeCurrent(context, canvas.data(), GL_UNSIGNED_BYTE, 16, 16)) {
+      if (context) OSMesaDestroyContext(context);
+      throw std::runtime_error("OSMesa does not offer OpenGL 3.3");
+    }
+    glGenVertexArrays(1, &empty_array);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    programs = std::make_unique<Programs>();
+  }
+  ~Impl() {
+    buffers.clear();
+    OSMesaDestroyContext(context);
+  }
+
+  const Buffers& buffersOf(const std::shared_ptr<const Surface>& surface) {
+    auto& slot = buffers[surface];
+    if (!slot) slot = std::make_unique<Buffers>(*surface);
+    return *slot;
+  }
+  void drawBody(const Program& program, const Body& body) {
+    const Buffers& b = buffersOf(body.surface);
+    program.set("model", Matrix4f(body.M_0.matrix().cast<float>()));
+    glBindVertexArray(b.array);
+    glDrawArrays(GL_TRIANGLES, 0, b.corners);
+  }
+  void drawMaterial(const Body& body) {
+    const Program& p = programs->body;
+    p.set("color", body.color);
+    p.set("highlight", body.highlight);
+    p.set("highlight_radius", std::max(body.highlight_radius, 1e-6f));
+    p.set("highlight_floor", body.highlight_floor);
+    p.set("glow", body.glow);
+    drawBody(p, body);
+  }
+  void drawScreen() {
+    glBindVertexArray(empty_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+};
+
+Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::~Renderer() = default;
+
+std::vector<int> Renderer::visiblePixels(const std::vector<Body>& bodies, const std::vector<int>& groups,
+                                         const Camera& camera, int width, int height) {
+  const Texture color(width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+  const Texture depth = depthTexture(width, height, GL_NEAREST);
+  const Target target(width, height, &color, &depth);
+  target.begin();
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDepthMask(GL_TRUE);
+  glClearColor(1, 1, 1, 1);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  const Program& program = impl_->programs->group;
+  program.use();
+  program.set("view_projection", Matrix4f(perspective(static_cast<double>(width) / height, camera.near, camera.far) *
+                                          lookAt(camera.eye, camera.target)));
+  int top = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    top = std::max(top, groups[i]);
+    program.set("color", Vector3f(static_cast<float>(groups[i]) / 255, 0, 0));
+    impl_->drawBody(program, bodies[i]);
+  }
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
+  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  std::vector<int> count(static_cast<std::size_t>(top) + 1);
+  for (std::size_t i = 0; i < pixels.size(); i += 4) {
+    if (pixels[i] < count.size()) ++count[pixels[i]];
+  }
+  return count;
+}
+
+Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int height) {
+  Impl& gl = *impl_;
+  const Impl::Programs& programs = *gl.programs;
+  const int w = kSupersampling * width, h = kSupersampling * height;
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  if (w > limit || h > limit) {
+    throw std::runtime_error("a picture has at most " + std::to_string(limit / kSupersampling) + " pixels a side");
+  }
+
+  const Matrix4f view_projection = perspective(static_cast<double>(width) / height, camera.near, camera.far) *
+                                   lookAt(camera.eye, camera.target);
+  const double shadow_radius = 1.8 * stage.radius, sun_distance = 20 * stage.radius;
+  const Matrix4f shadow_matrix = orthographic(shadow_radius, 0, 2 * sun_distance) *
+                                 lookAt(stage.focus + sun_distance * kSun, stage.focus);
+  const Vector3f eye = camera.eye.cast<float>();
+
+  Body ground;
+  const double fade_radius = 4.5 * stage.radius;
+  ground.surface = std::make_shared<Surface>(groundSurface(stage.focus, stage.ground_z, fade_radius));
+  const bool ground_seen = camera.eye.z() > stage.ground_z;
+
+  const Texture color = colorTexture(w, h), normal = colorTexture(w, h), layer = colorTexture(w, h);
+  const Texture depth = depthTexture(w, h, GL_NEAREST), layer_depth = depthTexture(w, h, GL_NEAREST);
+  const Texture occlusion = colorTexture(width, height), blurred = colorTexture(width, height);
+  const Texture shadow = depthTexture(kShadowSize, kShadowSize, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+
+  // Depth as the sun sees it.
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glDepthMask(GL_TRUE);
+  const Target shadow_target(kShadowSize, kShadowSize, nullptr, &shadow);
+  shadow_target.begin();
+  glClear(GL_DEPTH_BUFFER_BIT);
+  programs.depth.use();
+  programs.depth.set("view_projection", shadow_matrix);
+  for (const Body& body : stage.solid) {
+    if (body.throws_shadow) gl.drawBody(programs.depth, body);
+  }
+
+  // Depth and normals as the camera sees them, and how open each point is.
+  const Target normal_target(w, h, &normal, &depth);
+  normal_target.begin();
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  programs.normal.use();
+  programs.normal.set("view_projection", view_projection);
+  programs.normal.set("eye", eye);
+  for (const Body& body : stage.solid) {
+    programs.normal.set("clear_of_ghosts", body.clear_of_ghosts ? 1.0f : 0.0f);
+    gl.drawBody(programs.normal, body);
+  }
+  programs.normal.set("clear_of_ghosts", 0.0f);
+  if (ground_seen) gl.drawBody(programs.normal, ground);
+
+  glDisable(GL_DEPTH_TEST);
+  const Target occlusion_target(width, height, &occlusion, nullptr);
+  occlusion_target.begin();
+  programs.occlusion.use();
+  depth.bind(0);
+  normal.bind(1);
+  programs.occlusion.set("depth_map", 0);
+  programs.occlusion.set("normal_map", 1);
+  programs.occlusion.set("view_projection", view_projection);
+  programs.occlusion.set("inverse_view_projection", Matrix4f(view_projection.inverse()));
+  programs.occlusion.set("eye", eye);
+  programs.occlusion.set("radius", static_cast<float>(0.13 * stage.radius));
+  gl.drawScreen();
+  const Target blur_target(width, height, &blurred, nullptr);
+  blur_target.begin();
+  programs.blur.use();
+  occlusion.bind(0);
+  normal.bind(1);
+  programs.blur.set("source", 0);
+  programs.blur.set("normal_map", 1);
+  programs.blur.set("pixel_size", 1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height));
+  gl.drawScreen();
+
+  // The solid world.
+  const Target main_target(w, h, &color, &depth);
+  main_target.begin();
+  programs.background.use();
+  gl.drawScreen();
+  const auto light = [&](const Program& p) {
+    p.use();
+    shadow.bind(0);
+    blurred.bind(1);
+    p.set("shadow_map", 0);
+    p.set("occlusion_map", 1);
+    p.set("view_projection", view_projection);
+    p.set("shadow_matrix", shadow_matrix);
+    p.set("eye", eye);
+    p.set("sun", Vector3f(kSun.cast<float>()));
+    p.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
+  };
+  glEnable(GL_DEPTH_TEST);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (ground_seen) {
+    glEnable(GL_BLEND);
+    light(programs.ground);
+    programs.ground.set("focus", Vector3f(stage.focus.cast<float>()));
+    programs.ground.set("fade_radius", static_cast<float>(fade_radius));
+    programs.ground.set("cell", static_cast<float>(roundStep(0.2 * stage.radius)));
+    gl.drawBody(programs.ground, ground);
+    glDisable(GL_BLEND);
+  }
+  const Program& body_program = programs.body;
+  light(body_program);
+  body_program.set("highlight_center", Vector3f(stage.highlight_center.cast<float>()));
+  body_program.set("opacity", 1.0f);
+  body_program.set("rim", 0.0f);
+  body_program.set("use_occlusion", 1);
+  for (const Body& body : stage.solid) gl.drawMaterial(body);
+
+  // Translucent layers: each is drawn by itself against the solid depth, so that it shows its nearest surface only.
+  const Target layer_target(w, h, &layer, &layer_depth);
+  const auto lay = [&](const std::vector<Body>& bodies, float opacity, float rim, bool over_all) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, layer_target.id);
+    if (!over_all) glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    layer_target.begin();
+    glClearColor(0, 0, 0, 0);
+    glClear(over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+    light(body_program);
+    body_program.set("opacity", opacity);
+    body_program.set("rim", rim);
+    body_program.set("use_occlusion", 0);
+    for (const Body& body : bodies) gl.drawMaterial(body);
+    main_target.begin();
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    programs.layer.use();
+    layer.bind(0);
+    normal.bind(1);
+    programs.layer.set("layer", 0);
+    programs.layer.set("normal_map", 1);
+    programs.layer.set("outline", over_all ? 3 * kSupersampling / 2 : 0);
+    programs.layer.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
+    gl.drawScreen();
+    glDisable(GL_BLEND);
+    glEnable(GL_DEPTH_TEST);
+  };
+  for (const Ghost& ghost : stage.ghosts) lay(ghost.bodies, ghost.opacity, 1, false);
+  if (!stage.annotations.empty()) lay(stage.annotations, 1, 0, true);
+
+  // Down to the picture's size.
+  const Texture final_color(width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
+  const Target final_target(width, height, &final_color, nullptr);
+  final_target.begin();
+  glDisable(GL_DEPTH_TEST);
+  programs.resolve.use();
+  color.bind(0);
+  programs.resolve.set("source", 0);
+  gl.drawScreen();
+  Image image{width, height, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(width);
+  std::vector<std::uint8_t> flipped(row * static_cast<std::size_t>(height));
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, flipped.data());
+  if (const GLenum error = glGetError()) throw std::runtime_error("OpenGL error " + std::to_string(error));
+  image.rgb.reserve(flipped.size());
+  for (int y = height - 1; y >= 0; --y) {
+    const auto first = flipped.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y));
+    image.rgb.insert(image.rgb.end(), first, first + static_cast<std::ptrdiff_t>(row));
+  }
+  return image;
+}
+
+}  // namespace fcl_artic::render

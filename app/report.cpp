@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace fcl_artic::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
+
+const char* featureName(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::vertexVertex: return "vertex-vertex";
+    case FeatureKind::vertexEdge: return "vertex-edge";
+    case FeatureKind::edgeVertex: return "edge-vertex";
+    case FeatureKind::vertexFace: return "vertex-face";
+    case FeatureKind::faceVertex: return "face-vertex";
+    case FeatureKind::edgeEdge: return "edge-edge";
+    case FeatureKind::edgeFace: return "edge-face";
+    case FeatureKind::faceEdge: return "face-edge";
+    case FeatureKind::faceFace: return "face-face";
+    case FeatureKind::volume: return "volume";
+  }
+  return "volume";
+}
+
+std::string vectorText(const Eigen::Vector3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
+
+std::string bodyText(const BodyRef& body, std::intptr_t primitive) {
+  const char* kind = body.link >= 0 ? "link" : "obstacle";
+  return primitive >= 0 ? fmt::format("{} '{}' (triangle {})", kind, body.name, primitive)
+                        : fmt::format("{} '{}'", kind, body.name);
+}
+
+/// Joint values at time t, one "name = value" each.
+std::string jointsText(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  std::string text;
+  for (int v = 0; v < tree.dof(); ++v) {
+    const bool prismatic = tree.joint(tree.variableJoint(v)).type == JointType::prismatic;
+    text += v ? ", " : "";
+    text += prismatic ? fmt::format("{} = {:.6g} m", tree.variableName(v), q[v])
+                      : fmt::format("{} = {:.6g} rad ({:.2f} deg)", tree.variableName(v), q[v], q[v] * kDegreesPerRadian);
+  }
+  return text;
+}
+
+/// A labelled entry of the report, its text broken at blanks so that lines stay within 100 columns.
+std::string entry(const std::string& label, const std::string& text) {
+  constexpr std::size_t kLabel = 10, kColumns = 100;
+  std::string out = fmt::format("  {:<{}}", label, kLabel);
+  std::size_t column = 2 + kLabel, at = 0;
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::size_t length = end - at;
+    if (column > 2 + kLabel && column + 1 + length > kColumns) {
+      out += "\n" + std::string(2 + kLabel, ' ');
+      column = 2 + kLabel;
+    } else if (column > 2 + kLabel) {
+      out += ' ';
+      ++column;
+    }
+    out.append(text, at, length);
+    column += length;
+    at = end + 1;
+  }
+  return out + "\n";
+}
+
+/// The shortest decimals that still tell the ends of the bracket apart.
+std::string bracketText(double lower, double upper) { return fmt::format("[{:.12g}, {:.12g}]", lower, upper); }
+
+std::string contactText(const CertifiedContact& c) {
+  std::string text = entry("pair", fmt::format("{} and {}", bodyText(c.body1, c.b1), bodyText(c.body2, c.b2)));
+  text += entry("time", fmt::format("t in {}, {}", bracketText(c.t_lower, c.t_upper),
+                                    c.certain ? "contact proven" : "contact not proven: nearer than can be decided"));
+  text += entry("point", fmt::format("{} m in the world, at t = {:.12g}", vectorText(c.point), c.certain ? c.t_upper : c.t_lower));
+  text += entry("normal", fmt::format("{} from '{}' to '{}', {}", vectorText(c.normal), c.body1.name, c.body2.name,
+                                      c.feature == FeatureKind::volume ? "volume" : featureName(c.feature)));
+  return text;
+}
+
+std::string headline(const Report& r) {
+  const CertifiedResult& result = r.result;
+  switch (result.status) {
+    case Status::free:
+      return r.request.margin > 0
+                 ? fmt::format("FREE: proven, no checked pair comes within {:g} m anywhere on the motion.", r.request.margin)
+                 : "FREE: proven, no checked pair touches anywhere on the motion.";
+    case Status::contact: {
+      const std::string what =
+          r.request.margin > 0 ? fmt::format("first approach within {:g} m", r.request.margin) : "first contact";
+      if (result.t_upper <= 0) return fmt::format("CONTACT: at the start, t = 0{}.", result.certain ? ", proven" : "");
+      return result.certain
+                 ? fmt::format("CONTACT: {} at t = {:.6g}, proven; free before.", what, result.t_lower)
+                 : fmt::format("CONTACT (not certain): at t = {:.6g} a pair is nearer than can be decided within the "
+                               "tolerances; free before, proven.",
+                               result.t_lower);
+    }
+    case Status::undecided:
+      return fmt::format("UNDECIDED: the work budget of {} tests ran out; proven free only for t < {:.6g}.",
+                         r.request.work_budget, result.t_lower);
+  }
+  return {};
+}
+
+std::string statisticsText(const QueryStatistics& s) {
+  return fmt::format(
+      "{} pairs, {} left by the swept bounds; {} node tests, {} leaf tests, {} certificates, {} witness searches, {} "
+      "contact proofs; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report {:.3f})",
+      s.pairs, s.pairs_after_culling, s.node_tests, s.leaf_tests, s.certificates, s.gjk, s.contact_proofs,
+      s.total_us * 1e-3, s.culling_us * 1e-3, s.narrowphase_us * 1e-3, s.report_us * 1e-3);
+}
+
+Json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json valuesJson(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  Json out = Json::object();
+  for (int v = 0; v < tree.dof(); ++v) out[tree.variableName(v)] = q[v];
+  return out;
+}
+
+Json bodyJson(const BodyRef& body, std::intptr_t primitive) {
+  Json out{{"name", body.name}, {"kind", body.link >= 0 ? "link" : "obstacle"}};
+  out["triangle"] = primitive >= 0 ? Json(primitive) : Json();
+  return out;
+}
+
+Json contactJson(const CertifiedContact& c) {
+  return {{"body1", bodyJson(c.body1, c.b1)},
+          {"body2", bodyJson(c.body2, c.b2)},
+          {"t_lower", c.t_lower},
+          {"t_upper", c.t_upper},
+          {"certain", c.certain},
+          {"point", vectorJson(c.point)},
+          {"normal", vectorJson(c.normal)},
+          {"feature", featureName(c.feature)}};
+}
+
+Json posesJson(const Report& r) {
+  Json out = Json::object();
+  for (LinkId link = 0; link < r.tree.numLinks() && link < static_cast<LinkId>(r.result.M_0_at_lower.size()); ++link) {
+    const Eigen::Isometry3d& M_0 = r.result.M_0_at_lower[static_cast<std::size_t>(link)];
+    const Eigen::Quaterniond rotation(M_0.linear());
+    out[r.tree.linkName(link)] = {
+        {"position", vectorJson(M_0.translation())},
+        {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* statusName(Status status) {
+  switch (status) {
+    case Status::free: return "free";
+    case Status::contact: return "contact";
+    case Status::undecided: return "undecided";
+  }
+  return "undecided";
+}
+
+std::string titleLine(const Report& r) {
+  const CertifiedResult& result = r.result;
+  if (result.status == Status::free) return "free: proven for the whole motion";
+  if (result.status == Status::undecided) return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
+  std::string text = fmt::format("first contact at t = {:.4f}", result.t_lower);
+  if (!result.contacts.empty()) {
+    const CertifiedContact& c = result.contacts.front();
+    text += fmt::format(": {} - {}", c.body1.name, c.body2.name);
+  }
+  return text + (result.certain ? "" : " (not certain)");
+}
+
+std::string textReport(const Report& r) {
+  const CertifiedResult& result = r.result;
+  std::string text = headline(r) + "\n";
+  const bool several = result.contacts.size() > 1;
+  for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+    if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
+    text += contactText(result.contacts[i]);
+  }
+  if (result.status != Status::free) {
+    text += entry("joints", fmt::format("at t = {:.12g}: {}", result.t_lower,
+                                        jointsText(r.tree, r.motion.configuration(result.t_lower))));
+  }
+  for (const auto& [a, b] : result.ignored_initial_contacts) {
+    text += entry("ignored", fmt::format("'{}' and '{}' touch at t = 0 and may separate", a.name, b.name));
+  }
+  for (const std::string& note : r.notes) text += entry("note", note);
+  return text + entry("work", statisticsText(result.statistics));
+}
+
+nlohmann::ordered_json jsonReport(const Report& r) {
+  const CertifiedResult& result = r.result;
+  const QueryStatistics& s = result.statistics;
+  Json ignored = Json::array(), contacts = Json::array();
+  for (const auto& [a, b] : result.ignored_initial_contacts) ignored.push_back({a.name, b.name});
+  for (const CertifiedContact& c : result.contacts) contacts.push_back(contactJson(c));
+  return {{"status", statusName(result.status)},
+          {"t_lower", result.t_lower},
+          {"t_upper", result.t_upper},
+          {"certain", result.certain},
+          {"robot", r.tree.name()},
+          {"q_from", valuesJson(r.tree, r.motion.configuration(0))},
+          {"q_to", valuesJson(r.tree, r.motion.configuration(1))},
+          {"q_at_t_lower", valuesJson(r.tree, r.motion.configuration(result.t_lower))},
+          {"contacts", contacts},
+          {"poses", posesJson(r)},
+          {"ignored_initial_contacts", ignored},
+          {"request",
+           {{"tolerance_time", r.request.tolerance_time},
+            {"tolerance_distance", r.request.tolerance_distance},
+            {"margin", r.request.margin},
+            {"check_scene", r.request.check_scene},
+            {"check_self", r.request.check_self},
+            {"every_pair", r.request.mode == ContactMode::firstOfEveryPair},
+            {"max_contacts", r.request.max_contacts},
+            {"budget", r.request.work_budget},
+            {"ignore_initial_contact", r.request.ignore_initial_contact}}},
+          {"statistics",
+           {{"pairs", s.pairs},
+            {"pairs_after_culling", s.pairs_after_culling},
+            {"batches", s.batches},
+            {"motion_evaluations", s.motion_evaluations},
+            {"node_tests", s.node_tests},
+            {"leaf_tests", s.leaf_tests},
+            {"certificates", s.certificates},
+            {"gjk", s.gjk},
+            {"contact_proofs", s.contact_proofs},
+            {"culling_us", s.culling_us},
+            {"narrowphase_us", s.narrowphase_us},
+            {"report_us", s.report_us},
+            {"total_us", s.total_us}}},
+          {"notes", r.notes}};
+}
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "fcl_artic/joint_motion.h"
+#include "fcl_artic/kinematic_tree.h"
+#include "fcl_artic/request.h"
+#include "fcl_artic/result.h"
+
+namespace fcl_artic::app {
+
+/// A query and its answer, as they are reported.
+struct Report {
+  const KinematicTree& tree;
+  const JointMotion& motion;
+  const CertifiedRequest& request;
+  const CertifiedResult& result;
+  const std::vector<std::string>& notes;  ///< one line each
+};
+
+/// The answer for a reader.
+std::string textReport(const Report& report);
+
+/// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
+nlohmann::ordered_json jsonReport(const Report& report);
+
+/// "free", "contact" or "undecided".
+const char* statusName(Status status);
+
+/// Names of the two sides and the time: one line, for a picture's title.
+std::string titleLine(const Report& report);
+
+}  // namespace fcl_artic::app
