@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+
+/// A geometry as a tree of boxes over convex pieces: owner of what engine::TreeView shows. Constant once built.
+class ShapeTree {
+ public:
+  /// A triangle surface; triangle i becomes a piece with primitive id ids[i]. Degenerate triangles (no area) count as the
+  /// segments or points that they are.
+  /// @throws std::invalid_argument: no triangle, an index out of range, a vertex that is not finite.
+  static std::shared_ptr<const ShapeTree> fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
+                                                        const std::vector<std::array<int, 3>>& triangles);
+  /// One convex piece, as SHAPES section 1.3 has it; sizes must be positive and finite.
+  static std::shared_ptr<const ShapeTree> fromPiece(const engine::Piece& piece);
+
+  const engine::TreeView& view() const { return view_; }
+  /// Box of the whole in its own frame.
+  Eigen::Vector3d lower() const;
+  Eigen::Vector3d upper() const;
+  /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
+  std::array<double, 7> lineSweptSphere() const;
+
+ private:
+  ShapeTree() = default;
+  void build();
+  std::vector<engine::Node> nodes_;
+  std::vector<engine::Piece> pieces_;
+  std::vector<double> vertices_;
+  engine::TreeView view_;
+};
+
+/// Boxes to be put into a tree: the same builder serves pieces and obstacles.
+struct Box {
+  double lo[3], hi[3];
+};
+/// Binary tree over boxes, node 0 the root; leaf i holds box ~left. Centers and halves are rounded so that they hold the
+/// boxes. Empty for no boxes.
+std::vector<engine::Node> buildBoxTree(const std::vector<Box>& boxes);
+
+}  // namespace fcl_artic

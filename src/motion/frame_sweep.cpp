@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/frame_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fcl_artic {
+namespace {
+
+/// A rotation whose z axis is the unit vector `axis`.
+Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
+  if (axis == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();
+  Eigen::Vector3d x = axis.unitOrthogonal();
+  Eigen::Matrix3d R;
+  R.col(0) = x;
+  R.col(1) = axis.cross(x);
+  R.col(2) = axis;
+  return R;
+}
+
+}  // namespace
+
+engine::Placement makePlacement(const Eigen::Isometry3d& M) {
+  engine::Placement p;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) p.R[3 * i + j] = M.linear()(i, j);
+    p.t[i] = M.translation()[i];
+  }
+  p.length = M.translation().norm() * (1 + 1e-15);
+  p.identity = M.matrix() == Eigen::Matrix4d::Identity();
+  return p;
+}
+
+FrameSweep FrameSweep::fromWorld(const KinematicTree& tree) {
+  FrameSweep sweep(tree, -1);
+  for (LinkId link : tree.topologicalOrder()) sweep.carrier(link);
+  return sweep;
+}
+
+FrameSweep FrameSweep::fromLink(const KinematicTree& tree, LinkId base) { return FrameSweep(tree, base); }
+
+Carrier FrameSweep::carrier(LinkId link) {
+  // Up from the base to the common ancestor, then down to the link.
+  std::vector<LinkId> up_from_link{link};
+  while (tree_->parentLink(up_from_link.back()) >= 0) up_from_link.push_back(tree_->parentLink(up_from_link.back()));
+  Carrier at;
+  LinkId here = base_;
+  if (base_ < 0) {
+    here = up_from_link.back();  // roots stand at identity in the world
+  } else {
+    while (std::find(up_from_link.begin(), up_from_link.end(), here) == up_from_link.end()) {
+      const JointId joint = tree_->parentJoint(here);
+      if (joint < 0) {  // another tree of the forest: all roots stand at identity in the world
+        here = up_from_link.back();
+        break;
+      }
+      at = cross(at, joint, false);
+      here = tree_->parentLink(here);
+    }
+  }
+  auto it = std::find(up_from_link.begin(), up_from_link.end(), here);
+  while (it != up_from_link.begin()) {
+    --it;
+    at = cross(at, tree_->parentJoint(*it), true);
+  }
+  return at;
+}
+
+Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
+  const Joint& joint = tree_->joint(id);
+  const double sign = down ? 1 : -1;
+  Carrier to = from;
+  if (down) to.offset = to.offset * joint.origin;
+  if (joint.type != JointType::fixed) {
+    const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
+      return o.parent == from.step && o.joint == id && o.down == down;
+    });
+    const Eigen::Matrix3d Q = frameWithZ(joint.axis);
+    if (known != origin_.end()) {
+      to.step = static_cast<int>(known - origin_.begin());
+    } else {
+      const Eigen::Isometry3d C = to.offset * Eigen::Isometry3d(Q);
+      engine::SweepStep step;
+      step.parent = from.step;
+      step.revolute = joint.type != JointType::prismatic;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) step.C[3 * i + j] = C.linear()(i, j);
+        step.p[i] = C.translation()[i];
+      }
+      step.length = C.translation().norm() * (1 + 1e-15);
+      const bool split = from.step >= 0 && steps_[static_cast<std::size_t>(from.step)].revolute;
+      step.axial = split ? std::abs(step.p[2]) : 0;
+      step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) : step.length;
+      step.variable = tree_->jointVariable(id);
+      step.multiplier = sign * (joint.mimics ? joint.mimic.multiplier : 1);
+      step.offset = sign * (joint.mimics ? joint.mimic.offset : 0);
+      to.step = static_cast<int>(steps_.size());
+      steps_.push_back(step);
+      origin_.push_back({from.step, id, down});
+    }
+    to.offset = Eigen::Isometry3d(Eigen::Matrix3d(Q.transpose()));
+  }
+  if (!down) to.offset = to.offset * joint.origin.inverse();
+  return to;
+}
+
+}  // namespace fcl_artic

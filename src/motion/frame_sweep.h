@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The kinematic tree as seen from one base frame: the moving joints on the way to every link of interest, fixed joints
+// multiplied in, each joint's axis turned to z. World motion is the sweep from the world; relative motion of two links
+// is a sweep along the path between them, so that joints which do not move them apart drop out exactly.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fcl_artic/kinematic_tree.h"
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+
+/// Where a link is carried: M_base,link(t) = (frame of `step`)(t) * offset.
+struct Carrier {
+  int step = -1;  ///< -1: fixed to the base frame
+  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
+};
+
+class FrameSweep {
+ public:
+  /// The world's sweep: all links, seen from the world (roots stand at identity).
+  static FrameSweep fromWorld(const KinematicTree& tree);
+  /// A sweep from a link's frame, empty until carrier() asks for links.
+  static FrameSweep fromLink(const KinematicTree& tree, LinkId base);
+
+  /// Adds the steps on the way to the link where they are not there yet.
+  Carrier carrier(LinkId link);
+
+  engine::SweepView view() const { return {steps_.data(), static_cast<std::int32_t>(steps_.size())}; }
+
+ private:
+  explicit FrameSweep(const KinematicTree& tree, LinkId base) : tree_(&tree), base_(base) {}
+  /// Crosses a joint: downwards (parent to child) or upwards.
+  Carrier cross(const Carrier& from, JointId joint, bool down);
+
+  const KinematicTree* tree_;
+  LinkId base_;  ///< -1: the world
+  std::vector<engine::SweepStep> steps_;
+  struct Origin {
+    int parent;
+    JointId joint;
+    bool down;
+  };
+  std::vector<Origin> origin_;  ///< what step i crosses, to share common beginnings
+};
+
+/// The transform as the engine wants it.
+engine::Placement makePlacement(const Eigen::Isometry3d& M);
+
+}  // namespace fcl_artic

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The proof that anything is free (SHAPES, section 1): a direction n, fixed in one body's frame, keeps two convex pieces
+// apart over a whole time interval. Where n comes from needs no trust; this file and lane_motion.h carry all of it.
+#pragma once
+
+#include "motion/lane_motion.h"
+#include "narrowphase/piece_support.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// One body seen from the other. `m` is the motion of `moving` in the frame of `still`.
+struct Side {
+  RigidLanes m;
+  const TreeView* still;
+  const TreeView* moving;
+};
+
+/// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and pad
+/// are left to the caller.
+///
+/// n.x(t) over the core is n.c + range of the core along R^T n. With R and c in the hull of their Bernstein points
+/// (with weights that depend on t only) and h convex, h(R(t)^T n) lies below the quadratic with Bernstein points
+/// h(R_k^T n); -h(-u) above the one with -h(-R_k^T n).
+FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const double* n, Lanes* lower, Lanes* upper) {
+  for (int k = 0; k < 3; ++k) {
+    Lanes u[3];
+    for (int j = 0; j < 3; ++j) {
+      u[j] = mulAdd(side.m.Rb[k][j], n[0], mulAdd(side.m.Rb[k][3 + j], n[1], side.m.Rb[k][6 + j] * Lanes(n[2])));
+    }
+    coreRange(*side.moving, moving, u, lower[k], upper[k]);
+    const Lanes g = dot(side.m.cb[k], n);
+    lower[k] = lower[k] + g;
+    upper[k] = upper[k] + g;
+  }
+}
+
+/// Lanes in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart over the whole interval.
+/// @param n  in the frame of side.still.
+/// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
+                                             const double* n, double margin, double pad, double& sign) {
+  double s_lower, s_upper;
+  coreRange(*side.still, still, n, s_lower, s_upper);
+  Lanes lower[3], upper[3];
+  movingRange(side, moving, n, lower, upper);
+  const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
+  const unsigned above = greater(min(min(lower[0], lower[1]), lower[2]), Lanes(s_upper + slack));
+  const unsigned below = greater(Lanes(s_lower - slack), max(max(upper[0], upper[1]), upper[2]));
+  if (above) sign = 1;
+  if (below) sign = -1;
+  return above | below;
+}
+
+/// First root in [0, 1] of the quadratic with Bernstein coefficients G, (up to the pad's reserve); 1 when it stays positive.
+inline double positivePrefix(const double* G) {
+  if (!(G[0] > 0)) return 0;
+  if (G[1] > 0 && G[2] > 0) return 1;
+  const double a = G[0] - 2 * G[1] + G[2], b = G[1] - G[0], c = G[0];  // c + 2 b z + a z^2
+  const double discriminant = b * b - a * c;
+  // The computed root solves a quadratic whose coefficients are off by a few ulp: G there is above -8 kUlp max |G|, and the
+  // pad holds a reserve for that (doc/NUMERICS.md, "Pads"). The same goes for a discriminant that rounds below 0.
+  if (discriminant < 0) return 1;
+  const double q = -b + sqrt(discriminant);  // the smallest positive root is c / q, in the stable form
+  if (!(q > 0)) return 1;
+  const double z = c / q;
+  return z >= 1 ? 1 : z * (1 - 1e-12);
+}
+
+/// How much of a lane's interval n certifies, from its left end: a fraction in [0, 1].
+/// @param n  in the frame of side.still, from still to moving.
+inline double certainlyFreePrefix(const Side& side, const Piece& still, const Piece& moving, const double* n,
+                                  double margin, double pad, int lane) {
+  double s_lower, s_upper;
+  coreRange(*side.still, still, n, s_lower, s_upper);
+  Lanes lower[3], upper[3];
+  movingRange(side, moving, n, lower, upper);
+  const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
+  const double G[3] = {lower[0][lane] - s_upper - slack, lower[1][lane] - s_upper - slack,
+                       lower[2][lane] - s_upper - slack};
+  return positivePrefix(G);
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The proof of contact at one pose (SHAPES, section 2): the only code that `certain` rests on. A point w = b - a, computed
+// from support points, lies within eps of a true point of B - A.
+#pragma once
+
+#include "narrowphase/gjk.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// Lemma 1: the tetrahedron w0..w3 holds the origin so far inside that moving each corner by eps cannot bring it out.
+/// The determinants of its consistently oriented faces with the origin have one sign, each larger than what eps and
+/// rounding can make of it.
+inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
+  static const int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
+  double sign = 0;
+  for (const int* f : kFaces) {
+    const double *a = v[f[0]].w, *b = v[f[1]].w, *c = v[f[2]].w;
+    double ab[3], bc[3], ca[3];
+    cross(a, b, ab);
+    cross(b, c, bc);
+    cross(c, a, ca);
+    const double determinant = dot(a, bc);
+    const double na = norm(a), nb = norm(b), nc = norm(c);
+    const double error = 1.01 * (eps * (norm(ab) + norm(bc) + norm(ca)) + eps * eps * (na + nb + nc) + eps * eps * eps) +
+                         2e-15 * na * nb * nc;
+    if (!(abs(determinant) > error)) return false;
+    const double s = determinant > 0 ? 1 : -1;
+    if (sign == 0) sign = s;
+    if (s != sign) return false;
+  }
+  return true;
+}
+
+/// Barycentric weights of the origin in a tetrahedron that holds it; false when it is flat.
+inline bool originWeights(Simplex& s) {
+  if (s.n != 4) return true;
+  double sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    double m[3];
+    const double *a = s.v[(i + 1) & 3].w, *b = s.v[(i + 2) & 3].w, *c = s.v[(i + 3) & 3].w;
+    cross(b, c, m);
+    s.weight[i] = abs(dot(a, m));
+    sum += s.weight[i];
+  }
+  if (!(sum > 0)) return false;
+  for (double& w : s.weight) w /= sum;
+  return true;
+}
+
+/// Proves that the pieces, grown by their radii and the margin, meet at this pose.
+/// @param eps  bound on the error of a computed difference point.
+/// @param[out] point  in A's frame, about midway between points of both that are in contact.
+inline bool certainlyTouching(const DifferenceBody& body, double margin, double eps, const double* guess,
+                              double* point) {
+  const double radii = body.a->radius + body.b->radius + margin;
+  GjkResult g;
+  gjk(body, guess, 1e-12, 0.0, 64, g);
+  const auto witness = [&](const Simplex& s) {
+    for (int k = 0; k < 3; ++k) {
+      double a = 0, b = 0;
+      for (int i = 0; i < s.n; ++i) {
+        a += s.weight[i] * s.v[i].a[k];
+        b += s.weight[i] * s.v[i].b[k];
+      }
+      point[k] = a + (body.a->radius + 0.5 * margin) / (radii > 0 ? radii : 1) * (b - a);
+    }
+  };
+  if (!originWeights(g.simplex)) return false;
+  witness(g.simplex);
+  if (radii > 0) {
+    // A convex combination of difference points is one itself: |w| + eps <= radii proves two points near enough.
+    // Weights are >= 0 and sum to 1 within 4 ulp; 1e-14 of the sizes covers that and the sums.
+    double w[3] = {0, 0, 0}, size = 0, sum = 0;
+    const Simplex& s = g.simplex;
+    for (int i = 0; i < s.n; ++i) {
+      if (!(s.weight[i] >= 0)) return false;
+      sum += s.weight[i];
+      size = max(size, norm(s.v[i].w));
+      for (int k = 0; k < 3; ++k) w[k] += s.weight[i] * s.v[i].w[k];
+    }
+    if (abs(sum - 1) <= 1e-14 && norm(w) + eps + 1e-13 * size < radii) return true;
+  }
+  if (!g.overlap) return false;
+  // Complete the simplex to a tetrahedron with support points of its own missing directions.
+  Simplex s = g.simplex;
+  static const double kAxes[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  for (int i = 0; i < 6 && s.n < 4; ++i) {
+    DifferencePoint p;
+    body.support(kAxes[i], p);
+    double e[3][3], m[3];
+    for (int j = 0; j < s.n; ++j) {
+      for (int k = 0; k < 3; ++k) e[j][k] = p.w[k] - s.v[j].w[k];
+    }
+    bool independent = norm(e[0]) > 0;
+    if (s.n >= 2) {
+      cross(e[0], e[1], m);
+      independent = norm(m) > 1e-12 * norm(e[0]) * norm(e[1]);
+    }
+    if (s.n == 3) independent = abs(dot(e[2], m)) > 1e-12 * norm(m) * norm(e[2]);
+    if (independent) s.v[s.n++] = p;
+  }
+  if (s.n == 4 && tetrahedronHoldsOrigin(s.v, eps)) return true;
+  // Lemma 2, for aligned and symmetric poses where the origin lies on a face of every tetrahedron of extreme points: the
+  // corners p_k of a tiny regular tetrahedron (circumradius rho) are each a convex combination of difference points, up
+  // to a residual r_k; when eps + |r_k| < rho / 3, its inradius, no plane separates the origin from the difference.
+  const double rho = 24 * eps, q = rho / sqrt(3.0);
+  const double corner[4][3] = {{q, q, q}, {q, -q, -q}, {-q, q, -q}, {-q, -q, q}};
+  DifferenceBody shifted = body;
+  for (const double* p : corner) {
+    for (int k = 0; k < 3; ++k) shifted.shift[k] = p[k];
+    GjkResult h;
+    gjk(shifted, guess, 1e-12, 0.0, 64, h);
+    if (h.lower > 0 || !originWeights(h.simplex)) return false;
+    double residual[3] = {0, 0, 0}, sum = 0, size = 0;
+    for (int i = 0; i < h.simplex.n; ++i) {
+      if (!(h.simplex.weight[i] >= 0)) return false;
+      sum += h.simplex.weight[i];
+      size = max(size, norm(h.simplex.v[i].w));
+      for (int k = 0; k < 3; ++k) residual[k] += h.simplex.weight[i] * h.simplex.v[i].w[k];
+    }
+    // Sum of weights off by 1e-15 moves the combination by that part of its size, which eps (a multiple of the sizes
+    // of both bodies) exceeds; the rounding of the sum itself stays below 1e-15 size as well.
+    if (!(abs(sum - 1) <= 1e-15 && eps + norm(residual) + 2e-15 * size < rho / 3)) return false;
+  }
+  return true;
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <new>
+
+#include "narrowphase/solver.h"
+
+#define FCL_ARTIC_STRING2(x) #x
+#define FCL_ARTIC_STRING(x) FCL_ARTIC_STRING2(x)
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+namespace {
+
+void* createWorkspace() {
+  void* memory = std::aligned_alloc(alignof(Solver), (sizeof(Solver) + alignof(Solver) - 1) / alignof(Solver) * alignof(Solver));
+  if (!memory) std::abort();
+  return ::new (memory) Solver();
+}
+
+void destroyWorkspace(void* workspace) {
+  static_cast<Solver*>(workspace)->~Solver();
+  std::free(workspace);
+}
+
+void solve(void* workspace, const Problem& problem, const Query& query, Answer& answer) {
+  static_cast<Solver*>(workspace)->solve(problem, query, answer);
+}
+
+}  // namespace
+}  // namespace FCL_ARTIC_ISA
+
+namespace engine {
+const Engine FCL_ARTIC_ISA_ENGINE = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), &FCL_ARTIC_ISA::createWorkspace,
+                                     &FCL_ARTIC_ISA::destroyWorkspace, &FCL_ARTIC_ISA::solve};
+}  // namespace engine
+}  // namespace fcl_artic

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The engine for one instruction set, chosen at run time by dispatch.cpp.
+#define FCL_ARTIC_ISA sse2
+#define FCL_ARTIC_ISA_BITS 128
+#define FCL_ARTIC_ISA_ENGINE kEngineSse2
+#include "narrowphase/engine.inl"

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Gilbert, Johnson, Keerthi: nearest points of two cores at one pose. A heuristic: its direction is checked by the
+// certificate, its simplex by the contact proof; nothing rests on it.
+#pragma once
+
+#include "narrowphase/piece_support.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// Pose of B in A's frame at one time.
+struct PoseAt {
+  double R[9], c[3];
+};
+
+/// A point w = b - a of the difference B - A, and where it came from (a and b in A's frame).
+struct DifferencePoint {
+  double w[3], a[3], b[3];
+};
+
+struct Simplex {
+  DifferencePoint v[4];
+  double weight[4];
+  int n = 0;
+};
+
+/// The two cores at a pose; `shift` moves the origin of the difference (contact proof, Lemma 2).
+struct DifferenceBody {
+  const TreeView* tree_a;
+  const Piece* a;
+  const TreeView* tree_b;
+  const Piece* b;
+  PoseAt pose;
+  double shift[3] = {0, 0, 0};
+
+  /// The difference's point that is least along n.
+  void support(const double* n, DifferencePoint& p) const {
+    double m[3], x[3] = {0, 0, 0};
+    supportPoint(*tree_a, *a, n, p.a);
+    for (int j = 0; j < 3; ++j) m[j] = -(pose.R[j] * n[0] + pose.R[3 + j] * n[1] + pose.R[6 + j] * n[2]);
+    supportPoint(*tree_b, *b, m, x);
+    for (int k = 0; k < 3; ++k) {
+      p.b[k] = pose.R[3 * k] * x[0] + pose.R[3 * k + 1] * x[1] + pose.R[3 * k + 2] * x[2] + pose.c[k];
+      p.w[k] = p.b[k] - p.a[k] - shift[k];
+    }
+  }
+};
+
+struct GjkResult {
+  bool overlap = false;   ///< claims that the cores meet (unproven)
+  double distance = 0;    ///< of the cores, from above
+  double lower = -1e300;  ///< gap of the cores along n
+  double n[3] = {1, 0, 0};  ///< unit, from A to B, the best seen
+  Simplex simplex;
+  int iterations = 0;
+};
+
+/// Nearest point to the origin on triangle (i, j, k) of s; barycentric weights out.
+inline void nearestOnTriangle(const double* a, const double* b, const double* c, double* l) {
+  double ab[3], ac[3];
+  for (int k = 0; k < 3; ++k) {
+    ab[k] = b[k] - a[k];
+    ac[k] = c[k] - a[k];
+  }
+  const auto set = [&](double x, double y, double z) {
+    l[0] = x;
+    l[1] = y;
+    l[2] = z;
+  };
+  // Voronoi regions of vertices, edges and face, by signs of the projections.
+  const double d1 = -dot(ab, a), d2 = -dot(ac, a);
+  if (d1 <= 0 && d2 <= 0) return set(1, 0, 0);
+  const double d3 = -dot(ab, b), d4 = -dot(ac, b);
+  if (d3 >= 0 && d4 <= d3) return set(0, 1, 0);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double t = d1 / (d1 - d3);
+    return set(1 - t, t, 0);
+  }
+  const double d5 = -dot(ab, c), d6 = -dot(ac, c);
+  if (d6 >= 0 && d5 <= d6) return set(0, 0, 1);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double t = d2 / (d2 - d6);
+    return set(1 - t, 0, t);
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return set(0, 1 - t, t);
+  }
+  const double f = 1 / (va + vb + vc);
+  set(1 - vb * f - vc * f, vb * f, vc * f);
+}
+
+/// Reduces the simplex to the face nearest to the origin and gives the nearest point; false when the origin is inside.
+inline bool reduceSimplex(Simplex& s, double* v) {
+  const auto keep = [&](const int* index, const double* l, int n) {
+    Simplex t;
+    for (int i = 0; i < n; ++i) {
+      if (l[i] > 0) {
+        t.v[t.n] = s.v[index[i]];
+        t.weight[t.n++] = l[i];
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      v[k] = 0;
+      for (int i = 0; i < t.n; ++i) v[k] += t.weight[i] * t.v[i].w[k];
+    }
+    s = t;
+  };
+  if (s.n == 1) {
+    const int index[1] = {0};
+    const double l[1] = {1};
+    keep(index, l, 1);
+    return true;
+  }
+  if (s.n == 2) {
+    double ab[3];
+    for (int k = 0; k < 3; ++k) ab[k] = s.v[1].w[k] - s.v[0].w[k];
+    const double q = dot(ab, ab);
+    const double t = q > 0 ? min(1.0, max(0.0, -dot(s.v[0].w, ab) / q)) : 0;
+    const int index[2] = {0, 1};
+    const double l[2] = {1 - t, t};
+    keep(index, l, 2);
+    return true;
+  }
+  if (s.n == 3) {
+    double l[3];
+    nearestOnTriangle(s.v[0].w, s.v[1].w, s.v[2].w, l);
+    const int index[3] = {0, 1, 2};
+    keep(index, l, 3);
+    return true;
+  }
+  static const int kFaces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
+  double best = 1e300, best_l[3] = {0, 0, 0};
+  int best_face = -1;
+  for (int f = 0; f < 4; ++f) {
+    const double *a = s.v[kFaces[f][0]].w, *b = s.v[kFaces[f][1]].w, *c = s.v[kFaces[f][2]].w,
+                 *e = s.v[kFaces[f][3]].w;
+    double ab[3], ac[3], ae[3], m[3];
+    for (int k = 0; k < 3; ++k) {
+      ab[k] = b[k] - a[k];
+      ac[k] = c[k] - a[k];
+      ae[k] = e[k] - a[k];
+    }
+    cross(ab, ac, m);
+    if (-dot(m, a) * dot(m, ae) > 0) continue;  // the origin is on the inner side of this face
+    double l[3];
+    nearestOnTriangle(a, b, c, l);
+    double q = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double x = l[0] * a[k] + l[1] * b[k] + l[2] * c[k];
+      q += x * x;
+    }
+    if (q < best) {
+      best = q;
+      best_face = f;
+      for (int k = 0; k < 3; ++k) best_l[k] = l[k];
+    }
+  }
+  if (best_face < 0) return false;
+  keep(kFaces[best_face], best_l, 3);
+  return true;
+}
+
+/// @param guess  direction from A to B to start with, any length but 0.
+/// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
+/// @param radii  rounding radii and margin: cores nearer than this overlap.
+inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
+                GjkResult& out) {
+  out = GjkResult();
+  double length = norm(guess);
+  for (int k = 0; k < 3; ++k) out.n[k] = length > 0 ? guess[k] / length : (k == 0);
+  Simplex& s = out.simplex;
+  DifferencePoint p;
+  body.support(out.n, p);
+  out.iterations = 1;
+  out.lower = dot(out.n, p.w);
+  s.v[0] = p;
+  s.weight[0] = 1;
+  s.n = 1;
+  double v[3] = {p.w[0], p.w[1], p.w[2]};
+  while (out.iterations < max_iterations) {
+    const double vv = dot(v, v);
+    if (vv < 1e-300 || vv < radii * radii * (1 - 1e-13)) {
+      out.overlap = true;
+      out.distance = sqrt(vv);
+      break;
+    }
+    length = sqrt(vv);
+    out.distance = length;
+    double n[3] = {v[0] / length, v[1] / length, v[2] / length};
+    body.support(n, p);
+    ++out.iterations;
+    const double lower = dot(n, p.w);
+    if (lower > out.lower) {
+      out.lower = lower;
+      for (int k = 0; k < 3; ++k) out.n[k] = n[k];
+    }
+    // Relative to the gap, not to the core distance (SHAPES, trap 7.1).
+    if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
+    bool known = false;
+    for (int i = 0; i < s.n; ++i) {
+      known |= s.v[i].w[0] == p.w[0] && s.v[i].w[1] == p.w[1] && s.v[i].w[2] == p.w[2];
+    }
+    if (known) break;
+    s.v[s.n++] = p;
+    const Simplex full = s;
+    double next[3];
+    if (!reduceSimplex(s, next)) {
+      out.overlap = true;
+      out.distance = 0;
+      s = full;
+      break;
+    }
+    if (dot(next, next) >= vv * (1 - 1e-15)) break;
+    for (int k = 0; k < 3; ++k) v[k] = next[k];
+  }
+  // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane (SHAPES, trap 7.2).
+  if (out.overlap && out.lower > radii) {
+    out.overlap = false;
+    out.distance = max(out.lower, radii);
+  }
+  if (!out.overlap && out.distance <= radii && out.lower <= radii) out.overlap = true;
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Support of convex pieces (SHAPES, section 1.3). The core's support function h(u) = max p.u is positively homogeneous
+// and convex, for any u; the rounding radius is added by the caller. One row here is all that a kind of geometry needs.
+#pragma once
+
+#include "narrowphase/problem.h"
+#include "numerics/lanes.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+using engine::Piece;
+using engine::PieceKind;
+using engine::TreeView;
+
+// Scalars get the vocabulary of lanes, so that one text serves both.
+FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
+FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }
+FCL_ARTIC_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
+FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) { return a * b + c; }
+FCL_ARTIC_INLINE double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
+  o[0] = a[1] * b[2] - a[2] * b[1];
+  o[1] = a[2] * b[0] - a[0] * b[2];
+  o[2] = a[0] * b[1] - a[1] * b[0];
+}
+FCL_ARTIC_INLINE double norm(const double* a) { return __builtin_sqrt(dot(a, a)); }
+
+/// Values of p.u over the core: lower end -h(-u), upper end h(u). T: double, or Lanes for eight directions.
+template <class T>
+FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const T* u, T& lower, T& upper) {
+  if (piece.kind == PieceKind::vertices) {
+    const double* p = tree.vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
+    lower = upper = dot(u, p);
+    for (int i = 1; i < piece.num_vertices; ++i) {
+      const T x = dot(u, p + 3 * i);
+      lower = min(lower, x);
+      upper = max(upper, x);
+    }
+    return;
+  }
+  const T m = dot(u, piece.center);
+  const double *e = piece.size;
+  T h(0.0);
+  switch (piece.kind) {
+    case PieceKind::box:
+      h = mulAdd(abs(u[0]), T(e[0]), mulAdd(abs(u[1]), T(e[1]), abs(u[2]) * T(e[2])));
+      break;
+    case PieceKind::segment:
+      h = abs(u[2]) * T(e[2]);
+      break;
+    case PieceKind::cylinder:
+      h = mulAdd(sqrt(mulAdd(u[0], u[0], u[1] * u[1])), T(e[0]), abs(u[2]) * T(e[2]));
+      break;
+    case PieceKind::ellipsoid: {
+      const T x = u[0] * T(e[0]), y = u[1] * T(e[1]), z = u[2] * T(e[2]);
+      h = sqrt(mulAdd(x, x, mulAdd(y, y, z * z)));
+      break;
+    }
+    case PieceKind::cone: {  // tip at +z: h(u) = max(c uz, a r - c uz)
+      const T r = sqrt(mulAdd(u[0], u[0], u[1] * u[1])) * T(e[0]), z = u[2] * T(e[2]);
+      upper = m + max(z, r - z);
+      lower = m - max(T(0.0) - z, r + z);
+      return;
+    }
+    default:
+      break;
+  }
+  lower = m - h;
+  upper = m + h;
+}
+
+/// A point of the core farthest along u (unit or not).
+inline void supportPoint(const TreeView& tree, const Piece& piece, const double* u, double* x) {
+  const double* e = piece.size;
+  const double* m = piece.center;
+  switch (piece.kind) {
+    case PieceKind::vertices: {
+      const double* p = tree.vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
+      int best = 0;
+      double value = dot(p, u);
+      for (int i = 1; i < piece.num_vertices; ++i) {
+        const double v = dot(p + 3 * i, u);
+        if (v > value) {
+          value = v;
+          best = i;
+        }
+      }
+      for (int k = 0; k < 3; ++k) x[k] = p[3 * best + k];
+      return;
+    }
+    case PieceKind::point:
+      for (int k = 0; k < 3; ++k) x[k] = m[k];
+      return;
+    case PieceKind::segment:
+      x[0] = m[0];
+      x[1] = m[1];
+      x[2] = m[2] + (u[2] < 0 ? -e[2] : e[2]);
+      return;
+    case PieceKind::box:
+      for (int k = 0; k < 3; ++k) x[k] = m[k] + (u[k] < 0 ? -e[k] : e[k]);
+      return;
+    case PieceKind::cylinder:
+    case PieceKind::cone: {
+      const double r = sqrt(u[0] * u[0] + u[1] * u[1]), f = r > 0 ? e[0] / r : 0;
+      double z = u[2] < 0 ? -e[2] : e[2], rim = 1;
+      if (piece.kind == PieceKind::cone) {
+        const bool tip = e[2] * u[2] >= e[0] * r - e[2] * u[2];
+        z = tip ? e[2] : -e[2];
+        rim = tip ? 0 : 1;
+      }
+      x[0] = m[0] + rim * f * u[0];
+      x[1] = m[1] + rim * f * u[1];
+      x[2] = m[2] + z;
+      return;
+    }
+    case PieceKind::ellipsoid: {
+      const double y[3] = {e[0] * u[0], e[1] * u[1], e[2] * u[2]}, n = norm(y), f = n > 0 ? 1 / n : 0;
+      for (int k = 0; k < 3; ++k) x[k] = m[k] + f * e[k] * y[k];
+      return;
+    }
+  }
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the engine is given and what it answers: plain data, no FCL, no containers, so that it can be compiled once per
+// instruction set. The owners are ShapeTree, FrameSweep and the manager.
+#pragma once
+
+#include <cstdint>
+
+namespace fcl_artic {
+namespace engine {
+
+/// Kinds of convex piece. Every piece is a core, given by its support function, grown by a ball of radius `radius`
+/// (SHAPES, section 1.3).
+enum class PieceKind : std::int32_t { vertices, point, segment, box, cylinder, cone, ellipsoid };
+
+/// One convex leaf, in its tree's frame; its axes are the frame's.
+struct Piece {
+  PieceKind kind = PieceKind::vertices;
+  std::int32_t first_vertex = 0, num_vertices = 0;  ///< `vertices` only
+  std::int32_t primitive = -1;                      ///< FCL's id: triangle index, -1 for a shape
+  /// box, ellipsoid: half sizes; cylinder, cone: radius, -, half length; segment: -, -, half length.
+  /// Triangle: its unit normal (0 when degenerate), a direction worth trying.
+  double size[3] = {0, 0, 0};
+  double center[3] = {0, 0, 0};  ///< added to the core; 0 for `vertices`
+  double radius = 0;             ///< rounding radius
+  double reach = 0;              ///< upper bound of |p| over the core, from the frame's origin
+};
+
+/// Bounding volume: an axis-aligned box in the tree's frame that holds the pieces below it, radii included.
+struct Node {
+  double center[3], half[3];
+  float reach;   ///< upper bound of |p| over the box, from the frame's origin
+  float radius;  ///< |half|, a size only
+  std::int32_t left, right;  ///< children; a leaf has left < 0 and holds piece ~left
+  bool isLeaf() const { return left < 0; }
+  int piece() const { return ~left; }
+};
+
+/// A body's geometry: constant, shared by threads. Node 0 is the root.
+struct TreeView {
+  const Node* nodes = nullptr;
+  const Piece* pieces = nullptr;
+  const double* vertices = nullptr;  ///< xyz, packed
+  std::int32_t num_nodes = 0, num_pieces = 0;
+  double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
+};
+
+/// A rigid transform that stands still.
+struct Placement {
+  double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major
+  double t[3] = {0, 0, 0};
+  double length = 0;      ///< upper bound of |t|
+  bool identity = true;
+};
+
+/// One moving joint on the way from a base frame: X = X_parent * C * J(q), with J a rotation about z or a slide along z.
+struct SweepStep {
+  std::int32_t parent = -1;  ///< step before this one, -1: the base frame
+  bool revolute = true;
+  double C[9], p[3];         ///< constant transform from the parent step's frame
+  double perp = 0, axial = 0;  ///< |p| across and along the parent's axis (axial 0, perp |p| where the parent slides)
+  double length = 0;         ///< |p|
+  std::int32_t variable = -1;
+  double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset
+};
+
+/// Steps from one base frame, parents first.
+struct SweepView {
+  const SweepStep* steps = nullptr;
+  std::int32_t num_steps = 0;
+};
+
+/// A rigid body of the query.
+struct Body {
+  const TreeView* tree = nullptr;
+  Placement placement;     ///< tree frame in the frame of its step (or in the world when step < 0)
+  std::int32_t step = -1;  ///< in the world's sweep; -1: stands still
+  std::int32_t mover = -1;  ///< index among Problem::movers; -1: an obstacle
+  double lss[7] = {};      ///< line swept sphere p0, p1, r in the step's frame: holds the body
+  /// Still bodies: axis-aligned box in the world.
+  double lo[3] = {}, hi[3] = {};
+};
+
+/// Two bodies to check. The motion is B's, seen from A.
+struct Pair {
+  std::int32_t a = -1, b = -1;
+  std::int32_t sweep = 0;   ///< sweep whose base frame A's placement refers to
+  std::int32_t step_b = -1;  ///< step of that sweep that carries B; -1: fixed to the base frame
+  Placement inverse_a;      ///< base frame in A's tree frame
+  Placement placement_b;    ///< B's tree frame in its step's frame
+};
+
+/// Everything that stays the same from query to query.
+struct Problem {
+  const Body* bodies = nullptr;
+  std::int32_t num_bodies = 0;
+  const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first
+  std::int32_t num_movers = 0;
+  const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
+  std::int32_t num_sweeps = 0;
+  const Pair* pairs = nullptr;        ///< link-obstacle pairs first, then link-link pairs
+  std::int32_t num_pairs = 0;
+  std::int32_t num_scene_pairs = 0;
+  /// Pair of mover m and obstacle o: scene_pair[m * num_obstacles + o]; -1: not checked.
+  const std::int32_t* scene_pair = nullptr;
+  const std::int32_t* obstacles = nullptr;  ///< body of obstacle o
+  std::int32_t num_obstacles = 0;
+  const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
+  std::int32_t num_variables = 0;
+};
+
+struct Query {
+  const double* q0 = nullptr;
+  const double* dq = nullptr;
+  double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
+  bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
+  std::int32_t max_contacts = 1;
+  std::uint64_t work_budget = 0;
+  void (*progress)(void* context, double t_lower) = nullptr;
+  void* progress_context = nullptr;
+};
+
+struct Statistics {
+  std::uint64_t pairs = 0, pairs_after_culling = 0, batches = 0, motion_evaluations = 0, node_tests = 0, leaf_tests = 0,
+                certificates = 0, gjk = 0, contact_proofs = 0;
+  double culling_us = 0, narrowphase_us = 0;
+};
+
+/// Two leaves that meet, or come too near to be told apart.
+struct LeafContact {
+  std::int32_t pair, piece_a, piece_b;
+  bool certain;
+  double t_lower, t_upper;  ///< this leaf pair's own bracket
+  double normal[3];         ///< in A's tree frame, from A to B
+  double point[3];          ///< in A's tree frame at time `t`
+  double t;                 ///< t_upper when certain, else t_lower
+};
+
+enum class Verdict : std::int32_t { free, contact, undecided };
+struct Answer {
+  Verdict verdict = Verdict::undecided;
+  bool certain = false;
+  double t_lower = 0, t_upper = 1;
+  const LeafContact* contacts = nullptr;  ///< owned by the workspace, valid until its next query
+  std::int32_t num_contacts = 0;
+  const std::int32_t* ignored_pairs = nullptr;  ///< the same
+  std::int32_t num_ignored = 0;
+  Statistics statistics;
+};
+
+/// The engine as compiled for one instruction set.
+struct Engine {
+  const char* name;
+  void* (*createWorkspace)();
+  void (*destroyWorkspace)(void* workspace);
+  /// One workspace serves one thread at a time; nothing in it reaches the next answer.
+  void (*solve)(void* workspace, const Problem& problem, const Query& query, Answer& answer);
+};
+
+/// The widest engine that this processor runs; FCL_ARTIC_ISA=sse2|avx2|avx512 in the environment asks for less.
+const Engine& engine();
+/// The engine named "sse2", "avx2" or "avx512"; null where the processor lacks it.
+const Engine* engineNamed(const char* name);
+
+extern const Engine kEngineSse2, kEngineAvx2, kEngineAvx512;
+
+}  // namespace engine
+}  // namespace fcl_artic

@@ -1,0 +1,830 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The shared solver: every undecided pair on one subdivision of time, eight intervals at once, earliest first.
+//
+//   solve            stage 1 leaves (pair, lanes); then solveInterval on [0, 1]
+//   solveInterval    one batch: eight equal parts of an interval; dual traversal of the pairs left; then, lane by lane from
+//                    the earliest, the same again on what that lane left undecided
+//   traverse         node pairs by swept boxes, leaf pairs by certificates; a pose proven in contact ends all later lanes
+//   finishLane       the last lane: t_lower by prefix roots, t_upper by proofs of contact
+//
+// What is discarded is discarded by the certificate (certificate.h) or by a swept box (boxes along the frames' axes are the
+// same certificate with n an axis). Everything else here is order and effort.
+#pragma once
+
+#include <time.h>
+
+#include "narrowphase/buffer.h"
+#include "narrowphase/certificate.h"
+#include "narrowphase/contact_proof.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+using engine::Answer;
+using engine::Body;
+using engine::LeafContact;
+using engine::Node;
+using engine::Pair;
+using engine::Problem;
+using engine::Query;
+using engine::Statistics;
+using engine::Verdict;
+
+/// Swept bounds of a node in the other body's frame, remainder and pad included.
+struct SweptBox {
+  Lanes lo[3], hi[3];
+};
+
+/// A pair of nodes that is not yet decided in the lanes of `mask`.
+struct Entry {
+  std::int32_t pair, a, b;
+  unsigned mask;
+};
+
+class Solver {
+ public:
+  void solve(const Problem& problem, const Query& query, Answer& answer);
+
+ private:
+  enum class Step { free, done };
+
+  // Time batches.
+  void beginBatch(double start, double width);
+  void evaluateAt(const double* tm, double d);
+  const FrameLanes* frames(int sweep);
+  void setupPair(int pair);
+  void updateLive();
+
+  // Stages.
+  void cull();
+  void sweptLss(int mover, SweptBox& box);
+  void collectInitialContacts(int begin, int end);
+  double firstFreeTime(double start, double width, int begin, int end);
+  Step solveInterval(double start, double width, int begin, int end, int parent_lane);
+  Step finishLane(double start, double width, int begin, int end, int lane, int* refine);
+  void traverse(int pair, int a, int b, unsigned mask);
+  unsigned nodesMayTouch(int a, int b, unsigned mask);
+  unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
+  int sweptNode(int side, int node);
+  DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane) const;
+  bool proveAt(int pair, int piece_a, int piece_b, int lane, const double* guess, double* point);
+  void addContact(const LeafContact& contact);
+  bool outOfBudget();
+  double now() const;
+
+  const Problem* problem_ = nullptr;
+  const Query* query_ = nullptr;
+  Statistics statistics_;
+
+  // The present batch.
+  Lanes tm_;
+  double lane_start_[kLanes], lane_end_[kLanes], tm_at_[kLanes], d_ = 0;
+  unsigned live_ = 0;   ///< lanes that may still hold the first contact
+  bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
+  bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
+  unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
+
+  Buffer<FrameLanes> frames_;       ///< of all sweeps, one after the other
+  Buffer<std::int32_t> first_step_;  ///< per sweep, into frames_ and bounds_
+  Buffer<std::int32_t> sweep_epoch_;
+  Buffer<StepBounds> bounds_;
+  Buffer<std::int32_t> bounds_ready_;
+  std::int32_t batch_ = 0;
+
+  // The present pair.
+  Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B
+  double pad_ = 0, pose_error_ = 0, amplitude_ = 0;
+  struct Cached {
+    std::int32_t epoch, slot;
+  };
+  Buffer<Cached> cached_[2];  ///< per node of the moving tree of each side
+  Buffer<SweptBox> pool_;
+  std::int32_t pair_epoch_ = 0;
+
+  Buffer<SweptBox> mover_box_;
+  Buffer<Entry> entries_;
+  Buffer<Entry> stack_;
+  Buffer<double> watch_from_;  ///< per pair, with ignore_initial
+  Buffer<std::int32_t> ignored_;
+  struct Final {
+    Entry entry;
+    double t_lower;
+    double normal[3];
+    bool have_normal;
+  };
+  Buffer<Final> finals_;
+  Buffer<LeafContact> contacts_;
+
+  double t_lower_ = 0, t_upper_ = 2;  ///< t_upper_: earliest proven contact so far, 2: none
+  bool certain_ = false, out_of_budget_ = false;
+};
+
+/// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
+/// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
+constexpr double kSplitTime = 0.7;
+/// Width below which time is not split any more; dyadic times down to here are exact.
+constexpr double kNarrowestLane = 1.0 / (1ull << 45);
+/// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
+constexpr double kWitnessAccuracy = 0.1;
+/// Roundings in certificate and placements on top of a chain's: 3 dot products of 3, twice, Cauchy products, box sums,
+/// prefix root; about 60 ulp, doubled (doc/NUMERICS.md, "Pads").
+constexpr double kCertificateUlps = 160;
+/// Roundings of a difference point at a pose.
+constexpr double kPoseUlps = 40;
+
+inline double Solver::now() const {
+  if (!query_->measure_times) return 0;
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+inline bool Solver::outOfBudget() {
+  if (query_->work_budget && statistics_.node_tests + statistics_.leaf_tests > query_->work_budget) {
+    out_of_budget_ = true;
+  }
+  return out_of_budget_;
+}
+
+inline void Solver::beginBatch(double start, double width) {
+  double tm[kLanes];
+  const double w = width / kLanes;
+  for (int i = 0; i < kLanes; ++i) {
+    lane_start_[i] = start + i * w;  // exact: dyadic, see kNarrowestLane
+    lane_end_[i] = start + (i + 1) * w;
+    tm[i] = start + (i + 0.5) * w;
+  }
+  evaluateAt(tm, 0.5 * w);
+  ++statistics_.batches;
+  updateLive();
+  last_ = w <= query_->tolerance_time;
+}
+
+inline void Solver::evaluateAt(const double* tm, double d) {
+  for (int i = 0; i < kLanes; ++i) {
+    tm_at_[i] = tm[i];
+    tm_.set(i, tm[i]);
+  }
+  d_ = d;
+  ++batch_;
+  pair_epoch_ += 1;
+}
+
+inline void Solver::updateLive() {
+  live_ = 0;
+  for (int i = 0; i < kLanes; ++i) live_ |= static_cast<unsigned>(lane_start_[i] < t_upper_) << i;
+}
+
+/// Frames of a sweep in this batch, evaluated when first asked for.
+inline const FrameLanes* Solver::frames(int sweep) {
+  const engine::SweepView& view = problem_->sweeps[sweep];
+  const int first = first_step_[sweep];
+  if (!bounds_ready_[sweep]) {
+    boundSteps(view, query_->q0, query_->dq, bounds_.data() + first);
+    bounds_ready_[sweep] = 1;
+  }
+  if (sweep_epoch_[sweep] != batch_) {
+    evaluateSweep(view, bounds_.data() + first, tm_, d_, frames_.data() + first);
+    sweep_epoch_[sweep] = batch_;
+    ++statistics_.motion_evaluations;
+  }
+  return frames_.data() + first;
+}
+
+/// Relative motion of a pair over this batch, both ways, with remainders and pads.
+inline void Solver::setupPair(int index) {
+  const Pair& pair = problem_->pairs[index];
+  const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
+  const FrameLanes* frame = frames(pair.sweep);
+  StepBounds b = {};
+  if (pair.step_b >= 0) {
+    frame += pair.step_b;
+    b = bounds_[first_step_[pair.sweep] + pair.step_b];
+  } else {
+    frame = nullptr;
+  }
+  RigidLanes &m = side_[0].m, &inverse = side_[1].m;
+  placeBehind(frame, pair.placement_b, m);
+  placeInFront(pair.inverse_a, m);
+  invert(m, inverse);
+  m.makeBernstein();
+  inverse.makeBernstein();
+
+  // Bounds of B's origin seen from A's frame: a point fixed at distance `l` in the step's frame adds s^n l.
+  const double l = pair.placement_b.length, s = b.s;
+  const double D1 = b.D1 + s * l, D2 = b.D2 + s * s * l, D3 = b.D3 + s * s * s * l;
+  const double length = b.length + l + pair.inverse_a.length;  // >= |c(t)|
+  // 1 + 1e-12: rounding of these constants, rotations orthonormal to a few ulp, d's own.
+  const double third = d_ * d_ * d_ / 6 * (1 + 1e-12);
+  m.rem_c = D3 * third;
+  m.rem_R = inverse.rem_R = s * s * s * third;
+  // -R^T c: Leibniz with |R^(n)| <= s^n, |c| <= length, |c^(n)| <= Dn.
+  inverse.rem_c = (D3 + 3 * s * D2 + 3 * s * s * D1 + s * s * s * length) * third;
+  side_[0].still = side_[1].moving = A.tree;
+  side_[0].moving = side_[1].still = B.tree;
+  const double sizes = length + D1 * d_ + A.tree->extent + B.tree->extent;
+  const double growth = (1 + s * d_) * (1 + s * d_);
+  // 1e-300 keeps the pad positive for bodies of size 0 and survives a host that flushes subnormals.
+  pad_ = kUlp * (b.ulps + kCertificateUlps) * growth * sizes + 1e-300;
+  pose_error_ = kUlp * (b.ulps + kPoseUlps) * sizes + 1e-300;
+
+  const Node& root = B.tree->nodes[0];
+  Lanes v[3];
+  for (int k = 0; k < 3; ++k) v[k] = dot(m.R[1] + 3 * k, root.center) + m.c[1][k];
+  amplitude_ = sqrt(maxLane(dot(v, v))) + s * d_ * root.radius;
+  ++pair_epoch_;
+  pool_.clear();
+  for (int i = 0; i < 2; ++i) cached_[i].resize(max(cached_[i].size(), side_[i].moving->num_nodes));
+}
+
+/// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this batch.
+inline int Solver::sweptNode(int side, int index) {
+  Cached& cached = cached_[side][index];
+  if (cached.epoch == pair_epoch_) return cached.slot;
+  cached.epoch = pair_epoch_;
+  cached.slot = pool_.size();
+  SweptBox& box = pool_.grow();
+  const RigidLanes& m = side_[side].m;
+  const Node& node = side_[side].moving->nodes[index];
+  const Lanes slack(m.rem_c + m.rem_R * static_cast<double>(node.reach) + pad_);
+  const double *c = node.center, *h = node.half;
+  for (int i = 0; i < 3; ++i) {
+    Lanes lo, hi;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes* R = m.Rb[k] + 3 * i;
+      const Lanes center = mulAdd(R[0], c[0], mulAdd(R[1], c[1], mulAdd(R[2], c[2], m.cb[k][i])));
+      const Lanes half = mulAdd(abs(R[0]), h[0], mulAdd(abs(R[1]), h[1], abs(R[2]) * Lanes(h[2])));
+      lo = k ? min(lo, center - half) : center - half;
+      hi = k ? max(hi, center + half) : center + half;
+    }
+    box.lo[i] = lo - slack;
+    box.hi[i] = hi + slack;
+  }
+  return cached.slot;
+}
+
+FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const double* center, const double* half, double margin) {
+  unsigned mask = 0;
+  for (int i = 0; i < 3; ++i) {
+    mask |= greater(box.lo[i], Lanes(center[i] + half[i] + margin));
+    mask |= greater(Lanes(center[i] - half[i] - margin), box.hi[i]);
+  }
+  return mask;
+}
+
+inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
+  ++statistics_.node_tests;
+  const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
+  mask &= ~apart(pool_[sweptNode(0, b)], A.center, A.half, query_->margin);
+  if (!mask) return 0;
+  return mask & ~apart(pool_[sweptNode(1, a)], B.center, B.half, query_->margin);
+}
+
+inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane) const {
+  DifferenceBody body;
+  body.tree_a = side_[0].still;
+  body.tree_b = side_[0].moving;
+  body.a = &a;
+  body.b = &b;
+  for (int i = 0; i < 9; ++i) body.pose.R[i] = side_[0].m.R[0][i][lane];
+  for (int i = 0; i < 3; ++i) body.pose.c[i] = side_[0].m.c[0][i][lane];
+  return body;
+}
+
+/// Proof of contact at a lane's middle.
+inline bool Solver::proveAt(int, int piece_a, int piece_b, int lane, const double* guess, double* point) {
+  ++statistics_.contact_proofs;
+  const DifferenceBody body =
+      differenceAt(side_[0].still->pieces[piece_a], side_[0].moving->pieces[piece_b], lane);
+  return certainlyTouching(body, query_->margin, pose_error_, guess, point);
+}
+
+/// Lanes of `mask` in which two leaves are not certainly apart.
+inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask) {
+  ++statistics_.leaf_tests;
+  const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
+  const double margin = query_->margin;
+  double sign = 0;
+  if (a.kind == PieceKind::vertices) {
+    ++statistics_.certificates;
+    mask &= ~certainlySeparated(side_[0], a, b, a.size, margin, pad_, sign);
+    if (!mask) return 0;
+  }
+  if (b.kind == PieceKind::vertices) {
+    ++statistics_.certificates;
+    mask &= ~certainlySeparated(side_[1], b, a, b.size, margin, pad_, sign);
+    if (!mask) return 0;
+  }
+  double guess[3];
+  bool have_guess = false;
+  unsigned untried = mask;
+  while ((untried &= live_) != 0) {
+    // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
+    int lane = 0;
+    for (int skip = __builtin_popcount(untried) / 2, m = static_cast<int>(untried); m; m &= m - 1, --skip) {
+      lane = __builtin_ctz(static_cast<unsigned>(m));
+      if (skip == 0) break;
+    }
+    const unsigned bit = 1u << lane;
+    untried &= ~bit;
+    const DifferenceBody body = differenceAt(a, b, lane);
+    if (!have_guess) {
+      for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
+    }
+    GjkResult g;
+    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin, 48, g);
+    ++statistics_.gjk;
+    for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
+    have_guess = true;
+    if (g.overlap) {
+      double point[3];
+      const double from = watch_from_.size() ? watch_from_[pair] : 0;
+      if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= from &&
+          proveAt(pair, piece_a, piece_b, lane, guess, point)) {
+        t_upper_ = tm_at_[lane];
+        updateLive();
+      }
+      continue;
+    }
+    ++statistics_.certificates;
+    unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin, pad_, sign);
+    if (mask & ~separated) {
+      double n[3];
+      for (int j = 0; j < 3; ++j) {
+        n[j] = -(body.pose.R[j] * g.n[0] + body.pose.R[3 + j] * g.n[1] + body.pose.R[6 + j] * g.n[2]);
+      }
+      ++statistics_.certificates;
+      separated |= certainlySeparated(side_[1], b, a, n, margin, pad_, sign);
+    }
+    mask &= ~separated;
+    untried &= mask;
+  }
+  return mask & live_;
+}
+
+/// Dual traversal from one node pair; what stays undecided is appended to entries_.
+inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
+  const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
+  stack_.clear();
+  stack_.push({pair, a, b, mask});
+  const double split_time = last_ ? 0 : kSplitTime * amplitude_;
+  while (stack_.size()) {
+    Entry e = stack_[stack_.size() - 1];
+    stack_.truncate(stack_.size() - 1);
+    e.mask &= live_;
+    if (!e.mask) continue;
+    if (outOfBudget()) return;
+    e.mask = nodesMayTouch(e.a, e.b, e.mask);
+    if (!e.mask) continue;
+    const Node &x = A[e.a], &y = B[e.b];
+    if (x.isLeaf() && y.isLeaf()) {
+      e.mask = leavesMayTouch(pair, x.piece(), y.piece(), e.mask);
+      if (!e.mask) continue;
+      if (decide_only_) {
+        blocked_ |= e.mask;
+        live_ &= ~e.mask;
+      } else {
+        entries_.push(e);
+      }
+    } else if (max(x.radius, y.radius) < split_time) {
+      entries_.push(e);
+    } else if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
+      stack_.push({pair, x.right, e.b, e.mask});
+      stack_.push({pair, x.left, e.b, e.mask});
+    } else {
+      stack_.push({pair, e.a, y.right, e.mask});
+      stack_.push({pair, e.a, y.left, e.mask});
+    }
+  }
+}
+
+/// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
+inline void Solver::sweptLss(int mover, SweptBox& box) {
+  const Body& body = problem_->bodies[problem_->movers[mover]];
+  if (body.step < 0) {
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = Lanes(body.lo[k]);
+      box.hi[k] = Lanes(body.hi[k]);
+    }
+    return;
+  }
+  const FrameLanes& f = frames(0)[body.step];
+  const StepBounds& b = bounds_[first_step_[0] + body.step];
+  const double third = d_ * d_ * d_ / 6 * (1 + 1e-12);
+  for (int end = 0; end < 2; ++end) {
+    const double* p = body.lss + 3 * end;
+    const double reach = norm(p) * (1 + 1e-15), s = b.s;
+    const double growth = (1 + s * d_) * (1 + s * d_);
+    const Lanes slack(body.lss[6] + (b.D3 + s * s * s * reach) * third +
+                      kUlp * (b.ulps + kCertificateUlps) * growth * (b.length + b.D1 * d_ + reach + body.lss[6]) + 1e-300);
+    Lanes x[3], x1[3], u[3], e[3];
+    for (int k = 0; k < 3; ++k) x[k] = dot(f.R + 3 * k, p);
+    cross(f.w, x, x1);
+    cross(f.w, x1, u);
+    cross(f.al, x, e);
+    for (int k = 0; k < 3; ++k) {
+      const Lanes c0 = f.o[k] + x[k], c1 = f.v[k] + x1[k], c2 = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
+      const Lanes sum = c0 + c2, middle = c0 - c2, reach1 = abs(c1);
+      const Lanes lo = min(sum - reach1, middle) - slack, hi = max(sum + reach1, middle) + slack;
+      box.lo[k] = end ? min(box.lo[k], lo) : lo;
+      box.hi[k] = end ? max(box.hi[k], hi) : hi;
+    }
+  }
+}
+
+/// Stage 1: pairs whose swept bounds meet, with the lanes in which they do, to entries_.
+inline void Solver::cull() {
+  beginBatch(0, 1);
+  const double margin = query_->margin;
+  mover_box_.resize(problem_->num_movers);
+  for (int m = 0; m < problem_->num_movers; ++m) sweptLss(m, mover_box_[m]);
+  if (query_->check_scene && problem_->obstacle_tree) {
+    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
+    for (int m = 0; m < problem_->num_movers; ++m) {
+      const SweptBox& box = mover_box_[m];
+      double lo[3], hi[3];
+      for (int k = 0; k < 3; ++k) {
+        lo[k] = minLane(box.lo[k]) - margin;
+        hi[k] = maxLane(box.hi[k]) + margin;
+      }
+      stack_.clear();
+      stack_.push({0, 0, 0, 0});
+      while (stack_.size()) {
+        const Node& node = problem_->obstacle_tree[stack_[stack_.size() - 1].a];
+        stack_.truncate(stack_.size() - 1);
+        bool out = false;
+        for (int k = 0; k < 3; ++k) {
+          out |= lo[k] > node.center[k] + node.half[k] || hi[k] < node.center[k] - node.half[k];
+        }
+        if (out) continue;
+        if (!node.isLeaf()) {
+          stack_.push({0, node.right, 0, 0});
+          stack_.push({0, node.left, 0, 0});
+          continue;
+        }
+        const int pair = problem_->scene_pair[m * problem_->num_obstacles + node.piece()];
+        if (pair < 0) continue;
+        const unsigned mask = kAllLanes & ~apart(box, node.center, node.half, margin);
+        if (mask) entries_.push({pair, 0, 0, mask});
+      }
+    }
+  }
+  if (query_->check_self) {
+    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_pairs - problem_->num_scene_pairs);
+    for (int p = problem_->num_scene_pairs; p < problem_->num_pairs; ++p) {
+      const SweptBox& a = mover_box_[problem_->bodies[problem_->pairs[p].a].mover];
+      const SweptBox& b = mover_box_[problem_->bodies[problem_->pairs[p].b].mover];
+      unsigned mask = 0;
+      for (int k = 0; k < 3; ++k) {
+        mask |= greater(a.lo[k] - Lanes(margin), b.hi[k]) | greater(b.lo[k] - Lanes(margin), a.hi[k]);
+      }
+      mask = kAllLanes & ~mask;
+      if (mask) entries_.push({p, 0, 0, mask});
+    }
+  }
+  statistics_.pairs_after_culling += static_cast<std::uint64_t>(entries_.size());
+}
+
+/// Time from which a pair in contact at t = 0 is watched: the start of its first free lane, on lanes down to 1/512.
+/// 2 when it never separates.
+inline double Solver::firstFreeTime(double start, double width, int begin, int end) {
+  const double w = width / kLanes;
+  beginBatch(start, width);
+  last_ = true;  // down to the leaves
+  blocked_ = 0;
+  int present = -1;
+  for (int i = begin; i < end; ++i) {
+    const Entry e = entries_[i];
+    if (e.pair != present) setupPair(present = e.pair);
+    traverse(e.pair, e.a, e.b, kAllLanes);
+  }
+  const unsigned blocked = blocked_;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double lane_start = start + lane * w;
+    if (!(blocked >> lane & 1)) return out_of_budget_ ? 2 : lane_start;
+    if (w > 1.0 / 512 && w > query_->tolerance_time) {
+      const double t = firstFreeTime(lane_start, w, begin, end);
+      if (t < 2) return t;
+    }
+  }
+  return 2;
+}
+
+/// Finds the pairs in contact at t = 0 and from when they are watched.
+inline void Solver::collectInitialContacts(int begin, int end) {
+  watch_from_.resize(problem_->num_pairs);
+  for (int i = 0; i < problem_->num_pairs; ++i) watch_from_[i] = 0;
+  decide_only_ = true;
+  for (int i = begin; i < end; ++i) {
+    const Entry e = entries_[i];
+    const double tm[kLanes] = {0, 0, 0, 0, 0, 0, 0, 0};
+    for (int k = 0; k < kLanes; ++k) lane_start_[k] = lane_end_[k] = 0;
+    evaluateAt(tm, 0);
+    live_ = 1;
+    last_ = true;
+    blocked_ = 0;
+    setupPair(e.pair);
+    traverse(e.pair, e.a, e.b, 1);
+    if (!blocked_) continue;
+    ignored_.push(e.pair);
+    entries_.push(e);
+    watch_from_[e.pair] = firstFreeTime(0, 1, entries_.size() - 1, entries_.size());
+    entries_.truncate(entries_.size() - 1);
+  }
+  decide_only_ = false;
+}
+
+inline void Solver::addContact(const LeafContact& contact) {
+  if (contacts_.size() < query_->max_contacts) contacts_.push(contact);
+}
+
+/// One batch over [start, start + width] for entries_[begin, end), of which those with parent_lane set count (all, with
+/// their masks as lanes of this batch, when parent_lane < 0). Everything before `start` is proven free.
+inline Solver::Step Solver::solveInterval(double start, double width, int begin, int end, int parent_lane) {
+  const double w = width / kLanes;
+  t_lower_ = start;
+  beginBatch(start, width);
+  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, start);
+  const int out_begin = entries_.size();
+  int present = -1;
+  for (int i = begin; i < end; ++i) {
+    const Entry e = entries_[i];
+    unsigned mask = kAllLanes;
+    if (parent_lane < 0) {
+      mask = e.mask;
+    } else if (!(e.mask >> parent_lane & 1)) {
+      continue;
+    }
+    if (watch_from_.size()) {
+      for (int k = 0; k < kLanes; ++k) {
+        if (lane_end_[k] <= watch_from_[e.pair]) mask &= ~(1u << k);
+      }
+    }
+    if (!(mask & live_)) continue;
+    if (e.pair != present) setupPair(present = e.pair);
+    traverse(e.pair, e.a, e.b, mask);
+    if (out_of_budget_) return Step::done;
+  }
+  const int out_end = entries_.size();
+  const bool last = last_;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double lane_start = start + lane * w;
+    if (lane_start >= t_upper_) break;
+    bool open = false;
+    for (int i = out_begin; i < out_end && !open; ++i) open = entries_[i].mask >> lane & 1;
+    if (!open) continue;
+    int refine = !last;
+    if (last && finishLane(lane_start, w, out_begin, out_end, lane, &refine) == Step::done) return Step::done;
+    if (refine && solveInterval(lane_start, w, out_begin, out_end, lane) == Step::done) return Step::done;
+    entries_.truncate(out_end);
+  }
+  return Step::free;
+}
+
+/// A lane no wider than the tolerance that its leaf pairs leave undecided: how far is it free, and is there contact?
+/// @param[out] refine  1 when the pairs are farther apart than the distance tolerance, so that narrower lanes must decide.
+inline Solver::Step Solver::finishLane(double start, double width, int begin, int end, int lane, int* refine) {
+  *refine = 0;
+  finals_.clear();
+  for (int i = begin; i < end; ++i) {
+    const Entry& e = entries_[i];
+    if (!(e.mask >> lane & 1)) continue;
+    double from = start;
+    if (watch_from_.size()) from = max(from, watch_from_[e.pair]);
+    finals_.push({e, from, {0, 0, 0}, false});
+  }
+  const double stop = start + width;
+  // Prefix roots, from the earliest time any pair is left at: Newton steps on an approach (SHAPES, section 3).
+  double t = start;
+  for (int round = 0; round < 4; ++round) {
+    t = 2;
+    for (int i = 0; i < finals_.size(); ++i) t = min(t, finals_[i].t_lower);
+    if (t >= stop) return Step::free;  // all of the lane is certified after all
+    // Lane 0: the pose at t. Lane 1: [t, stop], a little wider than it, so that rounding of tm loses nothing.
+    const double d = 0.5 * (stop - t) + 4 * kUlp;
+    const double tm[kLanes] = {t, t + 0.5 * (stop - t), t, t, t, t, t, t};
+    evaluateAt(tm, d);
+    int present = -1;
+    bool progress = false;
+    for (int i = 0; i < finals_.size(); ++i) {
+      Final& f = finals_[i];
+      if (f.t_lower >= stop || f.t_lower > t + 0.5 * (stop - t)) continue;
+      if (f.entry.pair != present) setupPair(present = f.entry.pair);
+      const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
+      const Piece& a = side_[0].still->pieces[A[f.entry.a].piece()];
+      const Piece& b = side_[0].moving->pieces[B[f.entry.b].piece()];
+      const DifferenceBody body = differenceAt(a, b, 0);
+      GjkResult g;
+      gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, a.radius + b.radius + query_->margin, 64, g);
+      ++statistics_.gjk;
+      if (g.overlap) continue;
+      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.have_normal = true;
+      double n[3];
+      for (int j = 0; j < 3; ++j) {
+        n[j] = -(body.pose.R[j] * g.n[0] + body.pose.R[3 + j] * g.n[1] + body.pose.R[6 + j] * g.n[2]);
+      }
+      const double x = max(certainlyFreePrefix(side_[0], a, b, g.n, query_->margin, pad_, 1),
+                           certainlyFreePrefix(side_[1], b, a, n, query_->margin, pad_, 1));
+      // The lane is [tm - d, tm + d]; what it certifies beyond `stop` is not used.
+      const double reached = x >= 1 ? stop : min(stop, (tm[1] - d) + 2 * d * x - 4 * kUlp);
+      if (reached > f.t_lower) {
+        progress |= reached - f.t_lower > 1e-3 * (stop - t);
+        f.t_lower = reached;
+      }
+    }
+    if (!progress) break;
+  }
+  t = 2;
+  int first = 0;
+  for (int i = 0; i < finals_.size(); ++i) {
+    if (finals_[i].t_lower < t) {
+      t = finals_[i].t_lower;
+      first = i;
+    }
+  }
+  if (t >= stop) return Step::free;
+  t_lower_ = t;
+
+  // Proofs of contact, ever later within the tolerance.
+  static const double kOffsets[kLanes] = {0, 0x1p-20, 0x1p-14, 0x1p-9, 0x1p-6, 0x1p-3, 0.5, 1};
+  double tm[kLanes];
+  for (int k = 0; k < kLanes; ++k) tm[k] = min(1.0, t + kOffsets[k] * query_->tolerance_time);
+  evaluateAt(tm, 0);
+  const int contacts_before = contacts_.size();
+  for (int i = 0; i < finals_.size(); ++i) {
+    Final& f = finals_[i];
+    LeafContact contact = {};
+    contact.pair = f.entry.pair;
+    setupPair(f.entry.pair);
+    const Piece *pieces_a = side_[0].still->pieces, *pieces_b = side_[0].moving->pieces;
+    contact.piece_a = side_[0].still->nodes[f.entry.a].piece();
+    contact.piece_b = side_[0].moving->nodes[f.entry.b].piece();
+    contact.t_lower = f.t_lower;
+    contact.t_upper = 1;
+    const Piece &a = pieces_a[contact.piece_a], &b = pieces_b[contact.piece_b];
+    int k = 0;
+    for (; k < kLanes; ++k) {
+      if (tm[k] < f.t_lower) continue;
+      const DifferenceBody body = differenceAt(a, b, k);
+      if (proveAt(contact.pair, contact.piece_a, contact.piece_b, k, f.have_normal ? f.normal : body.pose.c,
+                  contact.point)) {
+        contact.certain = true;
+        contact.t = contact.t_upper = tm[k];
+        t_upper_ = min(t_upper_, tm[k]);
+        break;
+      }
+    }
+    if (!contact.certain) {
+      contact.t = f.t_lower;
+      const DifferenceBody body = differenceAt(a, b, 0);  // at t, within the tolerance of its own time
+      GjkResult g;
+      gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
+      originWeights(g.simplex);
+      for (int j = 0; j < 3; ++j) {
+        contact.point[j] = 0;
+        for (int q = 0; q < g.simplex.n; ++q) {
+          contact.point[j] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[j] + g.simplex.v[q].b[j]);
+        }
+      }
+      if (!f.have_normal && !g.overlap) {
+        for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
+        f.have_normal = true;
+      }
+    }
+    if (!f.have_normal) {
+      // In contact from the start: the direction between the pieces' middles is the best there is.
+      const DifferenceBody body = differenceAt(a, b, 0);
+      double m[3], size = 0;
+      const Node &x = side_[0].still->nodes[f.entry.a], &y = side_[0].moving->nodes[f.entry.b];
+      for (int j = 0; j < 3; ++j) {
+        m[j] = dot(body.pose.R + 3 * j, y.center) + body.pose.c[j] - x.center[j];
+        size += m[j] * m[j];
+      }
+      for (int j = 0; j < 3; ++j) f.normal[j] = size > 0 ? m[j] / sqrt(size) : (j == 2);
+    }
+    for (int j = 0; j < 3; ++j) contact.normal[j] = f.normal[j];
+    contacts_.push(contact);
+    if (finals_.size() > 256 && contact.certain && i > 256) break;
+  }
+  if (t_upper_ - t <= query_->tolerance_time * (1 + 1e-9)) {
+    certain_ = true;
+  } else if (width > kNarrowestLane) {
+    // Undecided. Farther apart than the distance tolerance, narrower lanes will tell.
+    const Final& f = finals_[first];
+    setupPair(f.entry.pair);
+    const Piece& a = side_[0].still->pieces[side_[0].still->nodes[f.entry.a].piece()];
+    const Piece& b = side_[0].moving->pieces[side_[0].moving->nodes[f.entry.b].piece()];
+    GjkResult g;
+    const DifferenceBody body = differenceAt(a, b, 0);
+    gjk(body, f.normal, 1e-7, a.radius + b.radius + query_->margin, 64, g);
+    if (!g.overlap && g.lower - a.radius - b.radius - query_->margin > 0.5 * query_->tolerance_distance) {
+      contacts_.truncate(contacts_before);
+      *refine = 1;
+      return Step::free;
+    }
+  }
+  // The first contact first; of the others those that begin within the bracket.
+  int kept = contacts_before;
+  const double bracket = certain_ ? t_upper_ : t + query_->tolerance_time;
+  for (int i = contacts_before; i < contacts_.size(); ++i) {
+    if (contacts_[i].t_lower <= bracket) contacts_[kept++] = contacts_[i];
+  }
+  contacts_.truncate(kept);
+  for (int i = contacts_before; i < kept; ++i) {  // a few: selection sort by certainty, then time
+    int best = i;
+    for (int j = i + 1; j < kept; ++j) {
+      const LeafContact &x = contacts_[j], &y = contacts_[best];
+      const bool better = x.certain != y.certain ? x.certain
+                          : x.certain            ? x.t_upper < y.t_upper
+                                                 : x.t_lower < y.t_lower;
+      if (better) best = j;
+    }
+    if (best != i) {
+      const LeafContact swap = contacts_[i];
+      contacts_[i] = contacts_[best];
+      contacts_[best] = swap;
+    }
+    if (i - contacts_before >= query_->max_contacts) break;
+  }
+  contacts_.truncate(min(kept, contacts_before + query_->max_contacts));
+  return Step::done;
+}
+
+
+inline void Solver::solve(const Problem& problem, const Query& query, Answer& answer) {
+  problem_ = &problem;
+  query_ = &query;
+  statistics_ = Statistics();
+  entries_.clear();
+  contacts_.clear();
+  ignored_.clear();
+  watch_from_.clear();
+  t_lower_ = 0;
+  t_upper_ = 2;
+  certain_ = out_of_budget_ = decide_only_ = false;
+  first_step_.resize(problem.num_sweeps);
+  bounds_ready_.resize(problem.num_sweeps);
+  sweep_epoch_.resize(problem.num_sweeps);
+  int steps = 0;
+  for (int i = 0; i < problem.num_sweeps; ++i) {
+    first_step_[i] = steps;
+    steps += problem.sweeps[i].num_steps;
+    bounds_ready_[i] = 0;
+    sweep_epoch_[i] = -1;
+  }
+  frames_.resize(max(frames_.size(), steps));
+  bounds_.resize(max(bounds_.size(), steps));
+  // Epochs only ever grow; long before they overflow the stamps are made new.
+  if (batch_ > 1 << 30 || pair_epoch_ > 1 << 30) {
+    batch_ = pair_epoch_ = 0;
+    for (Buffer<Cached>& stamps : cached_) {
+      for (int i = 0; i < stamps.size(); ++i) stamps[i].epoch = -1;
+    }
+  }
+
+  const double time0 = now();
+  cull();
+  const double time1 = now();
+  statistics_.culling_us = time1 - time0;
+  const int roots = entries_.size();
+  if (query.ignore_initial) collectInitialContacts(0, roots);
+
+  Verdict verdict = Verdict::free;
+  if (!query.every_pair) {
+    if (solveInterval(0, 1, 0, roots, -1) == Step::done) verdict = out_of_budget_ ? Verdict::undecided : Verdict::contact;
+  } else {
+    double t_lower = 1, t_upper = 2;
+    bool certain = false;
+    for (int i = 0; i < roots && !out_of_budget_; ++i) {
+      t_upper_ = 2;
+      certain_ = false;
+      entries_.truncate(roots);
+      if (solveInterval(0, 1, i, i + 1, -1) != Step::done) continue;
+      verdict = Verdict::contact;
+      if (t_lower_ < t_lower) {
+        t_lower = t_lower_;
+        certain = certain_;
+      }
+      t_upper = min(t_upper, t_upper_);
+    }
+    if (out_of_budget_) verdict = Verdict::undecided;
+    t_lower_ = t_lower;
+    t_upper_ = t_upper;
+    certain_ = certain;
+  }
+  answer.verdict = verdict;
+  answer.certain = verdict == Verdict::contact && certain_;
+  answer.t_lower = verdict == Verdict::free ? 1 : t_lower_;
+  answer.t_upper = verdict == Verdict::free ? 1 : min(1.0, t_upper_);
+  answer.contacts = contacts_.data();
+  answer.num_contacts = verdict == Verdict::contact ? contacts_.size() : 0;
+  answer.ignored_pairs = ignored_.data();
+  answer.num_ignored = ignored_.size();
+  statistics_.narrowphase_us = now() - time1;
+  answer.statistics = statistics_;
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Eight doubles that go through together: eight time intervals, one per lane. Compiled once per instruction set: the
+// including file defines FCL_ARTIC_ISA (the namespace) and FCL_ARTIC_ISA_BITS (128, 256 or 512) first. Nothing here or
+// in the files built on it may instantiate inline code of other libraries: the linker could pick that copy for a
+// processor that lacks the instructions.
+//
+// Every bound that uses lanes carries its rounding in a pad (doc/NUMERICS.md, "Pads") which holds in any rounding mode,
+// with or without FMA, so mulAdd() may round once or twice.
+#pragma once
+
+#include <immintrin.h>
+
+#ifdef __FAST_MATH__
+#error "fcl_artic proves bounds in floating point: it cannot be compiled with -ffast-math"
+#endif
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+#define FCL_ARTIC_INLINE inline __attribute__((always_inline))
+
+constexpr int kLanes = 8;
+constexpr unsigned kAllLanes = 0xff;
+
+#if FCL_ARTIC_ISA_BITS == 512
+using Register = __m512d;
+FCL_ARTIC_INLINE Register regSet(double x) { return _mm512_set1_pd(x); }
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm512_min_pd(a, b); }
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm512_max_pd(a, b); }
+FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm512_abs_pd(a); }
+FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm512_sqrt_pd(a); }
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm512_fmadd_pd(a, b, c); }
+FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) { return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ); }
+#elif FCL_ARTIC_ISA_BITS == 256
+using Register = __m256d;
+FCL_ARTIC_INLINE Register regSet(double x) { return _mm256_set1_pd(x); }
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm256_min_pd(a, b); }
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm256_max_pd(a, b); }
+FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
+FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm256_sqrt_pd(a); }
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm256_fmadd_pd(a, b, c); }
+FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
+  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)));
+}
+#else
+using Register = __m128d;
+FCL_ARTIC_INLINE Register regSet(double x) { return _mm_set1_pd(x); }
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm_min_pd(a, b); }
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm_max_pd(a, b); }
+FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
+FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm_sqrt_pd(a); }
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm_add_pd(_mm_mul_pd(a, b), c); }
+FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
+  return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(a, b)));
+}
+#endif
+constexpr int kRegisterLanes = sizeof(Register) / sizeof(double);
+constexpr int kRegisters = kLanes / kRegisterLanes;
+
+struct alignas(64) Lanes {
+  Register r[kRegisters];
+  Lanes() = default;
+  FCL_ARTIC_INLINE Lanes(double x) {  // NOLINT: a scalar is the same in every lane
+    for (Register& q : r) q = regSet(x);
+  }
+  FCL_ARTIC_INLINE double operator[](int i) const { return reinterpret_cast<const double*>(r)[i]; }
+  FCL_ARTIC_INLINE void set(int i, double x) { reinterpret_cast<double*>(r)[i] = x; }
+};
+
+#define FCL_ARTIC_EACH(expression)                        \
+  Lanes o;                                                \
+  for (int i = 0; i < kRegisters; ++i) o.r[i] = expression; \
+  return o
+FCL_ARTIC_INLINE Lanes operator+(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] + b.r[i]); }
+FCL_ARTIC_INLINE Lanes operator-(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] - b.r[i]); }
+FCL_ARTIC_INLINE Lanes operator-(Lanes a) { FCL_ARTIC_EACH(-a.r[i]); }
+FCL_ARTIC_INLINE Lanes operator*(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] * b.r[i]); }
+FCL_ARTIC_INLINE Lanes min(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMin(a.r[i], b.r[i])); }
+FCL_ARTIC_INLINE Lanes max(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMax(a.r[i], b.r[i])); }
+FCL_ARTIC_INLINE Lanes abs(Lanes a) { FCL_ARTIC_EACH(regAbs(a.r[i])); }
+FCL_ARTIC_INLINE Lanes sqrt(Lanes a) { FCL_ARTIC_EACH(regSqrt(a.r[i])); }
+/// a b + c
+FCL_ARTIC_INLINE Lanes mulAdd(Lanes a, Lanes b, Lanes c) { FCL_ARTIC_EACH(regMulAdd(a.r[i], b.r[i], c.r[i])); }
+#undef FCL_ARTIC_EACH
+/// Lanes with a > b; a lane with NaN is not among them.
+FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
+  unsigned mask = 0;
+  for (int i = 0; i < kRegisters; ++i) mask |= regGreater(a.r[i], b.r[i]) << (i * kRegisterLanes);
+  return mask;
+}
+FCL_ARTIC_INLINE double maxLane(Lanes a) {
+  double m = a[0];
+  for (int i = 1; i < kLanes; ++i) m = a[i] > m ? a[i] : m;
+  return m;
+}
+FCL_ARTIC_INLINE double minLane(Lanes a) {
+  double m = a[0];
+  for (int i = 1; i < kLanes; ++i) m = a[i] < m ? a[i] : m;
+  return m;
+}
+
+FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const Lanes* b) {
+  return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * b[0]));
+}
+FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const double* b) {
+  return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * Lanes(b[0])));
+}
+FCL_ARTIC_INLINE void cross(const Lanes* a, const Lanes* b, Lanes* o) {
+  o[0] = a[1] * b[2] - a[2] * b[1];
+  o[1] = a[2] * b[0] - a[0] * b[2];
+  o[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/// Sine and cosine for |x| <= kMaxAngle, error at most 4 * 2^-52 in any rounding mode (doc/NUMERICS.md, "Sine and
+/// cosine"; measured against MPFR in test/numerics).
+/// Cody and Waite's reduction by pi/2 in three parts of at most 33 bits (exact products for |k| < 2^20), then the
+/// minimax polynomials that fdlibm publishes for [-pi/4, pi/4]. The quotient is rounded by truncation, which does not
+/// depend on the rounding mode.
+constexpr double kMaxAngle = 1e6;
+FCL_ARTIC_INLINE void sineCosine(Lanes x, Lanes& sine, Lanes& cosine) {
+  alignas(64) double quotient[kLanes], odd[kLanes], sign_sine[kLanes], sign_cosine[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const double t = x[i] * 0.63661977236758134308;
+    const int k = static_cast<int>(t + (t < 0 ? -0.5 : 0.5));
+    quotient[i] = k;
+    odd[i] = (k & 1) ? 1.0 : 0.0;
+    sign_sine[i] = (k & 2) ? -1.0 : 1.0;
+    sign_cosine[i] = ((k + 1) & 2) ? -1.0 : 1.0;
+  }
+  Lanes k, o, ss, sc;
+  __builtin_memcpy(&k, quotient, sizeof k);
+  __builtin_memcpy(&o, odd, sizeof o);
+  __builtin_memcpy(&ss, sign_sine, sizeof ss);
+  __builtin_memcpy(&sc, sign_cosine, sizeof sc);
+  const Lanes r = ((x - k * Lanes(1.57079632673412561417e+00)) - k * Lanes(6.07710050630396597660e-11)) -
+                  k * Lanes(2.02226624879595063154e-21);
+  const Lanes z = r * r;
+  Lanes p = mulAdd(z, 1.58969099521155010221e-10, -2.50507602534068634195e-08);
+  p = mulAdd(z, p, 2.75573137070700676789e-06);
+  p = mulAdd(z, p, -1.98412698298579493134e-04);
+  p = mulAdd(z, p, 8.33333333332248946124e-03);
+  p = mulAdd(z, p, -1.66666666666666324348e-01);
+  const Lanes s = mulAdd(r * z, p, r);
+  Lanes q = mulAdd(z, -1.13596475577881948265e-11, 2.08757232129817482790e-09);
+  q = mulAdd(z, q, -2.75573143513906633035e-07);
+  q = mulAdd(z, q, 2.48015872894767294178e-05);
+  q = mulAdd(z, q, -1.38888888888741095749e-03);
+  q = mulAdd(z, q, 4.16666666666666019037e-02);
+  const Lanes c = mulAdd(z * z, q, Lanes(1.0) - Lanes(0.5) * z);
+  const Lanes e = Lanes(1.0) - o;  // 0 or 1, so that the sums below pick one addend exactly
+  sine = ss * (e * s + o * c);
+  cosine = sc * (e * c + o * s);
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,524 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/manager.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "adapters/fcl/fcl_geometry.h"
+#include "geometry/shape_tree.h"
+#include "motion/frame_sweep.h"
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+namespace {
+
+using engine::Placement;
+
+/// A geometry of the manager, obstacle or link.
+struct Item {
+  fcl::CollisionObjectd* object = nullptr;
+  std::string name;
+  LinkId link = -1;  ///< -1: obstacle
+  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< in the link's frame; of an obstacle: in the world
+  const fcl::CollisionGeometryd* geometry = nullptr;
+  std::shared_ptr<const ShapeTree> shape;
+};
+
+/// Box in the world of a tree that stands at M.
+void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, double* lo, double* hi) {
+  const Eigen::Vector3d c = 0.5 * (shape.lower() + shape.upper()), h = 0.5 * (shape.upper() - shape.lower());
+  const Eigen::Vector3d center = M * c, half = M.linear().cwiseAbs() * h;
+  // A dozen roundings of numbers no larger than these.
+  const double pad = 1e-14 * (c.cwiseAbs().sum() + h.sum() + M.translation().cwiseAbs().sum());
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = center[k] - half[k] - pad;
+    hi[k] = center[k] + half[k] + pad;
+  }
+}
+
+/// One engine workspace per thread, shared by all managers: nothing in it reaches the next answer.
+class Workspace {
+ public:
+  Workspace() : memory_(engine::engine().createWorkspace()) {}
+  ~Workspace() { engine::engine().destroyWorkspace(memory_); }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  void* get() const { return memory_; }
+
+ private:
+  void* memory_;
+};
+
+void* threadWorkspace() {
+  thread_local Workspace workspace;
+  return workspace.get();
+}
+
+void requireTolerance(double x, const char* name, bool positive) {
+  if (!std::isfinite(x) || x < 0 || (positive && x == 0)) {
+    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(x) +
+                                (positive ? ", not a positive number" : ", not a number >= 0"));
+  }
+}
+
+}  // namespace
+
+struct ArticulatedCollisionManager::Impl {
+  std::shared_ptr<const KinematicTree> tree;
+  std::vector<Item> obstacles, links;
+  AllowedCollisionMatrix allowed;
+  bool ready = false;
+  std::size_t named = 0;  ///< obstacles that were given a name so far
+
+  // Made by build(), read by queries.
+  std::vector<FrameSweep> sweeps;
+  std::vector<engine::SweepView> sweep_views;
+  std::vector<engine::Body> bodies;  ///< links first, then obstacles
+  std::vector<std::int32_t> movers, obstacle_bodies, scene_pair;
+  std::vector<engine::Pair> pairs;
+  std::int32_t num_scene_pairs = 0;
+  std::vector<engine::Node> obstacle_tree;
+
+  const Item& item(std::int32_t body) const {
+    const std::size_t i = static_cast<std::size_t>(body);
+    return i < links.size() ? links[i] : obstacles[i - links.size()];
+  }
+  Item makeItem(fcl::CollisionObjectd* object, const std::string& what) const;
+  bool adjacent(LinkId a, LinkId b) const;
+  bool linkAbove(LinkId above, LinkId below) const;
+  void readObstacle(Item& item) const;
+  void build();
+  BodyRef reference(const Item& item) const { return {item.link, item.object, item.name}; }
+};
+
+Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, const std::string& what) const {
+  if (!object) throw std::invalid_argument(what + ": the object is null");
+  for (const std::vector<Item>* items : {&obstacles, &links}) {
+    for (const Item& i : *items) {
+      if (i.object == object) throw std::invalid_argument(what + ": the object is there already, as '" + i.name + "'");
+    }
+  }
+  Item item;
+  item.object = object;
+  item.geometry = object->collisionGeometry().get();
+  if (!item.geometry) throw std::invalid_argument(what + ": the object has no geometry");
+  try {
+    item.shape = readGeometry(*item.geometry);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  return item;
+}
+
+/// Joined by one moving joint at most, over links without geometry only; or rigidly attached to each other.
+bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
+  const auto path = [&](LinkId link) {
+    std::vector<LinkId> up{link};
+    while (tree->parentLink(up.back()) >= 0) up.push_back(tree->parentLink(up.back()));
+    return up;
+  };
+  std::vector<LinkId> x = path(a), y = path(b);
+  if (x.back() != y.back()) return false;
+  while (x.size() > 1 && y.size() > 1 && x[x.size() - 2] == y[y.size() - 2]) {
+    x.pop_back();
+    y.pop_back();
+  }
+  int moving = 0;
+  bool bare = true;  // no link with geometry strictly between
+  const auto hasGeometry = [&](LinkId link) {
+    return std::any_of(links.begin(), links.end(), [&](const Item& i) { return i.link == link; });
+  };
+  for (const auto* side : {&x, &y}) {
+    for (std::size_t i = 0; i + 1 < side->size(); ++i) {
+      moving += tree->joint(tree->parentJoint((*side)[i])).type != JointType::fixed;
+    }
+    for (std::size_t i = 1; i + 1 < side->size(); ++i) bare = bare && !hasGeometry((*side)[i]);
+  }
+  const LinkId ancestor = x.back();
+  if (ancestor != a && ancestor != b) bare = bare && !hasGeometry(ancestor);
+  return moving == 0 || (moving == 1 && bare);
+}
+
+bool ArticulatedCollisionManager::Impl::linkAbove(LinkId above, LinkId below) const {
+  while (below >= 0 && below != above) below = tree->parentLink(below);
+  return below == above;
+}
+
+void ArticulatedCollisionManager::Impl::readObstacle(Item& item) const {
+  const std::string what = "obstacle '" + item.name + "'";
+  const Eigen::Isometry3d M = requireRigid(item.object->getTransform(), what);
+  const fcl::CollisionGeometryd* geometry = item.object->collisionGeometry().get();
+  if (!geometry) throw std::invalid_argument(what + ": the object has no geometry");
+  if (geometry != item.geometry) {
+    try {
+      item.shape = readGeometry(*geometry);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(what + ": " + e.what());
+    }
+    item.geometry = geometry;
+  }
+  item.offset = M;
+}
+
+void ArticulatedCollisionManager::Impl::build() {
+  sweeps.clear();
+  sweeps.push_back(FrameSweep::fromWorld(*tree));
+  bodies.assign(links.size() + obstacles.size(), engine::Body());
+  std::vector<int> depth(links.size(), 0);
+  std::vector<Eigen::Isometry3d> in_step(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    const Item& item = links[i];
+    engine::Body& body = bodies[i];
+    const Carrier carrier = sweeps[0].carrier(item.link);
+    in_step[i] = carrier.offset * item.offset;
+    body.tree = &item.shape->view();
+    body.step = carrier.step;
+    body.placement = makePlacement(in_step[i]);
+    const std::array<double, 7> lss = item.shape->lineSweptSphere();
+    const Eigen::Vector3d p0 = in_step[i] * Eigen::Vector3d::Map(&lss[0]), p1 = in_step[i] * Eigen::Vector3d::Map(&lss[3]);
+    for (int k = 0; k < 3; ++k) {
+      body.lss[k] = p0[k];
+      body.lss[3 + k] = p1[k];
+    }
+    body.lss[6] = lss[6] + 1e-14 * (lss[6] + p0.norm() + p1.norm() + body.placement.length);
+    worldBox(*item.shape, in_step[i], body.lo, body.hi);  // right where step < 0, not used elsewhere
+    for (int s = carrier.step; s >= 0; s = sweeps[0].view().steps[s].parent) ++depth[i];
+  }
+  movers.resize(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) movers[i] = static_cast<std::int32_t>(i);
+  // Distal links first: they move most and are the likeliest to touch, so that t_upper cuts the others' work.
+  std::stable_sort(movers.begin(), movers.end(), [&](std::int32_t a, std::int32_t b) {
+    return depth[static_cast<std::size_t>(a)] > depth[static_cast<std::size_t>(b)];
+  });
+  for (std::size_t m = 0; m < movers.size(); ++m) {
+    bodies[static_cast<std::size_t>(movers[m])].mover = static_cast<std::int32_t>(m);
+  }
+
+  std::vector<Box> boxes(obstacles.size());
+  obstacle_bodies.resize(obstacles.size());
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const Item& item = obstacles[o];
+    engine::Body& body = bodies[links.size() + o];
+    body.tree = &item.shape->view();
+    body.placement = makePlacement(item.offset);
+    worldBox(*item.shape, item.offset, body.lo, body.hi);
+    for (int k = 0; k < 3; ++k) {
+      boxes[o].lo[k] = body.lo[k];
+      boxes[o].hi[k] = body.hi[k];
+    }
+    obstacle_bodies[o] = static_cast<std::int32_t>(links.size() + o);
+  }
+  obstacle_tree = buildBoxTree(boxes);
+
+  pairs.clear();
+  scene_pair.assign(movers.size() * obstacles.size(), -1);
+  for (std::size_t m = 0; m < movers.size(); ++m) {
+    const std::int32_t b = movers[m];
+    for (std::size_t o = 0; o < obstacles.size(); ++o) {
+      if (allowed.allowed(item(b).name, obstacles[o].name)) continue;
+      engine::Pair pair;
+      pair.a = obstacle_bodies[o];
+      pair.b = b;
+      pair.step_b = bodies[static_cast<std::size_t>(b)].step;
+      pair.inverse_a = makePlacement(obstacles[o].offset.inverse());
+      pair.placement_b = bodies[static_cast<std::size_t>(b)].placement;
+      scene_pair[m * obstacles.size() + o] = static_cast<std::int32_t>(pairs.size());
+      pairs.push_back(pair);
+    }
+  }
+  num_scene_pairs = static_cast<std::int32_t>(pairs.size());
+
+  std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    for (std::size_t j = i + 1; j < links.size(); ++j) {
+      if (links[i].link == links[j].link || allowed.allowed(links[i].name, links[j].name)) continue;
+      if (adjacent(links[i].link, links[j].link)) continue;
+      // The shorter path first: an ancestor is the base.
+      std::size_t a = i, b = j;
+      if (linkAbove(links[j].link, links[i].link)) std::swap(a, b);
+      engine::Pair pair;
+      pair.a = static_cast<std::int32_t>(a);
+      pair.b = static_cast<std::int32_t>(b);
+      if (bodies[a].step < 0) {  // stands still: the world's sweep serves
+        pair.inverse_a = makePlacement(in_step[a].inverse());
+        pair.step_b = bodies[b].step;
+        pair.placement_b = bodies[b].placement;
+      } else {
+        const auto known = sweep_of.find(links[a].link);
+        if (known != sweep_of.end()) {
+          pair.sweep = known->second;
+        } else {
+          pair.sweep = sweep_of[links[a].link] = static_cast<std::int32_t>(sweeps.size());
+          sweeps.push_back(FrameSweep::fromLink(*tree, links[a].link));
+        }
+        const Carrier carrier = sweeps[static_cast<std::size_t>(pair.sweep)].carrier(links[b].link);
+        pair.step_b = carrier.step;
+        pair.inverse_a = makePlacement(links[a].offset.inverse());
+        pair.placement_b = makePlacement(carrier.offset * links[b].offset);
+      }
+      pairs.push_back(pair);
+    }
+  }
+  sweep_views.clear();
+  for (const FrameSweep& sweep : sweeps) sweep_views.push_back(sweep.view());
+  ready = true;
+}
+
+ArticulatedCollisionManager::ArticulatedCollisionManager(std::shared_ptr<const KinematicTree> tree)
+    : impl_(std::make_unique<Impl>()) {
+  if (!tree) throw std::invalid_argument("ArticulatedCollisionManager: the kinematic tree is null");
+  impl_->tree = std::move(tree);
+}
+ArticulatedCollisionManager::~ArticulatedCollisionManager() = default;
+ArticulatedCollisionManager::ArticulatedCollisionManager(ArticulatedCollisionManager&&) noexcept = default;
+ArticulatedCollisionManager& ArticulatedCollisionManager::operator=(ArticulatedCollisionManager&&) noexcept = default;
+
+const KinematicTree& ArticulatedCollisionManager::tree() const { return *impl_->tree; }
+std::shared_ptr<const KinematicTree> ArticulatedCollisionManager::sharedTree() const { return impl_->tree; }
+
+void ArticulatedCollisionManager::registerObject(fcl::CollisionObjectd* object, const std::string& name) {
+  const std::string shown = name.empty() ? "obstacle" + std::to_string(impl_->named) : name;
+  for (const Item& i : impl_->obstacles) {
+    if (i.name == shown) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
+  }
+  Item item = impl_->makeItem(object, "obstacle '" + shown + "'");
+  item.name = shown;
+  impl_->readObstacle(item);
+  impl_->obstacles.push_back(std::move(item));
+  ++impl_->named;
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::CollisionObjectd*>& objects) {
+  const std::size_t before = impl_->obstacles.size(), named = impl_->named;
+  const bool ready = impl_->ready;
+  try {
+    for (fcl::CollisionObjectd* object : objects) registerObject(object);
+  } catch (...) {
+    impl_->obstacles.resize(before);
+    impl_->named = named;
+    impl_->ready = ready;
+    throw;
+  }
+}
+
+void ArticulatedCollisionManager::unregisterObject(fcl::CollisionObjectd* object) {
+  auto& items = impl_->obstacles;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
+  if (it == items.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
+  items.erase(it);
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset) {
+  if (link < 0 || link >= impl_->tree->numLinks()) {
+    throw std::invalid_argument("bind: robot '" + impl_->tree->name() + "' has no link " + std::to_string(link));
+  }
+  const std::string what = "geometry of link '" + impl_->tree->linkName(link) + "'";
+  Item item = impl_->makeItem(object, what);
+  item.link = link;
+  item.name = impl_->tree->linkName(link);
+  item.offset = requireRigid(offset, what);
+  impl_->links.push_back(std::move(item));
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::bind(const std::string& link, fcl::CollisionObjectd* object,
+                                       const Eigen::Isometry3d& offset) {
+  if (!impl_->tree->hasLink(link)) {
+    throw std::invalid_argument("bind: robot '" + impl_->tree->name() + "' has no link '" + link + "'");
+  }
+  bind(impl_->tree->link(link), object, offset);
+}
+
+void ArticulatedCollisionManager::unbind(fcl::CollisionObjectd* object) {
+  auto& items = impl_->links;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
+  if (it == items.end()) throw std::invalid_argument("unbind: the object is bound to no link");
+  items.erase(it);
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::setAllowedCollisions(AllowedCollisionMatrix matrix) {
+  impl_->allowed = std::move(matrix);
+  impl_->ready = false;
+}
+const AllowedCollisionMatrix& ArticulatedCollisionManager::allowedCollisions() const { return impl_->allowed; }
+
+void ArticulatedCollisionManager::setup() {
+  if (!impl_->ready) impl_->build();
+}
+
+void ArticulatedCollisionManager::update() {
+  std::vector<Item> items = impl_->obstacles;  // all or nothing
+  for (Item& item : items) impl_->readObstacle(item);
+  impl_->obstacles = std::move(items);
+  impl_->build();
+}
+
+void ArticulatedCollisionManager::update(fcl::CollisionObjectd* object) {
+  update(std::vector<fcl::CollisionObjectd*>{object});
+}
+
+void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd*>& objects) {
+  std::vector<Item> items = impl_->obstacles;
+  for (fcl::CollisionObjectd* object : objects) {
+    const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
+    if (it == items.end()) throw std::invalid_argument("update: the object is not registered");
+    impl_->readObstacle(*it);
+  }
+  impl_->obstacles = std::move(items);
+  impl_->build();
+}
+
+void ArticulatedCollisionManager::clear() {
+  impl_->obstacles.clear();
+  impl_->links.clear();
+  impl_->named = 0;
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::getObjects(std::vector<fcl::CollisionObjectd*>& objects) const {
+  objects.clear();
+  for (const Item& i : impl_->obstacles) objects.push_back(i.object);
+}
+
+std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> ArticulatedCollisionManager::boundObjects() const {
+  std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> bound;
+  for (const Item& i : impl_->links) bound.emplace_back(i.link, i.object);
+  return bound;
+}
+
+Eigen::Isometry3d ArticulatedCollisionManager::boundOffset(const fcl::CollisionObjectd* object) const {
+  for (const Item& i : impl_->links) {
+    if (i.object == object) return i.offset;
+  }
+  throw std::invalid_argument("boundOffset: the object is bound to no link");
+}
+
+std::size_t ArticulatedCollisionManager::size() const { return impl_->obstacles.size(); }
+
+void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
+                                                    CertifiedResult& result) const {
+  const Impl& m = *impl_;
+  if (!m.ready) {
+    throw std::logic_error("ArticulatedCollisionManager: call setup() after changing objects, links or allowed pairs");
+  }
+  if (motion.q0().size() != m.tree->dof()) {
+    throw std::invalid_argument("the motion has " + std::to_string(motion.q0().size()) + " joint values, robot '" +
+                                m.tree->name() + "' has " + std::to_string(m.tree->dof()));
+  }
+  requireTolerance(request.tolerance_time, "tolerance_time", true);
+  requireTolerance(request.tolerance_distance, "tolerance_distance", true);
+  requireTolerance(request.margin, "margin", false);
+  const auto begin = std::chrono::steady_clock::now();
+
+  engine::Problem problem;
+  problem.bodies = m.bodies.data();
+  problem.num_bodies = static_cast<std::int32_t>(m.bodies.size());
+  problem.movers = m.movers.data();
+  problem.num_movers = static_cast<std::int32_t>(m.movers.size());
+  problem.sweeps = m.sweep_views.data();
+  problem.num_sweeps = static_cast<std::int32_t>(m.sweep_views.size());
+  problem.pairs = m.pairs.data();
+  problem.num_pairs = static_cast<std::int32_t>(m.pairs.size());
+  problem.num_scene_pairs = m.num_scene_pairs;
+  problem.scene_pair = m.scene_pair.data();
+  problem.obstacles = m.obstacle_bodies.data();
+  problem.num_obstacles = static_cast<std::int32_t>(m.obstacles.size());
+  problem.obstacle_tree = m.obstacle_tree.empty() ? nullptr : m.obstacle_tree.data();
+  problem.num_variables = m.tree->dof();
+
+  engine::Query query;
+  query.q0 = motion.q0().data();
+  query.dq = motion.dq().data();
+  query.tolerance_time = request.tolerance_time;
+  query.tolerance_distance = request.tolerance_distance;
+  query.margin = request.margin;
+  query.check_scene = request.check_scene;
+  query.check_self = request.check_self;
+  query.every_pair = request.mode == ContactMode::firstOfEveryPair;
+  query.ignore_initial = request.ignore_initial_contact;
+  query.measure_times = request.measure_times;
+  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
+  query.work_budget = request.work_budget;
+  if (request.progress) {
+    query.progress = [](void* context, double t_lower) {
+      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
+    };
+    query.progress_context = const_cast<CertifiedRequest*>(&request);
+  }
+  engine::Answer answer;
+  engine::engine().solve(threadWorkspace(), problem, query, answer);
+  const auto solved = std::chrono::steady_clock::now();
+
+  result.status = answer.verdict == engine::Verdict::free      ? Status::free
+                  : answer.verdict == engine::Verdict::contact ? Status::contact
+                                                               : Status::undecided;
+  result.t_lower = answer.t_lower;
+  result.t_upper = answer.t_upper;
+  result.certain = answer.certain;
+  result.contacts.clear();
+  std::vector<Eigen::Isometry3d> M_0;
+  for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
+    const engine::LeafContact& leaf = answer.contacts[i];
+    const engine::Pair& pair = m.pairs[static_cast<std::size_t>(leaf.pair)];
+    const Item &a = m.item(pair.a), &b = m.item(pair.b);
+    m.tree->forwardKinematics(motion.configuration(leaf.t), M_0);
+    const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.offset;
+    CertifiedContact contact;
+    contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
+    contact.normal = M_0a.linear() * Eigen::Vector3d::Map(leaf.normal);
+    contact.normal.normalize();
+    contact.body1 = m.reference(a);
+    contact.body2 = m.reference(b);
+    contact.o1 = a.geometry;
+    contact.o2 = b.geometry;
+    contact.b1 = a.shape->view().pieces[leaf.piece_a].primitive;
+    contact.b2 = b.shape->view().pieces[leaf.piece_b].primitive;
+    if (a.link < 0) {  // links come first
+      std::swap(contact.body1, contact.body2);
+      std::swap(contact.o1, contact.o2);
+      std::swap(contact.b1, contact.b2);
+      contact.normal = -contact.normal;
+    }
+    contact.t_lower = leaf.t_lower;
+    contact.t_upper = leaf.t_upper;
+    contact.certain = leaf.certain;
+    result.contacts.push_back(std::move(contact));
+  }
+  m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
+  result.ignored_initial_contacts.clear();
+  for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+    const engine::Pair& pair = m.pairs[static_cast<std::size_t>(answer.ignored_pairs[i])];
+    result.ignored_initial_contacts.emplace_back(m.reference(m.item(pair.a)), m.reference(m.item(pair.b)));
+  }
+  QueryStatistics& s = result.statistics;
+  s = QueryStatistics();
+  s.pairs = answer.statistics.pairs;
+  s.pairs_after_culling = answer.statistics.pairs_after_culling;
+  s.batches = answer.statistics.batches;
+  s.motion_evaluations = answer.statistics.motion_evaluations;
+  s.node_tests = answer.statistics.node_tests;
+  s.leaf_tests = answer.statistics.leaf_tests;
+  s.certificates = answer.statistics.certificates;
+  s.gjk = answer.statistics.gjk;
+  s.contact_proofs = answer.statistics.contact_proofs;
+  s.culling_us = answer.statistics.culling_us;
+  s.narrowphase_us = answer.statistics.narrowphase_us;
+  if (request.measure_times) {
+    const auto end = std::chrono::steady_clock::now();
+    s.report_us = std::chrono::duration<double, std::micro>(end - solved).count();
+    s.total_us = std::chrono::duration<double, std::micro>(end - begin).count();
+  }
+}
+
+void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
+                                          CertifiedResult& result) const {
+  continuousCollide(JointMotion::linear(*impl_->tree, q, q), request, result);
+}
+
+}  // namespace fcl_artic
