@@ -27,12 +27,14 @@ class ParserMessages : public console_bridge::OutputHandler {
   ParserMessages() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
   ~ParserMessages() override { console_bridge::restorePreviousOutputHandler(); }
   void log(const std::string& message, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_WARN) messages_.push_back(message);
+    if (level == console_bridge::CONSOLE_BRIDGE_LOG_WARN) warnings_.push_back(message);
+    if (level == console_bridge::CONSOLE_BRIDGE_LOG_ERROR) errors_.push_back(message);
   }
-  const std::vector<std::string>& lines() const { return messages_; }
-  std::string joined() const {
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<std::string>& errors() const { return errors_; }
+  std::string reason() const {
     std::string all;
-    for (const std::string& message : messages_) all += (all.empty() ? "" : "; ") + message;
+    for (const std::string& error : errors_) all += (all.empty() ? "" : "; ") + error;
     return all.empty() ? "urdfdom gives no reason" : all;
   }
 
@@ -42,43 +44,72 @@ class ParserMessages : public console_bridge::OutputHandler {
     return instance;
   }
   std::lock_guard<std::mutex> lock_;
-  std::vector<std::string> messages_;
+  std::vector<std::string> warnings_, errors_;
 };
 
-/// Names of links and joints in the order of the file; urdfdom sorts them by name.
-struct DocumentOrder {
-  std::vector<std::string> links, joints;
+/// What urdfdom does not tell: the order of the file (it sorts by name), and what the file holds in collision geometry
+/// (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
+struct Document {
+  struct Link {
+    std::string name;
+    std::size_t collisions = 0;
+    bool has_visual = false;
+  };
+  std::vector<Link> links;
+  std::vector<std::string> joints;
+  std::string xml;  ///< the file without visual and inertial elements, whose errors are of no concern here
 };
 
-DocumentOrder readOrder(const std::string& where, const std::string& xml) {
-  tinyxml2::XMLDocument document;
-  if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
-  const tinyxml2::XMLElement* robot = document.RootElement();
-  if (!robot || std::string(robot->Name()) != "robot") {
-    fail(where, "is not a URDF: the root element is not <robot>");
+std::size_t numChildren(const tinyxml2::XMLElement* parent, const char* name = nullptr) {
+  std::size_t count = 0;
+  for (auto* e = parent ? parent->FirstChildElement(name) : nullptr; e; e = e->NextSiblingElement(name)) ++count;
+  return count;
+}
+
+Document::Link readLink(const std::string& where, const std::string& name, tinyxml2::XMLElement& element) {
+  Document::Link link{name, numChildren(&element, "collision"), numChildren(&element, "visual") > 0};
+  for (auto* e = element.FirstChildElement("collision"); e; e = e->NextSiblingElement("collision")) {
+    if (numChildren(e, "geometry") != 1 || numChildren(e->FirstChildElement("geometry")) != 1) {
+      fail(where, "link '" + name + "', line " + std::to_string(e->GetLineNum()) +
+                      ": a collision element needs one geometry element with one shape");
+    }
   }
-  DocumentOrder order;
+  for (const char* unused : {"visual", "inertial"}) {
+    while (auto* e = element.FirstChildElement(unused)) element.DeleteChild(e);
+  }
+  return link;
+}
+
+Document readDocument(const std::string& where, const std::string& file) {
+  tinyxml2::XMLDocument xml;
+  if (xml.Parse(file.c_str(), file.size()) != tinyxml2::XML_SUCCESS) fail(where, xml.ErrorStr());
+  tinyxml2::XMLElement* robot = xml.RootElement();
+  if (!robot || std::string(robot->Name()) != "robot") fail(where, "is not a URDF: the root element is not <robot>");
+  Document document;
   for (auto* e = robot->FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string kind = e->Name();
     if (kind.rfind("xacro:", 0) == 0) fail(where, "is a xacro file; expand it to URDF first");
     const char* name = e->Attribute("name");
-    if (kind == "link" && name) order.links.push_back(name);
-    if (kind == "joint" && name) order.joints.push_back(name);
+    if (kind == "link" && name) document.links.push_back(readLink(where, name, *e));
+    if (kind == "joint" && name) document.joints.push_back(name);
   }
-  return order;
+  tinyxml2::XMLPrinter printer;
+  xml.Print(&printer);
+  document.xml = printer.CStr();
+  return document;
 }
 
 urdf::ModelInterfaceSharedPtr parse(const std::string& where, const std::string& xml, std::vector<std::string>& notes) {
   ParserMessages messages;
+  urdf::ModelInterfaceSharedPtr model;
   try {
-    if (auto model = urdf::parseURDF(xml)) {
-      for (const std::string& line : messages.lines()) notes.push_back(where + ": " + line);
-      return model;
-    }
+    model = urdf::parseURDF(xml);
   } catch (const std::exception& error) {
     fail(where, error.what());
   }
-  fail(where, messages.joined());
+  if (!model || !messages.errors().empty()) fail(where, messages.reason());
+  for (const std::string& warning : messages.warnings()) notes.push_back(where + ": " + warning);
+  return model;
 }
 
 Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
@@ -136,12 +167,12 @@ void freeze(Joint& joint) {
 }
 
 std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const urdf::ModelInterface& model,
-                                              const DocumentOrder& order, std::vector<std::string>& notes) {
+                                              const Document& document, std::vector<std::string>& notes) {
   auto tree = std::make_shared<KinematicTree>(model.getName());
   try {
-    for (const std::string& name : order.links) tree->addLink(name);
+    for (const Document::Link& link : document.links) tree->addLink(link.name);
     std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
-    for (const std::string& name : order.joints) {
+    for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
       if (joint.mimics) {
         mimics.push_back(joint);
@@ -262,23 +293,23 @@ FCL_ARTIC_EXPORT void Robot::addTo(ArticulatedCollisionManager& manager) const {
 
 Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   const std::string where = "'" + path + "'";
-  const std::string xml = detail::readFile(path);
-  const DocumentOrder order = readOrder(where, xml);
+  const Document document = readDocument(where, detail::readFile(path));
   Robot robot;
-  const urdf::ModelInterfaceSharedPtr model = parse(where, xml, robot.notes);
-  robot.tree = makeTree(where, *model, order, robot.notes);
+  const urdf::ModelInterfaceSharedPtr model = parse(where, document.xml, robot.notes);
+  robot.tree = makeTree(where, *model, document, robot.notes);
 
   GeometryFactory factory(MeshFinder(path, options), robot.notes);
   for (LinkId id = 0; id < robot.tree->numLinks(); ++id) {
-    const urdf::Link& link = *model->getLink(robot.tree->linkName(id));
+    const Document::Link& in_file = document.links[id];  // the tree's links are those of the file, in its order
+    const urdf::Link& link = *model->getLink(in_file.name);
     const std::string part = where + ": link '" + link.name + "'";
+    if (link.collision_array.size() != in_file.collisions) fail(part, "has a collision element that cannot be read");
     for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
-      if (!collision->geometry) fail(part, "has a collision element without geometry");
       const auto made = factory.make(part, *collision->geometry);
       robot.geometry.push_back(
           {id, toEigen(collision->origin), std::make_shared<fcl::CollisionObjectd>(made.geometry), made.source});
     }
-    if (link.collision_array.empty() && !link.visual_array.empty()) {
+    if (in_file.collisions == 0 && in_file.has_visual) {
       robot.notes.push_back("link '" + link.name + "' has a visual but no collision geometry: it is not checked");
     }
   }

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/kinematic_tree.h"
+
+#include <cmath>
+#include <limits>
+
+#include "fcl_artic/joint_motion.h"
+#include "temp_folder.h"
+
+namespace fcl_artic {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Roundings of a few products of numbers of size 1.
+constexpr double kRounding = 1e-14;
+
+Joint makeJoint(const std::string& name, JointType type, const std::string& parent, const std::string& child,
+                const Eigen::Vector3d& position, const Eigen::Vector3d& axis) {
+  Joint joint;
+  joint.name = name;
+  joint.type = type;
+  joint.parent = parent;
+  joint.child = child;
+  joint.origin = Eigen::Translation3d(position);
+  joint.axis = axis;
+  return joint;
+}
+
+/// base -shoulder(z)- upper -elbow(z, 1 m on)- lower -tool(fixed, 0.5 m on)- hand, all along x at q = 0.
+KinematicTree planarArm() {
+  KinematicTree tree("arm");
+  for (const char* link : {"base", "upper", "lower", "hand"}) tree.addLink(link);
+  tree.addJoint(makeJoint("shoulder", JointType::revolute, "base", "upper", {0, 0, 0}, {0, 0, 1}));
+  tree.addJoint(makeJoint("elbow", JointType::continuous, "upper", "lower", {1, 0, 0}, {0, 0, 3}));
+  tree.addJoint(makeJoint("tool", JointType::fixed, "lower", "hand", {0.5, 0, 0}, {0, 0, 0}));
+  return tree;
+}
+
+void expectPose(const Eigen::Isometry3d& M, const Eigen::Vector3d& position, const Eigen::Matrix3d& rotation) {
+  EXPECT_LT((M.translation() - position).norm(), kRounding) << M.translation().transpose();
+  EXPECT_LT((M.linear() - rotation).norm(), kRounding) << M.linear();
+}
+
+TEST(KinematicTree, PlanarArmByHand) {
+  const KinematicTree tree = planarArm();
+  EXPECT_EQ(tree.numLinks(), 4);
+  EXPECT_EQ(tree.numJoints(), 3);
+  ASSERT_EQ(tree.dof(), 2);
+  EXPECT_EQ(tree.variableName(1), "elbow");
+  EXPECT_EQ(tree.joint(1).axis, Eigen::Vector3d(0, 0, 1)) << "the axis is normalised";
+
+  // Shoulder +90°: the elbow is at (0, 1). Elbow -90°: the lower arm points along x again, the hand is at (0.5, 1).
+  std::vector<Eigen::Isometry3d> M_0;
+  tree.forwardKinematics(Eigen::Vector2d(kPi / 2, -kPi / 2), M_0);
+  ASSERT_EQ(M_0.size(), 4u);
+  expectPose(M_0[0], {0, 0, 0}, Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d quarter_turn = (Eigen::Matrix3d() << 0, -1, 0, 1, 0, 0, 0, 0, 1).finished();
+  expectPose(M_0[1], {0, 0, 0}, quarter_turn);
+  expectPose(M_0[2], {0, 1, 0}, Eigen::Matrix3d::Identity());
+  expectPose(M_0[3], {0.5, 1, 0}, Eigen::Matrix3d::Identity());
+}
+
+TEST(KinematicTree, PrismaticAxisTurnsWithItsOrigin) {
+  KinematicTree tree;
+  tree.addLink("base");
+  tree.addLink("slider");
+  Joint joint = makeJoint("rail", JointType::prismatic, "base", "slider", {1, 2, 3}, {2, 0, 0});
+  joint.origin.rotate(Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitZ()));
+  tree.addJoint(joint);
+  std::vector<Eigen::Isometry3d> M_0;
+  tree.forwardKinematics(Eigen::VectorXd::Constant(1, 0.25), M_0);
+  EXPECT_LT((M_0[1].translation() - Eigen::Vector3d(1, 2.25, 3)).norm(), kRounding);  // the joint's x is the base's y
+}
+
+TEST(KinematicTree, MimicFollowsItsMaster) {
+  KinematicTree tree("gripper");
+  for (const char* link : {"palm", "left", "right"}) tree.addLink(link);
+  tree.addJoint(makeJoint("left_finger", JointType::prismatic, "palm", "left", {0, 0, 0}, {0, 1, 0}));
+  Joint right = makeJoint("right_finger", JointType::prismatic, "palm", "right", {0, 0, 0}, {0, 1, 0});
+  right.mimics = true;
+  right.mimic = {"left_finger", -2, 0.125};
+  tree.addJoint(right);
+
+  EXPECT_EQ(tree.dof(), 1);
+  EXPECT_EQ(tree.jointVariable(tree.jointId("right_finger")), 0);
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.5);
+  EXPECT_EQ(tree.jointValue(1, q), -0.875);
+  std::vector<Eigen::Isometry3d> M_0;
+  tree.forwardKinematics(q, M_0);
+  EXPECT_EQ(M_0[1].translation(), Eigen::Vector3d(0, 0.5, 0));
+  EXPECT_EQ(M_0[2].translation(), Eigen::Vector3d(0, -0.875, 0));
+}
+
+TEST(KinematicTree, ForestKeepsEachRootAtTheOrigin) {
+  KinematicTree tree("two robots");
+  for (const char* link : {"b_tip", "b_base", "a_base", "a_tip"}) tree.addLink(link);  // a child before its parent
+  tree.addJoint(makeJoint("a", JointType::prismatic, "a_base", "a_tip", {0, 0, 0}, {1, 0, 0}));
+  tree.addJoint(makeJoint("b", JointType::prismatic, "b_base", "b_tip", {0, 0, 0}, {0, 0, 1}));
+  EXPECT_EQ(tree.parentJoint(tree.link("a_base")), -1);
+  EXPECT_EQ(tree.parentLink(tree.link("b_tip")), tree.link("b_base"));
+  const std::vector<LinkId> order = tree.topologicalOrder();
+  ASSERT_EQ(order.size(), 4u);
+  const auto at = [&](const char* name) { return std::find(order.begin(), order.end(), tree.link(name)); };
+  EXPECT_LT(at("b_base"), at("b_tip"));
+  EXPECT_LT(at("a_base"), at("a_tip"));
+
+  std::vector<Eigen::Isometry3d> M_0;
+  tree.forwardKinematics(Eigen::Vector2d(0.5, 2), M_0);
+  EXPECT_EQ(M_0[tree.link("a_base")].matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(M_0[tree.link("b_base")].matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(M_0[tree.link("a_tip")].translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(M_0[tree.link("b_tip")].translation(), Eigen::Vector3d(0, 0, 2));
+}
+
+TEST(KinematicTree, LinkErrorsNameTheLink) {
+  KinematicTree tree("arm");
+  tree.addLink("base");
+  expectContains(messageOf<std::invalid_argument>([&] { tree.addLink("base"); }), "'base'");
+  expectContains(messageOf<std::invalid_argument>([&] { tree.addLink(""); }), "robot 'arm'");
+  expectContains(messageOf<std::out_of_range>([&] { tree.link("hand"); }), "robot 'arm' has no link 'hand'");
+  expectContains(messageOf<std::out_of_range>([&] { tree.jointId("wrist"); }), "robot 'arm' has no joint 'wrist'");
+  EXPECT_TRUE(tree.hasLink("base"));
+  EXPECT_FALSE(tree.hasLink("hand"));
+  EXPECT_EQ(tree.numLinks(), 1);
+}
+
+struct BadJoint {
+  const char* what;
+  std::function<void(Joint&)> spoil;
+  const char* reason;
+};
+
+TEST(KinematicTree, JointErrorsNameTheJointAndChangeNothing) {
+  const std::vector<BadJoint> cases = {
+      {"no name", [](Joint& j) { j.name = ""; }, "has no name"},
+      {"repeated name", [](Joint& j) { j.name = "elbow"; }, "'elbow' exists already"},
+      {"unknown parent", [](Joint& j) { j.parent = "nowhere"; }, "unknown parent link 'nowhere'"},
+      {"unknown child", [](Joint& j) { j.child = "nothing"; }, "unknown child link 'nothing'"},
+      {"second parent", [](Joint& j) { j.child = "lower"; }, "second parent of link 'lower', which joint 'elbow'"},
+      {"loop", [](Joint& j) { j.parent = "hand", j.child = "base"; }, "closes a loop at link 'base'"},
+      {"own child", [](Joint& j) { j.parent = "extra"; }, "closes a loop at link 'extra'"},
+      {"zero axis", [](Joint& j) { j.axis.setZero(); }, "axis that is zero or not finite"},
+      {"NaN axis", [](Joint& j) { j.axis.y() = kNaN; }, "axis that is zero or not finite"},
+      {"scaled", [](Joint& j) { j.origin.linear() *= 1.001; }, "no rigid transform"},
+      {"mirrored", [](Joint& j) { j.origin.linear()(0, 0) = -1; }, "no rigid transform"},
+      {"NaN rotation", [](Joint& j) { j.origin.linear()(0, 0) = kNaN; }, "no rigid transform"},
+      {"infinite origin", [](Joint& j) { j.origin.translation().x() = INFINITY; }, "no rigid transform"},
+      {"NaN limit", [](Joint& j) { j.upper = kNaN; }, "limit that is not a number"},
+      {"unknown master", [](Joint& j) { j.mimics = true, j.mimic.master = "wrist"; }, "unknown joint 'wrist'"},
+      {"fixed master", [](Joint& j) { j.mimics = true, j.mimic.master = "tool"; }, "'tool', which is fixed"},
+      {"master mimics", [](Joint& j) { j.mimics = true, j.mimic.master = "copy"; }, "'copy', which is a mimic joint"},
+      {"itself", [](Joint& j) { j.mimics = true, j.mimic.master = "new"; }, "mimics an unknown joint 'new'"},
+      {"NaN multiplier",
+       [](Joint& j) {
+         j.mimics = true, j.mimic = {"elbow", kNaN, 0};
+       },
+       "not finite"},
+      {"fixed mimics", [](Joint& j) { j.type = JointType::fixed, j.mimics = true, j.mimic.master = "elbow"; },
+       "is fixed and cannot mimic"},
+  };
+  KinematicTree tree = planarArm();
+  tree.addLink("copied");
+  tree.addLink("extra");
+  Joint copy = makeJoint("copy", JointType::revolute, "base", "copied", {0, 0, 0}, {0, 0, 1});
+  copy.mimics = true;
+  copy.mimic.master = "elbow";
+  tree.addJoint(copy);
+  const Joint good = makeJoint("new", JointType::revolute, "hand", "extra", {0, 0, 0}, {0, 0, 1});
+  for (const BadJoint& c : cases) {
+    SCOPED_TRACE(c.what);
+    Joint bad = good;
+    c.spoil(bad);
+    const std::string message = messageOf<std::invalid_argument>([&] { tree.addJoint(bad); });
+    expectContains(message, "joint '" + bad.name + "'");
+    expectContains(message, c.reason);
+    EXPECT_EQ(tree.numJoints(), 4);
+    EXPECT_EQ(tree.dof(), 2);
+    EXPECT_EQ(tree.parentJoint(tree.link("extra")), -1);
+  }
+  EXPECT_EQ(tree.addJoint(good), 4);  // the base of all cases is itself accepted
+  EXPECT_EQ(tree.dof(), 3);
+}
+
+TEST(KinematicTree, RefusesConfigurationsOfAnotherSizeOrNotFinite) {
+  const KinematicTree tree = planarArm();
+  std::vector<Eigen::Isometry3d> M_0;
+  expectContains(messageOf<std::invalid_argument>([&] { tree.forwardKinematics(Eigen::Vector3d(0, 0, 0), M_0); }),
+                 "q has 3 entries, robot 'arm' has 2");
+  expectContains(messageOf<std::invalid_argument>([&] { tree.requireConfiguration(Eigen::Vector2d(0, kNaN), "goal"); }),
+                 "goal: the value nan of joint 'elbow'");
+}
+
+TEST(KinematicTree, NotesValuesBeyondLimits) {
+  KinematicTree tree;
+  for (const char* link : {"a", "b", "c", "d"}) tree.addLink(link);
+  Joint limited = makeJoint("limited", JointType::revolute, "a", "b", {0, 0, 0}, {0, 0, 1});
+  limited.lower = -1;
+  limited.upper = 0.5;
+  tree.addJoint(limited);
+  Joint continuous = makeJoint("continuous", JointType::continuous, "b", "c", {0, 0, 0}, {0, 0, 1});
+  continuous.lower = -1;
+  continuous.upper = 1;
+  tree.addJoint(continuous);
+  tree.addJoint(makeJoint("unlimited", JointType::prismatic, "c", "d", {0, 0, 0}, {0, 0, 1}));
+  EXPECT_TRUE(tree.limitNotes(Eigen::Vector3d(0.5, 9, 9)).empty());
+  const auto notes = tree.limitNotes(Eigen::Vector3d(0.75, 9, 9));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0], "joint 'limited' at 0.75 is beyond its limits [-1, 0.5]");
+  EXPECT_EQ(tree.limitNotes(Eigen::Vector3d(-1.5, 0, 0)).size(), 1u);
+}
+
+TEST(JointMotion, LinearGoesStraightAndShortestWraps) {
+  const KinematicTree tree = planarArm();  // the elbow is continuous, the shoulder is not
+  const Eigen::Vector2d q0(-3, -3), q1(3, 3);
+  EXPECT_EQ(JointMotion::linear(tree, q0, q1).dq(), Eigen::Vector2d(6, 6));
+  const JointMotion shortest = JointMotion::shortest(tree, q0, q1);
+  EXPECT_EQ(shortest.q0(), q0);
+  EXPECT_EQ(shortest.dq()[0], 6);
+  EXPECT_NEAR(shortest.dq()[1], 6 - 2 * kPi, kRounding);
+  EXPECT_NEAR(shortest.configuration(0.5)[1], -3 + (3 - kPi), kRounding);
+  EXPECT_EQ(JointMotion::shortest(tree, Eigen::Vector2d(0, 1), Eigen::Vector2d(0, 3)).dq()[1], 2);
+}
+
+TEST(JointMotion, RefusesBadEnds) {
+  const KinematicTree tree = planarArm();
+  const Eigen::Vector2d zero(0, 0);
+  const auto linear = [&](const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
+    return messageOf<std::invalid_argument>([&] { JointMotion::linear(tree, q0, q1); });
+  };
+  expectContains(linear(Eigen::VectorXd::Zero(3), zero), "q0 has 3 entries, robot 'arm' has 2");
+  expectContains(linear(zero, Eigen::VectorXd::Zero(1)), "q1 has 1 entries, robot 'arm' has 2");
+  expectContains(linear(zero, Eigen::Vector2d(0, INFINITY)), "q1: the value inf of joint 'elbow'");
+  expectContains(linear(Eigen::Vector2d(1.1e5, 0), zero), "joint 'shoulder' is beyond 1e5");
+  expectContains(messageOf<std::invalid_argument>([&] { JointMotion::shortest(tree, zero, Eigen::Vector2d(0, kNaN)); }),
+                 "'elbow'");
+}
+
+TEST(JointMotion, ShortestRefusesMimicsThatWouldEndElsewhere) {
+  const auto withMimic = [](JointType type, double multiplier) {
+    KinematicTree tree = planarArm();
+    tree.addLink("geared");
+    Joint mimic = makeJoint("gear", type, "base", "geared", {0, 0, 0}, {0, 0, 1});
+    mimic.mimics = true;
+    mimic.mimic = {"elbow", multiplier, 0};
+    tree.addJoint(mimic);
+    return tree;
+  };
+  const Eigen::Vector2d q0(0, -3), q1(0, 3), near(0, -2);
+  EXPECT_NEAR(JointMotion::shortest(withMimic(JointType::revolute, -2), q0, q1).dq()[1], 6 - 2 * kPi, kRounding);
+  const KinematicTree half = withMimic(JointType::revolute, 0.5), rack = withMimic(JointType::prismatic, 1);
+  for (const KinematicTree* tree : {&half, &rack}) {
+    EXPECT_EQ(JointMotion::shortest(*tree, q0, near).dq()[1], 1);  // nothing to wrap
+    expectContains(messageOf<std::invalid_argument>([&] { JointMotion::shortest(*tree, q0, q1); }),
+                   "'gear' mimics the continuous joint 'elbow'");
+  }
+}
+
+}  // namespace
+}  // namespace fcl_artic

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fcl/geometry/bvh/BVH_model.h>
+
+#include "fcl_artic/urdf/urdf.h"
+#include "temp_folder.h"
+
+namespace fcl_artic {
+namespace {
+
+using Model = fcl::BVHModel<fcl::OBBRSSd>;
+
+class MeshTest : public TempFolderTest {
+ protected:
+  std::shared_ptr<Model> load(const std::string& file, const Eigen::Vector3d& scale = {1, 1, 1}) {
+    auto model = std::dynamic_pointer_cast<Model>(loadMesh(file, scale, &notes_));
+    EXPECT_TRUE(model) << file << " is no BVHModel<OBBRSSd>";
+    return model;
+  }
+  std::string errorOf(const std::string& file, const Eigen::Vector3d& scale = {1, 1, 1}) {
+    return messageOf([&] { loadMesh(file, scale); });
+  }
+  std::vector<std::string> notes_;
+};
+
+// Two parts, one of them a quad: 3 triangles within [0, 4] x [0, 2] x [0, 1].
+const char* const kTwoParts =
+    "o quad\nv 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nf 1 2 3 4\n"
+    "o triangle\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 5 6 7\n";
+
+TEST_F(MeshTest, SumsPartsAndScalesEachAxis) {
+  const auto model = load(write("parts.obj", kTwoParts), {0.5, -2, 3});
+  ASSERT_EQ(model->num_tris, 3);
+  EXPECT_EQ(model->aabb_local.min_, fcl::Vector3d(0, -4, 0));
+  EXPECT_EQ(model->aabb_local.max_, fcl::Vector3d(2, 0, 3));
+  EXPECT_TRUE(notes_.empty());
+}
+
+/// One triangle (0,0,0) (1,0,0) (0,2,0) under a node that moves it by (10, 0, 5).
+std::string collada(const std::string& unit, const std::string& up) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="u" meter=")" +
+         unit + R"("/><up_axis>)" + up + R"(</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">0 0 0 1 0 0 0 2 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><translate>10 0 5</translate>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST_F(MeshTest, ColladaNodesAndUnitsCountAndUpAxisDoesNot) {
+  for (const char* up : {"Z_UP", "Y_UP"}) {
+    SCOPED_TRACE(up);
+    const auto metres = load(write("metres.dae", collada("1", up)));
+    EXPECT_EQ(metres->aabb_local.min_, fcl::Vector3d(10, 0, 5));
+    EXPECT_EQ(metres->aabb_local.max_, fcl::Vector3d(11, 2, 5));
+    const auto centimetres = load(write("centimetres.dae", collada("0.01", up)));
+    EXPECT_LT((centimetres->aabb_local.max_ - fcl::Vector3d(0.11, 0.02, 0.05)).norm(), 1e-7);  // assimp's float
+  }
+}
+
+TEST_F(MeshTest, DropsTrianglesWithoutAreaWithANote) {
+  const std::string file = write("flat.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 0.1 0.3 0.7\nv 0.2 0.6 1.4\nv 0.4 1.2 2.8\n"
+                                 "f 1 2 3\nf 1 2 4\nf 1 1 2\nf 5 6 7\n");
+  for (const double scale : {1.0, 0.0254}) {  // the rounding of a scale gives no area
+    notes_.clear();
+    EXPECT_EQ(load(file, {scale, scale, scale})->num_tris, 1);
+    ASSERT_EQ(notes_.size(), 1u);
+    expectContains(notes_[0], "flat.obj': 3 of 4 triangles have no area");
+  }
+  // A needle 1e-6 as thin as long is a triangle.
+  EXPECT_EQ(load(write("needle.obj", "v 0 0 0\nv 1 0 0\nv 1 0.000001 0\nf 1 2 3\n"))->num_tris, 1);
+}
+
+TEST_F(MeshTest, ErrorsNameTheFile) {
+  expectContains(errorOf(path("missing.stl")), "missing.stl': no such file");
+  expectContains(errorOf(folder_.string()), "no such file");
+  expectContains(errorOf(write("empty.stl", "")), "empty.stl");
+  expectContains(errorOf(write("none.stl", "solid none\nendsolid none\n")), "none.stl");
+  expectContains(errorOf(write("points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n")), "points.obj");
+  expectContains(errorOf(write("thing.xyz", "1 2 3")), "thing.xyz");
+  expectContains(errorOf(write("garbage.dae", "<COLLADA><asset>")), "garbage.dae");
+  expectContains(errorOf(write("collinear.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nf 1 2 3\n")),
+                 "collinear.obj': has no triangle with an area");
+  expectContains(errorOf(write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n")), "nan.obj");
+  const std::string good = write("good.obj", kTwoParts);
+  EXPECT_NO_THROW(load(good));
+  expectContains(errorOf(good, {1, 0, 1}), "good.obj': its scale");
+  expectContains(errorOf(good, {1, 1, INFINITY}), "good.obj': its scale");
+}
+
+TEST_F(MeshTest, TruncatedBinaryStlIsAnError) {
+  std::string stl(80, ' ');
+  stl += std::string("\x02\0\0\0", 4) + std::string(50, '\0');  // announces 2 triangles, holds 1
+  expectContains(errorOf(write("short.stl", stl)), "short.stl");
+}
+
+}  // namespace
+}  // namespace fcl_artic

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+
+#include "fcl_artic/urdf/urdf.h"
+#include "temp_folder.h"
+
+namespace fcl_artic {
+namespace {
+
+class SceneTest : public TempFolderTest {
+ protected:
+  Scene load(const std::string& name, const std::string& content) { return loadScene(write(name, content)); }
+  std::string errorOf(const std::string& name, const std::string& content) {
+    return messageOf([&] { load(name, content); });
+  }
+};
+
+template <class Geometry>
+const Geometry& geometryOf(const Scene::Obstacle& obstacle) {
+  const auto* geometry = dynamic_cast<const Geometry*>(obstacle.object->collisionGeometry().get());
+  if (!geometry) throw std::runtime_error(obstacle.name + " is of another type");
+  return *geometry;
+}
+
+void expectAt(const Scene::Obstacle& obstacle, const Eigen::Vector3d& position) {
+  EXPECT_LT((obstacle.object->getTranslation() - position).norm(), 1e-12)
+      << obstacle.name << " at " << obstacle.object->getTranslation().transpose();
+}
+
+const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+TEST_F(SceneTest, MeshIsOneObstacleNamedAfterItsFile) {
+  const Scene scene = load("floor.obj", kTriangle);
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  EXPECT_EQ(scene.obstacles[0].name, "floor");
+  EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(scene.obstacles[0]).num_tris, 1);
+}
+
+TEST_F(SceneTest, UrdfLinksStandAtTheirZeroPose) {
+  const Scene scene = load("shop.urdf", R"(<robot name="shop"><link name="floor"/>
+<link name="table"><collision><origin xyz="0 0 0.5"/><geometry><box size="1 1 1"/></geometry></collision>
+<collision><origin xyz="0 0 2"/><geometry><sphere radius="0.25"/></geometry></collision></link>
+<joint name="j" type="prismatic"><parent link="floor"/><child link="table"/><origin xyz="3 0 0"/>
+<limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>)");
+  ASSERT_EQ(scene.obstacles.size(), 2u);
+  EXPECT_EQ(scene.obstacles[0].name, "table");
+  EXPECT_EQ(scene.obstacles[1].name, "table#2");
+  expectAt(scene.obstacles[0], {3, 0, 0.5});
+  expectAt(scene.obstacles[1], {3, 0, 2});
+}
+
+TEST_F(SceneTest, MoveItTextWithoutObjectPoses) {
+  const Scene scene = load("old.scene",
+                           "(noname)+\n* my box\n1\nbox\n1 2 3\n0.5 0 -1\n0 0 0 1\n0 0 0 0\n"
+                           "* rest\n3\nsphere\n0.5\n1 0 0\n0 0 0 1\n0 0 0 0\n"
+                           "cylinder\n0.25 2\n2 0 0\n0 0 0.707107 0.707107\n1 0 0 1\n"
+                           "cone\n0.125 3\n3 0 0\n0 0 0 1\n0 0 0 0\n"
+                           "* mesh\n1\nmesh\n4 2\n0 0 0\n1 0 0\n0 1 0\n0 0 2\n0 1 2\n0 1 3\n0 0 0\n0 0 0 1\n0 0 0 0\n"
+                           ".\n");
+  ASSERT_EQ(scene.obstacles.size(), 5u);
+  const auto& o = scene.obstacles;
+  EXPECT_EQ(o[0].name, "my box");
+  EXPECT_EQ(geometryOf<fcl::Boxd>(o[0]).side, fcl::Vector3d(1, 2, 3));
+  expectAt(o[0], {0.5, 0, -1});
+  EXPECT_EQ(o[1].name, "rest");
+  EXPECT_EQ(geometryOf<fcl::Sphered>(o[1]).radius, 0.5);
+  EXPECT_EQ(o[2].name, "rest#2");
+  EXPECT_EQ(geometryOf<fcl::Cylinderd>(o[2]).radius, 0.25);
+  EXPECT_EQ(geometryOf<fcl::Cylinderd>(o[2]).lz, 2);
+  // The file's quaternion is a rounded one: a pose is a rotation all the same.
+  const fcl::Matrix3d R = o[2].object->getRotation();
+  EXPECT_LT((R.transpose() * R - fcl::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((R.col(0) - fcl::Vector3d::UnitY()).norm(), 1e-12);
+  EXPECT_EQ(geometryOf<fcl::Coned>(o[3]).radius, 0.125);
+  EXPECT_EQ(geometryOf<fcl::Coned>(o[3]).lz, 3);
+  EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(o[4]).num_tris, 2);
+}
+
+TEST_F(SceneTest, MoveItTextWithObjectPosesAndSubframes) {
+  // The object stands at (1, 2, 3) turned by 90° about z, the shape 1 m on along the object's x.
+  const Scene scene = load("new.scene",
+                           "shop\n* post\n1 2 3\n0 0 0.70710678118654757 0.70710678118654757\n1\nbox\n1 1 1\n1 0 0\n"
+                           "0 0 0 1\n0 0 0 0\n1\ntop\n0 0 0.5\n0 0 0 1\n"
+                           "* ball\n0 0 0\n0 0 0 1\n1\nsphere\n0.5\n4 0 0\n0 0 0 1\n0 0 0 0\n0\n.\n");
+  ASSERT_EQ(scene.obstacles.size(), 2u);
+  EXPECT_EQ(scene.obstacles[0].name, "post");
+  expectAt(scene.obstacles[0], {1, 3, 3});
+  expectAt(scene.obstacles[1], {4, 0, 0});
+}
+
+TEST_F(SceneTest, MoveItErrorsNameFileObjectAndReason) {
+  const std::string pose = "0 0 0\n0 0 0 1\n0 0 0 0\n";
+  const auto error = [&](const std::string& body) {
+    const std::string message = errorOf("bad.scene", "s\n" + body);
+    expectContains(message, "bad.scene'");
+    return message;
+  };
+  expectContains(error("* a\n1\nbox\n1 1 1\n" + pose), "ends before the '.'");
+  expectContains(error("* a\n2\nbox\n1 1 1\n" + pose + ".\n"), "object 'a': has a shape '.'");
+  expectContains(error("* a\n1\nbox\n1 1 x\n" + pose + ".\n"), "object 'a': its box's size");
+  expectContains(error("* a\n1\nbox\n1 nan 1\n" + pose + ".\n"), "object 'a': its box's size");
+  expectContains(error("* a\n1\nbox\n1 0 1\n" + pose + ".\n"), "object 'a': box size 0");
+  expectContains(error("* a\n1\nsphere\n-1\n" + pose + ".\n"), "object 'a': sphere radius -1");
+  expectContains(error("* a\n1\nplane\n0 0 1 0\n" + pose + ".\n"), "object 'a': has a shape 'plane'");
+  expectContains(error("* a\n1\nbox\n1 1 1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"), "object 'a': has a zero quaternion");
+  expectContains(error("* a\n-1\n.\n"), "object 'a': its number of shapes");
+  expectContains(error("* a\n1\nmesh\n3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 3\n" + pose + ".\n"), "vertex 3 of 3");
+  expectContains(error("* a\n1\nmesh\n4000000000 1\n0 0 0\n"), "object 'a': its vertex is cut short");
+  expectContains(error("+ a\n"), "has '+' where an object");
+  expectContains(error(""), "ends before the '.'");
+  EXPECT_TRUE(load("none.scene", "s\n.\n").obstacles.empty());
+}
+
+/// An OctoMap file of 16 levels, whose root is a cube of edge 2 at the origin.
+std::string octomap(const std::string& title, int nodes, const std::string& data) {
+  return "# " + title + "\nid OcTree\nsize " + std::to_string(nodes) + "\nres 0.000030517578125\ndata\n" + data;
+}
+
+// Of the root's octants 0 is free, 1 (x > 0, y < 0, z < 0) and 7 (all > 0) are occupied: two bits an octant, from the
+// lowest, 1 then 0 for free, 0 then 1 for occupied.
+const std::string kBinary = octomap("Octomap OcTree binary file", 4, "\x09\x80");
+
+TEST_F(SceneTest, OctoMapBinaryCellsAreBoxes) {
+  const Scene scene = load("cells.bt", kBinary);
+  ASSERT_EQ(scene.obstacles.size(), 2u);
+  EXPECT_EQ(scene.obstacles[0].name, "cells");
+  EXPECT_EQ(scene.obstacles[1].name, "cells#2");
+  for (const auto& obstacle : scene.obstacles) {
+    EXPECT_EQ(geometryOf<fcl::Boxd>(obstacle).side, fcl::Vector3d(1, 1, 1));
+  }
+  expectAt(scene.obstacles[0], {0.5, -0.5, -0.5});
+  expectAt(scene.obstacles[1], {0.5, 0.5, 0.5});
+}
+
+/// A node of a full tree: its log-odds as a float, and which children follow.
+std::string node(float log_odds, unsigned char children) {
+  std::string bytes(reinterpret_cast<const char*>(&log_odds), sizeof log_odds);
+  return bytes + static_cast<char>(children);
+}
+
+TEST_F(SceneTest, OctoMapFullTreeHasItsOccupiedCells) {
+  const std::string data = node(1, 0x81) + node(-1, 0) + node(2, 0);  // octant 0 free, 7 occupied
+  const Scene scene = load("full.ot", octomap("Octomap OcTree file", 3, data));
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  expectAt(scene.obstacles[0], {0.5, 0.5, 0.5});
+}
+
+TEST_F(SceneTest, OctoMapErrorsNameTheFile) {
+  testing::internal::CaptureStderr();  // octomap prints its reasons as well
+  expectContains(errorOf("text.bt", "hello\n"), "text.bt': ");
+  expectContains(errorOf("text.ot", "hello\n"), "text.ot': ");
+  expectContains(errorOf("empty.bt", ""), "empty.bt': ");
+  expectContains(errorOf("cut.bt", kBinary.substr(0, kBinary.size() - 1)), "cut.bt': ");
+  expectContains(errorOf("header.bt", kBinary.substr(0, 40)), "header.bt': ");
+  expectContains(errorOf("wrong.ot", kBinary), "wrong.ot': ");
+  expectContains(errorOf("cut.ot", octomap("Octomap OcTree file", 3, node(1, 0x81) + node(-1, 0))), "cut.ot': ");
+  expectContains(errorOf("deep.ot", octomap("Octomap OcTree file", 1, node(1, 0xff))), "deep.ot': ");
+  testing::internal::GetCapturedStderr();
+}
+
+TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {
+  for (const char* name : {"none.obj", "none.urdf", "none.scene", "none.bt", "none.ot", "none"}) {
+    expectContains(messageOf([&] { loadScene(path(name)); }), name);
+  }
+  expectContains(errorOf("scene.json", "{}"), "scene.json");
+}
+
+}  // namespace
+}  // namespace fcl_artic

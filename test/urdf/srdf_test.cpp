@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/urdf/urdf.h"
+#include "temp_folder.h"
+
+namespace fcl_artic {
+namespace {
+
+class SrdfTest : public TempFolderTest {
+ protected:
+  SrdfTest() {
+    for (const char* link : {"a", "b", "c", "d"}) tree_.addLink(link);
+  }
+  AllowedCollisionMatrix load(const std::string& body) {
+    return loadSrdf(write("r.srdf", "<robot name='r'>" + body + "</robot>"), tree_);
+  }
+  KinematicTree tree_{"r"};
+};
+
+TEST_F(SrdfTest, ReadsDisabledPairs) {
+  const auto matrix = load(
+      "<group name='arm'><link name='a'/></group>"
+      "<disable_collisions link1='b' link2='a' reason='Adjacent'/><disable_collisions link1='c' link2='a'/>");
+  EXPECT_EQ(matrix.pairs().size(), 2u);
+  EXPECT_TRUE(matrix.allowed("a", "b"));
+  EXPECT_TRUE(matrix.allowed("c", "a"));
+  EXPECT_FALSE(matrix.allowed("b", "c"));
+}
+
+TEST_F(SrdfTest, DefaultsYieldToNamedPairs) {
+  const auto matrix = load(
+      "<disable_collisions link1='c' link2='a'/><enable_collisions link1='a' link2='b'/>"
+      "<enable_collisions link1='a' link2='c'/><disable_default_collisions link='a'/>");
+  EXPECT_FALSE(matrix.allowed("a", "b"));
+  EXPECT_TRUE(matrix.allowed("a", "c")) << "disabled wins over enabled";
+  EXPECT_TRUE(matrix.allowed("a", "d"));
+  EXPECT_FALSE(matrix.allowed("b", "c"));
+}
+
+TEST_F(SrdfTest, ErrorsNameFileAndReason) {
+  const auto error = [&](const std::string& body) { return messageOf([&] { load(body); }); };
+  expectContains(error("<disable_collisions link1='a' link2='zz'/>"), "names link 'zz', which robot 'r'");
+  expectContains(error("<disable_collisions link1='a'/>"), "no attribute 'link2'");
+  expectContains(error("<disable_default_collisions link='zz'/>"), "'zz'");
+  expectContains(error("<enable_collisions link1='a' link2='zz'/>"), "r.srdf', line 1: ");
+  expectContains(error("<oops"), "r.srdf': ");
+  expectContains(messageOf([&] { loadSrdf(path("none.srdf"), tree_); }), "none.srdf': cannot be read");
+  expectContains(messageOf([&] { loadSrdf(write("x.srdf", "<sdf/>"), tree_); }), "x.srdf': is not an SRDF");
+}
+
+/// base -turn(z)- arm -(fixed)- frame, without geometry -bend(z)- tip, and a chain of fixed links from the base: plate,
+/// near, which overlaps the base; far, out of reach; wall, which the tip meets at some angles; shelf, which the tip
+/// meets at q = 0.
+const char* const kRobot = R"(<robot name="mill">
+<link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.7 0.1 0.1"/></geometry></collision></link>
+<link name="frame"/>
+<link name="tip"><collision><origin xyz="0.3 0 0"/><geometry><box size="0.3 0.1 0.1"/></geometry></collision></link>
+<link name="plate"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<link name="near"><collision><geometry><sphere radius="0.3"/></geometry></collision></link>
+<link name="far"><collision><geometry><sphere radius="0.3"/></geometry></collision></link>
+<link name="wall"><collision><geometry><box size="0.1 2 1"/></geometry></collision></link>
+<link name="shelf"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint>
+<joint name="mount" type="fixed"><parent link="arm"/><child link="frame"/><origin xyz="0.9 0 0"/></joint>
+<joint name="bend" type="revolute"><parent link="frame"/><child link="tip"/><axis xyz="0 0 1"/>
+  <limit lower="-0.5" upper="0.5" effort="1" velocity="1"/></joint>
+<joint name="p" type="fixed"><parent link="base"/><child link="plate"/><origin xyz="0 0 -0.1"/></joint>
+<joint name="n" type="fixed"><parent link="plate"/><child link="near"/><origin xyz="0 0 -0.15"/></joint>
+<joint name="f" type="fixed"><parent link="near"/><child link="far"/><origin xyz="0 0 5"/></joint>
+<joint name="w" type="fixed"><parent link="far"/><child link="wall"/><origin xyz="-1 0 -4.75"/></joint>
+<joint name="s" type="fixed"><parent link="wall"/><child link="shelf"/><origin xyz="2.2 0 0"/></joint>
+</robot>)";
+
+std::map<std::pair<std::string, std::string>, std::string> reasons(const std::vector<AllowedPair>& pairs) {
+  std::map<std::pair<std::string, std::string>, std::string> by_name;
+  for (const AllowedPair& p : pairs) {
+    EXPECT_TRUE(by_name.emplace(std::minmax(p.link1, p.link2), p.reason).second) << p.link1 << " " << p.link2;
+  }
+  return by_name;
+}
+
+TEST_F(SrdfTest, GeneratesPairsWithTheirReasons) {
+  const Robot robot = loadUrdf(write("mill.urdf", kRobot));
+  const auto pairs = generateAllowedCollisions(robot, 500, 7);
+  const auto by_name = reasons(pairs);
+  const auto reason = [&](const char* a, const char* b) {
+    const auto it = by_name.find(std::minmax(std::string(a), std::string(b)));
+    return it == by_name.end() ? "" : it->second;
+  };
+  EXPECT_EQ(reason("base", "arm"), "Adjacent");
+  EXPECT_EQ(reason("arm", "tip"), "Adjacent") << "over a link without geometry";
+  EXPECT_EQ(reason("base", "near"), "Default") << "overlaps at rest already";
+  EXPECT_EQ(reason("arm", "far"), "Never");
+  EXPECT_EQ(reason("tip", "far"), "Never");
+  EXPECT_EQ(reason("tip", "shelf"), "Default") << "touches at q = 0, though not everywhere";
+  EXPECT_EQ(reason("tip", "wall"), "") << "touches at some angles: stays checked";
+  EXPECT_EQ(by_name.count({"frame", "tip"}), 0u) << "no geometry, no entry";
+
+  const auto again = generateAllowedCollisions(robot, 500, 7);
+  ASSERT_EQ(again.size(), pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    EXPECT_EQ(again[i].link1 + again[i].link2 + again[i].reason, pairs[i].link1 + pairs[i].link2 + pairs[i].reason);
+  }
+
+  // Written and read again it is the same matrix.
+  writeSrdf(path("mill.srdf"), "mill", pairs);
+  const auto matrix = loadSrdf(path("mill.srdf"), *robot.tree);
+  EXPECT_EQ(matrix.pairs().size(), pairs.size());
+  for (const AllowedPair& p : pairs) EXPECT_TRUE(matrix.allowed(p.link1, p.link2)) << p.link1 << " " << p.link2;
+}
+
+/// base -x- slider, and base - stop - block, all of them boxes along x.
+std::string slideRobot(const std::string& limits, const std::string& block) {
+  return R"(<robot name="slide">
+<link name="base"><collision><origin xyz="9 9 9"/><geometry><sphere radius="0.1"/></geometry></collision></link>
+<link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<link name="stop"><collision><origin xyz="0 0 1"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+<link name="block">)" +
+         block + R"(</link>
+<joint name="x" type="prismatic"><parent link="base"/><child link="slider"/><axis xyz="1 0 0"/>
+  <limit )" +
+         limits + R"( effort="1" velocity="1"/></joint>
+<joint name="s" type="fixed"><parent link="base"/><child link="stop"/></joint>
+<joint name="b" type="fixed"><parent link="stop"/><child link="block"/></joint></robot>)";
+}
+
+TEST_F(SrdfTest, FindsPairsThatTouchInAllSamples) {
+  // The block has a slot for the slider, 1e-6 m wider than it: at 0 they are apart, elsewhere they touch.
+  const Robot robot = loadUrdf(write("slide.urdf", slideRobot(R"(lower="-1" upper="1")", R"(
+<collision><origin xyz="1.1000005 0 0"/><geometry><box size="2 0.2 0.2"/></geometry></collision>
+<collision><origin xyz="-1.1000005 0 0"/><geometry><box size="2 0.2 0.2"/></geometry></collision>)")));
+  const auto by_name = reasons(generateAllowedCollisions(robot, 200));
+  EXPECT_EQ(by_name.at({"block", "slider"}), "Always");
+  EXPECT_EQ(by_name.at({"slider", "stop"}), "Never");
+}
+
+TEST_F(SrdfTest, RestIsWithinTheLimits) {
+  // They touch at 0, which the limits exclude, and at few of the places within: the pair must stay checked.
+  const Robot robot = loadUrdf(write("slide.urdf", slideRobot(R"(lower="1" upper="2")", R"(
+<collision><geometry><box size="2 0.2 0.2"/></geometry></collision>)")));
+  EXPECT_EQ(reasons(generateAllowedCollisions(robot, 200)).count({"block", "slider"}), 0u);
+}
+
+TEST_F(SrdfTest, RefusesBadArguments) {
+  const Robot robot = loadUrdf(write("mill.urdf", kRobot));
+  expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(robot, 0); }), "samples is 0");
+  expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(Robot()); }), "no tree");
+  expectContains(messageOf([&] { writeSrdf(path("none/x.srdf"), "r", {}); }), "x.srdf': cannot be written");
+}
+
+}  // namespace
+}  // namespace fcl_artic

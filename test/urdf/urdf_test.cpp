@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/urdf/urdf.h"
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+
+#include "temp_folder.h"
+
+namespace fcl_artic {
+namespace {
+
+const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+std::string robot(const std::string& body) {
+  return "<?xml version=\"1.0\"?><robot name=\"r\">" + body + "</robot>";
+}
+std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                  const std::string& more = "<limit lower='-1' upper='1' effort='1' velocity='1'/>") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/>" +
+         more + "</joint>";
+}
+std::string collision(const std::string& geometry, const std::string& origin = "") {
+  return "<collision>" + origin + "<geometry>" + geometry + "</geometry></collision>";
+}
+std::string linkWith(const std::string& content) {
+  return "<link name='a'>" + content + "</link>";
+}
+
+class UrdfTest : public TempFolderTest {
+ protected:
+  Robot load(const std::string& body) { return loadUrdf(write("r.urdf", robot(body))); }
+  std::string errorOf(const std::string& body) {
+    return messageOf([&] { load(body); });
+  }
+};
+
+TEST_F(UrdfTest, ReadsTreeInTheOrderOfTheFile) {
+  const Robot r = load("<link name='z'/><link name='m'/><link name='a'/><link name='b'/><link name='c'/>" +
+                       joint("follow", "prismatic", "z", "c",
+                             "<axis xyz='0 0 2'/><limit lower='0' upper='1' effort='1' velocity='1'/>"
+                             "<mimic joint='zeta' multiplier='-0.5' offset='0.25'/>") +
+                       joint("zeta", "revolute", "z", "m",
+                             "<origin xyz='1 2 3' rpy='0 0 1.5707963267948966'/><axis xyz='0 1 0'/>"
+                             "<limit lower='-2' upper='0.5' effort='1' velocity='1'/>") +
+                       joint("alpha", "continuous", "m", "a", "") + joint("fixed", "fixed", "a", "b", ""));
+  const KinematicTree& tree = *r.tree;
+  EXPECT_EQ(tree.name(), "r");
+  ASSERT_EQ(tree.numLinks(), 5);
+  EXPECT_EQ(tree.linkName(0), "z");
+  EXPECT_EQ(tree.linkName(2), "a");
+  ASSERT_EQ(tree.dof(), 2);
+  EXPECT_EQ(tree.variableName(0), "zeta");
+  EXPECT_EQ(tree.variableName(1), "alpha");
+
+  const Joint& zeta = tree.joint(tree.jointId("zeta"));
+  EXPECT_EQ(zeta.type, JointType::revolute);
+  EXPECT_EQ(zeta.lower, -2);
+  EXPECT_EQ(zeta.upper, 0.5);
+  EXPECT_EQ(zeta.axis, Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(zeta.origin.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_LT((zeta.origin.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(tree.joint(tree.jointId("alpha")).type, JointType::continuous);
+  EXPECT_EQ(tree.joint(tree.jointId("alpha")).axis, Eigen::Vector3d(1, 0, 0)) << "URDF's default axis";
+  EXPECT_EQ(tree.jointValue(tree.jointId("follow"), Eigen::Vector2d(1, 0)), -0.25);
+  EXPECT_EQ(tree.joint(tree.jointId("follow")).axis, Eigen::Vector3d(0, 0, 1));
+}
+
+TEST_F(UrdfTest, ReadsShapesWithOffsetsSeveralForALink) {
+  const Robot r =
+      load(linkWith(collision("<box size='1 2 3'/>", "<origin xyz='0 0 4' rpy='0 0 0'/>") +
+                    collision("<cylinder radius='0.5' length='2'/>") + collision("<sphere radius='0.25'/>")));
+  ASSERT_EQ(r.geometry.size(), 3u);
+  EXPECT_TRUE(r.notes.empty());
+  const auto* box = dynamic_cast<const fcl::Boxd*>(r.geometry[0].object->collisionGeometry().get());
+  ASSERT_TRUE(box);
+  EXPECT_EQ(box->side, fcl::Vector3d(1, 2, 3));
+  EXPECT_EQ(r.geometry[0].link, 0);
+  EXPECT_EQ(r.geometry[0].source, "box");
+  EXPECT_EQ(r.geometry[0].offset.translation(), Eigen::Vector3d(0, 0, 4));
+  const auto* cylinder = dynamic_cast<const fcl::Cylinderd*>(r.geometry[1].object->collisionGeometry().get());
+  ASSERT_TRUE(cylinder);
+  EXPECT_EQ(cylinder->radius, 0.5);
+  EXPECT_EQ(cylinder->lz, 2);
+  const auto* sphere = dynamic_cast<const fcl::Sphered*>(r.geometry[2].object->collisionGeometry().get());
+  ASSERT_TRUE(sphere);
+  EXPECT_EQ(sphere->radius, 0.25);
+}
+
+TEST_F(UrdfTest, FindsMeshesByEveryKindOfPath) {
+  const std::string file = write("ws/my_robot/meshes/t.obj", kTriangle);
+  const std::string other = write("elsewhere/t.obj", kTriangle);
+  const auto loadWith = [&](const std::string& uri, const UrdfOptions& options = {}) {
+    return loadUrdf(
+        write("ws/my_robot/urdf/r.urdf", robot(linkWith(collision("<mesh filename='" + uri + "' scale='1 2 3'/>")))),
+        options);
+  };
+  for (const std::string& uri :
+       {std::string("../meshes/t.obj"), file, "file://" + file, std::string("package://my_robot/meshes/t.obj")}) {
+    SCOPED_TRACE(uri);
+    const Robot r = loadWith(uri);
+    ASSERT_EQ(r.geometry.size(), 1u);
+    EXPECT_TRUE(std::filesystem::equivalent(r.geometry[0].source, file));
+    EXPECT_EQ(r.geometry[0].object->collisionGeometry()->aabb_local.max_, fcl::Vector3d(1, 2, 0));
+  }
+  UrdfOptions named;
+  named.packages["my_robot"] = path("elsewhere");
+  EXPECT_EQ(loadWith("package://my_robot/t.obj", named).geometry.at(0).source, other);
+  // A package beside one of the parents.
+  EXPECT_TRUE(std::filesystem::equivalent(loadWith("package://elsewhere/t.obj").geometry.at(0).source, other));
+
+  const auto error = [&](const std::string& uri) { return messageOf([&] { loadWith(uri); }); };
+  expectContains(error("../meshes/none.obj"), "none.obj': no such file");
+  expectContains(error("package://my_robot/none.obj"), "none.obj': no such file");
+  expectContains(error("package://not_here/t.obj"), "package 'not_here'");
+  expectContains(error("https://example.org/t.obj"), "only file:// and package:// are read");
+  expectContains(error("../meshes/none.obj"), "r.urdf': link 'a'");
+}
+
+TEST_F(UrdfTest, LoadsAMeshOnceForAllItsLinks) {
+  write("t.obj", kTriangle);
+  const std::string mesh = collision("<mesh filename='t.obj'/>");
+  const Robot r =
+      load("<link name='a'>" + mesh + "</link><link name='b'>" + mesh + "</link>" + joint("j", "fixed", "a", "b", ""));
+  ASSERT_EQ(r.geometry.size(), 2u);
+  EXPECT_EQ(r.geometry[0].object->collisionGeometry(), r.geometry[1].object->collisionGeometry());
+}
+
+TEST_F(UrdfTest, NotesWhatIsUnusual) {
+  write("flat.obj", std::string(kTriangle) + "f 1 1 2\n");
+  const Robot r = load("<link name='a'>" + collision("<mesh filename='flat.obj'/>") +
+                       "</link><link name='b'><visual><geometry><sphere radius='1'/></geometry></visual></link>"
+                       "<link name='c'/>" +
+                       joint("lock", "fixed", "a", "b", "") +
+                       joint("follow", "prismatic", "b", "c",
+                             "<axis xyz='0 0 2'/><limit lower='0' upper='1' effort='1' velocity='1'/>"
+                             "<mimic joint='lock' offset='0.5'/>"));
+  std::string all;
+  for (const std::string& note : r.notes) all += note + "\n";
+  EXPECT_EQ(r.notes.size(), 3u) << all;
+  expectContains(all, "flat.obj': 1 of 2 triangles have no area");
+  expectContains(all, "link 'b' has a visual but no collision geometry");
+  expectContains(all, "joint 'follow' mimics the fixed joint 'lock'");
+  EXPECT_EQ(r.tree->dof(), 0);
+  EXPECT_EQ(r.tree->joint(1).origin.translation(), Eigen::Vector3d(0, 0, 0.5));
+  expectContains(load("<link name='a'/>").notes.at(0), "robot 'r' has no collision geometry");
+}
+
+TEST_F(UrdfTest, VisualAndInertialElementsDoNotMatter) {
+  // urdfdom alone goes on without the collision elements of a link whose visual or inertial element it cannot read.
+  const Robot r =
+      load(linkWith("<inertial><mass value='heavy'/></inertial><visual><geometry><torus/></geometry>"
+                    "<material name='nowhere'/></visual>" +
+                    collision("<sphere radius='1'/>")));
+  EXPECT_EQ(r.geometry.size(), 1u);
+  EXPECT_TRUE(r.notes.empty());
+}
+
+struct BadUrdf {
+  const char* what;
+  std::string body;
+  const char* reason;
+};
+
+TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
+  const std::string ab = "<link name='a'/><link name='b'/>", abc = ab + "<link name='c'/>";
+  const std::vector<BadUrdf> cases = {
+      {"no links", "", "link"},
+      {"repeated link", ab + "<link name='a'/>" + joint("j", "fixed", "a", "b"), "'a'"},
+      {"repeated joint", abc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "b", "c"), "'j'"},
+      {"two parents", abc + joint("j", "fixed", "a", "b") + joint("k", "fixed", "c", "b"), ""},
+      {"two parents, one root",
+       abc + joint("j", "fixed", "a", "b") + joint("l", "fixed", "a", "c") + joint("k", "fixed", "c", "b"),
+       "second parent of link 'b'"},
+      {"loop of all", ab + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a"), "root"},
+      {"loop beside the root", abc + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b"), "loop"},
+      {"loop on itself", ab + joint("j", "fixed", "b", "b"), "loop"},
+      {"two roots", ab, "root"},
+      {"unknown parent", ab + joint("j", "fixed", "zz", "b"), "zz"},
+      {"unknown child", ab + joint("j", "fixed", "a", "zz"), "zz"},
+      {"no limits", ab + joint("j", "revolute", "a", "b", ""), "limit"},
+      {"bad limit", ab + joint("j", "revolute", "a", "b", "<limit lower='x' upper='1' effort='1' velocity='1'/>"), "j"},
+      {"NaN limit", ab + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='1' effort='1' velocity='1'/>"),
+       "j"},
+      {"bad type", ab + joint("j", "screw", "a", "b"), "screw"},
+      {"floating", ab + joint("j", "floating", "a", "b"), "joint 'j' is of type floating"},
+      {"planar", ab + joint("j", "planar", "a", "b"), "joint 'j' is of type planar"},
+      {"zero axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 0 0'/>"), "joint 'j' has an axis"},
+      {"short axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 1'/>"), "axis"},
+      {"bad origin", ab + joint("j", "fixed", "a", "b", "<origin xyz='0 0 far'/>"), "j"},
+      {"unknown master", ab + joint("j", "continuous", "a", "b", "<mimic joint='k'/>"), "unknown joint 'k'"},
+      {"xacro", "<xacro:property name='x' value='1'/>" + ab, "xacro"},
+      {"empty mesh name", linkWith(collision("<mesh filename=''/>")), ""},
+      {"missing mesh", linkWith(collision("<mesh filename='none.stl'/>")), "none.stl"},
+      {"empty mesh", linkWith(collision("<mesh filename='empty.stl'/>")), "empty.stl"},
+      {"zero scale", linkWith(collision("<mesh filename='t.obj' scale='0 1 1'/>")), "scale"},
+      {"bad scale", linkWith(collision("<mesh filename='t.obj' scale='1 1'/>")), "scale"},
+      {"negative box", linkWith(collision("<box size='1 -1 1'/>")), "link 'a': box size -1"},
+      {"zero sphere", linkWith(collision("<sphere radius='0'/>")), "link 'a': sphere radius 0"},
+      {"bad sphere", linkWith(collision("<sphere radius='big'/>")), "big"},
+      {"zero cylinder", linkWith(collision("<cylinder radius='1' length='0'/>")), "link 'a': cylinder length 0"},
+      {"unknown shape", linkWith(collision("<torus radius='1'/>")), "torus"},
+      {"bad shape after a good one", linkWith(collision("<sphere radius='1'/>") + collision("<torus/>")), "torus"},
+      {"bad collision origin", linkWith(collision("<sphere radius='1'/>", "<origin xyz='0 x 0'/>")), "a"},
+      {"no geometry", linkWith("<collision/>"), "link 'a', line 1: a collision element needs one geometry"},
+      {"empty geometry", linkWith(collision("")), "needs one geometry element with one shape"},
+      {"two shapes", linkWith(collision("<sphere radius='1'/><sphere radius='2'/>")), "with one shape"},
+  };
+  write("t.obj", kTriangle);
+  write("empty.stl", "solid x\nendsolid x\n");
+  for (const BadUrdf& c : cases) {
+    SCOPED_TRACE(c.what);
+    testing::internal::CaptureStderr();
+    const std::string message = errorOf(c.body);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the reason belongs into the error";
+    expectContains(message, "r.urdf': ");
+    expectContains(message, c.reason);
+    EXPECT_EQ(message.find("no reason"), std::string::npos) << message;
+  }
+}
+
+TEST_F(UrdfTest, FilesThatAreNoUrdf) {
+  const auto error = [&](const std::string& file) { return messageOf([&] { loadUrdf(file); }); };
+  expectContains(error(path("none.urdf")), "none.urdf': cannot be read");
+  expectContains(error(folder_.string()), "cannot be read");
+  expectContains(error(write("empty.urdf", "")), "empty.urdf': ");
+  expectContains(error(write("cut.urdf", "<robot name='r'><link name='a'>")), "cut.urdf': ");
+  expectContains(error(write("text.urdf", "hello")), "text.urdf': ");
+  expectContains(error(write("sdf.urdf", "<sdf/>")), "sdf.urdf': is not a URDF");
+  expectContains(error(write("unnamed.urdf", "<robot><link name='a'/></robot>")), "name");
+}
+
+}  // namespace
+}  // namespace fcl_artic
