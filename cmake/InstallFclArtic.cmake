@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What is installed beside the program: headers, libraries, CMake package with its components, pkg-config files,
+# licence and data. Each component has an export set of its own, so that the package knows what it has.
+include(CMakePackageConfigHelpers)
+set(fcl_artic_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/fcl_artic")
+
+install(TARGETS fcl_artic EXPORT fcl_articTargets)
+install(EXPORT fcl_articTargets NAMESPACE fcl_artic:: DESTINATION "${fcl_artic_cmake_dir}")
+if(TARGET fcl_artic_urdf)
+  install(TARGETS fcl_artic_urdf EXPORT fcl_artic_urdfTargets)
+  install(EXPORT fcl_artic_urdfTargets NAMESPACE fcl_artic:: DESTINATION "${fcl_artic_cmake_dir}")
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/fcl_artic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+else()
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/fcl_artic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+    PATTERN urdf EXCLUDE)
+endif()
+
+configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fcl_articConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" INSTALL_DESTINATION "${fcl_artic_cmake_dir}")
+# Before 1.0 a new minor version may break callers.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" "${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake"
+  DESTINATION "${fcl_artic_cmake_dir}")
+
+# Relative to the .pc file, so that a moved tree works; absolute install folders stay as they are.
+if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}" OR IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
+  set(fcl_artic_pc_prefix "${CMAKE_INSTALL_PREFIX}")
+  set(fcl_artic_pc_libdir "${CMAKE_INSTALL_FULL_LIBDIR}")
+  set(fcl_artic_pc_includedir "${CMAKE_INSTALL_FULL_INCLUDEDIR}")
+else()
+  file(RELATIVE_PATH fcl_artic_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+  set(fcl_artic_pc_prefix "\${pcfiledir}/${fcl_artic_up}")
+  string(REGEX REPLACE "/$" "" fcl_artic_pc_prefix "${fcl_artic_pc_prefix}")
+  set(fcl_artic_pc_libdir "\${prefix}/${CMAKE_INSTALL_LIBDIR}")
+  set(fcl_artic_pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
+endif()
+configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/fcl_artic.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+if(TARGET fcl_artic_urdf)
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic_urdf.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic_urdf.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_urdf.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endif()
+
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/puma560" DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic")
+install(FILES "${PROJECT_SOURCE_DIR}/data/pipes.obj" "${PROJECT_SOURCE_DIR}/package.xml"
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic")
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}")
