@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <iostream>
+
+#include <fcl_artic/fcl_artic.h>
+#include <fcl_artic/urdf/urdf.h>
+
+int main() {
+  using namespace fcl_artic;
+  const Robot robot = loadUrdf("data/puma560/puma560.urdf");
+  const Scene scene = loadScene("data/pipes.obj");
+
+  ArticulatedCollisionManager manager(robot.tree);
+  robot.addTo(manager);  // links against links and
+  scene.addTo(manager);  // links against obstacles
+  manager.setup();
+
+  Eigen::VectorXd q0(6), q1(6);  // rad
+  q0 << -2.1, 1.0, -1.0, -0.1, -0.1, 0.0;
+  q1 << -0.1, 0.3, -2.3, -1.0, 1.1, 0.0;
+  CertifiedResult result;
+  manager.continuousCollide(JointMotion::linear(*robot.tree, q0, q1), CertifiedRequest(), result);
+
+  if (result.isFree()) {
+    std::cout << "proven free from q0 to q1\n";
+  } else {
+    const CertifiedContact& c = result.contacts.front();
+    std::cout << c.body1.name << " meets " << c.body2.name << " at " << c.point.transpose()
+              << ", first between t = " << result.t_lower << " and " << result.t_upper << " of the way; free before\n";
+  }
+}

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Run by ctest: cmake -DCASE=... -DSOURCE=<repository> -DBUILD=<build folder> -DWORK=<scratch folder> ... -P test.cmake
+set(stage "${BUILD}/stage")
+
+# Runs a command; `EXPECT_FAILURE` turns what is right round. Its whole output is left in `output`.
+function(run)
+  cmake_parse_arguments(arg "EXPECT_FAILURE" "" "COMMAND" ${ARGN})
+  execute_process(COMMAND ${arg_COMMAND} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  list(JOIN arg_COMMAND " " line)
+  message(STATUS "${line}\n${out}")
+  if(arg_EXPECT_FAILURE AND status EQUAL 0)
+    message(FATAL_ERROR "this should have failed: ${line}")
+  elseif(NOT arg_EXPECT_FAILURE AND NOT status EQUAL 0)
+    message(FATAL_ERROR "status ${status}: ${line}")
+  endif()
+  string(REGEX REPLACE "[ \n]+" " " out "${out}")
+  set(output "${out}" PARENT_SCOPE)
+endfunction()
+
+function(expect_output text)
+  string(FIND "${output}" "${text}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "the output lacks '${text}'")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE "${WORK}")
+file(MAKE_DIRECTORY "${WORK}")
+set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_BUILD_TYPE=Release")
+
+if(CASE STREQUAL "install")
+  file(REMOVE_RECURSE "${stage}")
+  run(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${stage}")
+  foreach(file IN ITEMS include/fcl_artic/fcl_artic.h share/fcl_artic/puma560/puma560.urdf share/fcl_artic/pipes.obj
+          share/fcl_artic/package.xml share/doc/fcl_artic/LICENSE)
+    if(NOT EXISTS "${stage}/${file}")
+      message(FATAL_ERROR "not installed: ${file}")
+    endif()
+  endforeach()
+  if(WITH_APP)
+    if(NOT EXISTS "${stage}/share/man/man1/fcl_artic.1")
+      message(FATAL_ERROR "the man page is not installed")
+    endif()
+    run(COMMAND "${stage}/bin/fcl_artic" --version)
+    expect_output("${VERSION}")
+  endif()
+
+elseif(CASE STREQUAL "cmake")
+  run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" "-DWITH_URDF=${WITH_URDF}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+      -S "${SOURCE}/test/consumer" -B "${WORK}/build")
+  run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/build")
+  run(COMMAND "${WORK}/build/core")
+  if(WITH_URDF)
+    run(COMMAND "${WORK}/build/robot" "${stage}/share/fcl_artic")
+  endif()
+
+elseif(CASE STREQUAL "missing_component")
+  file(WRITE "${WORK}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.22)\nproject(needs_more LANGUAGES CXX)\n"
+    "find_package(fcl_artic REQUIRED COMPONENTS no_such_component)\n")
+  run(EXPECT_FAILURE COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" -S "${WORK}" -B "${WORK}/build")
+  expect_output("was built without the component 'no_such_component'")
+
+elseif(CASE STREQUAL "pkg_config")
+  set(ENV{PKG_CONFIG_PATH} "${stage}/${LIBDIR}/pkgconfig")
+  set(packages fcl_artic)
+  if(WITH_URDF)
+    list(APPEND packages fcl_artic_urdf)
+  endif()
+  foreach(package IN LISTS packages)
+    execute_process(COMMAND pkg-config --modversion ${package} OUTPUT_VARIABLE version
+      OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    if(NOT version STREQUAL VERSION)
+      message(FATAL_ERROR "${package}.pc gives version '${version}', not ${VERSION}")
+    endif()
+    execute_process(COMMAND pkg-config --cflags --libs ${package} OUTPUT_VARIABLE flags
+      OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    separate_arguments(flags UNIX_COMMAND "${CXX_FLAGS} ${flags}")
+    if(package STREQUAL "fcl_artic")
+      set(program core)
+    else()
+      set(program robot)
+    endif()
+    # Flags come last, as a user may have them: they are not to take C++17 away.
+    run(COMMAND "${CXX}" -std=c++17 "${SOURCE}/test/consumer/${program}.cpp" -o "${WORK}/${program}" ${flags})
+    run(COMMAND "${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${stage}/${LIBDIR}" "${WORK}/${program}"
+        "${stage}/share/fcl_artic")
+  endforeach()
+
+elseif(CASE STREQUAL "fast_math")
+  foreach(flag IN ITEMS -ffast-math -Ofast -funsafe-math-optimizations)
+    run(EXPECT_FAILURE COMMAND ${configure} "-DCMAKE_CXX_FLAGS=-g ${flag}" -S "${SOURCE}" -B "${WORK}/build")
+    expect_output("fcl_artic can't be built with ${flag}")
+  endforeach()
+
+elseif(CASE STREQUAL "readme")
+  file(READ "${SOURCE}/README.md" readme)
+  file(READ "${SOURCE}/example/first_check.cpp" example)
+  string(REGEX REPLACE "^[^\n]*SPDX[^\n]*\n" "" example "${example}")
+  string(FIND "${readme}" "```cpp\n${example}```" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "README.md doesn't show example/first_check.cpp as it is")
+  endif()
+
+else()
+  message(FATAL_ERROR "unknown case '${CASE}'")
+endif()
