@@ -310,10 +310,10 @@ class Composer {
     const bool stopped = result_.status != Status::free;
     const int before = std::max(1, static_cast<int>(std::lround(8 * t)));
     const int after = stopped ? std::max(1, static_cast<int>(std::lround(6 * (1 - t)))) : 0;
-    for (int i = after; i >= 1; --i) addGhost(t + (1 - t) * i / after, kGhostAfter, i == after ? 0.26f : 0.13f);
+    for (int i = after; i >= 1; --i) addGhost(t + (1 - t) * i / after, kGhostAfter, i == after ? 0.32f : 0.17f);
     for (int i = 0; i < before; ++i) {
       const float along = static_cast<float>(i) / static_cast<float>(before);
-      addGhost(t * i / before, kGhostBefore, i == 0 ? 0.44f : 0.20f + 0.14f * along);
+      addGhost(t * i / before, kGhostBefore, i == 0 ? 0.55f : 0.26f + 0.16f * along);
     }
   }
 

@@ -88,7 +88,9 @@ class Texture {
   GLuint id = 0;
 };
 
-Texture colorTexture(int w, int h) { return {w, h, GL_RGBA16F, GL_RGBA, GL_FLOAT, GL_LINEAR}; }
+Texture colorTexture(int w, int h, GLint filter = GL_LINEAR) {
+  return {w, h, GL_RGBA16F, GL_RGBA, GL_FLOAT, filter};
+}
 Texture depthTexture(int w, int h, GLint filter) {
   return {w, h, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, filter};
 }
@@ -364,7 +366,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   ground.surface = std::make_shared<Surface>(groundSurface(stage.focus, stage.ground_z, fade_radius));
   const bool ground_seen = camera.eye.z() > stage.ground_z;
 
-  const Texture color = colorTexture(w, h), normal = colorTexture(w, h), layer = colorTexture(w, h);
+  const Texture color = colorTexture(w, h), layer = colorTexture(w, h);
+  const Texture normal = colorTexture(w, h, GL_NEAREST);  // a mean of two surfaces' normals is none's
   const Texture depth = depthTexture(w, h, GL_NEAREST), layer_depth = depthTexture(w, h, GL_NEAREST);
   const Texture occlusion = colorTexture(width, height), blurred = colorTexture(width, height);
   const Texture shadow = depthTexture(kShadowSize, kShadowSize, GL_LINEAR);

@@ -106,7 +106,7 @@ void main() {
   vec3 n = vec3(0.0, 0.0, 1.0);
   float lit = sunlight(world, n);
   float fine = lines(world.xy / cell, 0.6), coarse = lines(world.xy / (5.0 * cell), 0.9);
-  vec3 base = mix(vec3(0.83, 0.85, 0.875), vec3(0.58, 0.62, 0.68), max(0.30 * fine, 0.75 * coarse));
+  vec3 base = mix(vec3(0.83, 0.85, 0.875), vec3(0.50, 0.55, 0.62), max(0.45 * fine, 0.95 * coarse));
   float shade = mix(0.62, 1.0, lit) * mix(0.55, 1.0, openness());
   float r = distance(world.xy, focus.xy) / fade_radius;
   pixel = vec4(base * shade, 1.0 - smoothstep(0.35, 1.0, r));
