@@ -81,6 +81,7 @@ class Solver {
   Lanes tm_;
   double lane_start_[kLanes], lane_end_[kLanes], tm_at_[kLanes], d_ = 0;
   unsigned live_ = 0;   ///< lanes that may still hold the first contact
+  unsigned contact_lane_ = 0;  ///< the lane with the earliest proven contact: it is split whatever else is found in it
   bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
   bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
   unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
@@ -157,8 +158,8 @@ inline void Solver::beginBatch(double start, double width) {
   }
   evaluateAt(tm, 0.5 * w);
   ++statistics_.batches;
-  updateLive();
   last_ = w <= query_->tolerance_time;
+  updateLive();
 }
 
 inline void Solver::evaluateAt(const double* tm, double d) {
@@ -172,8 +173,12 @@ inline void Solver::evaluateAt(const double* tm, double d) {
 }
 
 inline void Solver::updateLive() {
-  live_ = 0;
-  for (int i = 0; i < kLanes; ++i) live_ |= static_cast<unsigned>(lane_start_[i] < t_upper_) << i;
+  live_ = contact_lane_ = 0;
+  for (int i = 0; i < kLanes; ++i) {
+    live_ |= static_cast<unsigned>(lane_start_[i] < t_upper_) << i;
+    contact_lane_ |= static_cast<unsigned>(lane_start_[i] < t_upper_ && t_upper_ < lane_end_[i]) << i;
+  }
+  if (last_) contact_lane_ = 0;
 }
 
 /// Frames of a sweep in this batch, evaluated when first asked for.
@@ -319,7 +324,7 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   double guess[3];
   bool have_guess = false;
   unsigned untried = mask;
-  while ((untried &= live_) != 0) {
+  while ((untried &= live_ & ~contact_lane_) != 0) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
     int lane = 0;
     for (int skip = __builtin_popcount(untried) / 2, m = static_cast<int>(untried); m; m &= m - 1, --skip) {
@@ -387,7 +392,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       } else {
         entries_.push(e);
       }
-    } else if (max(x.radius, y.radius) < split_time) {
+    } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time) {
       entries_.push(e);
     } else if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
       stack_.push({pair, x.right, e.b, e.mask});
