@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The manager on cases worked out by hand, its modes, and what it does with bad input.
+#include "fcl_artic/manager.h"
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <gtest/gtest.h>
+
+using namespace fcl_artic;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+// Times are exact here but for rounding of a few ulp and the prefix root's 1e-12 of the last lane.
+constexpr double kRounding = 1e-11;
+
+Joint makeJoint(const std::string& name, JointType type, const std::string& parent, const std::string& child,
+                const Vector3d& axis, const Vector3d& at = Vector3d::Zero()) {
+  Joint joint;
+  joint.name = name;
+  joint.type = type;
+  joint.parent = parent;
+  joint.child = child;
+  joint.axis = axis;
+  joint.origin.translation() = at;
+  return joint;
+}
+
+std::shared_ptr<fcl::CollisionObjectd> at(std::shared_ptr<fcl::CollisionGeometryd> geometry,
+                                          const Vector3d& x = Vector3d::Zero()) {
+  Isometry3d M = Isometry3d::Identity();
+  M.translation() = x;
+  return std::make_shared<fcl::CollisionObjectd>(geometry, M);
+}
+
+std::shared_ptr<fcl::CollisionGeometryd> boxMesh(double half) {
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  std::vector<Vector3d> v;
+  for (int i = 0; i < 8; ++i) v.emplace_back((i & 1) ? half : -half, (i & 2) ? half : -half, (i & 4) ? half : -half);
+  const int faces[6][4] = {{0, 1, 3, 2}, {4, 6, 7, 5}, {0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}};
+  std::vector<fcl::Triangle> t;
+  for (const int* f : faces) {
+    t.emplace_back(f[0], f[1], f[2]);
+    t.emplace_back(f[0], f[2], f[3]);
+  }
+  mesh->beginModel();
+  mesh->addSubModel(v, t);
+  mesh->endModel();
+  return mesh;
+}
+
+/// A slider along x that carries one geometry.
+struct Slider {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("slider");
+  std::shared_ptr<fcl::CollisionObjectd> body;
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+  explicit Slider(std::shared_ptr<fcl::CollisionGeometryd> geometry) : body(at(std::move(geometry))) {
+    tree->addLink("base");
+    tree->addLink("cart");
+    tree->addJoint(makeJoint("slide", JointType::prismatic, "base", "cart", Vector3d::UnitX()));
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    manager->bind("cart", body.get());
+  }
+  CertifiedResult run(double from, double to, const CertifiedRequest& request = {}) const {
+    CertifiedResult result;
+    manager->continuousCollide(JointMotion::linear(*tree, VectorXd::Constant(1, from), VectorXd::Constant(1, to)),
+                               request, result);
+    return result;
+  }
+};
+
+template <class Exception, class F>
+std::string messageOf(F&& f) {
+  try {
+    f();
+  } catch (const Exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+// Sphere of radius 0.1 slides from 0 to 1 towards a box face at x = 0.5: centre at 0.4 touches, t* = 0.4.
+TEST(Manager, SphereMeetsBoxFaceAtTheTimeWorkedOut) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, 0, 0});
+  slider.manager->registerObject(wall.get(), "wall");
+  slider.manager->setup();
+  const CertifiedResult r = slider.run(0, 1);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  EXPECT_LE(r.t_lower, 0.4 + kRounding);
+  EXPECT_GE(r.t_upper, 0.4 - kRounding);
+  EXPECT_LE(r.t_upper - r.t_lower, 1e-6);
+  ASSERT_EQ(r.contacts.size(), 1u);
+  const CertifiedContact& c = r.contacts[0];
+  EXPECT_EQ(c.body1.name, "cart");
+  EXPECT_EQ(c.body2.name, "wall");
+  EXPECT_EQ(c.b1, -1);
+  EXPECT_NEAR((c.point - Vector3d(0.5, 0, 0)).norm(), 0, 1e-5);
+  EXPECT_NEAR((c.normal - Vector3d::UnitX()).norm(), 0, 1e-6);
+  EXPECT_NEAR(r.M_0_at_lower[1].translation().x(), r.t_lower, 1e-15);
+}
+
+TEST(Manager, FreeMotionIsProvenFree) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, 0, 0});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  const CertifiedResult r = slider.run(0, 0.3999);
+  EXPECT_EQ(r.status, Status::free);
+  EXPECT_EQ(r.t_lower, 1);
+  EXPECT_TRUE(r.contacts.empty());
+}
+
+// With a margin of 0.15 the same sphere counts as touching from x = 0.25.
+TEST(Manager, MarginMovesTheContactForward) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  auto wall = at(boxMesh(0.5), {1, 0, 0});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  CertifiedRequest request;
+  request.margin = 0.15;
+  const CertifiedResult r = slider.run(0, 1, request);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  EXPECT_LE(r.t_lower, 0.25 + kRounding);
+  EXPECT_GE(r.t_upper, 0.25 - kRounding);
+}
+
+TEST(Manager, ContactExactlyAtTheEndCounts) {
+  Slider slider(boxMesh(0.25));
+  auto wall = at(boxMesh(0.5), {1, 0, 0});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  const CertifiedResult r = slider.run(0, 0.25);
+  EXPECT_EQ(r.status, Status::contact);
+  EXPECT_LE(r.t_lower, 1);
+  EXPECT_GE(r.t_lower, 1 - 1e-5);
+}
+
+TEST(Manager, TouchingAtTheStartGivesZero) {
+  Slider slider(std::make_shared<fcl::Boxd>(0.5, 0.5, 0.5));
+  auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {0.5, 0.1, 0.05});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  const CertifiedResult r = slider.run(0, -1);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  EXPECT_EQ(r.t_lower, 0);
+  EXPECT_EQ(r.t_upper, 0);
+}
+
+// The slider starts inside one wall, leaves it and meets another whose face is at x = -2: centre at -1.75, t* = 1.75 / 3.
+TEST(Manager, IgnoredInitialContactIsWatchedOnceItHasSeparated) {
+  Slider slider(std::make_shared<fcl::Boxd>(0.5, 0.5, 0.5));
+  auto near = at(std::make_shared<fcl::Boxd>(1, 1, 1), {0.5, 0.1, 0.05});
+  auto far = at(std::make_shared<fcl::Boxd>(1, 1, 1), {-2.5, 0, 0});
+  slider.manager->registerObject(near.get(), "near");
+  slider.manager->registerObject(far.get(), "far");
+  slider.manager->setup();
+  CertifiedRequest request;
+  request.ignore_initial_contact = true;
+  const CertifiedResult r = slider.run(0, -3, request);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_LE(r.t_lower, 1.75 / 3 + kRounding);
+  EXPECT_GE(r.t_upper, 1.75 / 3 - kRounding);
+  EXPECT_EQ(r.contacts.at(0).body2.name, "far");
+  ASSERT_EQ(r.ignored_initial_contacts.size(), 1u);
+  // Deeper into the first wall it never separates: ignored, and the motion is free.
+  EXPECT_EQ(slider.run(0, 0.2, request).status, Status::free);
+}
+
+// A crank that starts in contact, leaves and comes back after a turn of 350 degrees.
+TEST(Manager, SecondContactWithTheSameBodyAfterSeparationCounts) {
+  auto tree = std::make_shared<KinematicTree>("crank");
+  tree->addLink("base");
+  tree->addLink("arm");
+  tree->addJoint(makeJoint("turn", JointType::continuous, "base", "arm", Vector3d::UnitZ()));
+  auto arm = at(std::make_shared<fcl::Boxd>(1, 0.1, 0.1));
+  auto post = at(std::make_shared<fcl::Cylinderd>(0.05, 1), {1, 0, 0});
+  ArticulatedCollisionManager manager(tree);
+  Isometry3d offset = Isometry3d::Identity();
+  offset.translation().x() = 0.6;
+  manager.bind("arm", arm.get(), offset);
+  manager.registerObject(post.get(), "post");
+  manager.setup();
+  CertifiedRequest request;
+  request.ignore_initial_contact = true;
+  CertifiedResult r;
+  const auto motion = JointMotion::linear(*tree, VectorXd::Constant(1, 0), VectorXd::Constant(1, 355 * kPi / 180));
+  manager.continuousCollide(motion, request, r);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  // The box's side y = 0.05 and the post of radius 0.05 at distance 1: sin(angle) = 0.1 before a full turn.
+  const double expected = (2 * kPi - std::asin(0.1)) / (355 * kPi / 180);
+  EXPECT_LE(r.t_lower, expected + kRounding);
+  EXPECT_GE(r.t_upper, expected - kRounding);
+}
+
+TEST(Manager, EveryPairReportsEachPairsFirstContact) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  auto first = at(std::make_shared<fcl::Sphered>(0.1), {0.5, 0.1, 0});
+  auto second = at(std::make_shared<fcl::Sphered>(0.1), {0.8, 0, 0.1});
+  auto third = at(std::make_shared<fcl::Sphered>(0.1), {0.5, 5, 0});
+  slider.manager->registerObject(first.get(), "first");
+  slider.manager->registerObject(second.get(), "second");
+  slider.manager->registerObject(third.get(), "third");
+  slider.manager->setup();
+  CertifiedRequest request;
+  request.mode = ContactMode::firstOfEveryPair;
+  request.max_contacts = 10;
+  const CertifiedResult r = slider.run(0, 1, request);
+  ASSERT_EQ(r.status, Status::contact);
+  ASSERT_EQ(r.contacts.size(), 2u);
+  const double half_chord = std::sqrt(0.04 - 0.01);
+  for (const CertifiedContact& c : r.contacts) {
+    const double expected = (c.body2.name == "first" ? 0.5 : 0.8) - half_chord;
+    EXPECT_LE(c.t_lower, expected + kRounding) << c.body2.name;
+    EXPECT_GE(c.t_upper, expected - kRounding) << c.body2.name;
+  }
+  EXPECT_LE(r.t_lower, 0.5 - half_chord + kRounding);
+}
+
+TEST(Manager, BudgetThatRunsOutSaysUndecidedAndKeepsItsLowerBound) {
+  Slider slider(boxMesh(0.2));
+  auto wall = at(boxMesh(0.5), {1, 0, 0});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  CertifiedRequest request;
+  request.work_budget = 3;
+  const CertifiedResult r = slider.run(0, 1, request);
+  EXPECT_EQ(r.status, Status::undecided);
+  EXPECT_FALSE(r.certain);
+  EXPECT_LE(r.t_lower, 0.3);
+}
+
+// Two links of a planar elbow that folds onto its base link: self collision, and none once it is allowed.
+TEST(Manager, SelfCollisionIsFoundUnlessAllowed) {
+  auto tree = std::make_shared<KinematicTree>("elbow");
+  for (const char* link : {"a", "b", "c"}) tree->addLink(link);
+  tree->addJoint(makeJoint("j1", JointType::revolute, "a", "b", Vector3d::UnitZ(), {1, 0, 0}));
+  tree->addJoint(makeJoint("j2", JointType::revolute, "b", "c", Vector3d::UnitZ(), {0.3, 0, 0}));
+  auto a = at(std::make_shared<fcl::Boxd>(1, 0.1, 0.1)), b = at(std::make_shared<fcl::Boxd>(0.2, 0.1, 0.1)),
+       c = at(std::make_shared<fcl::Sphered>(0.1));
+  ArticulatedCollisionManager manager(tree);
+  Isometry3d offset = Isometry3d::Identity();
+  offset.translation().x() = 0.4;
+  manager.bind("a", a.get(), offset);
+  offset.translation().x() = 0.15;
+  manager.bind("b", b.get(), offset);
+  offset.translation().x() = 0.6;
+  manager.bind("c", c.get(), offset);
+  manager.setup();
+  VectorXd q0(2), q1(2);
+  q0 << 0, 0;
+  q1 << 0, kPi;
+  const auto motion = JointMotion::linear(*tree, q0, q1);
+  CertifiedResult r;
+  manager.continuousCollide(motion, {}, r);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  EXPECT_EQ(r.contacts.at(0).body1.name, "a");
+  EXPECT_EQ(r.contacts.at(0).body2.name, "c");
+  // Sphere's centre at (1.3 + 0.6 cos q, 0.6 sin q); the box's corner nearest is (0.9, 0.05).
+  const double t = r.t_upper * kPi;
+  const double gap = std::hypot(std::max(0.0, 1.3 + 0.6 * std::cos(t) - 0.9), 0.6 * std::sin(t) - 0.05) - 0.1;
+  EXPECT_NEAR(gap, 0, 1e-5);
+  CertifiedRequest no_self;
+  no_self.check_self = false;
+  manager.continuousCollide(motion, no_self, r);
+  EXPECT_EQ(r.status, Status::free);
+  AllowedCollisionMatrix allowed;
+  allowed.allow("c", "a");
+  manager.setAllowedCollisions(allowed);
+  manager.setup();
+  manager.continuousCollide(motion, {}, r);
+  EXPECT_EQ(r.status, Status::free);
+}
+
+// Two robots in one forest, each a slider along its own axis; they meet in the middle.
+TEST(Manager, TwoRootsMeet) {
+  auto tree = std::make_shared<KinematicTree>("pair");
+  for (const char* link : {"base1", "cart1", "base2", "cart2"}) tree->addLink(link);
+  tree->addJoint(makeJoint("s1", JointType::prismatic, "base1", "cart1", Vector3d::UnitX()));
+  tree->addJoint(makeJoint("s2", JointType::prismatic, "base2", "cart2", -Vector3d::UnitX(), {2, 0, 0}));
+  auto one = at(boxMesh(0.1)), two = at(std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2));
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("cart1", one.get());
+  manager.bind("cart2", two.get());
+  manager.setup();
+  CertifiedResult r;
+  manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Zero(2), VectorXd::Constant(2, 1.5)), {}, r);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_LE(r.t_lower, 0.6 + kRounding);  // 2 - 3 t = 0.2
+  EXPECT_GE(r.t_upper, 0.6 - kRounding);
+}
+
+// Gripper whose second finger mimics the first with multiplier -1: the fingers close on each other at q = 0.05.
+TEST(Manager, MimicJointMovesWithItsMaster) {
+  auto tree = std::make_shared<KinematicTree>("gripper");
+  for (const char* link : {"palm", "left", "right"}) tree->addLink(link);
+  tree->addJoint(makeJoint("close", JointType::prismatic, "palm", "left", Vector3d::UnitY(), {0, -0.1, 0}));
+  Joint follower = makeJoint("follow", JointType::prismatic, "palm", "right", Vector3d::UnitY(), {0, 0.1, 0});
+  follower.mimics = true;
+  follower.mimic = {"close", -1, 0};
+  tree->addJoint(follower);
+  auto left = at(std::make_shared<fcl::Boxd>(0.1, 0.1, 0.1)), right = at(boxMesh(0.05));
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("left", left.get());
+  manager.bind("right", right.get());
+  manager.setup();
+  CertifiedResult r;
+  manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Zero(1), VectorXd::Constant(1, 0.1)), {}, r);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_LE(r.t_lower, 0.5 + kRounding);
+  EXPECT_GE(r.t_upper, 0.5 - kRounding);
+}
+
+TEST(Manager, MeshInsideASolidTouchesMeshInsideAMeshDoesNot) {
+  Slider slider(boxMesh(0.1));
+  auto around = at(std::make_shared<fcl::Boxd>(1, 1, 1));
+  slider.manager->registerObject(around.get());
+  slider.manager->setup();
+  EXPECT_EQ(slider.run(0, 0.1).status, Status::contact);  // shapes are solids
+  slider.manager->unregisterObject(around.get());
+  auto shell = at(boxMesh(0.5));
+  slider.manager->registerObject(shell.get());
+  slider.manager->setup();
+  EXPECT_EQ(slider.run(0, 0.1).status, Status::free);  // meshes are surfaces
+}
+
+TEST(Manager, SameBitsOverThreadsAndRepeats) {
+  Slider slider(boxMesh(0.2));
+  auto wall = at(std::make_shared<fcl::Cylinderd>(0.3, 1), {1, 0.05, 0.01});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  const CertifiedResult alone = slider.run(0, 1);
+  ASSERT_EQ(alone.status, Status::contact);
+  std::vector<int> different(8, 0);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      for (int k = 0; k < 50; ++k) {
+        slider.run(0, 0.1 * (k % 7));  // another query between, so that history differs
+        const CertifiedResult r = slider.run(0, 1);
+        different[static_cast<std::size_t>(i)] += r.t_lower != alone.t_lower || r.t_upper != alone.t_upper ||
+                                                   r.contacts[0].point != alone.contacts[0].point;
+      }
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  for (int d : different) EXPECT_EQ(d, 0);
+}
+
+TEST(Manager, MovedObstacleIsReadByUpdate) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, 0, 0});
+  slider.manager->registerObject(wall.get());
+  slider.manager->setup();
+  ASSERT_EQ(slider.run(0, 1).status, Status::contact);
+  wall->setTranslation({1, 3, 0});
+  EXPECT_EQ(slider.run(0, 1).status, Status::contact);  // not read yet
+  slider.manager->update(wall.get());
+  EXPECT_EQ(slider.run(0, 1).status, Status::free);
+}
+
+TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
+  Slider slider(std::make_shared<fcl::Sphered>(0.1));
+  ArticulatedCollisionManager& manager = *slider.manager;
+  auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, 0, 0});
+  manager.registerObject(wall.get(), "wall");
+  EXPECT_NE(messageOf<std::logic_error>([&] { slider.run(0, 1); }).find("setup()"), std::string::npos);
+  manager.setup();
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(wall.get()); }).find("wall"),
+            std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(nullptr, "none"); }).find("null"),
+            std::string::npos);
+  auto empty = at(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>());
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(empty.get(), "empty"); }).find("'empty'"),
+            std::string::npos);
+  auto flat = at(std::make_shared<fcl::Boxd>(1, 0, 1));
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(flat.get(), "flat"); }).find("Box"),
+            std::string::npos);
+  auto lost = at(std::make_shared<fcl::Boxd>(1, 1, 1), {std::nan(""), 0, 0});
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(lost.get(), "lost"); }).find("not finite"),
+            std::string::npos);
+  auto other = at(std::make_shared<fcl::Boxd>(1, 1, 1));
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.bind("hand", other.get()); }).find("'hand'"),
+            std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.bind(7, other.get()); }).find("7"), std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.unregisterObject(other.get()); }).find("not registered"),
+            std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { slider.run(0, std::nan("")); }).find("slide"), std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] {
+              JointMotion::linear(*slider.tree, VectorXd::Zero(2), VectorXd::Zero(2));
+            }).find("2"),
+            std::string::npos);
+  CertifiedRequest request;
+  request.tolerance_time = 0;
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { slider.run(0, 1, request); }).find("tolerance_time"),
+            std::string::npos);
+  request.tolerance_time = 1e-6;
+  request.margin = std::numeric_limits<double>::infinity();
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { slider.run(0, 1, request); }).find("margin"), std::string::npos);
+  // After all of this the manager is as it was.
+  EXPECT_EQ(manager.size(), 1u);
+  EXPECT_EQ(slider.run(0, 1).status, Status::contact);
+}
