@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -23,11 +24,15 @@
 namespace fcl_artic::app {
 namespace {
 
+constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
+constexpr std::size_t kAllContacts = 1000000;
+
 struct Options {
   std::string robot, srdf, auto_srdf, image;
   std::vector<std::string> scenes, packages, from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
+  std::optional<std::size_t> max_contacts;
   bool every_pair = false, no_self = false, no_scene = false;
   bool shortest = false, json = false;
 };
@@ -47,8 +52,8 @@ std::optional<std::array<double, 2>> numberPair(const std::string& text, char se
 
 std::string requireSize(const std::string& text) {
   const auto size = numberPair(text, 'x');
-  const bool good = size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= 8192 && (*size)[1] <= 8192;
-  return good ? "" : "'" + text + "' is not a size WxH in pixels from 64x64 to 8192x8192";
+  const bool good = size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= kMaxPixels && (*size)[1] <= kMaxPixels;
+  return good ? "" : "'" + text + "' is not a size WxH in pixels from 64x64 to 4096x4096";
 }
 
 std::string requireCamera(const std::string& text) {
@@ -134,6 +139,7 @@ int run(const Options& options) {
   request.check_self = !options.no_self;
   request.check_scene = !options.no_scene;
   request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
+  request.max_contacts = options.max_contacts.value_or(options.every_pair ? kAllContacts : 1);
   request.measure_times = true;
   CertifiedResult result;
   {
@@ -202,8 +208,8 @@ void addCheck(CLI::App& program, int& exit_status) {
          "A gap below this, in m, may be taken for a contact that is not certain");
   check->add_option("--budget", request.work_budget, "Tests after which the answer is 'undecided'; 0: no limit")
       ->group("Query")->capture_default_str();
-  check->add_option("--max-contacts", request.max_contacts, "Contacts to report at most")
-      ->check(CLI::PositiveNumber)->group("Query")->capture_default_str();
+  check->add_option("--max-contacts", o.max_contacts, "Contacts to report at most (1; with --every-pair: all)")
+      ->check(CLI::PositiveNumber)->group("Query");
   check->add_flag("--every-pair", o.every_pair, "The first contact of every pair of bodies that touches")
       ->group("Query");
   check->add_flag("--ignore-initial-contact", request.ignore_initial_contact,

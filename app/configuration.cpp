@@ -39,7 +39,7 @@ double parseValue(const KinematicTree& tree, int variable, std::string_view text
   const std::string whole(text);
   const bool degrees = text.size() > 3 && text.substr(text.size() - 3) == "deg";
   if (degrees) text.remove_suffix(3);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes no plus
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {

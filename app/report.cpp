@@ -28,7 +28,9 @@ const char* featureName(FeatureKind kind) {
   return "volume";
 }
 
-std::string vectorText(const Eigen::Vector3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
+std::string vectorText(const Eigen::Vector3d& v) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // + 0.0: no "-0"
+}
 
 std::string bodyText(const BodyRef& body, std::intptr_t primitive) {
   const char* kind = body.link >= 0 ? "link" : "obstacle";

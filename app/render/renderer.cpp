@@ -253,9 +253,9 @@ struct Renderer::Impl {
   struct Programs {
     Program depth{shaders::kBodyVertex, shaders::kEmptyFragment};
     Program group{shaders::kBodyVertex, shaders::kGroupFragment};
-    Program normal{shaders::kBodyVertex, shaders::kNormalFragment};
-    Program body{shaders::kBodyVertex, std::string(shaders::kLight) + shaders::kBodyFragment};
-    Program ground{shaders::kBodyVertex, std::string(shaders::kLight) + shaders::kGroundFragment};
+    Program normal{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kFacing + shaders::kNormalFragment};
+    Program body{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kFacing + shaders::kLight + shaders::kBodyFragment};
+    Program ground{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kLight + shaders::kGroundFragment};
     Program background{shaders::kScreenVertex, shaders::kBackgroundFragment};
     Program occlusion{shaders::kScreenVertex, shaders::kOcclusionFragment};
     Program blur{shaders::kScreenVertex, shaders::kBlurFragment};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GLSL 3.30 sources of the renderer. Colours are linear until kResolveFragment.
+// GLSL 3.30 sources of the renderer; those without a version line are put together after kVersion. Colours are linear
+// until kResolveFragment.
 #pragma once
 
 namespace fcl_artic::render::shaders {
@@ -18,6 +19,8 @@ void main() {
   gl_Position = view_projection * p;
 })";
 
+constexpr const char* kVersion = "#version 330 core\n";
+
 /// Depth only (the light's view).
 constexpr const char* kEmptyFragment = R"(#version 330 core
 void main() {})";
@@ -28,19 +31,28 @@ uniform vec3 color;
 out vec4 pixel;
 void main() { pixel = vec4(color, 1.0); })";
 
+/// The normal on the viewer's side. The triangle decides which that is, since an interpolated normal may lean away
+/// from the viewer at a silhouette, and a mesh may be wound inside out.
+constexpr const char* kFacing = R"(
+vec3 facing_normal(vec3 p, vec3 n, vec3 view) {
+  vec3 flat_normal = cross(dFdx(p), dFdy(p));
+  if (dot(flat_normal, view) < 0.0) flat_normal = -flat_normal;
+  return dot(n, flat_normal) < 0.0 ? -normalize(n) : normalize(n);
+}
+)";
+
 /// Normals for the ambient occlusion; alpha tells whether ghosts keep clear of the body.
-constexpr const char* kNormalFragment = R"(#version 330 core
+constexpr const char* kNormalFragment = R"(
 uniform vec3 eye;
 uniform float clear_of_ghosts;
 in vec3 world, world_normal;
 out vec4 pixel;
 void main() {
-  vec3 n = normalize(world_normal);
-  pixel = vec4(dot(n, eye - world) < 0.0 ? -n : n, clear_of_ghosts);
+  pixel = vec4(facing_normal(world, world_normal, eye - world), clear_of_ghosts);
 })";
 
 /// Light shared by bodies and ground: sun with a soft shadow, sky and ground light with ambient occlusion.
-constexpr const char* kLight = R"(#version 330 core
+constexpr const char* kLight = R"(
 uniform vec3 eye, sun;
 uniform mat4 shadow_matrix;
 uniform sampler2DShadow shadow_map;
@@ -72,8 +84,7 @@ uniform float highlight_radius, highlight_floor, opacity, rim, glow;
 uniform bool use_occlusion;
 void main() {
   vec3 v = normalize(eye - world);
-  vec3 n = normalize(world_normal);
-  if (dot(n, v) < 0.0) n = -n;
+  vec3 n = facing_normal(world, world_normal, v);
   float near = exp(-pow(distance(world, highlight_center) / highlight_radius, 2.0));
   vec3 base = mix(color, highlight, max(near, highlight_floor));
   float open = use_occlusion ? openness() : 1.0;

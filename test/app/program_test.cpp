@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The built program, run on small inputs: exit statuses, what it prints, what it refuses.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+// The arm's upper face is 0.05 m from its axis, the ball's centre 0.6 m from the hinge at 60°: they touch at an angle
+// a with 0.6 sin(60° - a) = 0.05 + 0.1.
+const double kContactAngle = M_PI / 3 - std::asin(0.15 / 0.6);
+
+TEST_F(ProgramTest, FreeIsZero) {
+  const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 40deg,0");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out.rfind("FREE: proven", 0), 0u) << run.out;
+}
+
+TEST_F(ProgramTest, ContactIsOneAndTellsWhatAndWhere) {
+  const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(run.out.rfind("CONTACT: first contact at t = 0.5058", 0), 0u) << run.out;
+  for (const char* part : {"link 'arm'", "obstacle 'ball'", "proven", "hinge = 0.7945", "point", "normal", "pairs"}) {
+    EXPECT_NE(run.out.find(part), std::string::npos) << part << " in\n" << run.out;
+  }
+}
+
+TEST_F(ProgramTest, JsonHasItsKeysAndAllDigits) {
+  const Outcome run = this->run("check --json " + armAndBall() + " --from hinge=0 --to hinge=90deg");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const Json answer = Json::parse(run.out);
+  EXPECT_EQ(answer.at("status"), "contact");
+  EXPECT_EQ(answer.at("certain"), true);
+  const double wanted = kContactAngle / (M_PI / 2);
+  const double t_lower = answer.at("t_lower"), t_upper = answer.at("t_upper");
+  EXPECT_LE(t_lower, wanted);
+  EXPECT_GE(t_upper, wanted);
+  EXPECT_LE(t_upper - t_lower, 2e-6);
+  EXPECT_EQ(answer.at("q_at_t_lower").at("hinge"), t_lower * (90 * (M_PI / 180)));
+
+  const Json& contact = answer.at("contacts").at(0);
+  EXPECT_EQ(answer.at("contacts").size(), 1u);
+  EXPECT_EQ(contact.at("body1").at("name"), "arm");
+  EXPECT_EQ(contact.at("body1").at("kind"), "link");
+  EXPECT_EQ(contact.at("body2").at("name"), "ball");
+  EXPECT_EQ(contact.at("body2").at("kind"), "obstacle");
+  EXPECT_TRUE(contact.at("body1").at("triangle").is_null());
+  EXPECT_EQ(contact.at("feature"), "volume");
+  // The normal is the arm's, turned; the point lies on the ball towards the arm.
+  const double normal[3] = {-std::sin(kContactAngle), std::cos(kContactAngle), 0};
+  const double center[3] = {0.3, 0.519615242270663, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(contact.at("normal").at(i), normal[i], 1e-2);  // shapes overlap by no more than the time's tolerance
+    EXPECT_NEAR(contact.at("point").at(i), center[i] - 0.1 * normal[i], 1e-3);
+  }
+  EXPECT_EQ(answer.at("poses").size(), 3u);
+  const Json& pose = answer.at("poses").at("arm");
+  EXPECT_NEAR(pose.at("quaternion_xyzw").at(2), std::sin(kContactAngle / 2), 2e-6);
+  EXPECT_EQ(pose.at("position").size(), 3u);
+  EXPECT_GE(answer.at("statistics").at("pairs"), 1);
+  for (const char* key : {"robot", "q_from", "q_to", "ignored_initial_contacts", "request", "notes"}) {
+    EXPECT_TRUE(answer.contains(key)) << key;
+  }
+}
+
+TEST_F(ProgramTest, MarginComesEarlier) {
+  const Outcome run = this->run("check --json " + armAndBall() + " --from 0,0 --to 90deg,0 --margin 0.05");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const double wanted = (M_PI / 3 - std::asin(0.2 / 0.6)) / (M_PI / 2);
+  const Json answer = Json::parse(run.out);
+  EXPECT_LE(answer.at("t_lower"), wanted);
+  EXPECT_NEAR(answer.at("t_lower"), wanted, 2e-5);
+}
+
+TEST_F(ProgramTest, ExhaustedBudgetIsThree) {
+  const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --budget 1");
+  EXPECT_EQ(run.status, 3) << run.out << run.err;
+  EXPECT_EQ(run.out.rfind("UNDECIDED", 0), 0u) << run.out;
+}
+
+TEST_F(ProgramTest, NoSceneLeavesTheBallOut) {
+  EXPECT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --no-scene").status, 0);
+}
+
+TEST_F(ProgramTest, EveryPairReportsEachPair) {
+  const std::string second = write("second.urdf", R"(<robot name="second"><link name="ball"><collision>
+    <origin xyz="0.3 0.7 0"/><geometry><sphere radius="0.1"/></geometry></collision></link></robot>)");
+  const Outcome run =
+      this->run("check --json --every-pair " + armAndBall() + " " + second + " --from 0,0 --to 90deg,0");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const Json answer = Json::parse(run.out);
+  ASSERT_EQ(answer.at("contacts").size(), 2u);
+  // Two obstacles of one name: the second one gets a number, and a note says so.
+  EXPECT_EQ(answer.at("contacts").at(0).at("body2").at("name"), "ball");
+  EXPECT_EQ(answer.at("contacts").at(1).at("body2").at("name"), "ball#2");
+  EXPECT_NE(answer.at("notes").dump().find("ball#2"), std::string::npos);
+}
+
+TEST_F(ProgramTest, InitialContactMayBeIgnored) {
+  const std::string motion = " --from " + std::to_string(kContactAngle + 0.01) + ",0 --to 0,0";
+  const Outcome strict = this->run("check --json " + armAndBall() + motion);
+  EXPECT_EQ(strict.status, 1);
+  EXPECT_EQ(Json::parse(strict.out).at("t_lower"), 0.0);
+  const Outcome lenient = this->run("check --json --ignore-initial-contact " + armAndBall() + motion);
+  EXPECT_EQ(lenient.status, 0) << lenient.out;
+  EXPECT_EQ(Json::parse(lenient.out).at("ignored_initial_contacts"), Json::parse(R"([["arm","ball"]])"));
+}
+
+TEST_F(ProgramTest, LimitsAreNoted) {
+  const Outcome run = this->run("check --robot " + arm() + " --from 0,0 --to 0,1.5");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("--to: "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("'rail'"), std::string::npos) << run.out;
+}
+
+TEST_F(ProgramTest, GeneratedPairsAreWrittenAndReadBack) {
+  // Two links on one base that always overlap.
+  const std::string robot = write("twins.urdf", R"(<robot name="twins">
+  <link name="base"/>
+  <link name="a"><collision><geometry><sphere radius="0.2"/></geometry></collision></link>
+  <link name="b"><collision><geometry><sphere radius="0.2"/></geometry></collision></link>
+  <joint name="ja" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="jb" type="revolute"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+</robot>)");
+  const std::string motion = " --robot " + robot + " --from 0,0 --to 0.5,0 ";
+  EXPECT_EQ(this->run("check" + motion).status, 1);
+  const Outcome automatic = this->run("check" + motion + "--auto-srdf " + path("twins.srdf"));
+  EXPECT_EQ(automatic.status, 0) << automatic.out << automatic.err;
+  EXPECT_NE(read(path("twins.srdf")).find("disable_collisions"), std::string::npos);
+  EXPECT_EQ(this->run("check" + motion + "--srdf " + path("twins.srdf")).status, 0);
+  EXPECT_EQ(this->run("check" + motion + "--no-self").status, 0);
+}
+
+TEST_F(ProgramTest, PackagesAreFoundWhereTheyAreNamed) {
+  const std::string robot = write("meshed.urdf", R"(<robot name="meshed"><link name="base"><collision><geometry>
+    <mesh filename="package://parts/tetra.obj"/></geometry></collision></link></robot>)");
+  write("elsewhere/tetra.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string query = "check --robot " + robot + " --from '' --to ''";
+  const Outcome lost = this->run(query);
+  EXPECT_EQ(lost.status, 2);
+  EXPECT_NE(lost.err.find("parts"), std::string::npos) << lost.err;
+  const Outcome found = this->run(query + " --package parts=" + path("elsewhere"));
+  EXPECT_EQ(found.status, 0) << found.err;
+}
+
+/// Each refusal exits with 2, prints nothing but an error, and the error names what is wrong.
+TEST_F(ProgramTest, ErrorsAreTwoAndNameTheThing) {
+  const std::string robot = "--robot " + arm(), motion = " --from 0,0 --to 1,0";
+  const std::string broken = write("broken.urdf", "<robot name=\"x\"><link");
+  const std::string srdf = write("bad.srdf", R"(<robot name="arm"><disable_collisions link1="arm" link2="leg"/></robot>)");
+  const std::string empty = write("empty.obj", "v 0 0 0\n");
+  const struct {
+    std::string arguments, named;
+  } cases[] = {
+      {"check --robot /nowhere/x.urdf" + motion, "/nowhere/x.urdf"},
+      {"check --robot " + broken + motion, "broken.urdf"},
+      {"check " + robot + " --from 0 --to 1,0", "hinge, rail"},
+      {"check " + robot + " --from 0,0 --to 1,nan", "'rail'"},
+      {"check " + robot + " --from 0,0 --to elbow=1", "'elbow'"},
+      {"check " + robot + " --from 0,0 --to rail=1deg", "'rail'"},
+      {"check " + robot + motion + " --scene /nowhere/s.stl", "/nowhere/s.stl"},
+      {"check " + robot + motion + " --scene " + empty, "empty.obj"},
+      {"check " + robot + motion + " --srdf " + srdf, "leg"},
+      {"check " + robot + motion + " --srdf " + srdf + " --auto-srdf x.srdf", "--auto-srdf"},
+      {"check " + robot + motion + " --margin -1", "--margin"},
+      {"check " + robot + motion + " --margin nan", "margin"},
+      {"check " + robot + motion + " --package nodir", "NAME=DIR"},
+      {"check " + robot + motion + " --camera 0,0", "--image"},
+      {"check " + robot + motion + " --image x.png --size 10", "--size"},
+      {"check " + robot + motion + " --image x.png --camera up", "--camera"},
+      {"check " + robot + motion + " --frobnicate", "--frobnicate"},
+      {"check --from 0 --to 0", "--robot"},
+      {"generate", "subcommand"},
+      {"", "subcommand"},
+  };
+  for (const auto& c : cases) {
+    const Outcome run = this->run(c.arguments);
+    EXPECT_EQ(run.status, 2) << c.arguments << "\n" << run.out;
+    EXPECT_EQ(run.out, "") << c.arguments;
+    EXPECT_NE(run.err.find(c.named), std::string::npos) << c.arguments << "\n" << run.err;
+  }
+}
+
+TEST_F(ProgramTest, ErrorsAreJsonToo) {
+  const Outcome run = this->run("check --json --robot " + arm() + " --from 0,0 --to 0");
+  EXPECT_EQ(run.status, 2);
+  const Json answer = Json::parse(run.out);
+  EXPECT_EQ(answer.at("status"), "error");
+  EXPECT_NE(answer.at("error").get<std::string>().find("hinge, rail"), std::string::npos);
+}
+
+TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
+  const Outcome version = this->run("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_EQ(version.out, std::string("fcl_artic ") + FCL_ARTIC_VERSION + "\n");
+  const Outcome help = this->run("check --help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* option :
+       {"--robot", "--srdf", "--auto-srdf", "--scene", "--package", "--from", "--to", "--shortest", "--margin",
+        "--tolerance-time", "--tolerance-distance", "--budget", "--max-contacts", "--every-pair",
+        "--ignore-initial-contact", "--no-self", "--no-scene", "--json", "--image", "--size", "--camera"}) {
+    EXPECT_NE(help.out.find(option), std::string::npos) << option;
+  }
+}
+
+TEST_F(ProgramTest, GeneratedDataIsReadBack) {
+  const std::string robot = path("puma"), pipes = path("pipes.obj");
+  ASSERT_EQ(this->run("generate puma560 " + robot).status, 0);
+  ASSERT_EQ(this->run("generate pipes --triangles 1000 --seed 7 " + pipes).status, 0);
+  ASSERT_EQ(this->run("generate pipes --triangles 1000 --seed 7 " + path("again.obj")).status, 0);
+  EXPECT_EQ(read(pipes), read(path("again.obj")));
+  const Outcome run = this->run("check --json --robot " + robot + "/puma560.urdf --scene " + pipes +
+                                " --from joint1=0 --to joint1=1deg");
+  EXPECT_TRUE(run.status == 0 || run.status == 1) << run.err;
+  EXPECT_EQ(Json::parse(run.out).at("poses").size(), 7u);
+}
+
+TEST_F(ProgramTest, PandaOfTheDataFolder) {
+  const char* data = std::getenv("FCL_ARTIC_DATA");
+  if (!data) GTEST_SKIP() << "PandaOfTheDataFolder: FCL_ARTIC_DATA is not set";
+  const std::string panda = std::string(data) + "/robots/panda/panda";
+  const Outcome run = this->run("check --json --robot " + panda + ".urdf --srdf " + panda +
+                                ".srdf --from 0,-0.785,0,-2.356,0,1.571,0.785,0 --to 0.2,-0.785,0,-2.356,0,1.571,0.785,0");
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+}
+
+}  // namespace
