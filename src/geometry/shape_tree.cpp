@@ -19,19 +19,23 @@ using engine::PieceKind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-float roundUp(double x) { return std::nextafter(static_cast<float>(x * (1 + 1e-15)), std::numeric_limits<float>::max()); }
+/// Nearest float that is surely not below x, whatever the rounding mode.
+float roundUp(double x) {
+  return std::nextafter(std::nextafter(static_cast<float>(x), std::numeric_limits<float>::max()),
+                        std::numeric_limits<float>::max());
+}
+float roundDown(double x) { return -roundUp(-x); }
 
-/// Box of the node; center and half are rounded so that center +- half holds it.
 Node makeNode(const Box& box) {
   Node node;
   double reach = 0, radius = 0;
   for (int k = 0; k < 3; ++k) {
-    node.center[k] = 0.5 * (box.lo[k] + box.hi[k]);
-    const double half = std::max(box.hi[k] - node.center[k], node.center[k] - box.lo[k]);
-    node.half[k] = half + 4e-16 * (std::abs(box.lo[k]) + std::abs(box.hi[k]));
-    const double far = std::abs(node.center[k]) + node.half[k];
+    node.lo[k] = roundDown(box.lo[k]);
+    node.hi[k] = roundUp(box.hi[k]);
+    const double lo = node.lo[k], hi = node.hi[k];
+    const double far = std::max(-lo, hi), half = 0.5 * (hi - lo);
     reach += far * far;
-    radius += node.half[k] * node.half[k];
+    radius += half * half;
   }
   node.reach = roundUp(std::sqrt(reach));
   node.radius = roundUp(std::sqrt(radius));
@@ -203,13 +207,9 @@ void ShapeTree::build() {
   view_.extent = static_cast<double>(nodes_.front().reach);
 }
 
-Eigen::Vector3d ShapeTree::lower() const {
-  return Eigen::Vector3d::Map(nodes_.front().center) - Eigen::Vector3d::Map(nodes_.front().half);
-}
+Eigen::Vector3d ShapeTree::lower() const { return Eigen::Vector3f::Map(nodes_.front().lo).cast<double>(); }
 
-Eigen::Vector3d ShapeTree::upper() const {
-  return Eigen::Vector3d::Map(nodes_.front().center) + Eigen::Vector3d::Map(nodes_.front().half);
-}
+Eigen::Vector3d ShapeTree::upper() const { return Eigen::Vector3f::Map(nodes_.front().hi).cast<double>(); }
 
 std::array<double, 7> ShapeTree::lineSweptSphere() const {
   // Points whose balls hold the body: vertices, or the corners of a shape's box (radii added at the end).

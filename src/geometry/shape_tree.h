@@ -42,8 +42,7 @@ class ShapeTree {
 struct Box {
   double lo[3], hi[3];
 };
-/// Binary tree over boxes, node 0 the root; leaf i holds box ~left. Centers and halves are rounded so that they hold the
-/// boxes. Empty for no boxes.
+/// Binary tree over boxes, node 0 the root; a leaf holds box ~left. Rounded outward. Empty for no boxes.
 std::vector<engine::Node> buildBoxTree(const std::vector<Box>& boxes);
 
 }  // namespace fcl_artic

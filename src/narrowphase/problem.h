@@ -26,11 +26,12 @@ struct Piece {
   double reach = 0;              ///< upper bound of |p| over the core, from the frame's origin
 };
 
-/// Bounding volume: an axis-aligned box in the tree's frame that holds the pieces below it, radii included.
+/// Bounding volume: an axis-aligned box in the tree's frame that holds the pieces below it, radii included. Single
+/// precision, rounded outward: eight lanes then compare in one instruction, and what it loses the leaves win back.
 struct Node {
-  double center[3], half[3];
+  float lo[3], hi[3];
   float reach;   ///< upper bound of |p| over the box, from the frame's origin
-  float radius;  ///< |half|, a size only
+  float radius;  ///< half the box's diagonal, a size only
   std::int32_t left, right;  ///< children; a leaf has left < 0 and holds piece ~left
   bool isLeaf() const { return left < 0; }
   int piece() const { return ~left; }

@@ -31,9 +31,9 @@ using engine::Query;
 using engine::Statistics;
 using engine::Verdict;
 
-/// Swept bounds of a node in the other body's frame, remainder and pad included.
+/// Swept bounds of a node in the other body's frame, remainder, pad and margin included.
 struct SweptBox {
-  Lanes lo[3], hi[3];
+  FloatLanes lo[3], hi[3];
 };
 
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
@@ -105,7 +105,7 @@ class Solver {
 
   Buffer<SweptBox> mover_box_;
   Buffer<Entry> entries_;
-  Buffer<Entry> stack_;
+  Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
   Buffer<double> watch_from_;  ///< per pair, with ignore_initial
   Buffer<std::int32_t> ignored_;
   struct Final {
@@ -197,6 +197,10 @@ inline const FrameLanes* Solver::frames(int sweep) {
   return frames_.data() + first;
 }
 
+FCL_ARTIC_INLINE void middleOf(const Node& node, double* center) {
+  for (int k = 0; k < 3; ++k) center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
+}
+
 /// Relative motion of a pair over this batch, both ways, with remainders and pads.
 inline void Solver::setupPair(int index) {
   const Pair& pair = problem_->pairs[index];
@@ -235,8 +239,10 @@ inline void Solver::setupPair(int index) {
   pose_error_ = kUlp * (b.ulps + kPoseUlps) * sizes + 1e-300;
 
   const Node& root = B.tree->nodes[0];
+  double center[3];
+  middleOf(root, center);
   Lanes v[3];
-  for (int k = 0; k < 3; ++k) v[k] = dot(m.R[1] + 3 * k, root.center) + m.c[1][k];
+  for (int k = 0; k < 3; ++k) v[k] = dot(m.R[1] + 3 * k, center) + m.c[1][k];
   amplitude_ = sqrt(maxLane(dot(v, v))) + s * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
@@ -252,8 +258,13 @@ inline int Solver::sweptNode(int side, int index) {
   SweptBox& box = pool_.grow();
   const RigidLanes& m = side_[side].m;
   const Node& node = side_[side].moving->nodes[index];
-  const Lanes slack(m.rem_c + m.rem_R * static_cast<double>(node.reach) + pad_);
-  const double *c = node.center, *h = node.half;
+  const Lanes slack(m.rem_c + m.rem_R * static_cast<double>(node.reach) + pad_ + query_->margin);
+  double c[3], h[3];  // exact: sums of floats
+  for (int k = 0; k < 3; ++k) {
+    const double lo = node.lo[k], hi = node.hi[k];
+    c[k] = 0.5 * (lo + hi);
+    h[k] = 0.5 * (hi - lo);
+  }
   for (int i = 0; i < 3; ++i) {
     Lanes lo, hi;
     for (int k = 0; k < 3; ++k) {
@@ -263,27 +274,25 @@ inline int Solver::sweptNode(int side, int index) {
       lo = k ? min(lo, center - half) : center - half;
       hi = k ? max(hi, center + half) : center + half;
     }
-    box.lo[i] = lo - slack;
-    box.hi[i] = hi + slack;
+    box.lo[i] = narrowDown(lo - slack);
+    box.hi[i] = narrowUp(hi + slack);
   }
   return cached.slot;
 }
 
-FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const double* center, const double* half, double margin) {
+/// Lanes in which a swept box and a still one are apart along an axis.
+FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
   unsigned mask = 0;
-  for (int i = 0; i < 3; ++i) {
-    mask |= greater(box.lo[i], Lanes(center[i] + half[i] + margin));
-    mask |= greater(Lanes(center[i] - half[i] - margin), box.hi[i]);
-  }
+  for (int i = 0; i < 3; ++i) mask |= greater(box.lo[i], node.hi[i]) | greater(node.lo[i], box.hi[i]);
   return mask;
 }
 
 inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   ++statistics_.node_tests;
   const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
-  mask &= ~apart(pool_[sweptNode(0, b)], A.center, A.half, query_->margin);
+  mask &= ~apart(pool_[sweptNode(0, b)], A);
   if (!mask) return 0;
-  return mask & ~apart(pool_[sweptNode(1, a)], B.center, B.half, query_->margin);
+  return mask & ~apart(pool_[sweptNode(1, a)], B);
 }
 
 inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane) const {
@@ -371,15 +380,20 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
 /// Dual traversal from one node pair; what stays undecided is appended to entries_.
 inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
-  stack_.clear();
-  stack_.push({pair, a, b, mask});
+  // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
+  const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
+  push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
-  while (stack_.size()) {
-    Entry e = stack_[stack_.size() - 1];
-    stack_.truncate(stack_.size() - 1);
+  for (int lane = 0; lane < kLanes;) {
+    if (stack_[lane].size() == 0) {
+      ++lane;
+      continue;
+    }
+    Entry e = stack_[lane][stack_[lane].size() - 1];
+    stack_[lane].truncate(stack_[lane].size() - 1);
     e.mask &= live_;
     if (!e.mask) continue;
-    if (outOfBudget()) return;
+    if (outOfBudget()) break;
     e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
@@ -395,13 +409,14 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time) {
       entries_.push(e);
     } else if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
-      stack_.push({pair, x.right, e.b, e.mask});
-      stack_.push({pair, x.left, e.b, e.mask});
+      push({pair, x.right, e.b, e.mask});
+      push({pair, x.left, e.b, e.mask});
     } else {
-      stack_.push({pair, e.a, y.right, e.mask});
-      stack_.push({pair, e.a, y.left, e.mask});
+      push({pair, e.a, y.right, e.mask});
+      push({pair, e.a, y.left, e.mask});
     }
   }
+  for (Buffer<Entry>& stack : stack_) stack.clear();
 }
 
 /// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
@@ -409,19 +424,20 @@ inline void Solver::sweptLss(int mover, SweptBox& box) {
   const Body& body = problem_->bodies[problem_->movers[mover]];
   if (body.step < 0) {
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] = Lanes(body.lo[k]);
-      box.hi[k] = Lanes(body.hi[k]);
+      box.lo[k] = narrowDown(Lanes(body.lo[k] - query_->margin));
+      box.hi[k] = narrowUp(Lanes(body.hi[k] + query_->margin));
     }
     return;
   }
   const FrameLanes& f = frames(0)[body.step];
   const StepBounds& b = bounds_[first_step_[0] + body.step];
   const double third = d_ * d_ * d_ / 6 * (1 + 1e-12);
+  Lanes lower[3], upper[3];
   for (int end = 0; end < 2; ++end) {
     const double* p = body.lss + 3 * end;
     const double reach = norm(p) * (1 + 1e-15), s = b.s;
     const double growth = (1 + s * d_) * (1 + s * d_);
-    const Lanes slack(body.lss[6] + (b.D3 + s * s * s * reach) * third +
+    const Lanes slack(query_->margin + body.lss[6] + (b.D3 + s * s * s * reach) * third +
                       kUlp * (b.ulps + kCertificateUlps) * growth * (b.length + b.D1 * d_ + reach + body.lss[6]) + 1e-300);
     Lanes x[3], x1[3], u[3], e[3];
     for (int k = 0; k < 3; ++k) x[k] = dot(f.R + 3 * k, p);
@@ -432,46 +448,39 @@ inline void Solver::sweptLss(int mover, SweptBox& box) {
       const Lanes c0 = f.o[k] + x[k], c1 = f.v[k] + x1[k], c2 = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
       const Lanes sum = c0 + c2, middle = c0 - c2, reach1 = abs(c1);
       const Lanes lo = min(sum - reach1, middle) - slack, hi = max(sum + reach1, middle) + slack;
-      box.lo[k] = end ? min(box.lo[k], lo) : lo;
-      box.hi[k] = end ? max(box.hi[k], hi) : hi;
+      lower[k] = end ? min(lower[k], lo) : lo;
+      upper[k] = end ? max(upper[k], hi) : hi;
     }
+  }
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = narrowDown(lower[k]);
+    box.hi[k] = narrowUp(upper[k]);
   }
 }
 
 /// Stage 1: pairs whose swept bounds meet, with the lanes in which they do, to entries_.
 inline void Solver::cull() {
   beginBatch(0, 1);
-  const double margin = query_->margin;
   mover_box_.resize(problem_->num_movers);
   for (int m = 0; m < problem_->num_movers; ++m) sweptLss(m, mover_box_[m]);
   if (query_->check_scene && problem_->obstacle_tree) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
     for (int m = 0; m < problem_->num_movers; ++m) {
       const SweptBox& box = mover_box_[m];
-      double lo[3], hi[3];
-      for (int k = 0; k < 3; ++k) {
-        lo[k] = minLane(box.lo[k]) - margin;
-        hi[k] = maxLane(box.hi[k]) + margin;
-      }
-      stack_.clear();
-      stack_.push({0, 0, 0, 0});
-      while (stack_.size()) {
-        const Node& node = problem_->obstacle_tree[stack_[stack_.size() - 1].a];
-        stack_.truncate(stack_.size() - 1);
-        bool out = false;
-        for (int k = 0; k < 3; ++k) {
-          out |= lo[k] > node.center[k] + node.half[k] || hi[k] < node.center[k] - node.half[k];
-        }
-        if (out) continue;
+      Buffer<Entry>& stack = stack_[0];
+      stack.push({0, 0, 0, 0});
+      while (stack.size()) {
+        const Node& node = problem_->obstacle_tree[stack[stack.size() - 1].a];
+        stack.truncate(stack.size() - 1);
+        const unsigned mask = kAllLanes & ~apart(box, node);
+        if (!mask) continue;
         if (!node.isLeaf()) {
-          stack_.push({0, node.right, 0, 0});
-          stack_.push({0, node.left, 0, 0});
+          stack.push({0, node.right, 0, 0});
+          stack.push({0, node.left, 0, 0});
           continue;
         }
         const int pair = problem_->scene_pair[m * problem_->num_obstacles + node.piece()];
-        if (pair < 0) continue;
-        const unsigned mask = kAllLanes & ~apart(box, node.center, node.half, margin);
-        if (mask) entries_.push({pair, 0, 0, mask});
+        if (pair >= 0) entries_.push({pair, 0, 0, mask});
       }
     }
   }
@@ -482,7 +491,7 @@ inline void Solver::cull() {
       const SweptBox& b = mover_box_[problem_->bodies[problem_->pairs[p].b].mover];
       unsigned mask = 0;
       for (int k = 0; k < 3; ++k) {
-        mask |= greater(a.lo[k] - Lanes(margin), b.hi[k]) | greater(b.lo[k] - Lanes(margin), a.hi[k]);
+        mask |= greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
       }
       mask = kAllLanes & ~mask;
       if (mask) entries_.push({p, 0, 0, mask});
@@ -701,10 +710,11 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
     if (!f.have_normal) {
       // In contact from the start: the direction between the pieces' middles is the best there is.
       const DifferenceBody body = differenceAt(a, b, 0);
-      double m[3], size = 0;
-      const Node &x = side_[0].still->nodes[f.entry.a], &y = side_[0].moving->nodes[f.entry.b];
+      double m[3], x[3], y[3], size = 0;
+      middleOf(side_[0].still->nodes[f.entry.a], x);
+      middleOf(side_[0].moving->nodes[f.entry.b], y);
       for (int j = 0; j < 3; ++j) {
-        m[j] = dot(body.pose.R + 3 * j, y.center) + body.pose.c[j] - x.center[j];
+        m[j] = dot(body.pose.R + 3 * j, y) + body.pose.c[j] - x[j];
         size += m[j] * m[j];
       }
       for (int j = 0; j < 3; ++j) f.normal[j] = size > 0 ? m[j] / sqrt(size) : (j == 2);

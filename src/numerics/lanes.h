@@ -89,6 +89,56 @@ FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
   for (int i = 0; i < kRegisters; ++i) mask |= regGreater(a.r[i], b.r[i]) << (i * kRegisterLanes);
   return mask;
 }
+/// Eight floats: ends of boxes, rounded outward, that only get compared.
+struct alignas(32) FloatLanes {
+#if FCL_ARTIC_ISA_BITS == 128
+  __m128 r[2];
+#else
+  __m256 r;
+#endif
+};
+#if FCL_ARTIC_ISA_BITS == 128
+FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
+  FloatLanes o;
+  for (int i = 0; i < 2; ++i) o.r[i] = _mm_movelh_ps(_mm_cvtpd_ps(a.r[2 * i]), _mm_cvtpd_ps(a.r[2 * i + 1]));
+  return o;
+}
+FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, float b) {
+  const __m128 y = _mm_set1_ps(b);
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.r[0], y)) | _mm_movemask_ps(_mm_cmpgt_ps(a.r[1], y)) << 4);
+}
+FCL_ARTIC_INLINE unsigned greater(float a, const FloatLanes& b) {
+  const __m128 x = _mm_set1_ps(a);
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(x, b.r[0])) | _mm_movemask_ps(_mm_cmpgt_ps(x, b.r[1])) << 4);
+}
+#else
+FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
+#if FCL_ARTIC_ISA_BITS == 512
+  return {_mm512_cvtpd_ps(a.r[0])};
+#else
+  return {_mm256_set_m128(_mm256_cvtpd_ps(a.r[1]), _mm256_cvtpd_ps(a.r[0]))};
+#endif
+}
+FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, float b) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.r, _mm256_set1_ps(b), _CMP_GT_OQ)));
+}
+FCL_ARTIC_INLINE unsigned greater(float a, const FloatLanes& b) {
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(_mm256_set1_ps(a), b.r, _CMP_GT_OQ)));
+}
+#endif
+FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, const FloatLanes& b) {
+#if FCL_ARTIC_ISA_BITS == 128
+  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.r[0], b.r[0])) |
+                               _mm_movemask_ps(_mm_cmpgt_ps(a.r[1], b.r[1])) << 4);
+#else
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.r, b.r, _CMP_GT_OQ)));
+#endif
+}
+/// Conversion to float errs by at most 2^-23 of the value in any rounding mode; twice that, and a normal number for
+/// values that would vanish, make the result a bound.
+FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) { return narrow(a - mulAdd(abs(a), 0x1p-22, 1e-37)); }
+FCL_ARTIC_INLINE FloatLanes narrowUp(Lanes a) { return narrow(a + mulAdd(abs(a), 0x1p-22, 1e-37)); }
+
 FCL_ARTIC_INLINE double maxLane(Lanes a) {
   double m = a[0];
   for (int i = 1; i < kLanes; ++i) m = a[i] > m ? a[i] : m;
