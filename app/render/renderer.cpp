@@ -24,7 +24,7 @@ using Eigen::Vector3f;
 constexpr int kSupersampling = 2;  // kResolveFragment averages 2 x 2
 constexpr int kShadowSize = 4096;
 constexpr float kCreaseCosine = 0.77f;  // edges sharper than 40 degrees stay sharp
-const Vector3d kSun = Vector3d(0.38, -0.52, 0.92).normalized();  // direction to the sun
+constexpr float kSeeThrough = 0.38f;    // of the robot behind obstacles
 
 class Program {
  public:
@@ -178,6 +178,16 @@ Matrix4f orthographic(double half_width, double near, double far) {
   m(2, 2) = static_cast<float>(-2 / (far - near));
   m(2, 3) = static_cast<float>(-(far + near) / (far - near));
   return m;
+}
+
+/// Direction to the sun: high, over the viewer's right shoulder, so that what is seen is lit.
+Vector3d sunFor(const Camera& camera) {
+  const Vector3d back = camera.eye - camera.target;
+  const Vector3d level = std::hypot(back.x(), back.y()) > 1e-6 * std::abs(back.z())
+                             ? Vector3d(back.x(), back.y(), 0).normalized()
+                             : -Vector3d::UnitY();
+  constexpr double kTurn = 0.75;  // rad
+  return (Eigen::AngleAxisd(kTurn, Vector3d::UnitZ()) * level + 1.45 * Vector3d::UnitZ()).normalized();
 }
 
 /// A square around `center` in a horizontal plane.
@@ -356,9 +366,10 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
 
   const Matrix4f view_projection = perspective(static_cast<double>(width) / height, camera.near, camera.far) *
                                    lookAt(camera.eye, camera.target);
+  const Vector3d sun = sunFor(camera);
   const double shadow_radius = 1.8 * stage.radius, sun_distance = 20 * stage.radius;
   const Matrix4f shadow_matrix = orthographic(shadow_radius, 0, 2 * sun_distance) *
-                                 lookAt(stage.focus + sun_distance * kSun, stage.focus);
+                                 lookAt(stage.focus + sun_distance * sun, stage.focus);
   const Vector3f eye = camera.eye.cast<float>();
 
   Body ground;
@@ -439,7 +450,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     p.set("view_projection", view_projection);
     p.set("shadow_matrix", shadow_matrix);
     p.set("eye", eye);
-    p.set("sun", Vector3f(kSun.cast<float>()));
+    p.set("sun", Vector3f(sun.cast<float>()));
     p.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
   };
   glEnable(GL_DEPTH_TEST);
@@ -463,16 +474,21 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
 
   // Translucent layers: each is drawn by itself against the solid depth, so that it shows its nearest surface only.
   const Target layer_target(w, h, &layer, &layer_depth);
-  const auto lay = [&](const std::vector<Body>& bodies, float opacity, float rim, bool over_all) {
+  struct Lay {
+    float opacity = 1, rim = 0;  // rim: how much more of it shows at silhouettes
+    bool over_all = false;       // not hidden by anything
+    int outline = 0;             // pixels of light rim
+  };
+  const auto lay = [&](const std::vector<Body>& bodies, const Lay& how) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, layer_target.id);
-    if (!over_all) glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    if (!how.over_all) glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
     layer_target.begin();
     glClearColor(0, 0, 0, 0);
-    glClear(over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+    glClear(how.over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
     light(body_program);
-    body_program.set("opacity", opacity);
-    body_program.set("rim", rim);
+    body_program.set("opacity", how.opacity);
+    body_program.set("rim", how.rim);
     body_program.set("use_occlusion", 0);
     for (const Body& body : bodies) gl.drawMaterial(body);
     main_target.begin();
@@ -483,14 +499,19 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     normal.bind(1);
     programs.layer.set("layer", 0);
     programs.layer.set("normal_map", 1);
-    programs.layer.set("outline", over_all ? 3 * kSupersampling / 2 : 0);
+    programs.layer.set("outline", how.outline);
     programs.layer.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
     gl.drawScreen();
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
   };
-  for (const Ghost& ghost : stage.ghosts) lay(ghost.bodies, ghost.opacity, 1, false);
-  if (!stage.annotations.empty()) lay(stage.annotations, 1, 0, true);
+  std::vector<Body> important;
+  for (const Body& body : stage.solid) {
+    if (body.clear_of_ghosts) important.push_back(body);
+  }
+  lay(important, {kSeeThrough, 0.3f, true, 0});
+  for (const Ghost& ghost : stage.ghosts) lay(ghost.bodies, {ghost.opacity, 1, false, 0});
+  if (!stage.annotations.empty()) lay(stage.annotations, {1, 0, true, 3 * kSupersampling / 2});
 
   // Down to the picture's size.
   const Texture final_color(width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);

@@ -29,7 +29,7 @@ struct Body {
   float highlight_floor = 0;                             ///< share mixed in everywhere
   float glow = 0;                                        ///< 0: shaded, 1: flat colour
   bool throws_shadow = true;
-  bool clear_of_ghosts = false;                          ///< ghosts in front of it are nearly invisible
+  bool clear_of_ghosts = false;  ///< ghosts in front of it are nearly invisible, and it shimmers through obstacles
 };
 
 /// One translucent pose.
