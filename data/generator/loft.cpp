@@ -70,11 +70,11 @@ std::vector<Eigen::Vector2d> hullOfCircles(const std::vector<Circle>& circles, d
   constexpr double kTie = 1e-9;
   std::vector<Eigen::Vector2d> hull;
   for (const Eigen::Vector2d& u : unitCircle(n)) {
-    const Circle* best = nullptr;
-    double best_support = 0;
+    const Circle* best = &circles.front();
+    double best_support = -1e300;
     for (const Circle& c : circles) {
       const double support = c.x * u.x() + c.y * u.y() + c.radius;
-      if (best && support <= best_support + kTie) continue;
+      if (support <= best_support + kTie) continue;
       best = &c;
       best_support = support;
     }
