@@ -150,7 +150,6 @@ TEST_F(SceneTest, OctoMapFullTreeHasItsOccupiedCells) {
 }
 
 TEST_F(SceneTest, OctoMapErrorsNameTheFile) {
-  testing::internal::CaptureStderr();  // octomap prints its reasons as well
   expectContains(errorOf("text.bt", "hello\n"), "text.bt': ");
   expectContains(errorOf("text.ot", "hello\n"), "text.ot': ");
   expectContains(errorOf("empty.bt", ""), "empty.bt': ");
@@ -159,7 +158,10 @@ TEST_F(SceneTest, OctoMapErrorsNameTheFile) {
   expectContains(errorOf("wrong.ot", kBinary), "wrong.ot': ");
   expectContains(errorOf("cut.ot", octomap("Octomap OcTree file", 3, node(1, 0x81) + node(-1, 0))), "cut.ot': ");
   expectContains(errorOf("deep.ot", octomap("Octomap OcTree file", 1, node(1, 0xff))), "deep.ot': ");
-  testing::internal::GetCapturedStderr();
+  expectContains(errorOf("size.bt", octomap("Octomap OcTree binary file", 5, "\x09\x80")), "4 nodes, its head says 5");
+  std::string other = kBinary;
+  other.replace(other.find("id OcTree"), 9, "id Other");
+  expectContains(errorOf("other.bt", other), "other.bt': holds a tree of type 'Other'");
 }
 
 TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {

@@ -32,8 +32,7 @@ class SceneBuilder {
   std::map<std::string, int> uses_;
 };
 
-// --- MoveIt's scene text: objects of shapes, each with a pose (position, quaternion xyzw) and a colour.
-// ---------------
+// MoveIt's scene text: objects of shapes, each with a pose (position, quaternion xyzw) and a colour.
 
 class MoveItSceneReader {
  public:
@@ -147,52 +146,75 @@ class MoveItSceneReader {
   SceneBuilder& builder_;
 };
 
-// --- OctoMap
-// ----------------------------------------------------------------------------------------------------------
-
 template <class Tree>
-void addOccupiedCells(const Tree& tree, const std::string& name, SceneBuilder& builder) {
+void addOccupiedCells(const Tree& tree, const std::string& path, SceneBuilder& builder) {
+  const std::string name = fs::path(path).stem().string();
   std::map<double, detail::GeometryPtr> boxes;  // cells of one size share their box
   for (auto cell = tree.begin_leafs(); cell != tree.end_leafs(); ++cell) {
     if (!tree.isNodeOccupied(*cell)) continue;
     auto& box = boxes[cell.getSize()];
-    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(cell.getSize()), name);
+    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(cell.getSize()), "'" + path + "'");
     builder.add(name, box, Eigen::Isometry3d(Eigen::Translation3d(cell.getX(), cell.getY(), cell.getZ())));
   }
+}
+
+struct OctoMapHeader {
+  std::string id;
+  std::size_t size = 0;  ///< nodes
+  double resolution = 0;
+};
+
+/// Reads up to the line "data", after which the nodes begin.
+OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title) {
+  OctoMapHeader header;
+  std::string line, key;
+  std::getline(in, line);
+  if (line.rfind(title, 0) != 0) return header;
+  while (std::getline(in, line) && line != "data") {
+    std::istringstream words(line);
+    words.imbue(std::locale::classic());
+    words >> key;
+    if (key == "id") words >> header.id;
+    if (key == "size") words >> header.size;
+    if (key == "res") words >> header.resolution;
+  }
+  return header;
+}
+
+template <class Tree>
+void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const std::string& path,
+              SceneBuilder& builder) {
+  Tree tree(header.resolution);
+  if (header.size > 0) binary ? tree.readBinaryData(in) : tree.readData(in);
+  if (tree.size() != header.size) {
+    fail("'" + path + "'",
+         "holds " + std::to_string(tree.size()) + " nodes, its head says " + std::to_string(header.size));
+  }
+  addOccupiedCells(tree, path, builder);
 }
 
 void readOctoMap(const std::string& path, bool binary, SceneBuilder& builder) {
   const std::string where = "'" + path + "'";
   std::istringstream in(detail::readFile(path), std::ios::binary);
-  // OctoMap reads on past the end of a file that is cut short, over and over; with exceptions it stops there.
+  // OctoMap's readers go on past the end of a file that is cut short; an exception stops them.
   in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-  std::unique_ptr<octomap::AbstractOcTree> tree;
   try {
-    if (binary) {
-      auto occupancy = std::make_unique<octomap::OcTree>(1.0);  // the resolution comes with the file
-      if (occupancy->readBinary(in)) tree = std::move(occupancy);
+    const auto header = readOctoMapHeader(in, binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file");
+    if (header.id.empty() || !(header.resolution > 0)) {
+      fail(where, std::string("is not an OctoMap file of the kind ") + (binary ? ".bt" : ".ot"));
+    }
+    if (header.id == "OcTree") {
+      readTree<octomap::OcTree>(in, header, binary, path, builder);
+    } else if (header.id == "ColorOcTree" && !binary) {
+      readTree<octomap::ColorOcTree>(in, header, binary, path, builder);
     } else {
-      tree.reset(octomap::AbstractOcTree::read(in));
+      fail(where, "holds a tree of type '" + header.id + "', which is not read");
     }
   } catch (const std::ios::failure&) {
     fail(where, "is not an OctoMap file or is cut short");
   }
-  if (!tree)
-    fail(where, std::string("is not an OctoMap file of the kind its ending tells: ") + (binary ? ".bt" : ".ot"));
-
-  const std::string name = fs::path(path).stem().string();
-  if (const auto* plain = dynamic_cast<const octomap::OcTree*>(tree.get())) {
-    addOccupiedCells(*plain, name, builder);
-  } else if (const auto* colour = dynamic_cast<const octomap::ColorOcTree*>(tree.get())) {
-    addOccupiedCells(*colour, name, builder);
-  } else {
-    fail(where, "holds a " + tree->getTreeType() + "; OcTree and ColorOcTree are read");
-  }
   if (builder.scene.obstacles.empty()) builder.scene.notes.push_back(where + ": no cell is occupied");
 }
-
-// --- URDF
-// -------------------------------------------------------------------------------------------------------------
 
 void readRobot(const std::string& path, SceneBuilder& builder) {
   const Robot robot = loadUrdf(path);
