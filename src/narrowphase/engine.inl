@@ -25,11 +25,16 @@ void solve(void* workspace, const Problem& problem, const Query& query, Answer& 
   static_cast<Solver*>(workspace)->solve(problem, query, answer);
 }
 
+void pairMotion(void* workspace, int pair, double tm, double d, engine::PairMotion& motion) {
+  static_cast<Solver*>(workspace)->pairMotion(pair, tm, d, motion);
+}
+
 }  // namespace
 }  // namespace FCL_ARTIC_ISA
 
 namespace engine {
 const Engine FCL_ARTIC_ISA_ENGINE = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), &FCL_ARTIC_ISA::createWorkspace,
-                                     &FCL_ARTIC_ISA::destroyWorkspace, &FCL_ARTIC_ISA::solve};
+                                     &FCL_ARTIC_ISA::destroyWorkspace, &FCL_ARTIC_ISA::solve,
+                                     &FCL_ARTIC_ISA::pairMotion};
 }  // namespace engine
 }  // namespace fcl_artic

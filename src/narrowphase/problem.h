@@ -149,6 +149,14 @@ struct Answer {
   Statistics statistics;
 };
 
+/// Motion of B's tree frame in A's over [tm - d, tm + d]: X(t) = X[0] + tau X[1] + tau^2 X[2] + e, tau = (t - tm) / d, for
+/// the rotation R (row-major) and the position c; a point p of B is at R p + c, up to |e| <= rem_c + rem_R |p| + pad.
+struct PairMotion {
+  double R[3][9], c[3][3];
+  double rem_c, rem_R;  ///< what the quadratic leaves out: shrinks like d^3
+  double pad;           ///< rounding: does not shrink
+};
+
 /// The engine as compiled for one instruction set.
 struct Engine {
   const char* name;
@@ -156,6 +164,8 @@ struct Engine {
   void (*destroyWorkspace)(void* workspace);
   /// One workspace serves one thread at a time; nothing in it reaches the next answer.
   void (*solve)(void* workspace, const Problem& problem, const Query& query, Answer& answer);
+  /// Motion of a pair of the problem that this workspace solved last.
+  void (*pairMotion)(void* workspace, int pair, double tm, double d, PairMotion& motion);
 };
 
 /// The widest engine that this processor runs; FCL_ARTIC_ISA=sse2|avx2|avx512 in the environment asks for less.

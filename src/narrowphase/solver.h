@@ -45,6 +45,7 @@ struct Entry {
 class Solver {
  public:
   void solve(const Problem& problem, const Query& query, Answer& answer);
+  void pairMotion(int pair, double tm, double d, engine::PairMotion& motion);
 
  private:
   enum class Step { free, done };
@@ -247,6 +248,21 @@ inline void Solver::setupPair(int index) {
   ++pair_epoch_;
   pool_.clear();
   for (int i = 0; i < 2; ++i) cached_[i].resize(max(cached_[i].size(), side_[i].moving->num_nodes));
+}
+
+/// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be there.
+inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion& motion) {
+  const double middles[kLanes] = {tm, tm, tm, tm, tm, tm, tm, tm};
+  evaluateAt(middles, d);
+  setupPair(pair);
+  const RigidLanes& m = side_[0].m;
+  for (int order = 0; order < 3; ++order) {
+    for (int i = 0; i < 9; ++i) motion.R[order][i] = m.R[order][i][0];
+    for (int i = 0; i < 3; ++i) motion.c[order][i] = m.c[order][i][0];
+  }
+  motion.rem_c = m.rem_c;
+  motion.rem_R = m.rem_R;
+  motion.pad = pad_;
 }
 
 /// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this batch.
