@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <fcl_artic/fcl_artic.h>
+
+#include "scene.h"
+
+namespace campaign {
+
+/// The library's answer to a scene, with what is needed to read it.
+struct Answer {
+  fcl_artic::CertifiedResult result;
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;  ///< one for each body of the scene
+  double elapsed_us = 0;                                        ///< of the query alone
+
+  /// Body of the scene, -1 when it is none.
+  int bodyOf(const fcl::CollisionObjectd* object) const;
+};
+
+/// Asks the library through its public interface. The only place of the campaign that links to it.
+Answer ask(const Scene& scene);
+
+/// The tree and motion of a scene, in the library's types.
+std::shared_ptr<const fcl_artic::KinematicTree> treeOf(const Scene& scene);
+fcl_artic::JointMotion motionOf(const Scene& scene, const fcl_artic::KinematicTree& tree);
+
+}  // namespace campaign

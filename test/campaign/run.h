@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "checks.h"
+
+namespace campaign {
+
+struct Options {
+  std::uint64_t queries = 20000;
+  std::uint64_t seed = 1;
+  int threads = 2;
+  std::string family;  ///< only this class; empty: all, in their shares
+  Corruption corruption = Corruption::none;
+  std::function<void(std::uint64_t done)> progress;  ///< called from any thread
+};
+
+/// Counts of one class, or of all.
+struct Tally {
+  std::uint64_t queries = 0;
+  std::uint64_t hits = 0;      ///< sampled contacts
+  std::uint64_t doubtful = 0;  ///< contact by the rounded corners alone, at no time a clear one
+  std::uint64_t starts = 0;    ///< hits at t = 0
+  std::uint64_t ends_free = 0; ///< hits with both ends of the motion free
+  std::uint64_t grazes = 0;    ///< no hit, and a least gap below 1e-3 m
+  std::uint64_t answers_contact = 0, certain = 0, uncertain = 0, undecided = 0;
+  std::uint64_t beyond_sampling = 0;  ///< certain contacts that the samples did not find
+  std::uint64_t corrupted = 0, corrupted_seen = 0;
+  std::array<std::uint64_t, kFaults> faults{};  ///< queries with this fault
+  std::vector<float> lead;     ///< sampled contact time - t_lower, of hits that are certain
+  double query_us = 0, generate_us = 0, oracle_us = 0;
+
+  std::uint64_t faulty() const;
+  double hitShare() const { return queries ? static_cast<double>(hits) / static_cast<double>(queries) : 0; }
+  void add(const Tally& other);
+};
+
+struct Failure {
+  std::string family;
+  std::uint64_t seed;
+  std::vector<Finding> findings;
+};
+
+struct Report {
+  std::map<std::string, Tally> families;
+  Tally total;
+  std::vector<Failure> failures;  ///< in the order of the queries, at most 1,000
+  double elapsed_s = 0;
+};
+
+Report run(const Options& options);
+
+/// One query again, in words: the scene, the oracle's findings, the answer, the faults.
+/// @return whether it is without fault
+bool replay(const std::string& family, std::uint64_t seed, std::string& words);
+
+std::string toText(const Report& report);
+
+}  // namespace campaign
