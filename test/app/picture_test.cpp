@@ -155,7 +155,7 @@ TEST_F(ProgramTest, PictureFollowsTheCamera) {
 }
 
 TEST_F(ProgramTest, UnwritablePictureIsAnError) {
-  const Outcome run = this->run("check --robot " + arm() + " --from 0,0 --to 1,0 --image /nowhere/x.png");
+  const Outcome run = this->run("check --robot " + arm() + " --from 0,0 --to 1,0 --size 64x64 --image /nowhere/x.png");
   EXPECT_EQ(run.status, 2);
   EXPECT_NE(run.err.find("/nowhere/x.png"), std::string::npos) << run.err;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The built program, run on small inputs: exit statuses, what it prints, what it refuses.
 #include <cmath>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -107,7 +108,9 @@ TEST_F(ProgramTest, InitialContactMayBeIgnored) {
   EXPECT_EQ(Json::parse(strict.out).at("t_lower"), 0.0);
   const Outcome lenient = this->run("check --json --ignore-initial-contact " + armAndBall() + motion);
   EXPECT_EQ(lenient.status, 0) << lenient.out;
-  EXPECT_EQ(Json::parse(lenient.out).at("ignored_initial_contacts"), Json::parse(R"([["arm","ball"]])"));
+  const Json ignored = Json::parse(lenient.out).at("ignored_initial_contacts");
+  ASSERT_EQ(ignored.size(), 1u);
+  EXPECT_EQ((std::set<std::string>{ignored[0].at(0), ignored[0].at(1)}), (std::set<std::string>{"arm", "ball"}));
 }
 
 TEST_F(ProgramTest, LimitsAreNoted) {
@@ -218,8 +221,16 @@ TEST_F(ProgramTest, GeneratedDataIsReadBack) {
   const Outcome run = this->run("check --json --robot " + robot + "/puma560.urdf --scene " + pipes +
                                 " --from joint1=0 --to joint1=1deg");
   EXPECT_TRUE(run.status == 0 || run.status == 1) << run.err;
-  EXPECT_EQ(Json::parse(run.out).at("poses").size(), 7u);
+  EXPECT_TRUE(Json::parse(run.out).at("poses").contains("flange"));
 }
+
+#ifndef FCL_ARTIC_HAS_PICTURES
+TEST_F(ProgramTest, WithoutOsMesaPicturesAreRefused) {
+  const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 1,0 --image " + path("x.png"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("without OSMesa"), std::string::npos) << run.err;
+}
+#endif
 
 TEST_F(ProgramTest, PandaOfTheDataFolder) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
