@@ -58,8 +58,15 @@ int main(int argc, char** argv) {
 
       const std::size_t n = std::min(rival_count, motions.size());
       const auto rival = [&](const std::string& method, std::function<Answer(const JointMotion&)> ask) {
-        report.add(name, set, method, [&certified, &motions, &report, n, name, set, method, ask] {
-          Measured measured = measure(n, 1, [&](std::size_t i) { return ask(motions[i]); });
+        report.add(name, set, method, [&certified, &rivals, &motions, &report, n, passes, name, set, method, ask] {
+          std::size_t pairs = 0;
+          Measured measured = measure(n, passes, [&](std::size_t i) {
+            const Answer answer = ask(motions[i]);
+            pairs += rivals->takePairsLeft();
+            return answer;
+          });
+          const double runs = static_cast<double>(n) * passes;
+          if (pairs > 0) measured.row.per_query = {{"pairs_after_boxes", static_cast<double>(pairs) / runs}};
           std::size_t missed = 0, false_alarms = 0;
           double late = 0;
           for (std::size_t i = 0; i < n; ++i) {

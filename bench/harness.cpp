@@ -56,9 +56,18 @@ nlohmann::json toJson(const Row& row) {
           {"per_query", per_query}};
 }
 
+/// One minute's load average: what else ran on the machine.
+std::string load() {
+  std::ifstream in("/proc/loadavg");
+  std::string one_minute;
+  in >> one_minute;
+  return one_minute;
+}
+
 nlohmann::json circumstances() {
   return {{"machine", machineName()}, {"cpu", cpuField("model name")}, {"compiler", "g++ " __VERSION__},
-          {"flags", BENCH_FLAGS},     {"fcl", FCL_VERSION}};
+          {"flags", BENCH_FLAGS},     {"fcl", FCL_VERSION},
+          {"load", load()}};
 }
 
 }  // namespace
@@ -151,9 +160,9 @@ void Report::add(const std::string& scene, const std::string& set, const std::st
 
 std::string Report::table() const {
   const auto about = circumstances();
-  std::string out = fmt::format("{}\n{}; {}; {}; FCL {}\n\n", program_, about["cpu"].get<std::string>(),
+  std::string out = fmt::format("{}\n{}; {}; {}; FCL {}; load average {}\n\n", program_, about["cpu"].get<std::string>(),
                                 about["compiler"].get<std::string>(), about["flags"].get<std::string>(),
-                                about["fcl"].get<std::string>());
+                                about["fcl"].get<std::string>(), about["load"].get<std::string>());
   out += fmt::format("{:<18} {:<6} {:<30} {:>7} {:>5} {:>11} {:>11} {:>11} {:>9} {:>16}\n", "scene", "set", "method",
                      "queries", "hits", "median us", "mean us", "p95 us", "mean toc", "answers");
   for (const Row& r : rows_) {

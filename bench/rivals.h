@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
@@ -100,7 +101,8 @@ class FclRivals {
     return kFree;
   }
 
-  std::size_t pairsLeft() const { return pairs_left_; }
+  /// Pairs that the swept boxes have left since the last call.
+  std::size_t takePairsLeft() { return std::exchange(pairs_left_, 0); }
 
  private:
   /// Encloses a swept mesh: boxes at evenly spaced times, grown by how far a point can leave the chord between two of
@@ -126,7 +128,6 @@ class FclRivals {
   template <class Pair>
   double overPairs(const JointMotion& motion, Pair&& pair) const {
     double first = kFree;
-    pairs_left_ = 0;
     for (std::size_t i = 0; i < link_rss_.size(); ++i) {
       const FclLinkMotion link_motion(*scene_.tree, motion, scene_.links[i].link, scene_.links[i].offset);
       const fcl::AABBd swept = sweptBox(link_rss_[i]->aabb_local, link_motion);
