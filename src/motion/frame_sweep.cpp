@@ -22,12 +22,27 @@ Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
 
 engine::Placement makePlacement(const Eigen::Isometry3d& M) {
   engine::Placement p;
+  p.ulps = kTransformUlps;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) p.R[3 * i + j] = M.linear()(i, j);
     p.t[i] = M.translation()[i];
   }
   p.length = M.translation().norm() * (1 + 1e-15);
   p.identity = M.matrix() == Eigen::Matrix4d::Identity();
+  return p;
+}
+
+engine::Placement makePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset) {
+  engine::Placement p = makePlacement(carrier.offset * offset);
+  p.length = carrier.length + offset.translation().norm() * (1 + 1e-15);
+  p.ulps += carrier.ulps;
+  return p;
+}
+
+engine::Placement makeInversePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset) {
+  engine::Placement p = makePlacement((carrier.offset * offset).inverse());
+  p.length = carrier.length + offset.translation().norm() * (1 + 1e-15);
+  p.ulps += carrier.ulps + kTransformUlps;
   return p;
 }
 
@@ -70,7 +85,14 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
   const Joint& joint = tree_->joint(id);
   const double sign = down ? 1 : -1;
   Carrier to = from;
-  if (down) to.offset = to.offset * joint.origin;
+  const auto grow = [&] {  // translations are summed: where they cancel, their rounding does not
+    to.length += joint.origin.translation().norm() * (1 + 1e-15);
+    to.ulps += kTransformUlps;
+  };
+  if (down) {
+    to.offset = to.offset * joint.origin;
+    grow();
+  }
   if (joint.type != JointType::fixed) {
     const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
       return o.parent == from.step && o.joint == id && o.down == down;
@@ -87,10 +109,12 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
         for (int j = 0; j < 3; ++j) step.C[3 * i + j] = C.linear()(i, j);
         step.p[i] = C.translation()[i];
       }
-      step.length = C.translation().norm() * (1 + 1e-15);
+      step.length = to.length;
+      step.ulps = to.ulps + kTransformUlps;
       const bool split = from.step >= 0 && steps_[static_cast<std::size_t>(from.step)].revolute;
-      step.axial = split ? std::abs(step.p[2]) : 0;
-      step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) : step.length;
+      const double error = 0x1p-52 * step.ulps * step.length;
+      step.axial = split ? std::abs(step.p[2]) + error : 0;
+      step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) + error : step.length;
       step.variable = tree_->jointVariable(id);
       step.multiplier = sign * (joint.mimics ? joint.mimic.multiplier : 1);
       step.offset = sign * (joint.mimics ? joint.mimic.offset : 0);
@@ -99,8 +123,13 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
       origin_.push_back({from.step, id, down});
     }
     to.offset = Eigen::Isometry3d(Eigen::Matrix3d(Q.transpose()));
+    to.length = 0;
+    to.ulps = kStoredUlps;
   }
-  if (!down) to.offset = to.offset * joint.origin.inverse();
+  if (!down) {
+    to.offset = to.offset * joint.origin.inverse();
+    grow();
+  }
   return to;
 }
 

@@ -17,7 +17,12 @@ namespace fcl_artic {
 struct Carrier {
   int step = -1;  ///< -1: fixed to the base frame
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
+  double length = 0, ulps = 0;  ///< of the offset, as in engine::Placement
 };
+
+/// How far a stored rotation may be from a proper one, and the error of one more factor in a product (that and 9 for the
+/// product), in 2^-52 and in any rounding mode (doc/NUMERICS.md, "Pads").
+constexpr double kStoredUlps = 12, kTransformUlps = 24;
 
 class FrameSweep {
  public:
@@ -48,6 +53,11 @@ class FrameSweep {
 };
 
 /// The transform as the engine wants it.
+/// @param M  as stored, or the inverse of a stored transform.
 engine::Placement makePlacement(const Eigen::Isometry3d& M);
+/// Where a geometry with this offset from the carried link stands in the frame of the carrier's step.
+engine::Placement makePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset);
+/// The base frame as seen from that geometry, where the carrier stands still.
+engine::Placement makeInversePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset);
 
 }  // namespace fcl_artic

@@ -22,6 +22,11 @@ using engine::SweepView;
 
 /// 2^-52: bounds the relative error of one operation in any rounding mode.
 constexpr double kUlp = 2.220446049250313e-16;
+/// Roundings of one step of a chain; of certificate and swept boxes on top of a chain, twice what they come to; of a
+/// difference point at a pose (doc/NUMERICS.md, "Pads").
+constexpr double kStepUlps = 24, kCertificateUlps = 160, kPoseUlps = 40;
+/// No claim is made about lengths below this, in m. It stands far above whatever underflow, gradual or flushed, can do.
+constexpr double kLeastLength = 1e-40;
 
 /// Pose and scaled derivatives of a step's frame (o + R c for a point c fixed in it): R1 = [w] R0,
 /// R2 = ([al] + [w][w]) R0 / 2, o1 = v, o2 = a.
@@ -35,7 +40,7 @@ struct StepBounds {
   double s, s_parent;  ///< rotation rate up to and with this step; without its last revolute joint
   double D1, D2, D3;   ///< of the origin
   double length;       ///< |o(t)| and all numbers it is made of, summed
-  double ulps;         ///< error of pose and derivatives in units of kUlp * (lengths), before growth by (1 + s d)^2
+  double ulps;         ///< error of the rotation in kUlp, of the origin in kUlp * length
   bool moves;
 };
 
@@ -47,7 +52,9 @@ inline void boundSteps(const SweepView& sweep, const double* q0, const double* d
     const StepBounds* p = step.parent >= 0 ? &out[step.parent] : nullptr;
     b.q0 = step.multiplier * q0[step.variable] + step.offset;
     b.dq = step.multiplier * dq[step.variable];
-    const double rate = __builtin_fabs(b.dq), size = __builtin_fabs(b.q0) + rate;
+    // Of the numbers that q comes from, not of q: multiple and offset of a mimic joint may cancel.
+    const double rate = __builtin_fabs(b.dq), size = __builtin_fabs(step.multiplier * q0[step.variable]) +
+                                                     __builtin_fabs(step.offset) + rate;
     const double sp = p ? p->s : 0, spp = p ? p->s_parent : 0;
     b.D1 = p ? p->D1 : 0;
     b.D2 = p ? p->D2 : 0;
@@ -57,8 +64,8 @@ inline void boundSteps(const SweepView& sweep, const double* q0, const double* d
     b.D1 += sp * step.perp + spp * step.axial;
     b.D2 += sp * sp * step.perp + spp * spp * step.axial;
     b.D3 += sp * sp * sp * step.perp + spp * spp * spp * step.axial;
-    // One step: about 20 roundings in R and o; the model's q0 + t dq, as rounded, turns it by up to 3 ulp of its size.
-    b.ulps = (p ? p->ulps : 0) + 24;
+    // The constant transform, the step's own arithmetic, and q: off by 3 ulp of its size.
+    b.ulps = (p ? p->ulps : 0) + step.ulps + kStepUlps;
     if (step.revolute) {
       b.s = sp + rate;
       b.s_parent = sp;
@@ -69,7 +76,7 @@ inline void boundSteps(const SweepView& sweep, const double* q0, const double* d
       b.D1 += sp * size + rate;
       b.D2 += sp * sp * size + 2 * sp * rate;
       b.D3 += sp * sp * sp * size + 3 * sp * sp * rate;
-      b.length += 3 * size;
+      b.length += size;
     }
     b.moves = (p && p->moves) || rate > 0;
     out[i] = b;
@@ -255,6 +262,70 @@ inline void invert(const RigidLanes& m, RigidLanes& inverse) {
       }
       inverse.c[order][i] = -sum;
     }
+  }
+}
+
+/// Rounding of all that a certificate or swept box is made of, as a part of the sizes. The error of X0, X1 and X2 is at
+/// most e, 2 e x and 2.25 e x^2 with e = kUlp * ulps and x = s d; inverting makes that 2 e, 6 e x and 9.5 e x^2.
+inline double roundingPart(double ulps, double x) {
+  return kUlp * (2 * ulps + kCertificateUlps) * ((1 + 2.5 * x) * (1 + 2.5 * x));
+}
+/// d^3 / 6, with room for the rounding of the constants it multiplies and of what it is added to.
+inline double remainderFactor(double ulps, double d) {
+  return d * d * d / 6 * (1 + kUlp * (2 * ulps + kCertificateUlps));
+}
+
+/// Bounds on rounding that go with a RigidLanes and its inverse.
+struct PairPads {
+  double pad;   ///< of a certificate or swept box, either way
+  double pose;  ///< of a difference point at tm
+};
+
+/// B seen from A (`m`) and A seen from B, with remainders and pads.
+/// @param frame  of the step that carries B, seen from the base frame; null where B stands still in it.
+/// @param b  of that step; all zero where B stands still.
+/// @param extents  largest distances of points of A and of B from their frames' origins, summed.
+inline PairPads relateBodies(const FrameLanes* frame, const StepBounds& b, const Placement& inverse_a,
+                             const Placement& placement_b, double extents, double margin, double d, RigidLanes& m,
+                             RigidLanes& inverse) {
+  placeBehind(frame, placement_b, m);
+  placeInFront(inverse_a, m);
+  invert(m, inverse);
+  m.makeBernstein();
+  inverse.makeBernstein();
+
+  // Bounds of B's origin seen from A's frame: a point fixed at distance `l` in the step's frame adds s^n l.
+  const double l = placement_b.length, s = b.s;
+  const double D1 = b.D1 + s * l, D2 = b.D2 + s * s * l, D3 = b.D3 + s * s * s * l;
+  const double length = b.length + l + inverse_a.length;  // >= |c(t)|
+  const double ulps = b.ulps + placement_b.ulps + inverse_a.ulps;
+  const double third = remainderFactor(ulps, d);
+  m.rem_c = D3 * third;
+  m.rem_R = inverse.rem_R = s * s * s * third;
+  // -R^T c: Leibniz with |R^(n)| <= s^n, |c| <= length, |c^(n)| <= Dn.
+  inverse.rem_c = (D3 + 3 * s * D2 + 3 * s * s * D1 + s * s * s * length) * third;
+  const double sizes = length + D1 * d + extents;
+  return {roundingPart(ulps, s * d) * (sizes + margin) + kLeastLength, kUlp * (ulps + kPoseUlps) * sizes + kLeastLength};
+}
+
+/// Box of a ball that is fixed in a step's frame, over the intervals.
+/// @param radius  with the error of p in it.
+inline void sweepBall(const FrameLanes& f, const StepBounds& b, const double* p, double radius, double d, Lanes* lo,
+                      Lanes* hi) {
+  const double reach = __builtin_sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * (1 + 1e-15), s = b.s;
+  const double sizes = b.length + b.D1 * d + reach + radius;
+  const Lanes slack(radius + (b.D3 + s * s * s * reach) * remainderFactor(b.ulps, d) +
+                    roundingPart(b.ulps, s * d) * sizes + kLeastLength);
+  Lanes x[3], x1[3], u[3], e[3];
+  for (int k = 0; k < 3; ++k) x[k] = dot(f.R + 3 * k, p);
+  cross(f.w, x, x1);
+  cross(f.w, x1, u);
+  cross(f.al, x, e);
+  for (int k = 0; k < 3; ++k) {
+    const Lanes c0 = f.o[k] + x[k], c1 = f.v[k] + x1[k], c2 = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
+    const Lanes sum = c0 + c2, middle = c0 - c2, reach1 = abs(c1);
+    lo[k] = min(sum - reach1, middle) - slack;
+    hi[k] = max(sum + reach1, middle) + slack;
   }
 }
 

@@ -53,19 +53,31 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
   return above | below;
 }
 
-/// First root in [0, 1] of the quadratic with Bernstein coefficients G, (up to the pad's reserve); 1 when it stays positive.
+/// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first
+/// root, as far as rounding lets that be proven. z is only a guess until de Casteljau's subdivision at z has shown that
+/// the coefficients over [0, z], and over [z, 1] where all of [0, 1] is claimed, are not negative.
 inline double positivePrefix(const double* G) {
-  if (!(G[0] > 0)) return 0;
-  if (G[1] > 0 && G[2] > 0) return 1;
-  const double a = G[0] - 2 * G[1] + G[2], b = G[1] - G[0], c = G[0];  // c + 2 b z + a z^2
-  const double discriminant = b * b - a * c;
-  // The computed root solves a quadratic whose coefficients are off by a few ulp: G there is above -8 kUlp max |G|, and the
-  // pad holds a reserve for that (doc/NUMERICS.md, "Pads"). The same goes for a discriminant that rounds below 0.
-  if (discriminant < 0) return 1;
-  const double q = -b + sqrt(discriminant);  // the smallest positive root is c / q, in the stable form
-  if (!(q > 0)) return 1;
-  const double z = c / q;
-  return z >= 1 ? 1 : z * (1 - 1e-12);
+  // The subdivision errs by at most 11 kUlp of the largest coefficient.
+  const double reserve = 16 * kUlp * max(max(abs(G[0]), abs(G[1])), abs(G[2]));
+  const double g0 = G[0] - reserve, g1 = G[1] - reserve, g2 = G[2] - reserve;
+  if (!(g0 > 0)) return 0;
+  if (g1 >= 0 && g2 >= 0) return 1;
+  const double a = (g0 - g1) + (g2 - g1), b = g1 - g0, discriminant = b * b - a * g0;  // g0 + 2 b z + a z^2
+  double guess;
+  if (!(discriminant > 0)) {
+    guess = -b / a;  // no root: the lowest point
+  } else {
+    const double root = sqrt(discriminant);
+    guess = b <= 0 ? g0 / (root - b) : -(b + root) / a;  // the first root, without cancellation
+  }
+  static const double kParts[3] = {1 - 1e-12, 1 - 1e-8, 1 - 1e-3};
+  for (const double part : kParts) {
+    const double z = max(0.0, min(guess, 1.0)) * part;
+    const double left = g0 + z * (g1 - g0), right = g1 + z * (g2 - g1), middle = left + z * (right - left);
+    if (!(left >= 0 && middle >= 0)) continue;
+    return right >= 0 && g2 >= 0 ? 1 : z;
+  }
+  return 0;
 }
 
 /// How much of a lane's interval n certifies, from its left end: a fraction in [0, 1].

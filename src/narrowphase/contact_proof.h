@@ -23,7 +23,8 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
     cross(c, a, ca);
     const double determinant = dot(a, bc);
     const double na = norm(a), nb = norm(b), nc = norm(c);
-    const double error = 1.01 * (eps * (norm(ab) + norm(bc) + norm(ca)) + eps * eps * (na + nb + nc) + eps * eps * eps) +
+    // 1.25 instead of 1: the cross products' own rounding, which eps >= 40 kUlp |w| covers.
+    const double error = 1.25 * (eps * (norm(ab) + norm(bc) + norm(ca)) + eps * eps * (na + nb + nc) + eps * eps * eps) +
                          2e-15 * na * nb * nc;
     if (!(abs(determinant) > error)) return false;
     const double s = determinant > 0 ? 1 : -1;

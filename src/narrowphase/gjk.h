@@ -172,7 +172,7 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
                 GjkResult& out) {
   out = GjkResult();
   double length = norm(guess);
-  for (int k = 0; k < 3; ++k) out.n[k] = length > 0 ? guess[k] / length : (k == 0);
+  for (int k = 0; k < 3; ++k) out.n[k] = length > 1e-100 ? guess[k] / length : (k == 0);  // far from underflow: unit
   Simplex& s = out.simplex;
   DifferencePoint p;
   body.support(out.n, p);

@@ -50,7 +50,8 @@ struct TreeView {
 struct Placement {
   double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major
   double t[3] = {0, 0, 0};
-  double length = 0;      ///< upper bound of |t|
+  double length = 0;      ///< upper bound of |t| and of the sum of the translations it was multiplied from
+  double ulps = 0;        ///< R is this many 2^-52 from the model's rotation, t this many 2^-52 of `length`
   bool identity = true;
 };
 
@@ -60,7 +61,7 @@ struct SweepStep {
   bool revolute = true;
   double C[9], p[3];         ///< constant transform from the parent step's frame
   double perp = 0, axial = 0;  ///< |p| across and along the parent's axis (axial 0, perp |p| where the parent slides)
-  double length = 0;         ///< |p|
+  double length = 0, ulps = 0;  ///< of C and p, as in Placement
   std::int32_t variable = -1;
   double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset
 };

@@ -36,6 +36,29 @@ struct SweptBox {
   FloatLanes lo[3], hi[3];
 };
 
+/// Bounds of a moving node in the still body's frame, grown by `slack` and the remainder.
+FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double slack, SweptBox& box) {
+  const Lanes grow(m.rem_c + m.rem_R * static_cast<double>(node.reach) + slack);
+  double c[3], h[3];  // sums of floats: exact, but for far smaller addends
+  for (int k = 0; k < 3; ++k) {
+    const double lo = node.lo[k], hi = node.hi[k];
+    c[k] = 0.5 * (lo + hi);
+    h[k] = 0.5 * (hi - lo);
+  }
+  for (int i = 0; i < 3; ++i) {
+    Lanes lo, hi;
+    for (int k = 0; k < 3; ++k) {
+      const Lanes* R = m.Rb[k] + 3 * i;
+      const Lanes center = mulAdd(R[0], c[0], mulAdd(R[1], c[1], mulAdd(R[2], c[2], m.cb[k][i])));
+      const Lanes half = mulAdd(abs(R[0]), h[0], mulAdd(abs(R[1]), h[1], abs(R[2]) * Lanes(h[2])));
+      lo = k ? min(lo, center - half) : center - half;
+      hi = k ? max(hi, center + half) : center + half;
+    }
+    box.lo[i] = narrowDown(lo - grow);
+    box.hi[i] = narrowUp(hi + grow);
+  }
+}
+
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
   std::int32_t pair, a, b;
@@ -129,11 +152,6 @@ constexpr double kSplitTime = 0.7;
 constexpr double kNarrowestLane = 1.0 / (1ull << 45);
 /// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
 constexpr double kWitnessAccuracy = 0.1;
-/// Roundings in certificate and placements on top of a chain's: 3 dot products of 3, twice, Cauchy products, box sums,
-/// prefix root; about 60 ulp, doubled (doc/NUMERICS.md, "Pads").
-constexpr double kCertificateUlps = 160;
-/// Roundings of a difference point at a pose.
-constexpr double kPoseUlps = 40;
 
 inline double Solver::now() const {
   if (!query_->measure_times) return 0;
@@ -214,37 +232,20 @@ inline void Solver::setupPair(int index) {
   } else {
     frame = nullptr;
   }
-  RigidLanes &m = side_[0].m, &inverse = side_[1].m;
-  placeBehind(frame, pair.placement_b, m);
-  placeInFront(pair.inverse_a, m);
-  invert(m, inverse);
-  m.makeBernstein();
-  inverse.makeBernstein();
-
-  // Bounds of B's origin seen from A's frame: a point fixed at distance `l` in the step's frame adds s^n l.
-  const double l = pair.placement_b.length, s = b.s;
-  const double D1 = b.D1 + s * l, D2 = b.D2 + s * s * l, D3 = b.D3 + s * s * s * l;
-  const double length = b.length + l + pair.inverse_a.length;  // >= |c(t)|
-  // 1 + 1e-12: rounding of these constants, rotations orthonormal to a few ulp, d's own.
-  const double third = d_ * d_ * d_ / 6 * (1 + 1e-12);
-  m.rem_c = D3 * third;
-  m.rem_R = inverse.rem_R = s * s * s * third;
-  // -R^T c: Leibniz with |R^(n)| <= s^n, |c| <= length, |c^(n)| <= Dn.
-  inverse.rem_c = (D3 + 3 * s * D2 + 3 * s * s * D1 + s * s * s * length) * third;
+  RigidLanes& m = side_[0].m;
+  const PairPads pads = relateBodies(frame, b, pair.inverse_a, pair.placement_b, A.tree->extent + B.tree->extent,
+                                     query_->margin, d_, m, side_[1].m);
+  pad_ = pads.pad;
+  pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
-  const double sizes = length + D1 * d_ + A.tree->extent + B.tree->extent;
-  const double growth = (1 + s * d_) * (1 + s * d_);
-  // 1e-300 keeps the pad positive for bodies of size 0 and survives a host that flushes subnormals.
-  pad_ = kUlp * (b.ulps + kCertificateUlps) * growth * sizes + 1e-300;
-  pose_error_ = kUlp * (b.ulps + kPoseUlps) * sizes + 1e-300;
 
   const Node& root = B.tree->nodes[0];
   double center[3];
   middleOf(root, center);
   Lanes v[3];
   for (int k = 0; k < 3; ++k) v[k] = dot(m.R[1] + 3 * k, center) + m.c[1][k];
-  amplitude_ = sqrt(maxLane(dot(v, v))) + s * d_ * root.radius;
+  amplitude_ = sqrt(maxLane(dot(v, v))) + b.s * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
   for (int i = 0; i < 2; ++i) cached_[i].resize(max(cached_[i].size(), side_[i].moving->num_nodes));
@@ -271,28 +272,7 @@ inline int Solver::sweptNode(int side, int index) {
   if (cached.epoch == pair_epoch_) return cached.slot;
   cached.epoch = pair_epoch_;
   cached.slot = pool_.size();
-  SweptBox& box = pool_.grow();
-  const RigidLanes& m = side_[side].m;
-  const Node& node = side_[side].moving->nodes[index];
-  const Lanes slack(m.rem_c + m.rem_R * static_cast<double>(node.reach) + pad_ + query_->margin);
-  double c[3], h[3];  // exact: sums of floats
-  for (int k = 0; k < 3; ++k) {
-    const double lo = node.lo[k], hi = node.hi[k];
-    c[k] = 0.5 * (lo + hi);
-    h[k] = 0.5 * (hi - lo);
-  }
-  for (int i = 0; i < 3; ++i) {
-    Lanes lo, hi;
-    for (int k = 0; k < 3; ++k) {
-      const Lanes* R = m.Rb[k] + 3 * i;
-      const Lanes center = mulAdd(R[0], c[0], mulAdd(R[1], c[1], mulAdd(R[2], c[2], m.cb[k][i])));
-      const Lanes half = mulAdd(abs(R[0]), h[0], mulAdd(abs(R[1]), h[1], abs(R[2]) * Lanes(h[2])));
-      lo = k ? min(lo, center - half) : center - half;
-      hi = k ? max(hi, center + half) : center + half;
-    }
-    box.lo[i] = narrowDown(lo - slack);
-    box.hi[i] = narrowUp(hi + slack);
-  }
+  sweepNode(side_[side].m, side_[side].moving->nodes[index], pad_ + query_->margin, pool_.grow());
   return cached.slot;
 }
 
@@ -447,30 +427,12 @@ inline void Solver::sweptLss(int mover, SweptBox& box) {
   }
   const FrameLanes& f = frames(0)[body.step];
   const StepBounds& b = bounds_[first_step_[0] + body.step];
-  const double third = d_ * d_ * d_ / 6 * (1 + 1e-12);
-  Lanes lower[3], upper[3];
-  for (int end = 0; end < 2; ++end) {
-    const double* p = body.lss + 3 * end;
-    const double reach = norm(p) * (1 + 1e-15), s = b.s;
-    const double growth = (1 + s * d_) * (1 + s * d_);
-    const Lanes slack(query_->margin + body.lss[6] + (b.D3 + s * s * s * reach) * third +
-                      kUlp * (b.ulps + kCertificateUlps) * growth * (b.length + b.D1 * d_ + reach + body.lss[6]) + 1e-300);
-    Lanes x[3], x1[3], u[3], e[3];
-    for (int k = 0; k < 3; ++k) x[k] = dot(f.R + 3 * k, p);
-    cross(f.w, x, x1);
-    cross(f.w, x1, u);
-    cross(f.al, x, e);
-    for (int k = 0; k < 3; ++k) {
-      const Lanes c0 = f.o[k] + x[k], c1 = f.v[k] + x1[k], c2 = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
-      const Lanes sum = c0 + c2, middle = c0 - c2, reach1 = abs(c1);
-      const Lanes lo = min(sum - reach1, middle) - slack, hi = max(sum + reach1, middle) + slack;
-      lower[k] = end ? min(lower[k], lo) : lo;
-      upper[k] = end ? max(upper[k], hi) : hi;
-    }
-  }
+  const double radius = (body.lss[6] + query_->margin) * (1 + 4 * kUlp);
+  Lanes lo[2][3], hi[2][3];
+  for (int end = 0; end < 2; ++end) sweepBall(f, b, body.lss + 3 * end, radius, d_, lo[end], hi[end]);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = narrowDown(lower[k]);
-    box.hi[k] = narrowUp(upper[k]);
+    box.lo[k] = narrowDown(min(lo[0][k], lo[1][k]));
+    box.hi[k] = narrowUp(max(hi[0][k], hi[1][k]));
   }
 }
 

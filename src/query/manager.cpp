@@ -2,6 +2,7 @@
 #include "fcl_artic/manager.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -26,14 +27,16 @@ struct Item {
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< in the link's frame; of an obstacle: in the world
   const fcl::CollisionGeometryd* geometry = nullptr;
   std::shared_ptr<const ShapeTree> shape;
+  std::array<double, 7> lss = {};  ///< of a link: line swept sphere in the geometry's frame
 };
 
 /// Box in the world of a tree that stands at M.
-void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, double* lo, double* hi) {
+/// @param placement  the same.
+void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placement& placement, double* lo, double* hi) {
   const Eigen::Vector3d c = 0.5 * (shape.lower() + shape.upper()), h = 0.5 * (shape.upper() - shape.lower());
   const Eigen::Vector3d center = M * c, half = M.linear().cwiseAbs() * h;
-  // A dozen roundings of numbers no larger than these.
-  const double pad = 1e-14 * (c.cwiseAbs().sum() + h.sum() + M.translation().cwiseAbs().sum());
+  // The placement's own error and a dozen roundings of numbers no larger than these.
+  const double pad = 0x1p-52 * (placement.ulps + 32) * (c.cwiseAbs().sum() + h.sum() + placement.length);
   for (int k = 0; k < 3; ++k) {
     lo[k] = center[k] - half[k] - pad;
     hi[k] = center[k] + half[k] + pad;
@@ -213,22 +216,25 @@ void ArticulatedCollisionManager::Impl::build() {
   bodies.assign(links.size() + obstacles.size(), engine::Body());
   std::vector<int> depth(links.size(), 0);
   std::vector<Eigen::Isometry3d> in_step(links.size());
+  std::vector<Carrier> carriers(links.size());
   for (std::size_t i = 0; i < links.size(); ++i) {
     const Item& item = links[i];
     engine::Body& body = bodies[i];
     const Carrier carrier = sweeps[0].carrier(item.link);
+    carriers[i] = carrier;
     in_step[i] = carrier.offset * item.offset;
     body.tree = &item.shape->view();
     body.step = carrier.step;
-    body.placement = makePlacement(in_step[i]);
-    const std::array<double, 7> lss = item.shape->lineSweptSphere();
+    body.placement = makePlacement(carrier, item.offset);
+    const std::array<double, 7>& lss = item.lss;
     const Eigen::Vector3d p0 = in_step[i] * Eigen::Vector3d::Map(&lss[0]), p1 = in_step[i] * Eigen::Vector3d::Map(&lss[3]);
     for (int k = 0; k < 3; ++k) {
       body.lss[k] = p0[k];
       body.lss[3 + k] = p1[k];
     }
-    body.lss[6] = lss[6] + 1e-14 * (lss[6] + p0.norm() + p1.norm() + body.placement.length);
-    worldBox(*item.shape, in_step[i], body.lo, body.hi);  // right where step < 0, not used elsewhere
+    const double reach = Eigen::Vector3d::Map(&lss[0]).norm() + Eigen::Vector3d::Map(&lss[3]).norm();
+    body.lss[6] = lss[6] + 0x1p-52 * (body.placement.ulps + 16) * (lss[6] + reach + body.placement.length);
+    worldBox(*item.shape, in_step[i], body.placement, body.lo, body.hi);  // right where step < 0, not used elsewhere
     for (int s = carrier.step; s >= 0; s = sweeps[0].view().steps[s].parent) ++depth[i];
   }
   movers.resize(links.size());
@@ -248,7 +254,7 @@ void ArticulatedCollisionManager::Impl::build() {
     engine::Body& body = bodies[links.size() + o];
     body.tree = &item.shape->view();
     body.placement = makePlacement(item.offset);
-    worldBox(*item.shape, item.offset, body.lo, body.hi);
+    worldBox(*item.shape, item.offset, body.placement, body.lo, body.hi);
     for (int k = 0; k < 3; ++k) {
       boxes[o].lo[k] = body.lo[k];
       boxes[o].hi[k] = body.hi[k];
@@ -287,7 +293,7 @@ void ArticulatedCollisionManager::Impl::build() {
       pair.a = static_cast<std::int32_t>(a);
       pair.b = static_cast<std::int32_t>(b);
       if (bodies[a].step < 0) {  // stands still: the world's sweep serves
-        pair.inverse_a = makePlacement(in_step[a].inverse());
+        pair.inverse_a = makeInversePlacement(carriers[a], links[a].offset);
         pair.step_b = bodies[b].step;
         pair.placement_b = bodies[b].placement;
       } else {
@@ -301,7 +307,7 @@ void ArticulatedCollisionManager::Impl::build() {
         const Carrier carrier = sweeps[static_cast<std::size_t>(pair.sweep)].carrier(links[b].link);
         pair.step_b = carrier.step;
         pair.inverse_a = makePlacement(links[a].offset.inverse());
-        pair.placement_b = makePlacement(carrier.offset * links[b].offset);
+        pair.placement_b = makePlacement(carrier, links[b].offset);
       }
       pairs.push_back(pair);
     }
@@ -366,6 +372,7 @@ void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* objec
   item.link = link;
   item.name = impl_->tree->linkName(link);
   item.offset = requireRigid(offset, what);
+  item.lss = item.shape->lineSweptSphere();
   impl_->links.push_back(std::move(item));
   impl_->ready = false;
 }
