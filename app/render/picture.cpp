@@ -84,22 +84,24 @@ Vector3d towardsCamera(double azimuth, double elevation) {
 /// The nearest camera in the given direction that has all points in view, with some air around them.
 Camera frame(const std::vector<Vector3d>& points, const Ball& ball, const Vector3d& direction, double aspect) {
   constexpr double kAir = 1.10;
-  const double tan_y = std::tan(kFieldOfView / 2) / kAir, tan_x = tan_y * aspect;
+  constexpr double kTitle = 0.89;  // share of the upper half that the title leaves
+  const double tan_y = std::tan(kFieldOfView / 2) / kAir, tan_x = tan_y * aspect, tan_up = kTitle * tan_y;
   const Vector3d up = std::abs(direction.z()) > 0.9999 ? Vector3d::UnitY() : Vector3d::UnitZ();
   const Vector3d x = up.cross(direction).normalized(), y = direction.cross(x);
-  // A point at (px, py, pz) along x, y, direction is in view from (cx, cy, cz) when |p - c| in x is at most
-  // (cz - pz) tan_x; the extremes of px ± pz tan_x give the middle and the distance. Likewise y.
+  // A point at (px, py, pz) along x, y, direction is in view from (cx, cy, cz) when px - cx and cx - px are at most
+  // (cz - pz) tan_x, that is cx >= px + pz tan_x - cz tan_x and cx <= px - pz tan_x + cz tan_x: the extremes over the
+  // points give the least cz, and cx in the middle of what is left. Likewise y.
   double high_x = -1e300, low_x = 1e300, high_y = -1e300, low_y = 1e300;
   for (const Vector3d& p : points) {
     const double px = p.dot(x), py = p.dot(y), pz = p.dot(direction);
     high_x = std::max(high_x, px + pz * tan_x);
     low_x = std::min(low_x, px - pz * tan_x);
-    high_y = std::max(high_y, py + pz * tan_y);
+    high_y = std::max(high_y, py + pz * tan_up);
     low_y = std::min(low_y, py - pz * tan_y);
   }
-  const double cz = std::max((high_x - low_x) / (2 * tan_x), (high_y - low_y) / (2 * tan_y));
+  const double cz = std::max((high_x - low_x) / (2 * tan_x), (high_y - low_y) / (tan_up + tan_y));
   Camera camera;
-  camera.eye = x * (high_x + low_x) / 2 + y * (high_y + low_y) / 2 + direction * cz;
+  camera.eye = x * (high_x + low_x) / 2 + y * (high_y - cz * tan_up + low_y + cz * tan_y) / 2 + direction * cz;
   camera.target = camera.eye - direction;
   const double distance = std::max((camera.eye - ball.center).dot(direction), ball.radius);
   camera.near = std::max(0.02 * distance, distance - 2.2 * ball.radius);
@@ -212,15 +214,18 @@ class Composer {
         const auto share = [&](std::size_t group) {
           return group < seen.size() && group < there.size() ? std::min(1.0, seen[group] / (there[group] + 1.0)) : 0.0;
         };
-        double score = share(kRobotGroup) + 0.02 * std::cos((azimuth + 55) * kPi / 180);
+        const double clutter = static_cast<double>(seen[kSceneGroup]) / (width * kHeight);
+        double score = share(kRobotGroup) - 0.5 * clutter + 0.02 * std::cos((azimuth + 55) * kPi / 180);
         if (const CertifiedContact* c = contact()) {
           // Of the contact what counts is not hidden by anything, the robot included.
           const double full = kPi * std::pow(0.035 * ball_.radius / ((camera.eye - c->point).norm() *
                                                                      std::tan(kFieldOfView / 2)) * kHeight / 2, 2);
           const double contact_seen =
-              seen.size() > kContactGroup ? std::min(1.0, seen[kContactGroup] / std::max(full, 1.0)) : 0.0;
-          const double along = std::abs(c->normal.dot((camera.eye - c->point).normalized()));
-          score += 1.6 * contact_seen + 0.8 * share(kTouchingGroup) + 0.5 * (1 - along);
+              seen.size() > kContactGroup ? std::min(1.0, seen[kContactGroup] / std::max(0.4 * full, 1.0)) : 0.0;
+          const Vector3d view = (camera.eye - c->point).normalized();
+          // Normal and way are best seen from the side.
+          score += 1.6 * contact_seen + 0.8 * share(kTouchingGroup) + 0.5 * (1 - std::abs(c->normal.dot(view))) +
+                   0.5 * (1 - std::abs(way_.dot(view)));
         }
         if (score > best_score) {
           best_score = score;
@@ -362,6 +367,7 @@ class Composer {
       if ((best[i + 1] - best[i]).norm() > 0) addRod(tube, best[i], best[i + 1], radius, radius, 10);
     }
     if (tube.faces.empty()) return;
+    way_ = (best.back() - best.front()).normalized();
     addBall(tube, best.front(), 2.5 * radius);
     Body body = annotation(tube, kTrace, 0.5f);
     body.throws_shadow = false;
@@ -391,6 +397,7 @@ class Composer {
   Poses pose_;
   std::vector<Vector3d> points_, scene_points_;
   Ball ball_;
+  Vector3d way_ = Vector3d::Zero();  // direction in which the contact point came, unit; zero without a trace
   Stage stage_;
   std::vector<int> groups_;
 };
