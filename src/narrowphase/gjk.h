@@ -181,10 +181,11 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
   s.v[0] = p;
   s.weight[0] = 1;
   s.n = 1;
-  double v[3] = {p.w[0], p.w[1], p.w[2]};
+  double v[3] = {p.w[0], p.w[1], p.w[2]}, size = norm(p.w);
   while (out.iterations < max_iterations) {
     const double vv = dot(v, v);
-    if (vv < 1e-300 || vv < radii * radii * (1 - 1e-13)) {
+    // The origin within rounding of a face of the simplex is as good as inside (aligned faces bring that about).
+    if (vv <= 1e-30 * size * size || vv < radii * radii * (1 - 1e-13)) {
       out.overlap = true;
       out.distance = sqrt(vv);
       break;
@@ -194,6 +195,7 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
     double n[3] = {v[0] / length, v[1] / length, v[2] / length};
     body.support(n, p);
     ++out.iterations;
+    size = max(size, norm(p.w));
     const double lower = dot(n, p.w);
     if (lower > out.lower) {
       out.lower = lower;
