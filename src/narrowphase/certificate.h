@@ -80,17 +80,23 @@ inline double positivePrefix(const double* G) {
   return 0;
 }
 
-/// How much of a lane's interval n certifies, from its left end: a fraction in [0, 1].
-/// @param n  in the frame of side.still, from still to moving.
-inline double certainlyFreePrefix(const Side& side, const Piece& still, const Piece& moving, const double* n,
-                                  double margin, double pad, int lane) {
+/// Bernstein coefficients over a lane's interval of a lower bound of the gap beyond `margin` along n.
+inline void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n, double margin,
+                     double pad, int lane, double* G) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
   movingRange(side, moving, n, lower, upper);
   const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
-  const double G[3] = {lower[0][lane] - s_upper - slack, lower[1][lane] - s_upper - slack,
-                       lower[2][lane] - s_upper - slack};
+  for (int k = 0; k < 3; ++k) G[k] = lower[k][lane] - s_upper - slack;
+}
+
+/// How much of a lane's interval n certifies, from its left end: a fraction in [0, 1].
+/// @param n  in the frame of side.still, from still to moving.
+inline double certainlyFreePrefix(const Side& side, const Piece& still, const Piece& moving, const double* n,
+                                  double margin, double pad, int lane) {
+  double G[3];
+  gapBound(side, still, moving, n, margin, pad, lane, G);
   return positivePrefix(G);
 }
 

@@ -76,6 +76,7 @@ struct SweepView {
 struct Body {
   const TreeView* tree = nullptr;
   Placement placement;     ///< tree frame in the frame of its step (or in the world when step < 0)
+  Placement inverse;       ///< of an obstacle: the world in its tree frame
   std::int32_t step = -1;  ///< in the world's sweep; -1: stands still
   std::int32_t mover = -1;  ///< index among Problem::movers; -1: an obstacle
   double lss[7] = {};      ///< line swept sphere p0, p1, r in the step's frame: holds the body
@@ -83,8 +84,9 @@ struct Body {
   double lo[3] = {}, hi[3] = {};
 };
 
-/// Two bodies to check. The motion is B's, seen from A.
-struct Pair {
+/// Two links to check. The motion is B's, seen from A. (A link and an obstacle need no such record: A is the obstacle,
+/// sweep 0, and the placements are the bodies' own.)
+struct LinkPair {
   std::int32_t a = -1, b = -1;
   std::int32_t sweep = 0;   ///< sweep whose base frame A's placement refers to
   std::int32_t step_b = -1;  ///< step of that sweep that carries B; -1: fixed to the base frame
@@ -100,15 +102,14 @@ struct Problem {
   std::int32_t num_movers = 0;
   const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
   std::int32_t num_sweeps = 0;
-  const Pair* pairs = nullptr;        ///< link-obstacle pairs first, then link-link pairs
-  std::int32_t num_pairs = 0;
+  /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
+  const LinkPair* link_pairs = nullptr;
+  std::int32_t num_link_pairs = 0;
   std::int32_t num_scene_pairs = 0;
-  /// Pair of mover m and obstacle o: scene_pair[m * num_obstacles + o]; -1: not checked.
-  const std::int32_t* scene_pair = nullptr;
+  const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   const std::int32_t* obstacles = nullptr;  ///< body of obstacle o
   std::int32_t num_obstacles = 0;
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
-  std::int32_t num_variables = 0;
 };
 
 struct Query {
@@ -130,12 +131,18 @@ struct Statistics {
 
 /// Two leaves that meet, or come too near to be told apart.
 struct LeafContact {
-  std::int32_t pair, piece_a, piece_b;
+  std::int32_t pair, body_a, body_b, piece_a, piece_b;
   bool certain;
   double t_lower, t_upper;  ///< this leaf pair's own bracket
   double normal[3];         ///< in A's tree frame, from A to B
   double point[3];          ///< in A's tree frame at time `t`
   double t;                 ///< t_upper when certain, else t_lower
+};
+
+/// A pair in contact at t = 0 and the time from which it is watched again; 2: never.
+struct Ignored {
+  std::int32_t pair, body_a, body_b;
+  double watch_from;
 };
 
 enum class Verdict : std::int32_t { free, contact, undecided };
@@ -145,7 +152,7 @@ struct Answer {
   double t_lower = 0, t_upper = 1;
   const LeafContact* contacts = nullptr;  ///< owned by the workspace, valid until its next query
   std::int32_t num_contacts = 0;
-  const std::int32_t* ignored_pairs = nullptr;  ///< the same
+  const Ignored* ignored = nullptr;  ///< the same
   std::int32_t num_ignored = 0;
   Statistics statistics;
 };

@@ -23,9 +23,10 @@ namespace FCL_ARTIC_ISA {
 
 using engine::Answer;
 using engine::Body;
-using engine::LeafContact;
 using engine::Node;
-using engine::Pair;
+using engine::Ignored;
+using engine::LeafContact;
+using engine::LinkPair;
 using engine::Problem;
 using engine::Query;
 using engine::Statistics;
@@ -72,6 +73,14 @@ class Solver {
 
  private:
   enum class Step { free, done };
+
+  /// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
+  struct PairParts {
+    std::int32_t a, b, sweep, step_b;
+    const Placement *inverse_a, *placement_b;
+  };
+  PairParts parts(int pair) const;
+  double watchFrom(int pair) const;
 
   // Time batches.
   void beginBatch(double start, double width);
@@ -130,8 +139,7 @@ class Solver {
   Buffer<SweptBox> mover_box_;
   Buffer<Entry> entries_;
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
-  Buffer<double> watch_from_;  ///< per pair, with ignore_initial
-  Buffer<std::int32_t> ignored_;
+  Buffer<Ignored> ignored_;
   struct Final {
     Entry entry;
     double t_lower;
@@ -220,9 +228,26 @@ FCL_ARTIC_INLINE void middleOf(const Node& node, double* center) {
   for (int k = 0; k < 3; ++k) center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
 }
 
+inline Solver::PairParts Solver::parts(int index) const {
+  if (index >= problem_->num_scene_pairs) {
+    const LinkPair& pair = problem_->link_pairs[index - problem_->num_scene_pairs];
+    return {pair.a, pair.b, pair.sweep, pair.step_b, &pair.inverse_a, &pair.placement_b};
+  }
+  const int a = problem_->obstacles[index % problem_->num_obstacles], b = problem_->movers[index / problem_->num_obstacles];
+  return {a, b, 0, problem_->bodies[b].step, &problem_->bodies[a].inverse, &problem_->bodies[b].placement};
+}
+
+/// Time from which a pair is watched: 0 but for ignored initial contacts.
+inline double Solver::watchFrom(int pair) const {
+  for (int i = 0; i < ignored_.size(); ++i) {
+    if (ignored_[i].pair == pair) return ignored_[i].watch_from;
+  }
+  return 0;
+}
+
 /// Relative motion of a pair over this batch, both ways, with remainders and pads.
 inline void Solver::setupPair(int index) {
-  const Pair& pair = problem_->pairs[index];
+  const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);
   StepBounds b = {};
@@ -233,7 +258,7 @@ inline void Solver::setupPair(int index) {
     frame = nullptr;
   }
   RigidLanes& m = side_[0].m;
-  const PairPads pads = relateBodies(frame, b, pair.inverse_a, pair.placement_b, A.tree->extent + B.tree->extent,
+  const PairPads pads = relateBodies(frame, b, *pair.inverse_a, *pair.placement_b, A.tree->extent + B.tree->extent,
                                      query_->margin, d_, m, side_[1].m);
   pad_ = pads.pad;
   pose_error_ = pads.pose;
@@ -349,8 +374,7 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     have_guess = true;
     if (g.overlap) {
       double point[3];
-      const double from = watch_from_.size() ? watch_from_[pair] : 0;
-      if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= from &&
+      if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= watchFrom(pair) &&
           proveAt(pair, piece_a, piece_b, lane, guess, point)) {
         t_upper_ = tm_at_[lane];
         updateLive();
@@ -457,22 +481,23 @@ inline void Solver::cull() {
           stack.push({0, node.left, 0, 0});
           continue;
         }
-        const int pair = problem_->scene_pair[m * problem_->num_obstacles + node.piece()];
-        if (pair >= 0) entries_.push({pair, 0, 0, mask});
+        const int pair = m * problem_->num_obstacles + node.piece();
+        if (!problem_->scene_allowed || !problem_->scene_allowed[pair]) entries_.push({pair, 0, 0, mask});
       }
     }
   }
   if (query_->check_self) {
-    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_pairs - problem_->num_scene_pairs);
-    for (int p = problem_->num_scene_pairs; p < problem_->num_pairs; ++p) {
-      const SweptBox& a = mover_box_[problem_->bodies[problem_->pairs[p].a].mover];
-      const SweptBox& b = mover_box_[problem_->bodies[problem_->pairs[p].b].mover];
+    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
+    for (int p = 0; p < problem_->num_link_pairs; ++p) {
+      const LinkPair& pair = problem_->link_pairs[p];
+      const SweptBox& a = mover_box_[problem_->bodies[pair.a].mover];
+      const SweptBox& b = mover_box_[problem_->bodies[pair.b].mover];
       unsigned mask = 0;
       for (int k = 0; k < 3; ++k) {
         mask |= greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
       }
       mask = kAllLanes & ~mask;
-      if (mask) entries_.push({p, 0, 0, mask});
+      if (mask) entries_.push({problem_->num_scene_pairs + p, 0, 0, mask});
     }
   }
   statistics_.pairs_after_culling += static_cast<std::uint64_t>(entries_.size());
@@ -505,8 +530,6 @@ inline double Solver::firstFreeTime(double start, double width, int begin, int e
 
 /// Finds the pairs in contact at t = 0 and from when they are watched.
 inline void Solver::collectInitialContacts(int begin, int end) {
-  watch_from_.resize(problem_->num_pairs);
-  for (int i = 0; i < problem_->num_pairs; ++i) watch_from_[i] = 0;
   decide_only_ = true;
   for (int i = begin; i < end; ++i) {
     const Entry e = entries_[i];
@@ -519,9 +542,9 @@ inline void Solver::collectInitialContacts(int begin, int end) {
     setupPair(e.pair);
     traverse(e.pair, e.a, e.b, 1);
     if (!blocked_) continue;
-    ignored_.push(e.pair);
     entries_.push(e);
-    watch_from_[e.pair] = firstFreeTime(0, 1, entries_.size() - 1, entries_.size());
+    const PairParts pair = parts(e.pair);
+    ignored_.push({e.pair, pair.a, pair.b, firstFreeTime(0, 1, entries_.size() - 1, entries_.size())});
     entries_.truncate(entries_.size() - 1);
   }
   decide_only_ = false;
@@ -548,11 +571,8 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
     } else if (!(e.mask >> parent_lane & 1)) {
       continue;
     }
-    if (watch_from_.size()) {
-      for (int k = 0; k < kLanes; ++k) {
-        if (lane_end_[k] <= watch_from_[e.pair]) mask &= ~(1u << k);
-      }
-    }
+    const double from = watchFrom(e.pair);
+    for (int k = 0; k < kLanes && lane_end_[k] <= from; ++k) mask &= ~(1u << k);
     if (!(mask & live_)) continue;
     if (e.pair != present) setupPair(present = e.pair);
     traverse(e.pair, e.a, e.b, mask);
@@ -582,9 +602,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   for (int i = begin; i < end; ++i) {
     const Entry& e = entries_[i];
     if (!(e.mask >> lane & 1)) continue;
-    double from = start;
-    if (watch_from_.size()) from = max(from, watch_from_[e.pair]);
-    finals_.push({e, from, {0, 0, 0}, false});
+    finals_.push({e, max(start, watchFrom(e.pair)), {0, 0, 0}, false});
   }
   const double stop = start + width;
   // Prefix roots, from the earliest time any pair is left at: Newton steps on an approach (SHAPES, section 3).
@@ -648,7 +666,10 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   for (int i = 0; i < finals_.size(); ++i) {
     Final& f = finals_[i];
     LeafContact contact = {};
+    const PairParts bodies = parts(f.entry.pair);
     contact.pair = f.entry.pair;
+    contact.body_a = bodies.a;
+    contact.body_b = bodies.b;
     setupPair(f.entry.pair);
     const Piece *pieces_a = side_[0].still->pieces, *pieces_b = side_[0].moving->pieces;
     contact.piece_a = side_[0].still->nodes[f.entry.a].piece();
@@ -753,7 +774,6 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   entries_.clear();
   contacts_.clear();
   ignored_.clear();
-  watch_from_.clear();
   t_lower_ = 0;
   t_upper_ = 2;
   certain_ = out_of_budget_ = decide_only_ = false;
@@ -813,7 +833,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   answer.t_upper = verdict == Verdict::free ? 1 : min(1.0, t_upper_);
   answer.contacts = contacts_.data();
   answer.num_contacts = verdict == Verdict::contact ? contacts_.size() : 0;
-  answer.ignored_pairs = ignored_.data();
+  answer.ignored = ignored_.data();
   answer.num_ignored = ignored_.size();
   statistics_.narrowphase_us = now() - time1;
   answer.statistics = statistics_;

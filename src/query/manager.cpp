@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <tuple>
+#include <unordered_set>
 
 #include "adapters/fcl/fcl_geometry.h"
 #include "geometry/shape_tree.h"
@@ -116,6 +118,8 @@ void requireTolerance(double x, const char* name, bool positive) {
 struct ArticulatedCollisionManager::Impl {
   std::shared_ptr<const KinematicTree> tree;
   std::vector<Item> obstacles, links;
+  std::unordered_set<const fcl::CollisionObjectd*> objects;  ///< of both
+  std::unordered_set<std::string> obstacle_names;
   AllowedCollisionMatrix allowed;
   bool ready = false;
   std::size_t named = 0;  ///< obstacles that were given a name so far
@@ -124,9 +128,9 @@ struct ArticulatedCollisionManager::Impl {
   std::vector<FrameSweep> sweeps;
   std::vector<engine::SweepView> sweep_views;
   std::vector<engine::Body> bodies;  ///< links first, then obstacles
-  std::vector<std::int32_t> movers, obstacle_bodies, scene_pair;
-  std::vector<engine::Pair> pairs;
-  std::int32_t num_scene_pairs = 0;
+  std::vector<std::int32_t> movers, obstacle_bodies;
+  std::vector<std::uint8_t> scene_allowed;  ///< empty when no obstacle is named in `allowed`
+  std::vector<engine::LinkPair> link_pairs;
   std::vector<engine::Node> obstacle_tree;
 
   const Item& item(std::int32_t body) const {
@@ -138,14 +142,21 @@ struct ArticulatedCollisionManager::Impl {
   bool linkAbove(LinkId above, LinkId below) const;
   void readObstacle(Item& item) const;
   void build();
+  void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
+    objects.erase(item->object);
+    if (item->link < 0) obstacle_names.erase(item->name);
+    items.erase(item);
+  }
   BodyRef reference(const Item& item) const { return {item.link, item.object, item.name}; }
 };
 
 Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, const std::string& what) const {
   if (!object) throw std::invalid_argument(what + ": the object is null");
-  for (const std::vector<Item>* items : {&obstacles, &links}) {
-    for (const Item& i : *items) {
-      if (i.object == object) throw std::invalid_argument(what + ": the object is there already, as '" + i.name + "'");
+  if (objects.count(object)) {
+    for (const std::vector<Item>* items : {&obstacles, &links}) {
+      for (const Item& i : *items) {
+        if (i.object == object) throw std::invalid_argument(what + ": the object is there already, as '" + i.name + "'");
+      }
     }
   }
   Item item;
@@ -254,6 +265,7 @@ void ArticulatedCollisionManager::Impl::build() {
     engine::Body& body = bodies[links.size() + o];
     body.tree = &item.shape->view();
     body.placement = makePlacement(item.offset);
+    body.inverse = makePlacement(item.offset.inverse());
     worldBox(*item.shape, item.offset, body.placement, body.lo, body.hi);
     for (int k = 0; k < 3; ++k) {
       boxes[o].lo[k] = body.lo[k];
@@ -263,24 +275,21 @@ void ArticulatedCollisionManager::Impl::build() {
   }
   obstacle_tree = buildBoxTree(boxes);
 
-  pairs.clear();
-  scene_pair.assign(movers.size() * obstacles.size(), -1);
-  for (std::size_t m = 0; m < movers.size(); ++m) {
-    const std::int32_t b = movers[m];
-    for (std::size_t o = 0; o < obstacles.size(); ++o) {
-      if (allowed.allowed(item(b).name, obstacles[o].name)) continue;
-      engine::Pair pair;
-      pair.a = obstacle_bodies[o];
-      pair.b = b;
-      pair.step_b = bodies[static_cast<std::size_t>(b)].step;
-      pair.inverse_a = makePlacement(obstacles[o].offset.inverse());
-      pair.placement_b = bodies[static_cast<std::size_t>(b)].placement;
-      scene_pair[m * obstacles.size() + o] = static_cast<std::int32_t>(pairs.size());
-      pairs.push_back(pair);
+  scene_allowed.clear();
+  std::map<std::string, std::size_t> obstacle_named;
+  for (std::size_t o = 0; o < obstacles.size(); ++o) obstacle_named[obstacles[o].name] = o;
+  for (const auto& [first, second] : allowed.pairs()) {
+    for (const auto& [obstacle, link] : {std::tie(first, second), std::tie(second, first)}) {
+      const auto o = obstacle_named.find(obstacle);
+      if (o == obstacle_named.end()) continue;
+      scene_allowed.resize(movers.size() * obstacles.size(), 0);
+      for (std::size_t m = 0; m < movers.size(); ++m) {
+        if (item(movers[m]).name == link) scene_allowed[m * obstacles.size() + o->second] = 1;
+      }
     }
   }
-  num_scene_pairs = static_cast<std::int32_t>(pairs.size());
 
+  link_pairs.clear();
   std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
@@ -289,7 +298,7 @@ void ArticulatedCollisionManager::Impl::build() {
       // The shorter path first: an ancestor is the base.
       std::size_t a = i, b = j;
       if (linkAbove(links[j].link, links[i].link)) std::swap(a, b);
-      engine::Pair pair;
+      engine::LinkPair pair;
       pair.a = static_cast<std::int32_t>(a);
       pair.b = static_cast<std::int32_t>(b);
       if (bodies[a].step < 0) {  // stands still: the world's sweep serves
@@ -309,7 +318,7 @@ void ArticulatedCollisionManager::Impl::build() {
         pair.inverse_a = makePlacement(links[a].offset.inverse());
         pair.placement_b = makePlacement(carrier, links[b].offset);
       }
-      pairs.push_back(pair);
+      link_pairs.push_back(pair);
     }
   }
   sweep_views.clear();
@@ -331,12 +340,14 @@ std::shared_ptr<const KinematicTree> ArticulatedCollisionManager::sharedTree() c
 
 void ArticulatedCollisionManager::registerObject(fcl::CollisionObjectd* object, const std::string& name) {
   const std::string shown = name.empty() ? "obstacle" + std::to_string(impl_->named) : name;
-  for (const Item& i : impl_->obstacles) {
-    if (i.name == shown) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
+  if (impl_->obstacle_names.count(shown)) {
+    throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
   }
   Item item = impl_->makeItem(object, "obstacle '" + shown + "'");
   item.name = shown;
   impl_->readObstacle(item);
+  impl_->objects.insert(object);
+  impl_->obstacle_names.insert(shown);
   impl_->obstacles.push_back(std::move(item));
   ++impl_->named;
   impl_->ready = false;
@@ -348,7 +359,7 @@ void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::Collisi
   try {
     for (fcl::CollisionObjectd* object : objects) registerObject(object);
   } catch (...) {
-    impl_->obstacles.resize(before);
+    while (impl_->obstacles.size() > before) impl_->forget(impl_->obstacles, impl_->obstacles.end() - 1);
     impl_->named = named;
     impl_->ready = ready;
     throw;
@@ -359,7 +370,7 @@ void ArticulatedCollisionManager::unregisterObject(fcl::CollisionObjectd* object
   auto& items = impl_->obstacles;
   const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
   if (it == items.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
-  items.erase(it);
+  impl_->forget(items, it);
   impl_->ready = false;
 }
 
@@ -373,6 +384,7 @@ void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* objec
   item.name = impl_->tree->linkName(link);
   item.offset = requireRigid(offset, what);
   item.lss = item.shape->lineSweptSphere();
+  impl_->objects.insert(object);
   impl_->links.push_back(std::move(item));
   impl_->ready = false;
 }
@@ -389,7 +401,7 @@ void ArticulatedCollisionManager::unbind(fcl::CollisionObjectd* object) {
   auto& items = impl_->links;
   const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
   if (it == items.end()) throw std::invalid_argument("unbind: the object is bound to no link");
-  items.erase(it);
+  impl_->forget(items, it);
   impl_->ready = false;
 }
 
@@ -428,6 +440,8 @@ void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd
 void ArticulatedCollisionManager::clear() {
   impl_->obstacles.clear();
   impl_->links.clear();
+  impl_->objects.clear();
+  impl_->obstacle_names.clear();
   impl_->named = 0;
   impl_->ready = false;
 }
@@ -474,14 +488,13 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   problem.num_movers = static_cast<std::int32_t>(m.movers.size());
   problem.sweeps = m.sweep_views.data();
   problem.num_sweeps = static_cast<std::int32_t>(m.sweep_views.size());
-  problem.pairs = m.pairs.data();
-  problem.num_pairs = static_cast<std::int32_t>(m.pairs.size());
-  problem.num_scene_pairs = m.num_scene_pairs;
-  problem.scene_pair = m.scene_pair.data();
+  problem.link_pairs = m.link_pairs.data();
+  problem.num_link_pairs = static_cast<std::int32_t>(m.link_pairs.size());
+  problem.num_scene_pairs = static_cast<std::int32_t>(m.movers.size() * m.obstacles.size());
+  problem.scene_allowed = m.scene_allowed.empty() ? nullptr : m.scene_allowed.data();
   problem.obstacles = m.obstacle_bodies.data();
   problem.num_obstacles = static_cast<std::int32_t>(m.obstacles.size());
   problem.obstacle_tree = m.obstacle_tree.empty() ? nullptr : m.obstacle_tree.data();
-  problem.num_variables = m.tree->dof();
 
   engine::Query query;
   query.q0 = motion.q0().data();
@@ -517,8 +530,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   std::vector<Eigen::Isometry3d> M_0;
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     engine::LeafContact leaf = answer.contacts[i];
-    const engine::Pair& pair = m.pairs[static_cast<std::size_t>(leaf.pair)];
-    const Item &a = m.item(pair.a), &b = m.item(pair.b);
+    const Item &a = m.item(leaf.body_a), &b = m.item(leaf.body_b);
     CertifiedContact contact;
     if (request.margin == 0) refine(workspace, a.shape->view(), b.shape->view(), leaf, contact.feature);
     m.tree->forwardKinematics(motion.configuration(leaf.t), M_0);
@@ -547,8 +559,8 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-    const engine::Pair& pair = m.pairs[static_cast<std::size_t>(answer.ignored_pairs[i])];
-    result.ignored_initial_contacts.emplace_back(m.reference(m.item(pair.a)), m.reference(m.item(pair.b)));
+    result.ignored_initial_contacts.emplace_back(m.reference(m.item(answer.ignored[i].body_a)),
+                                                 m.reference(m.item(answer.ignored[i].body_b)));
   }
   QueryStatistics& s = result.statistics;
   s = QueryStatistics();

@@ -29,7 +29,7 @@ struct Robot {
   std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
 
   /// Binds every geometry and sets the allowed collisions. setup() is left to the caller.
-  void addTo(ArticulatedCollisionManager& manager) const;
+  FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
 struct UrdfOptions {
@@ -70,7 +70,7 @@ struct Scene {
   };
   std::vector<Obstacle> obstacles;
   std::vector<std::string> notes;
-  void addTo(ArticulatedCollisionManager& manager) const;
+  FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
 /// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;

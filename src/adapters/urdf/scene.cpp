@@ -230,7 +230,7 @@ void readRobot(const std::string& path, SceneBuilder& builder) {
 
 }  // namespace
 
-FCL_ARTIC_EXPORT void Scene::addTo(ArticulatedCollisionManager& manager) const {
+void Scene::addTo(ArticulatedCollisionManager& manager) const {
   for (const Obstacle& obstacle : obstacles) manager.registerObject(obstacle.object.get(), obstacle.name);
 }
 

@@ -286,7 +286,7 @@ class GeometryFactory {
 
 }  // namespace
 
-FCL_ARTIC_EXPORT void Robot::addTo(ArticulatedCollisionManager& manager) const {
+void Robot::addTo(ArticulatedCollisionManager& manager) const {
   for (const LinkGeometry& g : geometry) manager.bind(g.link, g.object.get(), g.offset);
   manager.setAllowedCollisions(allowed);
 }
