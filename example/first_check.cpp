@@ -10,8 +10,8 @@ int main() {
   const Scene scene = loadScene("data/pipes.obj");
 
   ArticulatedCollisionManager manager(robot.tree);
-  robot.addTo(manager);  // links against links and
-  scene.addTo(manager);  // links against obstacles
+  robot.addTo(manager);  // links, and the pairs of them that may touch
+  scene.addTo(manager);  // obstacles
   manager.setup();
 
   Eigen::VectorXd q0(6), q1(6);  // rad
@@ -24,7 +24,7 @@ int main() {
     std::cout << "proven free from q0 to q1\n";
   } else {
     const CertifiedContact& c = result.contacts.front();
-    std::cout << c.body1.name << " meets " << c.body2.name << " at " << c.point.transpose()
-              << ", first between t = " << result.t_lower << " and " << result.t_upper << " of the way; free before\n";
+    std::cout << c.body1.name << " meets " << c.body2.name << " at t = " << result.t_lower
+              << ", x = " << c.point.transpose() << "; proven free before\n";
   }
 }
