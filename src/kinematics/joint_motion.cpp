@@ -13,9 +13,10 @@ constexpr double kTwoPi = 6.283185307179586;
 
 void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::string& what) {
   tree.requireConfiguration(q, what);
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (std::abs(q[v]) > kLargestJointValue) {
-      throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + tree.variableName(v) +
+  for (JointId j = 0; j < tree.numJoints(); ++j) {  // mimic joints too: their multiplier may be large
+    const double value = tree.jointValue(j, q);
+    if (!(std::abs(value) <= kLargestJointValue)) {
+      throw std::invalid_argument(what + ": the value " + std::to_string(value) + " of joint '" + tree.joint(j).name +
                                   "' is beyond 1e5");
     }
   }

@@ -290,6 +290,22 @@ TEST(Manager, SelfCollisionIsFoundUnlessAllowed) {
   EXPECT_EQ(r.status, Status::free);
 }
 
+// Aligned boxes meet head on, face to face: both certificate and proof must cope with faces that coincide (Lemma 2).
+TEST(Manager, ParallelFacesHeadOnAreProven) {
+  for (const double offset : {0.0, 0.1, 0.25}) {
+    Slider slider(std::make_shared<fcl::Boxd>(0.5, 0.5, 0.5));
+    auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, offset, 0});
+    slider.manager->registerObject(wall.get());
+    slider.manager->setup();
+    const CertifiedResult r = slider.run(0, 1);
+    ASSERT_EQ(r.status, Status::contact);
+    EXPECT_TRUE(r.certain) << offset;
+    EXPECT_LE(r.t_lower, 0.25 + kRounding);
+    EXPECT_GE(r.t_lower, 0.25 - 1e-9);
+    EXPECT_LE(r.t_upper, 0.25 + 1e-6);
+  }
+}
+
 // Two robots in one forest, each a slider along its own axis; they meet in the middle.
 TEST(Manager, TwoRootsMeet) {
   auto tree = std::make_shared<KinematicTree>("pair");
@@ -327,6 +343,19 @@ TEST(Manager, MimicJointMovesWithItsMaster) {
   ASSERT_EQ(r.status, Status::contact);
   EXPECT_LE(r.t_lower, 0.5 + kRounding);
   EXPECT_GE(r.t_upper, 0.5 - kRounding);
+}
+
+TEST(Manager, MimicJointBeyondTheProvenRangeIsRefused) {
+  auto tree = std::make_shared<KinematicTree>("gear");
+  for (const char* link : {"base", "slow", "fast"}) tree->addLink(link);
+  tree->addJoint(makeJoint("master", JointType::continuous, "base", "slow", Vector3d::UnitZ()));
+  Joint fast = makeJoint("fast", JointType::continuous, "base", "fast", Vector3d::UnitZ());
+  fast.mimics = true;
+  fast.mimic = {"master", 1e4, 0};
+  tree->addJoint(fast);
+  const VectorXd q0 = VectorXd::Zero(1), q1 = VectorXd::Constant(1, 100);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { JointMotion::linear(*tree, q0, q1); }).find("'fast'"),
+            std::string::npos);
 }
 
 TEST(Manager, MeshInsideASolidTouchesMeshInsideAMeshDoesNot) {
