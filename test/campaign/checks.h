@@ -37,6 +37,7 @@ std::vector<Finding> examine(const Scene& scene, const Oracle& oracle, const Tru
 
 /// Ways to spoil an answer, to show that the campaign sees it.
 enum class Corruption { none, late, drop, invent, widen, point, normal, poses, certain, pair, count };
+constexpr int kCorruptions = static_cast<int>(Corruption::count);
 const char* corruptionName(Corruption corruption);
 /// @throws std::invalid_argument for an unknown name
 Corruption corruptionOf(const std::string& name);

@@ -119,8 +119,8 @@ void reduce(Simplex& s) {
   s.size = n;
 }
 
-/// Distance of the cores, by the algorithm of Gilbert, Johnson and Keerthi.
-Separation coreSeparation(const Piece& A, const Piece& B, double wanted) {
+/// Distance of the cores, by the algorithm of Gilbert, Johnson and Keerthi, to a share of what it exceeds `skin` by.
+Separation coreSeparation(const Piece& A, const Piece& B, double wanted, double skin) {
   constexpr int kMaxIterations = 80;
   const Vec3 a0 = anyPoint(A), b0 = anyPoint(B);
   Vec3 v = a0 - b0;
@@ -135,7 +135,7 @@ Separation coreSeparation(const Piece& A, const Piece& B, double wanted) {
       r.direction = -v / length;
       r.lower = std::max(lower, 0.0);
     }
-    if (r.upper - r.lower <= std::max(wanted * r.upper, 1e-14)) break;
+    if (r.upper - r.lower <= std::max(wanted * (r.upper - skin), 1e-14)) break;
     for (int k = 0; k < s.size; ++k)
       if (s.w[k] == w) return r;  // nothing new in this direction
     s.w[s.size] = w, s.a[s.size] = a, s.b[s.size] = b;
@@ -160,9 +160,9 @@ bool isSolid(const Piece& p) { return p.kind != Piece::triangle; }
 
 }  // namespace
 
-Separation separation(const Piece& A, const Piece& B, double wanted) {
-  Separation r = coreSeparation(A, B, wanted);
+Separation separation(const Piece& A, const Piece& B, double wanted, double margin) {
   const double radii = coreRadius(A) + coreRadius(B);
+  Separation r = coreSeparation(A, B, wanted, radii + margin);
   r.lower -= radii;
   r.upper -= radii;
   return r;
@@ -187,7 +187,7 @@ bool clearlyOverlap(const Piece& A, const Piece& B, double margin) {
   const Piece &solid = isSolid(A) ? A : B, &other = isSolid(A) ? B : A;
   if (!isSolid(solid)) return false;
   // A point of `other` near the shrunk solid lies well inside the solid itself.
-  const Separation s = coreSeparation(shrunk(solid, 2 * margin), other, 1e-3);
+  const Separation s = coreSeparation(shrunk(solid, 2 * margin), other, 0, 0);
   Vec3 x = s.b;
   if (other.kind == Piece::sphere) {
     // s.b is the centre: go from there towards the solid, at most to the sphere's surface.

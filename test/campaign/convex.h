@@ -25,8 +25,8 @@ struct Separation {
   Vec3 direction;  ///< unit, from A to B; zero when none was found
 };
 
-/// @param wanted  stop when upper - lower is at most this share of upper (or 1e-14 m)
-Separation separation(const Piece& A, const Piece& B, double wanted);
+/// @param wanted  stop when upper - lower is at most this share of upper - margin (or 1e-14 m)
+Separation separation(const Piece& A, const Piece& B, double wanted, double margin = 0);
 
 /// Gap between the pieces along the unit direction n: least n.b over B less the largest n.a over A.
 double gapAlong(const Piece& A, const Piece& B, const Vec3& n);

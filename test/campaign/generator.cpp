@@ -77,35 +77,6 @@ GeometryPtr torusMesh(int rows, int columns, double size, Random& random) {
   }, random);
 }
 
-/// A box with each side cut n x n, corners moved by up to `noise`.
-GeometryPtr boxMesh(const Vec3& sides, int n, double noise, Random& random) {
-  std::map<std::array<int, 3>, int> ids;
-  std::vector<Vec3> v;
-  Triangles t;
-  const auto id = [&](const std::array<int, 3>& k) {
-    const auto [at, fresh] = ids.emplace(k, static_cast<int>(v.size()));
-    if (fresh) {
-      const Vec3 x(k[0], k[1], k[2]);
-      v.push_back((x / n - Vec3::Constant(0.5)).cwiseProduct(sides) + noise * random.unit() * random.direction());
-    }
-    return at->second;
-  };
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int side : {0, n})
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-          const auto corner = [&](int di, int dj) {
-            std::array<int, 3> k;
-            k[axis] = side, k[(axis + 1) % 3] = i + di, k[(axis + 2) % 3] = j + dj;
-            return id(k);
-          };
-          t.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
-          t.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
-        }
-  const std::string full_name = "boxmesh" + std::to_string(t.size());
-  return Geometry::mesh(full_name, std::move(v), std::move(t), anyBV(random));
-}
-
 /// Loose triangles, slivers among them.
 GeometryPtr soupMesh(int n, double size, Random& random) {
   std::vector<Vec3> v;
@@ -445,6 +416,34 @@ void placeArm(Scene& s, const std::string& placing, Random& random) {
 }
 
 }  // namespace
+
+GeometryPtr boxMesh(const Vec3& sides, int n, double noise, Random& random) {
+  std::map<std::array<int, 3>, int> ids;
+  std::vector<Vec3> v;
+  Triangles t;
+  const auto id = [&](const std::array<int, 3>& k) {
+    const auto [at, fresh] = ids.emplace(k, static_cast<int>(v.size()));
+    if (fresh) {
+      const Vec3 x(k[0], k[1], k[2]);
+      v.push_back((x / n - Vec3::Constant(0.5)).cwiseProduct(sides) + noise * random.unit() * random.direction());
+    }
+    return at->second;
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int di, int dj) {
+            std::array<int, 3> k;
+            k[axis] = side, k[(axis + 1) % 3] = i + di, k[(axis + 2) % 3] = j + dj;
+            return id(k);
+          };
+          t.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+          t.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+        }
+  const std::string full_name = "boxmesh" + std::to_string(t.size());
+  return Geometry::mesh(full_name, std::move(v), std::move(t), anyBV(random));
+}
 
 MeshLibrary::MeshLibrary() {
   Random random(0x6d657368);

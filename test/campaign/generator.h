@@ -24,6 +24,9 @@ class MeshLibrary {
   std::vector<GeometryPtr> meshes_, bars_;
 };
 
+/// A box as a mesh, each side cut n x n, its corners moved by up to `noise` (m).
+GeometryPtr boxMesh(const Vec3& sides, int n, double noise, Random& random);
+
 /// Names of the classes: "<bodies>/<placing>" with bodies mesh_mesh, mesh_shape, shape_shape (one link, one obstacle),
 /// chain or tree (arms of 1 to 9 joints among 1 to 5 obstacles, self collision on), and placing random, between (both
 /// ends free, a hit between) or graze (least gap or depth of 1e-3 to 1e-8 m).

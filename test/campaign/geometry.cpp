@@ -35,7 +35,7 @@ struct LeafAnswer {
 
 LeafAnswer compareLeaves(const Piece& a, const Piece& b, double margin, double wanted) {
   LeafAnswer r;
-  r.separation = separation(a, b, wanted);
+  r.separation = separation(a, b, wanted, margin);
   r.gap = r.separation.lower - margin;
   r.upper = r.separation.upper - margin;
   r.touching = r.clear = false;

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   const auto* again = app.add_option("--replay", replay, "run the query of this seed (with --class) and dump it");
   app.add_option("--spoil", spoil, "spoil the answers on purpose, to see that it is noticed: late, drop, invent, widen, point, "
                                    "normal, poses, certain, pair")->capture_default_str();
+  app.add_flag("--try-spoiling", options.try_corruptions, "spoil a copy of each answer in each way, and count what is noticed");
   CLI11_PARSE(app, argc, argv);
   try {
     if (*again) {

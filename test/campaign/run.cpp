@@ -28,7 +28,7 @@ bool freeAtEnd(const Oracle& oracle) {
 }
 
 /// Runs one query and counts it; what is wrong goes to `findings`.
-void runOne(const std::string& family, std::uint64_t seed, Corruption corruption, Tally& tally,
+void runOne(const std::string& family, std::uint64_t seed, const Options& options, Tally& tally,
             std::vector<Finding>& findings) {
   const auto begin = Clock::now();
   const Scene scene = makeScene(family, seed);
@@ -45,7 +45,17 @@ void runOne(const std::string& family, std::uint64_t seed, Corruption corruption
     ++tally.faults[static_cast<int>(Fault::fields)];
     return;
   }
-  const bool corrupted = corrupt(corruption, seed, scene, answer);
+  if (options.try_corruptions) {
+    const fcl_artic::CertifiedResult original = answer.result;
+    for (std::size_t c = 0; c < tally.spoilt.size(); ++c) {
+      if (corrupt(static_cast<Corruption>(c), seed, scene, answer)) {
+        ++tally.spoilt[c];
+        tally.spoilt_seen[c] += !examine(scene, oracle, truth, answer).empty();
+      }
+      answer.result = original;
+    }
+  }
+  corrupt(options.corruption, seed, scene, answer);
   findings = examine(scene, oracle, truth, answer);
 
   const fcl_artic::CertifiedResult& r = answer.result;
@@ -58,10 +68,9 @@ void runOne(const std::string& family, std::uint64_t seed, Corruption corruption
   tally.answers_contact += r.status == Status::contact;
   tally.certain += r.status == Status::contact && r.certain;
   tally.uncertain += r.status == Status::contact && !r.certain;
+  tally.uncertain_margin += r.status == Status::contact && !r.certain && scene.margin > 0;
   tally.undecided += r.status == Status::undecided;
   tally.beyond_sampling += r.status == Status::contact && r.certain && !truth.hit;
-  tally.corrupted += corrupted;
-  tally.corrupted_seen += corrupted && !findings.empty();
   if (r.certain && truth.hit) tally.lead.push_back(static_cast<float>(truth.time - r.t_lower));
   bool seen[kFaults] = {};
   for (const Finding& f : findings) seen[static_cast<int>(f.fault)] = true;
@@ -82,7 +91,9 @@ std::uint64_t Tally::faulty() const {
 void Tally::add(const Tally& o) {
   queries += o.queries, hits += o.hits, doubtful += o.doubtful, starts += o.starts, ends_free += o.ends_free, grazes += o.grazes;
   answers_contact += o.answers_contact, certain += o.certain, uncertain += o.uncertain, undecided += o.undecided;
-  beyond_sampling += o.beyond_sampling, corrupted += o.corrupted, corrupted_seen += o.corrupted_seen;
+  uncertain_margin += o.uncertain_margin;
+  beyond_sampling += o.beyond_sampling;
+  for (std::size_t c = 0; c < spoilt.size(); ++c) spoilt[c] += o.spoilt[c], spoilt_seen[c] += o.spoilt_seen[c];
   for (std::size_t f = 0; f < faults.size(); ++f) faults[f] += o.faults[f];
   lead.insert(lead.end(), o.lead.begin(), o.lead.end());
   query_us += o.query_us, generate_us += o.generate_us, oracle_us += o.oracle_us;
@@ -100,7 +111,7 @@ Report run(const Options& options) {
       const std::string& family = options.family.empty() ? familyOf(options.seed, i) : options.family;
       const std::uint64_t seed = Random::mix(options.seed, i);
       std::vector<Finding> findings;
-      runOne(family, seed, options.corruption, tallies[family], findings);
+      runOne(family, seed, options, tallies[family], findings);
       if (!findings.empty()) {
         const std::lock_guard<std::mutex> lock(mutex);
         failures.push_back({i, {family, seed, std::move(findings)}});
@@ -184,12 +195,15 @@ std::string toText(const Report& report) {
                   at(0.5), at(0.95), at(1));
     out += line;
   }
-  std::snprintf(line, sizeof line, "doubtful %llu; %.1f s, %.0f queries/s\n", static_cast<unsigned long long>(total.doubtful),
+  std::snprintf(line, sizeof line, "uncertain %llu, of these with a margin %llu; doubtful %llu; %.1f s, %.0f queries/s\n",
+                static_cast<unsigned long long>(total.uncertain), static_cast<unsigned long long>(total.uncertain_margin),
+                static_cast<unsigned long long>(total.doubtful),
                 report.elapsed_s, static_cast<double>(total.queries) / std::max(1e-9, report.elapsed_s));
   out += line;
-  if (total.corrupted > 0) {
-    std::snprintf(line, sizeof line, "answers spoilt on purpose %llu, of these seen %llu\n",
-                  static_cast<unsigned long long>(total.corrupted), static_cast<unsigned long long>(total.corrupted_seen));
+  for (std::size_t c = 0; c < total.spoilt.size(); ++c) {
+    if (total.spoilt[c] == 0) continue;
+    std::snprintf(line, sizeof line, "spoilt on purpose, %s: %llu, of these seen %llu\n", corruptionName(static_cast<Corruption>(c)),
+                  static_cast<unsigned long long>(total.spoilt[c]), static_cast<unsigned long long>(total.spoilt_seen[c]));
     out += line;
   }
   // The first few of each kind, as one kind can be much more frequent than a worse one.
