@@ -131,56 +131,89 @@ Equation equation(int k) {
   return {Equation::edgeEdge, i, j, kEdge[i], kEdge[j]};
 }
 
+/// Takes the part along u out of v, to within rounding of |v|.
+void removeAlong(const Vector3d& u, Vector3d& v) {
+  const double length2 = u.squaredNorm();
+  if (length2 > 0) v -= v.dot(u) / length2 * u;
+}
+
+/// Closest point of a feature, and the feature's directions there, 0 at an end: the way to the point is at right
+/// angles.
+struct Foot {
+  Vector3d point, e = Vector3d::Zero(), f = Vector3d::Zero();
+};
+
 /// Closest points of an equation's features. Need no trust: they give directions to try, and places to report.
 struct Nearest {
   Vector3d a, x;
+  Foot foot;
+
   double distance() const { return (x - a).norm(); }
+  /// x - a. The difference has lost digits to cancellation, an angle of rounding / distance; what the features' own
+  /// directions tell brings them back, which lets gaps below the root of the rounding error be seen.
+  Vector3d direction() const {
+    Vector3d n = x - a, f = foot.f;
+    removeAlong(foot.e, n);
+    removeAlong(foot.e, f);
+    removeAlong(f, n);
+    return n;
+  }
 };
 
-Vector3d nearestOnEdge(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
+Foot footOnEdge(const Vector3d& p, const Vector3d& from, const Vector3d& to) {
   const Vector3d e = to - from;
-  const double length2 = e.squaredNorm();
-  return from + (length2 > 0 ? std::min(1.0, std::max(0.0, e.dot(p - from) / length2)) : 0) * e;
+  const double length2 = e.squaredNorm(), along = length2 > 0 ? e.dot(p - from) / length2 : 0;
+  if (!(along > 0)) return {from};
+  if (!(along < 1)) return {to};
+  return {from + along * e, e};
 }
 
-Vector3d nearestOnFace(const Vector3d& p, const Vector3d v[3]) {
+Foot footOnFace(const Vector3d& p, const Vector3d v[3]) {
   const Vector3d n = (v[1] - v[0]).cross(v[2] - v[1]);
   const double n2 = n.squaredNorm();
   bool inside = n2 > 0;
-  Vector3d best = v[0];
+  Foot best{v[0]};
   for (int i = 0; i < 3; ++i) {
-    const Vector3d &from = v[i], &to = v[(i + 1) % 3], q = nearestOnEdge(p, from, to);
-    if ((p - q).squaredNorm() < (p - best).squaredNorm()) best = q;
+    const Vector3d &from = v[i], &to = v[(i + 1) % 3];
+    const Foot foot = footOnEdge(p, from, to);
+    if ((p - foot.point).squaredNorm() < (p - best.point).squaredNorm()) best = foot;
     inside = inside && n.cross(to - from).dot(p - from) >= 0;
   }
-  return inside ? Vector3d(p - n.dot(p - v[0]) / n2 * n) : best;
+  if (inside) best = {p - n.dot(p - v[0]) / n2 * n, v[1] - v[0], v[2] - v[1]};
+  return best;
 }
 
 /// The nearest of all ends to the other edge, and of the lines' crossing where that lies on both: no parameter of one
 /// edge is rounded to find the other's, so near-parallel edges lose nothing.
 Nearest nearestOfEdges(const Vector3d& p, const Vector3d& p1, const Vector3d& q, const Vector3d& q1) {
-  Nearest best{p, nearestOnEdge(p, q, q1)};
-  const auto offer = [&](const Nearest& n) {
-    if (n.distance() < best.distance()) best = n;
+  Nearest best{p, q, {}};
+  const auto offer = [&](const Vector3d& a, const Vector3d& x, const Foot& foot) {
+    if ((x - a).squaredNorm() <= (best.x - best.a).squaredNorm()) best = {a, x, foot};
   };
-  offer({p1, nearestOnEdge(p1, q, q1)});
-  offer({nearestOnEdge(q, p, p1), q});
-  offer({nearestOnEdge(q1, p, p1), q1});
+  for (const Vector3d* end : {&p, &p1}) {
+    const Foot foot = footOnEdge(*end, q, q1);
+    offer(*end, foot.point, foot);
+  }
+  for (const Vector3d* end : {&q, &q1}) {
+    const Foot foot = footOnEdge(*end, p, p1);
+    offer(foot.point, *end, foot);
+  }
   const Vector3d e = p1 - p, f = q1 - q, w = q - p, m = e.cross(f);
   const double m2 = m.squaredNorm(), u = m.dot(w.cross(f)), v = m.dot(w.cross(e));
-  if (m2 > 0 && u >= 0 && u <= m2 && v >= 0 && v <= m2) offer({p + u / m2 * e, q + v / m2 * f});
+  if (m2 > 0 && u >= 0 && u <= m2 && v >= 0 && v <= m2) offer(p + u / m2 * e, q + v / m2 * f, {p, e, f});
   return best;
 }
 
 Nearest nearest(const Equation& q, const Vector3d a[3], const Vector3d x[3]) {
-  switch (q.kind) {
-    case Equation::vertexFace:
-      return {a[q.i], nearestOnFace(a[q.i], x)};
-    case Equation::faceVertex:
-      return {nearestOnFace(x[q.j], a), x[q.j]};
-    default:
-      return nearestOfEdges(a[q.i], a[(q.i + 1) % 3], x[q.j], x[(q.j + 1) % 3]);
+  if (q.kind == Equation::vertexFace) {
+    const Foot foot = footOnFace(a[q.i], x);
+    return {a[q.i], foot.point, foot};
   }
+  if (q.kind == Equation::faceVertex) {
+    const Foot foot = footOnFace(x[q.j], a);
+    return {foot.point, x[q.j], foot};
+  }
+  return nearestOfEdges(a[q.i], a[(q.i + 1) % 3], x[q.j], x[(q.j + 1) % 3]);
 }
 
 /// Both triangles over one time interval.
@@ -200,7 +233,7 @@ struct Sweep {
       for (int k = 0; k < 3; ++k) {
         double c[3], size = 0;
         for (int order = 0; order < 3; ++order) {
-          const double *R = m.R[order] + 3 * k, p = m.c[order][k];
+          const double *R = &m.R[order][3 * k], p = m.c[order][k];
           c[order] = R[0] * b[j][0] + R[1] * b[j][1] + R[2] * b[j][2] + p;
           size += std::abs(R[0] * b[j][0]) + std::abs(R[1] * b[j][1]) + std::abs(R[2] * b[j][2]) + std::abs(p);
         }
@@ -249,8 +282,7 @@ struct Sweep {
 
   /// The direction between the closest points at tm keeps the features apart over the whole interval.
   bool certainlyApart(const Equation& q, const Vector3d a[3]) const {
-    const Nearest near = nearest(q, a, x);
-    const Vector n = constant(near.x - near.a);
+    const Vector n = constant(nearest(q, a, x).direction());
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         if ((q.a >> i & 1) && (q.b >> j & 1) && !certainlyPositive(dot(n, D[i][j]))) return false;
@@ -405,7 +437,7 @@ class Refinement {
       out.point += 0.5 * (now.a + now.x) / num_places;
       if (then.distance() < gap) {
         gap = then.distance();
-        toward = then.x - then.a;
+        toward = then.direction();
       }
       a |= places[p].a;
       b |= places[p].b;

@@ -4,6 +4,7 @@
 // by distance / speed, so that it can't pass a contact, down to gaps of 1e-16 m.
 #include "narrowphase/elementary.h"
 
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -39,7 +40,8 @@ struct Turn {
 /// What a test may take out of the enclosure, to see that it would notice.
 struct Mutant {
   bool drop_remainder = false, drop_pad = false;
-  double noise = 0;  ///< added to the coefficients of the position, and to the pad
+  double noise = 0;             ///< added to the coefficients of the position, and to the pad
+  int rounding = FE_TONEAREST;  ///< mode during the refinement, its motion included
 };
 
 Matrix crossMatrix(const Point& w) {
@@ -234,6 +236,7 @@ std::string faultOf(const Pair& pair, const Truth& truth, bool found, const Refi
   if (!found) return "contact lost";
   if (static_cast<Real>(r.t_lower) > truth.t) return "t_lower after the contact";
   if (static_cast<Real>(r.t_upper) < truth.t) return "t_upper before the contact";
+  if (r.t_upper > given_upper) return "t_upper after the one given";
   if (!r.certain) return r.t_upper == given_upper ? "" : "t_upper changed without proof";
   return crossing(pair, r.t_upper) ? "" : "no contact at a certain t_upper";
 }
@@ -264,7 +267,10 @@ Campaign runCampaign(unsigned seed, int count, const Mutant& mutant, bool narrow
       upper = std::min(1.0, static_cast<double>(truth.t) + after);
     }
     RefinedContact r;
-    const bool found = refineTriangleContact(pair.a, pair.b, enclosure(pair.turn, mutant), lower, upper, r);
+    const MotionAt motion = enclosure(pair.turn, mutant);
+    std::fesetround(mutant.rounding);
+    const bool found = refineTriangleContact(pair.a, pair.b, motion, lower, upper, r);
+    std::fesetround(FE_TONEAREST);
     const std::string fault = faultOf(pair, truth, found, r, upper);
     if (!fault.empty()) {
       ++c.wrong;
@@ -336,6 +342,16 @@ TEST(ElementaryTest, PadCoversWrongCoefficients) {
   report(c);
   EXPECT_EQ(c.wrong, 0);
   EXPECT_GT(c.contacts, 500);
+}
+
+TEST(ElementaryTest, AnyRoundingMode) {
+  for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    Mutant rounded;
+    rounded.rounding = mode;
+    const Campaign c = runCampaign(6, 1000, rounded, true, randomPair);
+    expectRight(c);
+    EXPECT_GT(c.certain, 300);
+  }
 }
 
 // The campaign is worth something only if it sees an enclosure that is none.
@@ -520,7 +536,7 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
     // A contact set larger than a point is reported by some point of it.
     EXPECT_LE((r.point - tie.point).norm(), tie.extent + 1e-11);
     EXPECT_NEAR(r.point[2], 0, 1e-11);
-    if (tie.normal.norm() > 0) expectNear(r.normal, tie.normal, 1e-5);
+    if (tie.normal.norm() > 0) expectNear(r.normal, tie.normal, 1e-9);
     EXPECT_NEAR(r.normal.norm(), 1, 1e-12);
     // The same with the bodies exchanged.
     std::swap(pair.a, pair.b);
@@ -528,7 +544,7 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
     RefinedContact q = refine(pair);
     EXPECT_EQ(q.feature_a, tie.j);
     EXPECT_EQ(q.feature_b, tie.i);
-    if (tie.normal.norm() > 0) expectNear(q.normal, -tie.normal, 1e-5);
+    if (tie.normal.norm() > 0) expectNear(q.normal, -tie.normal, 1e-9);
   }
 }
 
@@ -545,12 +561,36 @@ TEST(ElementaryTest, CoplanarSliding) {
   EXPECT_EQ(r.feature_a, 0);
   EXPECT_EQ(r.feature_b, 0);
   expectNear(r.point, {1.25, -4, 0}, 1e-11);
-  expectNear(r.normal, {0, -1, 0}, 1e-5);
+  expectNear(r.normal, {0, -1, 0}, 1e-9);
 
   pair.turn.slide = {-12, 0, 0};  // along the edge, 1 m beside it
   EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r));
   EXPECT_EQ(r.t_lower, 0);
   EXPECT_EQ(r.t_upper, 1);
+}
+
+// The same in planes that are tilted, so that nothing is exact, and by a corner at some place of an edge: t_lower comes
+// as near to the contact as rounding allows, not only to the root of it.
+TEST(ElementaryTest, TiltedCoplanarSliding) {
+  Source source(11);
+  for (int n = 0; n < 300; ++n) {
+    SCOPED_TRACE(n);
+    const double h = source.uniform(0.3, 1.5), x = source.uniform(-2, 2);
+    Pair pair = over(kGround, {x, -4 - h, 0}, {x + 1, -6, 0}, {x - 1, -6, 0});
+    const Matrix tilt = Eigen::AngleAxis<Real>(source.uniform(-3, 3), source.unit().cast<Real>()).toRotationMatrix();
+    for (Vector3d* v : {&pair.a[0], &pair.a[1], &pair.a[2], &pair.b[0], &pair.b[1], &pair.b[2]}) {
+      *v = (tilt * v->cast<Real>()).cast<double>();
+    }
+    pair.turn.slide = tilt * Point(source.uniform(-1, 1), 2, 0);
+    const RefinedContact r = refine(pair);
+    EXPECT_FALSE(r.certain);
+    EXPECT_LT(r.t_lower, h / 2 + 1e-14);
+    EXPECT_GT(r.t_lower, h / 2 - 1e-12);
+    EXPECT_EQ(r.feature, FeatureKind::edgeVertex);
+    EXPECT_EQ(r.feature_a, 0);
+    EXPECT_EQ(r.feature_b, 0);
+    expectNear(r.normal, (tilt * Point(0, -1, 0)).cast<double>(), 1e-8);
+  }
 }
 
 // A vertex on a circle about the y axis reaches down to z = 0 at t = 1/2 and rises again: a root without change of
@@ -571,6 +611,51 @@ TEST(ElementaryTest, GrazingIsNotCertain) {
 
   pair.turn.pivot[2] += 1e-9L;
   EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r));
+}
+
+// A vertex passes each of the ground's edges, and an edge each end of another, by less than the floor: no contact,
+// though that can't be told, and so no certain one.
+TEST(ElementaryTest, MissBelowTheFloorIsNotCertain) {
+  constexpr double kMiss = 0x1p-48;
+  for (int turn = 0; turn < 3; ++turn) {
+    SCOPED_TRACE(turn);
+    const Vector3d ground[3] = {kGround[turn], kGround[(turn + 1) % 3], kGround[(turn + 2) % 3]};
+    Pair pair = over(ground, {1, -4 - kMiss, 1}, {0, -5, 2}, {2, -5, 3});
+    pair.turn.slide = {0, 0, -2};
+    EXPECT_FALSE(refine(pair).certain);
+    std::swap(pair.a, pair.b);
+    pair.turn.slide = {0, 0, 2};
+    EXPECT_FALSE(refine(pair).certain);
+  }
+  // A's edge 0 is from (-4, -4, 0) to (4, -4, 0) and the rest of A lies below; B's is along y, the rest above.
+  for (int end = 0; end < 4; ++end) {
+    SCOPED_TRACE(end);
+    const double x = end == 0 ? -4 - kMiss : end == 1 ? 4 + kMiss : 1;
+    const double y0 = end == 2 ? -4 + kMiss : -5, y1 = end == 3 ? -4 - kMiss : -3;
+    Pair pair = over(kGround, {x, y0, 1}, {x, y1, 1}, {x, 0.5 * (y0 + y1), 3});
+    pair.a[2] = {0, -4, -3};
+    pair.turn.slide = {0, 0, -2};
+    const RefinedContact r = refine(pair);
+    EXPECT_FALSE(r.certain);
+    EXPECT_EQ(r.t_upper, 1);
+  }
+}
+
+// However little of the window given lies after the contact.
+TEST(ElementaryTest, NeverWidensTheWindow) {
+  Pair pair = over(kGround, {0.5, 0.25, 1}, {1, 0, 2}, {0, 1, 2});
+  pair.turn.slide = {0.75, 0, -3};
+  int certain = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double upper = 1 / 3.0 + std::ldexp(1, k - 53);
+    const RefinedContact r = refine(pair, 0.25, upper);
+    EXPECT_LE(r.t_upper, upper);
+    EXPECT_GE(r.t_lower, 0.25);
+    expectWindow(r, 1 / Real(3), 0.1);
+    certain += r.certain;
+  }
+  EXPECT_GT(certain, 20);
+  EXPECT_LT(certain, 40);
 }
 
 // ---- Near-parallel edges: B's edge 0 crosses over A's edge 1 at an angle alpha, height 1/4, and comes down at 1/2 per
@@ -602,11 +687,11 @@ TEST(ElementaryTest, NearParallelEdges) {
       const Pair pair = nearParallel(source, std::pow(10.0, -exponent), 0);
       const RefinedContact r = refine(pair);
       expectWindow(r, 2 * pair.turn.pivot[2], 1.01);
-      EXPECT_GT(static_cast<Real>(r.t_lower), 2 * pair.turn.pivot[2] - 1e-9);
+      EXPECT_GT(static_cast<Real>(r.t_lower), 2 * pair.turn.pivot[2] - 1e-12);
       EXPECT_EQ(r.feature, FeatureKind::edgeEdge);
       EXPECT_EQ(r.feature_a, 1);
       EXPECT_EQ(r.feature_b, 0);
-      expectNear(r.normal, {0, 0, 1}, 1e-5);
+      expectNear(r.normal, {0, 0, 1}, 1e-7);
       certain += r.certain;
     }
   }
