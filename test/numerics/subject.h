@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The engine's arithmetic behind plain arrays, compiled once per instruction set (subject_*.cpp), so that the tests
+// themselves hold no code that a processor may lack.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+namespace numerics_test {
+
+constexpr int kSides = 2;  ///< 0: B seen from A, 1: A seen from B
+
+/// A pair over eight intervals [tm - d, tm + d].
+struct PairInput {
+  engine::SweepView sweep;
+  std::int32_t step_b = -1;
+  engine::Placement inverse_a, placement_b;
+  double extents = 0, margin = 0;
+  const double *q0 = nullptr, *dq = nullptr;
+  double tm[8] = {}, d = 0;
+};
+
+/// Quadratics [side][order][entry][lane], and bounds on what they leave out.
+struct PairOutput {
+  double R[kSides][3][9][8], c[kSides][3][3][8];
+  double rem_c[kSides], rem_R[kSides], pad, pose;
+};
+
+struct CertificateInput {
+  PairInput motion;
+  engine::TreeView a, b;  ///< of one piece each
+  double n[3] = {};       ///< unit, in A's frame for side 0, in B's for side 1
+  int side = 0;
+};
+struct CertificateOutput {
+  double G[8][3], prefix[8];
+  unsigned separated;
+  double sign;
+};
+
+struct BoxOutput {
+  double lo[8][3], hi[8][3];
+};
+
+struct TouchInput {
+  engine::TreeView a, b;  ///< of one piece each
+  double R[9], c[3];      ///< B in A's frame
+  double margin = 0, eps = 0, guess[3] = {};
+};
+
+struct Subject {
+  const char* name;
+  void (*sineCosine)(const double* x, double* sine, double* cosine);
+  void (*relate)(const PairInput& in, PairOutput& out);
+  void (*certify)(const CertificateInput& in, CertificateOutput& out, PairOutput& motion);
+  /// The moving node's box on the given side.
+  void (*sweepNode)(const PairInput& in, int side, const engine::Node& node, BoxOutput& out);
+  /// A ball in the frame of step_b, seen from the base frame.
+  void (*sweepBall)(const PairInput& in, const double* p, double radius, BoxOutput& out);
+  double (*positivePrefix)(const double* G);
+  bool (*certainlyTouching)(const TouchInput& in);
+};
+
+extern const Subject kSubjectSse2, kSubjectAvx2, kSubjectAvx512;
+
+/// Those that this processor runs.
+std::vector<const Subject*> subjects();
+
+}  // namespace numerics_test
+}  // namespace fcl_artic

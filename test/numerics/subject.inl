@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "narrowphase/solver.h"
+#include "subject.h"
+
+#define FCL_ARTIC_STRING2(x) #x
+#define FCL_ARTIC_STRING(x) FCL_ARTIC_STRING2(x)
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+namespace {
+
+using numerics_test::BoxOutput;
+using numerics_test::CertificateInput;
+using numerics_test::CertificateOutput;
+using numerics_test::kSides;
+using numerics_test::PairInput;
+using numerics_test::PairOutput;
+using numerics_test::Subject;
+using numerics_test::TouchInput;
+
+constexpr int kMostSteps = 64;
+
+struct Chain {
+  StepBounds bounds[kMostSteps];
+  FrameLanes frames[kMostSteps];
+  explicit Chain(const PairInput& in) {
+    Lanes tm;
+    for (int i = 0; i < kLanes; ++i) tm.set(i, in.tm[i]);
+    boundSteps(in.sweep, in.q0, in.dq, bounds);
+    evaluateSweep(in.sweep, bounds, tm, in.d, frames);
+  }
+};
+
+PairPads relateSides(const PairInput& in, Side* side) {
+  const Chain chain(in);
+  StepBounds none = {};
+  return relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b], in.step_b < 0 ? none : chain.bounds[in.step_b],
+                      in.inverse_a, in.placement_b, in.extents, in.margin, in.d, side[0].m, side[1].m);
+}
+
+void write(const Side* side, const PairPads& pads, PairOutput& out) {
+  for (int s = 0; s < kSides; ++s) {
+    const RigidLanes& m = side[s].m;
+    for (int order = 0; order < 3; ++order) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        for (int i = 0; i < 9; ++i) out.R[s][order][i][lane] = m.R[order][i][lane];
+        for (int i = 0; i < 3; ++i) out.c[s][order][i][lane] = m.c[order][i][lane];
+      }
+    }
+    out.rem_c[s] = m.rem_c;
+    out.rem_R[s] = m.rem_R;
+  }
+  out.pad = pads.pad;
+  out.pose = pads.pose;
+}
+
+void relate(const PairInput& in, PairOutput& out) {
+  Side side[kSides];
+  const PairPads pads = relateSides(in, side);
+  write(side, pads, out);
+}
+
+void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& motion) {
+  Side side[kSides];
+  const PairPads pads = relateSides(in.motion, side);
+  write(side, pads, motion);
+  side[0].still = side[1].moving = &in.a;
+  side[0].moving = side[1].still = &in.b;
+  const Side& s = side[in.side];
+  const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
+  out.sign = 0;
+  out.separated = certainlySeparated(s, still, moving, in.n, in.motion.margin, pads.pad, out.sign);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, lane, out.G[lane]);
+    out.prefix[lane] = certainlyFreePrefix(s, still, moving, in.n, in.motion.margin, pads.pad, lane);
+  }
+}
+
+void sweepNodeOf(const PairInput& in, int side, const engine::Node& node, BoxOutput& out) {
+  Side sides[kSides];
+  const PairPads pads = relateSides(in, sides);
+  SweptBox box;
+  sweepNode(sides[side].m, node, pads.pad + in.margin, box);
+  for (int k = 0; k < 3; ++k) {
+    const float *lo = reinterpret_cast<const float*>(&box.lo[k]), *hi = reinterpret_cast<const float*>(&box.hi[k]);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      out.lo[lane][k] = lo[lane];
+      out.hi[lane][k] = hi[lane];
+    }
+  }
+}
+
+void sweepBallOf(const PairInput& in, const double* p, double radius, BoxOutput& out) {
+  const Chain chain(in);
+  Lanes lo[3], hi[3];
+  sweepBall(chain.frames[in.step_b], chain.bounds[in.step_b], p, radius, in.d, lo, hi);
+  for (int k = 0; k < 3; ++k) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      out.lo[lane][k] = lo[k][lane];
+      out.hi[lane][k] = hi[k][lane];
+    }
+  }
+}
+
+void sineCosineOf(const double* x, double* sine, double* cosine) {
+  Lanes a, s, c;
+  for (int i = 0; i < kLanes; ++i) a.set(i, x[i]);
+  sineCosine(a, s, c);
+  for (int i = 0; i < kLanes; ++i) {
+    sine[i] = s[i];
+    cosine[i] = c[i];
+  }
+}
+
+double positivePrefixOf(const double* G) { return positivePrefix(G); }
+
+bool certainlyTouchingOf(const TouchInput& in) {
+  DifferenceBody body;
+  body.tree_a = &in.a;
+  body.tree_b = &in.b;
+  body.a = in.a.pieces;
+  body.b = in.b.pieces;
+  for (int i = 0; i < 9; ++i) body.pose.R[i] = in.R[i];
+  for (int i = 0; i < 3; ++i) body.pose.c[i] = in.c[i];
+  double point[3];
+  return certainlyTouching(body, in.margin, in.eps, in.guess, point);
+}
+
+}  // namespace
+}  // namespace FCL_ARTIC_ISA
+
+namespace numerics_test {
+const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), &FCL_ARTIC_ISA::sineCosineOf,
+                                       &FCL_ARTIC_ISA::relate, &FCL_ARTIC_ISA::certify, &FCL_ARTIC_ISA::sweepNodeOf,
+                                       &FCL_ARTIC_ISA::sweepBallOf, &FCL_ARTIC_ISA::positivePrefixOf,
+                                       &FCL_ARTIC_ISA::certainlyTouchingOf};
+}  // namespace numerics_test
+}  // namespace fcl_artic
