@@ -231,9 +231,10 @@ struct Sweep {
       const double error = m.rem_c + m.rem_R * b[j].norm() + m.pad;
       double way = 0;
       for (int k = 0; k < 3; ++k) {
+        const int row = 3 * k;
         double c[3], size = 0;
         for (int order = 0; order < 3; ++order) {
-          const double *R = &m.R[order][3 * k], p = m.c[order][k];
+          const double *R = m.R[order] + row, p = m.c[order][k];
           c[order] = R[0] * b[j][0] + R[1] * b[j][1] + R[2] * b[j][2] + p;
           size += std::abs(R[0] * b[j][0]) + std::abs(R[1] * b[j][1]) + std::abs(R[2] * b[j][2]) + std::abs(p);
         }
