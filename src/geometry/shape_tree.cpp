@@ -152,7 +152,8 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eige
       piece.reach = std::max(piece.reach, v[k].norm() * (1 + 1e-15));
     }
     const Eigen::Vector3d n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-    for (int k = 0; k < 3; ++k) piece.size[k] = n.allFinite() ? n[k] : 0;
+    const bool unit = std::abs(n.squaredNorm() - 1) <= 2e-15;  // not where slivers let it underflow
+    for (int k = 0; k < 3; ++k) piece.size[k] = unit ? n[k] : 0;
     tree->pieces_.push_back(piece);
   }
   tree->build();

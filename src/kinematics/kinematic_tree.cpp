@@ -6,11 +6,15 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "numerics/rotation.h"
+
 namespace fcl_artic {
 namespace {
 
-/// How far R^T R of a joint's origin may be from the identity, in each entry; the bounds on motion allow for it.
+/// How far R^T R of a joint's origin may be from the identity, in each entry; it is made orthonormal then.
 constexpr double kOrthonormal = 1e-9;
+/// Farther out, m, rounding would swallow what tolerances ask for.
+constexpr double kFarthest = 1e9;
 
 bool isRotation(const Eigen::Matrix3d& R) {
   const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -60,6 +64,7 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   if (!joint.origin.translation().allFinite() || !isRotation(joint.origin.linear())) {
     refuse("has an origin that is no rigid transform");
   }
+  if (joint.origin.translation().cwiseAbs().maxCoeff() > kFarthest) refuse("has an origin more than 1e9 m away");
   const bool moves = joint.type != JointType::fixed;
   if (moves && (!joint.axis.allFinite() || joint.axis.isZero(0))) refuse("has an axis that is zero or not finite");
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) refuse("has a limit that is not a number");
@@ -79,6 +84,7 @@ JointId KinematicTree::addJoint(const Joint& joint) {
 
   const JointId id = numJoints();
   joints_.push_back(joint);
+  joints_.back().origin.linear() = orthonormal(joint.origin.linear());
   if (moves) joints_.back().axis.stableNormalize();
   joint_parent_.push_back(parent);
   joint_child_.push_back(child);

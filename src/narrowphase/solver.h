@@ -185,7 +185,7 @@ inline void Solver::beginBatch(double start, double width) {
   }
   evaluateAt(tm, 0.5 * w);
   ++statistics_.batches;
-  last_ = w <= query_->tolerance_time;
+  last_ = w <= max(query_->tolerance_time, kNarrowestLane);
   updateLive();
 }
 
@@ -560,7 +560,7 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
   const double w = width / kLanes;
   t_lower_ = start;
   beginBatch(start, width);
-  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, start);
+  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, query_->every_pair ? 0 : start);
   const int out_begin = entries_.size();
   int present = -1;
   for (int i = begin; i < end; ++i) {
@@ -822,10 +822,14 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
       }
       t_upper = min(t_upper, t_upper_);
     }
-    if (out_of_budget_) verdict = Verdict::undecided;
-    t_lower_ = t_lower;
+    t_lower_ = out_of_budget_ ? 0 : t_lower;  // pairs that were not looked at are not proven free at all
     t_upper_ = t_upper;
     certain_ = certain;
+  }
+  if (out_of_budget_) {
+    // Where the budget ended among the initial contacts, nothing is known of when they are over.
+    if (verdict == Verdict::free) t_lower_ = 0;
+    verdict = Verdict::undecided;
   }
   answer.verdict = verdict;
   answer.certain = verdict == Verdict::contact && certain_;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "adapters/fcl/fcl_geometry.h"
+
 namespace fcl_artic {
 namespace numerics_test {
 
@@ -52,7 +54,7 @@ Eigen::Isometry3d isometry(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {
   Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
   M.linear() = R;
   M.translation() = t;
-  return M;
+  return requireRigid(M, "a random transform");
 }
 
 }  // namespace

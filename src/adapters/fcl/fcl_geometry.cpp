@@ -14,6 +14,8 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
 
+#include "numerics/rotation.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -149,7 +151,7 @@ Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, const std::string& wh
   }
   if (M.translation().cwiseAbs().maxCoeff() > 1e9) throw std::invalid_argument(what + " is more than 1e9 m away");
   Eigen::Isometry3d rigid = M;
-  if (defect > 4e-16) rigid.linear() = Eigen::Quaterniond(R).normalized().toRotationMatrix();
+  rigid.linear() = orthonormal(R);
   return rigid;
 }
 
