@@ -45,10 +45,10 @@ void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placemen
   }
 }
 
-/// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). Verdict and
-/// certainty stay the solver's.
-void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& b, engine::LeafContact& leaf,
-            FeatureKind& feature) {
+/// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). The verdict stays
+/// the solver's.
+void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
+            engine::LeafContact& leaf, FeatureKind& feature) {
   const engine::Piece &x = a.pieces[leaf.piece_a], &y = b.pieces[leaf.piece_b];
   if (x.num_vertices != 3 || y.num_vertices != 3) return;
   Eigen::Vector3d p[3], q[3];
@@ -66,12 +66,15 @@ void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& 
     out.pad = m.pad;
   };
   RefinedContact refined;
-  if (!refineTriangleContact(p, q, motion, leaf.t_lower, leaf.certain ? leaf.t_upper : leaf.t_lower, refined)) return;
+  const double end = leaf.certain ? leaf.t_upper : std::min(1.0, leaf.t_lower + tolerance_time);
+  if (!refineTriangleContact(p, q, motion, leaf.t_lower, end, refined)) return;
   feature = refined.feature;
-  if (!refined.certain) return;
-  leaf.t_lower = std::max(leaf.t_lower, refined.t_lower);
-  leaf.t_upper = std::min(leaf.t_upper, refined.t_upper);
-  leaf.t = leaf.t_upper;
+  leaf.t_lower = refined.t_lower;
+  if (refined.certain) {
+    leaf.certain = true;
+    leaf.t_upper = refined.t_upper;
+  }
+  leaf.t = refined.certain ? refined.t_upper : refined.t_lower;
   Eigen::Vector3d::Map(leaf.point) = refined.point;
   Eigen::Vector3d::Map(leaf.normal) = refined.normal;
 }
@@ -532,7 +535,9 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
     engine::LeafContact leaf = answer.contacts[i];
     const Item &a = m.item(leaf.body_a), &b = m.item(leaf.body_b);
     CertifiedContact contact;
-    if (request.margin == 0) refine(workspace, a.shape->view(), b.shape->view(), leaf, contact.feature);
+    if (request.margin == 0) {
+      refine(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
+    }
     m.tree->forwardKinematics(motion.configuration(leaf.t), M_0);
     const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.offset;
     contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
@@ -554,6 +559,10 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
     contact.t_lower = leaf.t_lower;
     contact.t_upper = leaf.t_upper;
     contact.certain = leaf.certain;
+    if (leaf.certain && leaf.t_upper < result.t_upper) {
+      result.t_upper = leaf.t_upper;
+      result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
+    }
     result.contacts.push_back(std::move(contact));
   }
   m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
