@@ -26,7 +26,9 @@ std::uint64_t seedOf(const std::string& test) {
   return seed;
 }
 
-double Random::size(double lo, double hi) { return lo * std::pow(hi / lo, unit()); }
+double Random::size(double lo, double hi) {
+  return lo * std::pow(hi / lo, unit());
+}
 
 Eigen::Vector3d Random::direction() {
   for (;;) {
@@ -173,7 +175,9 @@ RealRigid properly(const Eigen::Isometry3d& M) {
   return o;
 }
 
-Real3 exactly(const Eigen::Vector3d& p) { return {p[0], p[1], p[2]}; }
+Real3 exactly(const Eigen::Vector3d& p) {
+  return {p[0], p[1], p[2]};
+}
 
 Eigen::Vector3d pointWithin(Random& random, double extent) {
   return extent * (random.chance(0.5) ? 1 - 1e-14 : random.unit()) * random.direction();

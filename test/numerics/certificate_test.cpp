@@ -182,8 +182,8 @@ TEST(Certificate, PrefixEndsBeforeTheFirstRoot) {
       naive_broken += !(bernstein(G, naive) > Real(-8 * 0x1p-52));
     }
   }
-  std::printf("%d whole, %d in part; shortest part of the way to a root that is not at the very start %.6f\n", whole, part,
-              shortest);
+  std::printf("%d whole, %d in part; shortest part of the way to a root that is not at the very start %.6f\n", whole,
+              part, shortest);
   std::printf("mutant: cancelling root %d broken\n", naive_broken);
   EXPECT_GT(whole, cases / 20);
   EXPECT_GT(part, cases / 10);

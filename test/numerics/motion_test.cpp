@@ -174,7 +174,8 @@ TEST(Motion, SweptBallsAreHeld) {
       const double tau = tauOf(random);
       const Real3 x = c.pose(c.link_b, Real(c.in.tm[lane]) + Real(tau) * Real(c.in.d)) * exactly(on_link);
       for (std::size_t k = 0; k < 3; ++k) {
-        const Real below = x[k] - Real(radius) - Real(box.lo[lane][k]), above = Real(box.hi[lane][k]) - x[k] - Real(radius);
+        const Real below = x[k] - Real(radius) - Real(box.lo[lane][k]),
+                   above = Real(box.hi[lane][k]) - x[k] - Real(radius);
         ASSERT_GE(below.toDouble(), 0) << "case " << i << " lane " << lane << " " << subject.name << " mode " << mode;
         ASSERT_GE(above.toDouble(), 0) << "case " << i << " lane " << lane << " " << subject.name << " mode " << mode;
         least = std::min({least, below.toDouble() / radius, above.toDouble() / radius});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the answers may claim at the edges of the arithmetic: tolerances below the finest split of time, budgets that end
-// early, transforms that are rigid only to rounding.
+// What the answers may claim at the edges of the arithmetic: tolerances below the finest split of time, budgets that
+// end early, transforms that are rigid only to rounding.
 #include <cfenv>
 
 #include <fcl/geometry/shape/sphere.h>
@@ -14,96 +14,98 @@ namespace fcl_artic {
 namespace numerics_test {
 namespace {
 
-/// A sphere of radius 0.1 that slides from x = 0 to 1, past or into obstacles of radius 0.1.
-struct Slider {
-  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("slider");
+/// A sphere of radius 0.1 that slides along x, or turns about z at a distance of 1, past or into others of its kind.
+struct Mover {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("mover");
   std::shared_ptr<fcl::Sphered> ball = std::make_shared<fcl::Sphered>(0.1);
   fcl::CollisionObjectd moving{ball};
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> obstacles;
   std::unique_ptr<ArticulatedCollisionManager> manager;
   CertifiedResult result;
 
-  explicit Slider(const std::vector<Eigen::Vector3d>& at) {
+  Mover(JointType type, const std::vector<Eigen::Vector3d>& at) {
     tree->addLink("base");
     tree->addLink("link");
     Joint joint;
-    joint.name = "slide";
-    joint.type = JointType::prismatic;
+    joint.name = "joint";
+    joint.type = type;
+    const bool slides = type == JointType::prismatic;
+    joint.axis = slides ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
     joint.parent = "base";
     joint.child = "link";
     tree->addJoint(joint);
     manager = std::make_unique<ArticulatedCollisionManager>(tree);
-    manager->bind("link", &moving);
+    manager->bind("link", &moving, Eigen::Isometry3d(Eigen::Translation3d(slides ? 0 : 1, 0, 0)));
     for (const Eigen::Vector3d& x : at) {
       obstacles.push_back(std::make_unique<fcl::CollisionObjectd>(ball, Eigen::Isometry3d(Eigen::Translation3d(x))));
       manager->registerObject(obstacles.back().get());
     }
     manager->setup();
   }
-  void slide(const CertifiedRequest& request) {
-    manager->continuousCollide(JointMotion::linear(*tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)), request,
-                               result);
+  void move(double to, const CertifiedRequest& request) {
+    const JointMotion motion = JointMotion::linear(*tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, to));
+    manager->continuousCollide(motion, request, result);
   }
 };
 
 /// Contact at x = 0.5 exactly, of balls of 0.1 and 0.1 with one of them at x = 0.7.
 TEST(Promise, ToleranceBelowTheFinestSplitStillEnds) {
-  Slider slider({{0.7, 0, 0}});
+  Mover mover(JointType::prismatic, {{0.7, 0, 0}});
   CertifiedRequest request;
   request.tolerance_time = 1e-30;
   request.tolerance_distance = 1e-30;
   for (const int mode : kRoundingModes) {
     const ScopedRounding scope(mode);
-    slider.slide(request);
-    EXPECT_EQ(slider.result.status, Status::contact);
-    EXPECT_LE(slider.result.t_lower, 0.5);
-    EXPECT_GT(slider.result.t_lower, 0.5 - 1e-12);
+    mover.move(1, request);
+    EXPECT_EQ(mover.result.status, Status::contact);
+    EXPECT_LE(mover.result.t_lower, 0.5);
+    EXPECT_GT(mover.result.t_lower, 0.5 - 1e-12);
   }
 }
 
 TEST(Promise, BracketHoldsTheContactInEveryRoundingMode) {
-  Slider slider({{0.7, 0, 0}});
+  Mover mover(JointType::prismatic, {{0.7, 0, 0}});
   for (const int mode : kRoundingModes) {
     const ScopedRounding scope(mode);
-    slider.slide(CertifiedRequest());
-    EXPECT_TRUE(slider.result.certain);
-    EXPECT_LE(slider.result.t_lower, 0.5);
-    EXPECT_GE(slider.result.t_upper, 0.5);
-    EXPECT_LE(slider.result.t_upper - slider.result.t_lower, 1e-6);
+    mover.move(1, CertifiedRequest());
+    EXPECT_TRUE(mover.result.certain);
+    EXPECT_LE(mover.result.t_lower, 0.5);
+    EXPECT_GE(mover.result.t_upper, 0.5);
+    EXPECT_LE(mover.result.t_upper - mover.result.t_lower, 1e-6);
   }
 }
 
 TEST(Promise, BudgetThatEndsEarlyClaimsNothingOfPairsLeftOut) {
-  // Both near misses and the hit cost work; the hit at 0.2 is the last pair.
-  Slider slider({{0.7, 0.2001, 0}, {0.6, 0.2001, 0}, {0.4, 0, 0}});
+  // Obstacles are met from the far end of the motion on: the first contact, at t = 0.2, is looked for last.
+  Mover mover(JointType::prismatic, {{-0.9, 0, 0}, {-0.7, 0.1999, 0}, {-0.4, 0, 0}});
   CertifiedRequest request;
   request.mode = ContactMode::firstOfEveryPair;
   int undecided = 0;
-  for (std::uint64_t budget = 1; budget < 200; ++budget) {
+  for (std::uint64_t budget = 1; budget < 400; ++budget) {
     request.work_budget = budget;
-    slider.slide(request);
-    EXPECT_NE(slider.result.status, Status::free) << budget;
-    EXPECT_LE(slider.result.t_lower, 0.2) << budget;
-    undecided += slider.result.status == Status::undecided;
+    mover.move(-1, request);
+    EXPECT_NE(mover.result.status, Status::free) << budget;
+    EXPECT_LE(mover.result.t_lower, 0.2 + 1e-15) << budget;
+    undecided += mover.result.status == Status::undecided;
   }
   EXPECT_GT(undecided, 0);
 }
 
 TEST(Promise, BudgetThatEndsAmongInitialContactsIsNotFree) {
-  // In contact at 0, free from 0.1 on, and a second obstacle that is hit at 0.5.
-  Slider slider({{-0.1, 0, 0}, {0.7, 0, 0}});
+  // In contact at 0, apart soon, and in contact again after almost a whole turn.
+  Mover mover(JointType::revolute, {{1, 0.15, 0}});
   CertifiedRequest request;
   request.ignore_initial_contact = true;
   for (std::uint64_t budget = 1; budget < 100; ++budget) {
     request.work_budget = budget;
-    slider.slide(request);
-    EXPECT_NE(slider.result.status, Status::free) << budget;
-    EXPECT_LE(slider.result.t_lower, 0.5) << budget;
+    mover.move(-6.2, request);
+    EXPECT_NE(mover.result.status, Status::free) << budget;
   }
   request.work_budget = 0;
-  slider.slide(request);
-  EXPECT_EQ(slider.result.status, Status::contact);
-  EXPECT_EQ(slider.result.ignored_initial_contacts.size(), 1u);
+  mover.move(-6.2, request);
+  EXPECT_EQ(mover.result.status, Status::contact);
+  EXPECT_GT(mover.result.t_lower, 0.9);
+  EXPECT_EQ(mover.result.ignored_initial_contacts.size(), 1u);
 }
 
 TEST(Promise, JointOriginsAreMadeOrthonormal) {

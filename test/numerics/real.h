@@ -67,15 +67,27 @@ class Real {
 };
 
 using Real3 = std::array<Real, 3>;
-inline Real dot(const Real3& a, const Real3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Real norm(const Real3& a) { return sqrt(dot(a, a)); }
-inline Real3 operator+(const Real3& a, const Real3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Real3 operator-(const Real3& a, const Real3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Real3 operator*(const Real& s, const Real3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline Real dot(const Real3& a, const Real3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Real norm(const Real3& a) {
+  return sqrt(dot(a, a));
+}
+inline Real3 operator+(const Real3& a, const Real3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Real3 operator-(const Real3& a, const Real3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Real3 operator*(const Real& s, const Real3& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
 inline Real3 cross(const Real3& a, const Real3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline Real3 unit(const Real3& a) { return Real(1.0) / norm(a) * a; }
+inline Real3 unit(const Real3& a) {
+  return Real(1.0) / norm(a) * a;
+}
 
 /// A proper rigid motion, its rotation as three columns.
 struct RealRigid {

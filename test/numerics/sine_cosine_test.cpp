@@ -13,11 +13,16 @@ namespace {
 double angle(Random& random) {
   const int k = random.below(1273238) - 636619;
   switch (random.below(5)) {
-    case 0: return random.in(-1e6, 1e6);
-    case 1: return random.in(-7, 7);
-    case 2: return random.size(1e-300, 1) * (random.chance(0.5) ? 1 : -1);
-    case 3: return k * 1.5707963267948966 * (1 + (random.below(9) - 4) * 0x1p-53);
-    default: return (k + 0.5) * 1.5707963267948966 * (1 + (random.below(9) - 4) * 0x1p-53);
+    case 0:
+      return random.in(-1e6, 1e6);
+    case 1:
+      return random.in(-7, 7);
+    case 2:
+      return random.size(1e-300, 1) * (random.chance(0.5) ? 1 : -1);
+    case 3:
+      return k * 1.5707963267948966 * (1 + (random.below(9) - 4) * 0x1p-53);
+    default:
+      return (k + 0.5) * 1.5707963267948966 * (1 + (random.below(9) - 4) * 0x1p-53);
   }
 }
 

@@ -34,8 +34,9 @@ struct Chain {
 PairPads relateSides(const PairInput& in, Side* side) {
   const Chain chain(in);
   StepBounds none = {};
-  return relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b], in.step_b < 0 ? none : chain.bounds[in.step_b],
-                      in.inverse_a, in.placement_b, in.extents, in.margin, in.d, side[0].m, side[1].m);
+  return relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
+                      in.step_b < 0 ? none : chain.bounds[in.step_b], in.inverse_a, in.placement_b, in.extents,
+                      in.margin, in.d, side[0].m, side[1].m);
 }
 
 void write(const Side* side, const PairPads& pads, PairOutput& out) {
@@ -112,7 +113,9 @@ void sineCosineOf(const double* x, double* sine, double* cosine) {
   }
 }
 
-double positivePrefixOf(const double* G) { return positivePrefix(G); }
+double positivePrefixOf(const double* G) {
+  return positivePrefix(G);
+}
 
 bool certainlyTouchingOf(const TouchInput& in) {
   DifferenceBody body;
@@ -130,9 +133,9 @@ bool certainlyTouchingOf(const TouchInput& in) {
 }  // namespace FCL_ARTIC_ISA
 
 namespace numerics_test {
-const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), &FCL_ARTIC_ISA::sineCosineOf,
-                                       &FCL_ARTIC_ISA::relate, &FCL_ARTIC_ISA::certify, &FCL_ARTIC_ISA::sweepNodeOf,
-                                       &FCL_ARTIC_ISA::sweepBallOf, &FCL_ARTIC_ISA::positivePrefixOf,
-                                       &FCL_ARTIC_ISA::certainlyTouchingOf};
+const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),  &FCL_ARTIC_ISA::sineCosineOf,
+                                       &FCL_ARTIC_ISA::relate,           &FCL_ARTIC_ISA::certify,
+                                       &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::sweepBallOf,
+                                       &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic
