@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 
 #include <Eigen/Eigenvalues>
+
+#include "geometry/outer_hull.h"
 
 namespace fcl_artic {
 namespace {
@@ -157,6 +160,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eige
     tree->pieces_.push_back(piece);
   }
   tree->build();
+  tree->makeOuter(vertices);
   return tree;
 }
 
@@ -173,7 +177,34 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& given) {
   }
   tree->pieces_.push_back(piece);
   tree->build();
+  tree->view_.outer = tree->pieces_.data();
   return tree;
+}
+
+/// One piece around a body of many: a hull of few vertices, grown so far that it holds all points.
+void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
+  if (pieces_.size() == 1) {
+    view_.outer = pieces_.data();
+    return;
+  }
+  const OuterHull hull = makeOuterHull(points);
+  if (hull.vertices.empty()) return;
+  const std::size_t n = (hull.vertices.size() + 7) / 8 * 8;
+  hulls_.resize(3 * n + 8);
+  const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(hulls_.data()) / sizeof(double) % 8;
+  double* x = hulls_.data() + (8 - misaligned) % 8;
+  outer_.kind = PieceKind::hull;
+  outer_.first_vertex = 0;
+  outer_.num_vertices = static_cast<std::int32_t>(n);
+  outer_.radius = hull.radius;
+  for (int k = 0; k < 3; ++k) outer_.size[k] = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d& v = hull.vertices[std::min(i, hull.vertices.size() - 1)];  // the last one fills up
+    for (std::size_t k = 0; k < 3; ++k) x[k * n + i] = v[static_cast<Eigen::Index>(k)];
+    outer_.reach = std::max(outer_.reach, v.norm() * (1 + 1e-15));
+  }
+  view_.hulls = x;
+  view_.outer = &outer_;
 }
 
 void ShapeTree::build() {

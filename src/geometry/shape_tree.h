@@ -32,9 +32,12 @@ class ShapeTree {
  private:
   ShapeTree() = default;
   void build();
+  void makeOuter(const std::vector<Eigen::Vector3d>& points);
   std::vector<engine::Node> nodes_;
   std::vector<engine::Piece> pieces_;
   std::vector<double> vertices_;
+  std::vector<double> hulls_;  ///< with room for alignment
+  engine::Piece outer_;
   engine::TreeView view_;
 };
 

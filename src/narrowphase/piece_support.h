@@ -28,6 +28,46 @@ FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
 }
 FCL_ARTIC_INLINE double norm(const double* a) { return __builtin_sqrt(dot(a, a)); }
 
+/// Values of p.u over a hull's vertices, for eight directions.
+FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Lanes* u, Lanes& lower, Lanes& upper) {
+  lower = upper = mulAdd(u[2], x[2 * n], mulAdd(u[1], x[n], u[0] * Lanes(x[0])));
+  for (int i = 1; i < n; ++i) {
+    const Lanes value = mulAdd(u[2], x[2 * n + i], mulAdd(u[1], x[n + i], u[0] * Lanes(x[i])));
+    lower = min(lower, value);
+    upper = max(upper, value);
+  }
+}
+FCL_ARTIC_INLINE Lanes hullValues(const double* x, int n, int i, const double* u) {
+  const Lanes *X = reinterpret_cast<const Lanes*>(x + i), *Y = reinterpret_cast<const Lanes*>(x + n + i),
+              *Z = reinterpret_cast<const Lanes*>(x + 2 * n + i);
+  return mulAdd(*Z, u[2], mulAdd(*Y, u[1], *X * Lanes(u[0])));
+}
+/// The same for one direction: lanes go over vertices.
+FCL_ARTIC_INLINE void hullRange(const double* x, int n, const double* u, double& lower, double& upper) {
+  Lanes least = hullValues(x, n, 0, u), most = least;
+  for (int i = kLanes; i < n; i += kLanes) {
+    const Lanes value = hullValues(x, n, i, u);
+    least = min(least, value);
+    most = max(most, value);
+  }
+  lower = minLane(least);
+  upper = maxLane(most);
+}
+/// Index of a vertex farthest along u.
+inline int hullSupport(const double* x, int n, const double* u) {
+  Lanes values[engine::kMaxHullVertices / kLanes], most = hullValues(x, n, 0, u);
+  values[0] = most;
+  for (int i = kLanes; i < n; i += kLanes) {
+    values[i / kLanes] = hullValues(x, n, i, u);
+    most = max(most, values[i / kLanes]);
+  }
+  const Lanes top(maxLane(most));
+  for (int i = 0; i < n / kLanes; ++i) {
+    if (const unsigned reached = kAllLanes & ~greater(top, values[i])) return kLanes * i + __builtin_ctz(reached);
+  }
+  return 0;
+}
+
 /// Values of p.u over the core: lower end -h(-u), upper end h(u). T: double, or Lanes for eight directions.
 template <class T>
 FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const T* u, T& lower, T& upper) {
@@ -41,6 +81,7 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
     }
     return;
   }
+  if (piece.kind == PieceKind::hull) return hullRange(tree.hulls + piece.first_vertex, piece.num_vertices, u, lower, upper);
   const T m = dot(u, piece.center);
   const double *e = piece.size;
   T h(0.0);
@@ -89,6 +130,12 @@ inline void supportPoint(const TreeView& tree, const Piece& piece, const double*
         }
       }
       for (int k = 0; k < 3; ++k) x[k] = p[3 * best + k];
+      return;
+    }
+    case PieceKind::hull: {
+      const double* p = tree.hulls + piece.first_vertex;
+      const int i = hullSupport(p, piece.num_vertices, u);
+      for (int k = 0; k < 3; ++k) x[k] = p[k * piece.num_vertices + i];
       return;
     }
     case PieceKind::point:

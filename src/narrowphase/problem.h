@@ -11,12 +11,16 @@ namespace engine {
 
 /// Kinds of convex piece. Every piece is a core, given by its support function, grown by a ball of radius `radius`
 /// (SHAPES, section 1.3).
-enum class PieceKind : std::int32_t { vertices, point, segment, box, cylinder, cone, ellipsoid };
+/// `vertices` and `hull` are both hulls of points; a hull's coordinates lie x, then y, then z, each a multiple of eight
+/// (lanes go over them), in TreeView::hulls.
+enum class PieceKind : std::int32_t { vertices, hull, point, segment, box, cylinder, cone, ellipsoid };
+/// Most vertices that a `hull` has.
+constexpr std::int32_t kMaxHullVertices = 64;
 
 /// One convex leaf, in its tree's frame; its axes are the frame's.
 struct Piece {
   PieceKind kind = PieceKind::vertices;
-  std::int32_t first_vertex = 0, num_vertices = 0;  ///< `vertices` only
+  std::int32_t first_vertex = 0, num_vertices = 0;  ///< `vertices`; `hull`: index of its first x, multiple of eight
   std::int32_t primitive = -1;                      ///< FCL's id: triangle index, -1 for a shape
   /// box, ellipsoid: half sizes; cylinder, cone: radius, -, half length; segment: -, -, half length.
   /// Triangle: its unit normal (0 when degenerate), a direction worth trying.
@@ -42,6 +46,8 @@ struct TreeView {
   const Node* nodes = nullptr;
   const Piece* pieces = nullptr;
   const double* vertices = nullptr;  ///< xyz, packed
+  const double* hulls = nullptr;     ///< see PieceKind; 64-byte aligned
+  const Piece* outer = nullptr;      ///< one convex piece that holds the whole body; null: none worth having
   std::int32_t num_nodes = 0, num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
 };

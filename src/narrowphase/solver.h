@@ -98,10 +98,13 @@ class Solver {
   Step finishLane(double start, double width, int begin, int end, int lane, int* refine);
   void traverse(int pair, int a, int b, unsigned mask);
   unsigned nodesMayTouch(int a, int b, unsigned mask);
+  template <class F>
+  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
+  unsigned hullsMayTouch(unsigned mask);
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
   int sweptNode(int side, int node);
   DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane) const;
-  bool proveAt(int pair, int piece_a, int piece_b, int lane, const double* guess, double* point);
+  bool proveAt(int piece_a, int piece_b, int lane, const double* guess, double* point);
   void addContact(const LeafContact& contact);
   bool outOfBudget();
   double now() const;
@@ -158,6 +161,8 @@ class Solver {
 constexpr double kSplitTime = 0.7;
 /// Width below which time is not split any more; dyadic times down to here are exact.
 constexpr double kNarrowestLane = 1.0 / (1ull << 45);
+/// Hulls that overlap in so many lanes are left to their triangles.
+constexpr int kMostHullOverlaps = 2;
 /// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -328,41 +333,31 @@ inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int l
 }
 
 /// Proof of contact at a lane's middle.
-inline bool Solver::proveAt(int, int piece_a, int piece_b, int lane, const double* guess, double* point) {
+inline bool Solver::proveAt(int piece_a, int piece_b, int lane, const double* guess, double* point) {
   ++statistics_.contact_proofs;
   const DifferenceBody body =
       differenceAt(side_[0].still->pieces[piece_a], side_[0].moving->pieces[piece_b], lane);
   return certainlyTouching(body, query_->margin, pose_error_, guess, point);
 }
 
-/// Lanes of `mask` in which two leaves are not certainly apart.
-inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask) {
-  ++statistics_.leaf_tests;
-  const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
+/// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
+/// lanes, each frozen in one frame and in the other and tried on all lanes.
+/// @param most  so many overlapping middles end the search.
+/// @param onOverlap  called with a lane at whose middle GJK claims overlap, and a direction between the pieces.
+template <class F>
+inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap) {
   const double margin = query_->margin;
-  double sign = 0;
-  if (a.kind == PieceKind::vertices) {
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[0], a, b, a.size, margin, pad_, sign);
-    if (!mask) return 0;
-  }
-  if (b.kind == PieceKind::vertices) {
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[1], b, a, b.size, margin, pad_, sign);
-    if (!mask) return 0;
-  }
-  double guess[3];
+  double guess[3], sign = 0;
   bool have_guess = false;
   unsigned untried = mask;
-  while ((untried &= live_ & ~contact_lane_) != 0) {
+  while (most > 0 && (untried &= live_ & ~contact_lane_) != 0) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
     int lane = 0;
     for (int skip = __builtin_popcount(untried) / 2, m = static_cast<int>(untried); m; m &= m - 1, --skip) {
       lane = __builtin_ctz(static_cast<unsigned>(m));
       if (skip == 0) break;
     }
-    const unsigned bit = 1u << lane;
-    untried &= ~bit;
+    untried &= ~(1u << lane);
     const DifferenceBody body = differenceAt(a, b, lane);
     if (!have_guess) {
       for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
@@ -373,12 +368,8 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
     have_guess = true;
     if (g.overlap) {
-      double point[3];
-      if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= watchFrom(pair) &&
-          proveAt(pair, piece_a, piece_b, lane, guess, point)) {
-        t_upper_ = tm_at_[lane];
-        updateLive();
-      }
+      --most;
+      onOverlap(lane, guess);
       continue;
     }
     ++statistics_.certificates;
@@ -397,11 +388,61 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   return mask & live_;
 }
 
+/// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
+/// before any of their triangles is looked at.
+inline unsigned Solver::hullsMayTouch(unsigned mask) {
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  if (!A.outer || !B.outer || (A.num_pieces == 1 && B.num_pieces == 1)) return mask;
+  for (const Side& side : side_) {  // a small body within the bounds of a large mesh: its hull would say nothing
+    const Node &large = side.still->nodes[0], &small = side.moving->nodes[0];
+    if (side.still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
+    double center[3];
+    middleOf(small, center);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const double x = dot(side.m.R[0] + 3 * k, center)[kLanes / 2] + side.m.c[0][k][kLanes / 2];
+      inside = inside && x > large.lo[k] && x < large.hi[k];
+    }
+    if (inside) return mask;
+  }
+  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [](int, const double*) {});
+}
+
+/// Lanes of `mask` in which two leaves are not certainly apart.
+inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask) {
+  ++statistics_.leaf_tests;
+  const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
+  double sign = 0;
+  if (a.kind == PieceKind::vertices) {
+    ++statistics_.certificates;
+    mask &= ~certainlySeparated(side_[0], a, b, a.size, query_->margin, pad_, sign);
+    if (!mask) return 0;
+  }
+  if (b.kind == PieceKind::vertices) {
+    ++statistics_.certificates;
+    mask &= ~certainlySeparated(side_[1], b, a, b.size, query_->margin, pad_, sign);
+    if (!mask) return 0;
+  }
+  return notSeparated(a, b, mask, kLanes, [&](int lane, const double* guess) {
+    double point[3];
+    if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= watchFrom(pair) &&
+        proveAt(piece_a, piece_b, lane, guess, point)) {
+      t_upper_ = tm_at_[lane];
+      updateLive();
+    }
+  });
+}
+
 /// Dual traversal from one node pair; what stays undecided is appended to entries_.
 inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
+  if (a == 0 && b == 0) {
+    mask = nodesMayTouch(0, 0, mask & live_);
+    if (mask) mask = hullsMayTouch(mask);
+    if (!mask) return;
+  }
   push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   for (int lane = 0; lane < kLanes;) {
@@ -681,7 +722,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
     for (; k < kLanes; ++k) {
       if (tm[k] < f.t_lower) continue;
       const DifferenceBody body = differenceAt(a, b, k);
-      if (proveAt(contact.pair, contact.piece_a, contact.piece_b, k, f.have_normal ? f.normal : body.pose.c,
+      if (proveAt(contact.piece_a, contact.piece_b, k, f.have_normal ? f.normal : body.pose.c,
                   contact.point)) {
         contact.certain = true;
         contact.t = contact.t_upper = tm[k];

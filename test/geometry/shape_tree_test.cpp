@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What bounds a geometry holds it: boxes, line swept spheres, outer hulls.
+#include "geometry/shape_tree.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "geometry/outer_hull.h"
+
+using namespace fcl_artic;
+using Eigen::Vector3d;
+
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double lo, double hi) {
+  return lo + (hi - lo) * static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+Vector3d unit(Random& random) {
+  for (;;) {
+    const Vector3d x(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    if (x.norm() > 0.1 && x.norm() < 1) return x.normalized();
+  }
+}
+
+/// A bumpy, stretched star around a centre that may be far from the origin.
+std::vector<Vector3d> cloud(Random& random, std::size_t n, double bump) {
+  const Vector3d stretch(uniform(random, 0.02, 1), uniform(random, 0.02, 1), uniform(random, 0.02, 1));
+  const Vector3d centre = std::pow(10.0, uniform(random, -2, 3)) * unit(random);
+  std::vector<Vector3d> points;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.push_back(centre + stretch.cwiseProduct(unit(random)) * (1 + uniform(random, -bump, bump)));
+  }
+  return points;
+}
+
+std::vector<std::array<int, 3>> anyTriangles(Random& random, std::size_t vertices, std::size_t n) {
+  std::vector<std::array<int, 3>> triangles;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::array<int, 3> t;
+    for (int& k : t) k = static_cast<int>(random() % vertices);
+    triangles.push_back(t);
+  }
+  return triangles;
+}
+
+double distanceToSegment(const Vector3d& x, const Vector3d& p0, const Vector3d& p1) {
+  const Vector3d d = p1 - p0;
+  const double s = d.squaredNorm() > 0 ? std::min(1.0, std::max(0.0, (x - p0).dot(d) / d.squaredNorm())) : 0;
+  return (x - p0 - s * d).norm();
+}
+
+}  // namespace
+
+// A set lies in a convex one when its support function does, in every direction: 2,000 of them, and those to the points.
+TEST(OuterHull, HoldsAllPoints) {
+  Random random(1);
+  int made = 0;
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<Vector3d> points = cloud(random, 20 + random() % 1000, 0.1);
+    const OuterHull hull = makeOuterHull(points);
+    if (hull.vertices.empty()) continue;
+    ++made;
+    ASSERT_LE(hull.vertices.size(), 64u);
+    for (int i = 0; i < 2000; ++i) {
+      const Vector3d u = i % 2 ? unit(random) : (points[random() % points.size()] - hull.vertices[0]).normalized();
+      if (!u.allFinite()) continue;
+      double outside = -INFINITY, inside = -INFINITY;
+      for (const Vector3d& p : points) outside = std::max(outside, u.dot(p - points[0]));
+      for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v - points[0]));
+      ASSERT_LE(outside, inside + hull.radius) << "round " << round;
+    }
+  }
+  EXPECT_GT(made, 40);  // the test is telling
+}
+
+TEST(OuterHull, LeavesHollowBodiesAlone) {
+  Random random(2);
+  std::vector<Vector3d> room;  // ten small balls around an empty middle
+  for (int ball = 0; ball < 10; ++ball) {
+    const double angle = 0.6283185307179586 * ball;
+    for (int i = 0; i < 100; ++i) room.push_back(Vector3d(std::cos(angle), std::sin(angle), 0) + 0.3 * unit(random));
+  }
+  room.push_back({0, 0, 5});
+  EXPECT_TRUE(makeOuterHull(room).vertices.empty());
+}
+
+TEST(ShapeTree, EveryNodeHoldsItsPieces) {
+  Random random(3);
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<Vector3d> points = cloud(random, 100, 0.3);
+    const auto tree = ShapeTree::fromTriangles(points, anyTriangles(random, points.size(), 200));
+    const engine::TreeView& view = tree->view();
+    int leaves = 0;
+    // Boxes are nested and a leaf's holds its piece: so every node holds all below it.
+    for (int i = 0; i < view.num_nodes; ++i) {
+      const engine::Node& node = view.nodes[i];
+      for (int k = 0; k < 3; ++k) {
+        if (!node.isLeaf()) {
+          for (const int child : {node.left, node.right}) {
+            ASSERT_LE(node.lo[k], view.nodes[child].lo[k]);
+            ASSERT_GE(node.hi[k], view.nodes[child].hi[k]);
+          }
+          continue;
+        }
+        const engine::Piece& piece = view.pieces[node.piece()];
+        for (int j = 0; j < 3; ++j) {
+          const double* p = view.vertices + 3 * (piece.first_vertex + j);
+          ASSERT_LE(static_cast<double>(node.lo[k]), p[k]);
+          ASSERT_GE(static_cast<double>(node.hi[k]), p[k]);
+          ASSERT_LE(Vector3d::Map(p).norm(), static_cast<double>(node.reach));
+          ASSERT_LE(Vector3d::Map(p).norm(), piece.reach);
+        }
+      }
+      leaves += node.isLeaf();
+    }
+    EXPECT_EQ(leaves, 200);
+  }
+}
+
+TEST(ShapeTree, LineSweptSphereHoldsTheBody) {
+  Random random(4);
+  for (int round = 0; round < 100; ++round) {
+    const std::vector<Vector3d> points = cloud(random, 50, 0.3);
+    std::vector<std::array<int, 3>> triangles;
+    for (int i = 0; i + 2 < 50; ++i) triangles.push_back({i, i + 1, i + 2});
+    const std::array<double, 7> lss = ShapeTree::fromTriangles(points, triangles)->lineSweptSphere();
+    for (const Vector3d& p : points) {
+      ASSERT_LE(distanceToSegment(p, Vector3d::Map(&lss[0]), Vector3d::Map(&lss[3])), lss[6]);
+    }
+  }
+  engine::Piece cylinder;
+  cylinder.kind = engine::PieceKind::cylinder;
+  cylinder.size[0] = 0.1;
+  cylinder.size[2] = 1;
+  const std::array<double, 7> lss = ShapeTree::fromPiece(cylinder)->lineSweptSphere();
+  for (int i = 0; i < 1000; ++i) {
+    const double angle = uniform(random, 0, 6.3);
+    const Vector3d rim(0.1 * std::cos(angle), 0.1 * std::sin(angle), i % 2 ? 1 : -1);
+    ASSERT_LE(distanceToSegment(rim, Vector3d::Map(&lss[0]), Vector3d::Map(&lss[3])), lss[6] + 1e-15);
+  }
+}
+
+TEST(ShapeTree, RefusesWhatItCannotHold) {
+  const std::vector<Vector3d> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_THROW(ShapeTree::fromTriangles(points, {}), std::invalid_argument);
+  EXPECT_THROW(ShapeTree::fromTriangles(points, {{{0, 1, 3}}}), std::invalid_argument);
+  EXPECT_THROW(ShapeTree::fromTriangles(points, {{{0, 1, -1}}}), std::invalid_argument);
+  EXPECT_THROW(ShapeTree::fromTriangles({{0, 0, 0}, {1, 0, NAN}, {0, 1, 0}}, {{{0, 1, 2}}}), std::invalid_argument);
+}
