@@ -16,8 +16,6 @@ constexpr std::size_t kMaxVertices = 64, kMaxPoints = 60000;
 constexpr int kDirections = 256;
 /// Directions in which the chosen vertices are nearer than this part of the body's size to its surface need no more.
 constexpr double kGoodEnough = 0.002;
-/// Bodies whose points lie deeper than this part of their size on average get no hull.
-constexpr double kHollow = 0.15;
 
 /// Evenly spread over the sphere (Fibonacci's spiral), in an order that is coarse before it is fine.
 std::vector<Eigen::Vector3d> spreadDirections() {
@@ -70,31 +68,19 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points) {
   }
   const double size = 0.5 * (hi - lo).norm();
   static const std::vector<Eigen::Vector3d> kSpread = spreadDirections();
-  std::vector<double> support(kSpread.size());
-  for (std::size_t d = 0; d < kSpread.size(); ++d) {
+  for (const Eigen::Vector3d& direction : kSpread) {
     std::size_t best = 0;
     double value = -INFINITY, chosen = -INFINITY;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double x = kSpread[d].dot(points[i]);
+      const double x = direction.dot(points[i]);
       if (x > value) {
         value = x;
         best = i;
       }
     }
-    support[d] = value;
-    for (const Eigen::Vector3d& v : hull.vertices) chosen = std::max(chosen, kSpread[d].dot(v));
+    for (const Eigen::Vector3d& v : hull.vertices) chosen = std::max(chosen, direction.dot(v));
     if (hull.vertices.size() < kMaxVertices && value - chosen > kGoodEnough * size) hull.vertices.push_back(points[best]);
   }
-  double depth = 0;
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / 500);
-  std::size_t sampled = 0;
-  for (std::size_t i = 0; i < points.size(); i += stride, ++sampled) {
-    double least = INFINITY;
-    for (std::size_t d = 0; d < kSpread.size(); ++d) least = std::min(least, support[d] - kSpread[d].dot(points[i]));
-    depth += least;
-  }
-  if (depth > kHollow * size * static_cast<double>(sampled)) return OuterHull();
-
   engine::TreeView view;
   engine::Piece piece;
   piece.kind = engine::PieceKind::vertices;

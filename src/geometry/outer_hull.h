@@ -13,8 +13,7 @@ struct OuterHull {
   double radius = 0;
 };
 
-/// A hull of at most 64 of the points. Empty where it would be a poor picture of the body: too many points to be a part of
-/// anything, or most of them far inside (a room, a rack, ten spheres in one mesh).
+/// A hull of at most 64 of the points. Empty for fewer than 4 points, and for so many that the body must be a scene.
 OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace fcl_artic

@@ -79,17 +79,6 @@ TEST(OuterHull, HoldsAllPoints) {
   EXPECT_GT(made, 40);  // the test is telling
 }
 
-TEST(OuterHull, LeavesHollowBodiesAlone) {
-  Random random(2);
-  std::vector<Vector3d> room;  // ten small balls around an empty middle
-  for (int ball = 0; ball < 10; ++ball) {
-    const double angle = 0.6283185307179586 * ball;
-    for (int i = 0; i < 100; ++i) room.push_back(Vector3d(std::cos(angle), std::sin(angle), 0) + 0.3 * unit(random));
-  }
-  room.push_back({0, 0, 5});
-  EXPECT_TRUE(makeOuterHull(room).vertices.empty());
-}
-
 TEST(ShapeTree, EveryNodeHoldsItsPieces) {
   Random random(3);
   for (int round = 0; round < 20; ++round) {
