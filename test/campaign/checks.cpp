@@ -62,7 +62,8 @@ class Examination {
     for (std::size_t i = 0; i < scene_.links.size(); ++i) {
       const Pose own = oracle_.kinematics().linkPose(static_cast<int>(i), result_.t_lower);
       const Eigen::Isometry3d& M = result_.M_0_at_lower[i];
-      const double off = std::max((M.linear() - own.R).cwiseAbs().maxCoeff(), (M.translation() - own.p).cwiseAbs().maxCoeff());
+      const double off =
+          std::max((M.linear() - own.R).cwiseAbs().maxCoeff(), (M.translation() - own.p).cwiseAbs().maxCoeff());
       if (!(off <= 1e-12)) add(Fault::poses, "link%zu off by %.3g at t_lower", i, off);
     }
   }
@@ -86,7 +87,8 @@ class Examination {
     const auto checked = oracle_.kinematics().pairs();
     for (const CertifiedContact& c : result_.contacts) {
       const int a = answer_.bodyOf(c.body1.object), b = answer_.bodyOf(c.body2.object);
-      if (a < 0 || b < 0 || std::find(checked.begin(), checked.end(), std::pair<int, int>(std::minmax(a, b))) == checked.end()) {
+      if (a < 0 || b < 0 ||
+          std::find(checked.begin(), checked.end(), std::pair<int, int>(std::minmax(a, b))) == checked.end()) {
         add(Fault::fields, "contact of bodies %d and %d, which are no checked pair", a, b);
         continue;
       }
@@ -103,7 +105,8 @@ class Examination {
     }
     if (first_lower < result_.t_lower)
       add(Fault::fields, "t_lower %.17g, that of its contacts %.17g", result_.t_lower, first_lower);
-    if (result_.certain && !touches) add(Fault::unproven, "no contact in [%.17g, %.17g]", result_.t_lower, result_.t_upper);
+    if (result_.certain && !touches)
+      add(Fault::unproven, "no contact in [%.17g, %.17g]", result_.t_lower, result_.t_upper);
     if (scene_.every_pair) everyPair(seen);
   }
 
@@ -150,10 +153,12 @@ class Examination {
 
     if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add(Fault::normal, "normal of length %.17g", c.normal.norm());
     if (c.t_lower > 0) {
-      // At t_lower the two pieces are not yet in each other, and the normal parts them, to the accuracy of a direction.
-      const double apart = gapAlong(geometry(a).piece(i, poseAt(a, c.t_lower)), geometry(b).piece(j, poseAt(b, c.t_lower)), c.normal);
-      const double allowed = 1e-5 + 2 * way + scene_.tolerance_distance;
-      if (!(apart >= -allowed)) add(Fault::normal, "pieces overlap by %.3g m along the normal, allowed %.3g", -apart, allowed);
+      // At t_lower the two pieces are not yet in each other, and the normal parts them, up to some 1e-3 rad of it.
+      const double apart =
+          gapAlong(geometry(a).piece(i, poseAt(a, c.t_lower)), geometry(b).piece(j, poseAt(b, c.t_lower)), c.normal);
+      const double allowed = 1e-4 + 2 * way + scene_.tolerance_distance;
+      if (!(apart >= -allowed))
+        add(Fault::normal, "pieces overlap by %.3g m along the normal, allowed %.3g", -apart, allowed);
     }
   }
 
@@ -170,7 +175,8 @@ class Examination {
         if (std::minmax({answer_.bodyOf(c.body1.object), answer_.bodyOf(c.body2.object)}) == std::pair(p.a, p.b))
           lower = std::min(lower, c.t_lower);
       if (lower > p.time)
-        add(Fault::late, "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, lower, p.time, lower - p.time);
+        add(Fault::late, "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, lower, p.time,
+            lower - p.time);
     }
   }
 
@@ -202,8 +208,8 @@ void inventContact(const Oracle& oracle, const Scene& scene, Answer& answer) {
   CertifiedContact c;
   const auto [a, b] = pairs.front();
   const auto refer = [&](int body) {
-    return fcl_artic::BodyRef{scene.bodies[static_cast<std::size_t>(body)].link, answer.objects[static_cast<std::size_t>(body)].get(),
-                              scene.nameOf(body)};
+    return fcl_artic::BodyRef{scene.bodies[static_cast<std::size_t>(body)].link,
+                              answer.objects[static_cast<std::size_t>(body)].get(), scene.nameOf(body)};
   };
   const Proximity p = oracle.at(a, b, 0.5, 1e-3);
   c.body1 = refer(a), c.body2 = refer(b);
@@ -225,13 +231,19 @@ void inventContact(const Oracle& oracle, const Scene& scene, Answer& answer) {
   }
 }
 
-constexpr const char* kFaultNames[] = {"missed", "late", "false", "unproven", "wide", "undecided", "fields", "point", "normal", "poses"};
-constexpr const char* kCorruptionNames[] = {"none", "late", "drop", "invent", "widen", "point", "normal", "poses", "certain", "pair"};
+constexpr const char* kFaultNames[] = {"missed",    "late",   "false", "unproven", "wide",
+                                       "undecided", "fields", "point", "normal",   "poses"};
+constexpr const char* kCorruptionNames[] = {"none",  "late",   "drop",  "invent",  "widen",
+                                            "point", "normal", "poses", "certain", "pair"};
 
 }  // namespace
 
-const char* faultName(Fault fault) { return kFaultNames[static_cast<int>(fault)]; }
-const char* corruptionName(Corruption corruption) { return kCorruptionNames[static_cast<int>(corruption)]; }
+const char* faultName(Fault fault) {
+  return kFaultNames[static_cast<int>(fault)];
+}
+const char* corruptionName(Corruption corruption) {
+  return kCorruptionNames[static_cast<int>(corruption)];
+}
 
 Corruption corruptionOf(const std::string& name) {
   for (int i = 0; i < kCorruptions; ++i)
@@ -250,11 +262,13 @@ bool corrupt(Corruption corruption, std::uint64_t seed, const Scene& scene, Answ
   const bool hit = r.status == Status::contact && !r.contacts.empty();
   const auto shift = [&](double by) {
     r.t_lower = std::min(1.0, r.t_lower + by), r.t_upper = std::max(r.t_lower, r.t_upper);
-    for (CertifiedContact& c : r.contacts) c.t_lower = std::min(1.0, c.t_lower + by), c.t_upper = std::max(c.t_lower, c.t_upper);
+    for (CertifiedContact& c : r.contacts)
+      c.t_lower = std::min(1.0, c.t_lower + by), c.t_upper = std::max(c.t_lower, c.t_upper);
   };
   switch (corruption) {
     case Corruption::none:
-    case Corruption::count: return false;
+    case Corruption::count:
+      return false;
     case Corruption::late:
       if (hit) shift(1e-5);
       return hit;

@@ -12,16 +12,16 @@ namespace campaign {
 
 /// What can be wrong with an answer. Each is counted by itself and has to be 0.
 enum class Fault {
-  missed,        ///< a sampled contact, and the answer says that its pair (or the motion) is free
-  late,          ///< t_lower after the first sampled contact
-  false_contact, ///< the gap stays above the distance tolerance all through the bracket
-  unproven,      ///< `certain`, and no contact up to t_upper
-  wide,          ///< `certain`, and the bracket wider than both tolerances and the rounding floor
-  undecided,     ///< without a work budget
-  fields,        ///< bracket out of order or out of [0, 1], unknown or unchecked pair, ids out of range, ...
-  point,         ///< contact point away from one of the bodies, or from the named triangles
-  normal,        ///< not unit, or the named pieces are not on their sides of it
-  poses,         ///< link poses at t_lower differ from our own kinematics
+  missed,         ///< a sampled contact, and the answer says that its pair (or the motion) is free
+  late,           ///< t_lower after the first sampled contact
+  false_contact,  ///< the gap stays above the distance tolerance all through the bracket
+  unproven,       ///< `certain`, and no contact up to t_upper
+  wide,           ///< `certain`, and the bracket wider than both tolerances and the rounding floor
+  undecided,      ///< without a work budget
+  fields,         ///< bracket out of order or out of [0, 1], unknown or unchecked pair, ids out of range, ...
+  point,          ///< contact point away from one of the bodies, or from the named triangles
+  normal,         ///< not unit, or the named pieces are not on their sides of it
+  poses,          ///< link poses at t_lower differ from our own kinematics
   count
 };
 constexpr int kFaults = static_cast<int>(Fault::count);

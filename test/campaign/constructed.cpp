@@ -45,7 +45,8 @@ Feature featureOf(const std::string& name, Random& random) {
     const double a = random.uniform(0.2, 1.3);
     return {Geometry::cylinder(radius, length), Vec3(radius, 0, length / 2), Vec3(std::cos(a), 0, std::sin(a))};
   }
-  if (name == "cylinder side") return {Geometry::cylinder(radius, length), Vec3(radius, 0, z * length / 2), Vec3::UnitX()};
+  if (name == "cylinder side")
+    return {Geometry::cylinder(radius, length), Vec3(radius, 0, z * length / 2), Vec3::UnitX()};
   throw std::invalid_argument("no feature '" + name + "'");
 }
 
@@ -128,7 +129,8 @@ bool tryConstruct(const Kind& kind, const std::string& chain, Random& random, Co
   s.links.emplace_back();
   const auto anyOrigin = [&] { return Pose{random.rotation(), random.uniform(0, 0.4) * random.direction()}; };
   const auto slide = [&](const Vec3& axis) {
-    addJoint(s, JointKind::prismatic, anyOrigin(), axis, random.uniform(-0.3, 0.3), random.sign() * random.uniform(0.2, 1), c.time);
+    addJoint(s, JointKind::prismatic, anyOrigin(), axis, random.uniform(-0.3, 0.3),
+             random.sign() * random.uniform(0.2, 1), c.time);
   };
   const auto turn = [&](const Pose& origin, const Vec3& axis) {
     addJoint(s, random.chance(0.5) ? JointKind::revolute : JointKind::continuous, origin, axis, random.uniform(-2, 2),

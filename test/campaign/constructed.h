@@ -14,9 +14,9 @@ namespace campaign {
 /// at t* makes them approach.
 struct Constructed {
   Scene scene;
-  double time = 0;    ///< t*
-  Vec3 point;         ///< world
-  Vec3 normal;        ///< world, unit, from body 0 to body 1
+  double time = 0;          ///< t*
+  Vec3 point;               ///< world
+  Vec3 normal;              ///< world, unit, from body 0 to body 1
   double normal_speed = 0;  ///< of approach at t*, m per unit of t
   bool region = false;      ///< face on face: `point` is one of many
   bool curved = false;      ///< a curved side meets a flat one: shallow overlaps are wide

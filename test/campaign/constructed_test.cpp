@@ -25,7 +25,8 @@ struct ConstructedContact : testing::TestWithParam<std::tuple<std::string, std::
 
 TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
   const auto& [contact, chain] = GetParam();
-  if (contact == "face on face" && chain == "revolute") GTEST_SKIP() << "faces don't stay parallel: " << contact << ", " << chain;
+  if (contact == "face on face" && chain == "revolute")
+    GTEST_SKIP() << "faces don't stay parallel: " << contact << ", " << chain;
   int certain = 0;
   for (std::uint64_t i = 0; i < kCasesEach; ++i) {
     Constructed c = constructContact(contact, chain, Random::mix(4, i));
@@ -62,7 +63,8 @@ TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
     truth.hit = truth.pairs[0].hit;
     truth.time = truth.pairs[0].time;
     EXPECT_GE(truth.time, c.time - kFloor) << "the construction, or the oracle, is wrong";
-    for (const Finding& f : examine(c.scene, oracle, truth, answer)) ADD_FAILURE() << faultName(f.fault) << ": " << f.text;
+    for (const Finding& f : examine(c.scene, oracle, truth, answer))
+      ADD_FAILURE() << faultName(f.fault) << ": " << f.text;
   }
   EXPECT_GE(certain, kCasesEach / 2);
   RecordProperty("certain", certain);

@@ -27,14 +27,19 @@ Vec3 support(const Piece& p, const Vec3& u) {
       const double s = xy > 0 ? p.half.x() / xy : 0;
       return p.centre + p.R * Vec3(s * l.x(), s * l.y(), std::copysign(p.half.z(), l.z()));
     }
-    case Piece::sphere: break;
+    case Piece::sphere:
+      break;
   }
   return p.centre;
 }
 
-double coreRadius(const Piece& p) { return p.kind == Piece::sphere ? p.half.x() : 0; }
+double coreRadius(const Piece& p) {
+  return p.kind == Piece::sphere ? p.half.x() : 0;
+}
 
-Vec3 anyPoint(const Piece& p) { return p.kind == Piece::triangle ? p.corners[0] : p.centre; }
+Vec3 anyPoint(const Piece& p) {
+  return p.kind == Piece::triangle ? p.corners[0] : p.centre;
+}
 
 /// Up to four points of A - B, with the points of A and B that they come from.
 struct Simplex {
@@ -156,7 +161,9 @@ Piece shrunk(Piece p, double by) {
   return p;
 }
 
-bool isSolid(const Piece& p) { return p.kind != Piece::triangle; }
+bool isSolid(const Piece& p) {
+  return p.kind != Piece::triangle;
+}
 
 }  // namespace
 
@@ -175,10 +182,14 @@ double gapAlong(const Piece& A, const Piece& B, const Vec3& n) {
 double depthInside(const Piece& solid, const Vec3& x) {
   const Vec3 l = (solid.R.transpose() * (x - solid.centre)).cwiseAbs();
   switch (solid.kind) {
-    case Piece::box: return (solid.half - l).minCoeff();
-    case Piece::cylinder: return std::min(solid.half.x() - std::hypot(l.x(), l.y()), solid.half.z() - l.z());
-    case Piece::sphere: return solid.half.x() - (x - solid.centre).norm();
-    case Piece::triangle: break;
+    case Piece::box:
+      return (solid.half - l).minCoeff();
+    case Piece::cylinder:
+      return std::min(solid.half.x() - std::hypot(l.x(), l.y()), solid.half.z() - l.z());
+    case Piece::sphere:
+      return solid.half.x() - (x - solid.centre).norm();
+    case Piece::triangle:
+      break;
   }
   return -std::numeric_limits<double>::infinity();
 }

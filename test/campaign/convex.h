@@ -10,7 +10,7 @@ using Mat3 = Eigen::Matrix3d;
 /// A convex piece in the world: a triangle, or a solid box, cylinder (axis z) or sphere.
 struct Piece {
   enum Kind { triangle, box, cylinder, sphere } kind;
-  Triangle corners;       ///< triangle only
+  Triangle corners;  ///< triangle only
   Mat3 R = Mat3::Identity();
   Vec3 centre = Vec3::Zero();
   Vec3 half = Vec3::Zero();  ///< box: half sizes; cylinder: radius, radius, half length; sphere: radius in x
@@ -18,7 +18,8 @@ struct Piece {
 
 /// Bounds on the distance of two pieces, with points that show the upper one. Both hold up to the rounding of the
 /// coordinates, whether or not the search behind them converged: `lower` is the gap along a direction, `upper` the
-/// distance of a point of A and a point of B. Spheres that overlap a body by less than their radius have negative values.
+/// distance of a point of A and a point of B. Spheres that overlap a body by less than their radius have negative
+/// values.
 struct Separation {
   double lower, upper;
   Vec3 a, b;       ///< of the cores (a sphere's core is its centre)

@@ -13,8 +13,12 @@ Eigen::Isometry3d isometry(const Pose& M) {
   return X;
 }
 
-std::string linkName(int link) { return "link" + std::to_string(link); }
-std::string jointName(int link) { return "joint" + std::to_string(link); }
+std::string linkName(int link) {
+  return "link" + std::to_string(link);
+}
+std::string jointName(int link) {
+  return "joint" + std::to_string(link);
+}
 
 Eigen::VectorXd vectorOf(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
@@ -35,7 +39,8 @@ std::shared_ptr<const fcl_artic::KinematicTree> treeOf(const Scene& scene) {
     const Link& l = scene.links[static_cast<std::size_t>(i)];
     if (l.parent < 0) continue;
     static constexpr fcl_artic::JointType kTypes[] = {fcl_artic::JointType::fixed, fcl_artic::JointType::revolute,
-                                                      fcl_artic::JointType::continuous, fcl_artic::JointType::prismatic};
+                                                      fcl_artic::JointType::continuous,
+                                                      fcl_artic::JointType::prismatic};
     fcl_artic::Joint joint;
     joint.name = jointName(i);
     joint.type = kTypes[static_cast<int>(l.joint)];
@@ -64,7 +69,8 @@ Answer ask(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
     const Eigen::Isometry3d X = isometry(b.pose);
-    answer.objects.push_back(std::make_unique<fcl::CollisionObjectd>(b.geometry->fclGeometry(), b.link < 0 ? X : Eigen::Isometry3d::Identity()));
+    answer.objects.push_back(std::make_unique<fcl::CollisionObjectd>(b.geometry->fclGeometry(),
+                                                                     b.link < 0 ? X : Eigen::Isometry3d::Identity()));
     if (b.link < 0)
       manager.registerObject(answer.objects.back().get(), scene.nameOf(static_cast<int>(i)));
     else

@@ -31,10 +31,14 @@ std::shared_ptr<fcl::CollisionGeometryd> makeFclMesh(const std::vector<Vec3>& ve
                                                      const std::vector<std::array<int, 3>>& triangles,
                                                      Geometry::BV bv) {
   switch (bv) {
-    case Geometry::BV::obb: return build<fcl::OBBd>(vertices, triangles);
-    case Geometry::BV::aabb: return build<fcl::AABBd>(vertices, triangles);
-    case Geometry::BV::rss: return build<fcl::RSSd>(vertices, triangles);
-    case Geometry::BV::obbrss: break;
+    case Geometry::BV::obb:
+      return build<fcl::OBBd>(vertices, triangles);
+    case Geometry::BV::aabb:
+      return build<fcl::AABBd>(vertices, triangles);
+    case Geometry::BV::rss:
+      return build<fcl::RSSd>(vertices, triangles);
+    case Geometry::BV::obbrss:
+      break;
   }
   return build<fcl::OBBRSSd>(vertices, triangles);
 }

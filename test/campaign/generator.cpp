@@ -61,20 +61,26 @@ GeometryPtr starMesh(int rows, int columns, double size, double bumps, Random& r
   std::array<Vec3, 4> wave;
   for (Vec3& w : wave) w = random.uniform(1, 6) * random.direction();
   const Vec3 stretch(random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1));
-  return revolved("star", rows, columns, false, [&](double s, double a) {
-    const Vec3 d(std::sin(M_PI * s) * std::cos(a), std::sin(M_PI * s) * std::sin(a), std::cos(M_PI * s));
-    double r = 1;
-    for (const Vec3& w : wave) r += bumps * std::sin(w.dot(d));
-    return Vec3(size / 2 * r * d.cwiseProduct(stretch));
-  }, random);
+  return revolved(
+      "star", rows, columns, false,
+      [&](double s, double a) {
+        const Vec3 d(std::sin(M_PI * s) * std::cos(a), std::sin(M_PI * s) * std::sin(a), std::cos(M_PI * s));
+        double r = 1;
+        for (const Vec3& w : wave) r += bumps * std::sin(w.dot(d));
+        return Vec3(size / 2 * r * d.cwiseProduct(stretch));
+      },
+      random);
 }
 
 GeometryPtr torusMesh(int rows, int columns, double size, Random& random) {
   const double thick = random.uniform(0.2, 0.45);
-  return revolved("torus", rows, columns, true, [&](double s, double a) {
-    const double r = size / 2 * (1 - thick / 2 + thick / 2 * std::cos(2 * M_PI * s));
-    return Vec3(r * std::cos(a), r * std::sin(a), size / 2 * thick / 2 * std::sin(2 * M_PI * s));
-  }, random);
+  return revolved(
+      "torus", rows, columns, true,
+      [&](double s, double a) {
+        const double r = size / 2 * (1 - thick / 2 + thick / 2 * std::cos(2 * M_PI * s));
+        return Vec3(r * std::cos(a), r * std::sin(a), size / 2 * thick / 2 * std::sin(2 * M_PI * s));
+      },
+      random);
 }
 
 /// Loose triangles, slivers among them.
@@ -102,7 +108,8 @@ GeometryPtr anyShape(Random& random, double low, double high) {
       const double r = size() / 2, l = size();
       return Geometry::cylinder(r, l);
     }
-    default: return Geometry::sphere(size() / 2);
+    default:
+      return Geometry::sphere(size() / 2);
   }
 }
 
@@ -119,7 +126,9 @@ void requestOf(Scene& s, Random& random) {
   if (random.chance(0.3)) s.max_contacts = 4;
 }
 
-Pose anyPose(Random& random, const Vec3& p) { return {random.rotation(), p}; }
+Pose anyPose(Random& random, const Vec3& p) {
+  return {random.rotation(), p};
+}
 
 /// Mostly free joint axes, some along a coordinate axis, as robots have them.
 Vec3 anyAxis(Random& random) {
@@ -157,7 +166,9 @@ Scene rigidScene(const std::string& bodies, Random& random) {
   for (int j = 0; j < joints; ++j) {
     Link l;
     l.parent = j;
-    l.joint = random.chance(0.4) ? JointKind::prismatic : random.chance(0.5) ? JointKind::revolute : JointKind::continuous;
+    l.joint = random.chance(0.4)   ? JointKind::prismatic
+              : random.chance(0.5) ? JointKind::revolute
+                                   : JointKind::continuous;
     l.axis = anyAxis(random);
     l.origin = anyPose(random, random.uniform(0, 0.5) * random.direction());
     s.links.push_back(l);
@@ -181,8 +192,10 @@ Scene armScene(bool tree, Random& random) {
     const int count = static_cast<int>(s.links.size());
     l.parent = tree && random.chance(0.4) ? random.below(count) : (j == 0 ? 0 : count - 1);
     const double kind = random.unit();
-    l.joint = kind < 0.5 ? JointKind::revolute : kind < 0.7 ? JointKind::continuous : kind < 0.87 ? JointKind::prismatic
-                                                                                                  : JointKind::fixed;
+    l.joint = kind < 0.5    ? JointKind::revolute
+              : kind < 0.7  ? JointKind::continuous
+              : kind < 0.87 ? JointKind::prismatic
+                            : JointKind::fixed;
     l.axis = anyAxis(random);
     const Mat3 turn = random.chance(0.5) ? random.rotation()
                                          : rotationAbout(Vec3::Unit(random.below(3)), M_PI / 2 * random.between(0, 3));
@@ -210,11 +223,21 @@ Scene armScene(bool tree, Random& random) {
     Pose offset{Mat3::Identity(), Vec3(0, 0, l / 2)};
     GeometryPtr g;
     switch (random.below(5)) {
-      case 0: g = Geometry::box({random.uniform(0.03, 0.1), random.uniform(0.03, 0.1), l}); break;
-      case 1: g = Geometry::cylinder(random.uniform(0.02, 0.06), l); break;
-      case 2: g = Geometry::sphere(random.uniform(0.04, 0.1)); break;
-      case 3: g = MeshLibrary::instance().bar(random, l); break;
-      default: g = MeshLibrary::instance().bar(random, l); offset.R = random.rotation();
+      case 0:
+        g = Geometry::box({random.uniform(0.03, 0.1), random.uniform(0.03, 0.1), l});
+        break;
+      case 1:
+        g = Geometry::cylinder(random.uniform(0.02, 0.06), l);
+        break;
+      case 2:
+        g = Geometry::sphere(random.uniform(0.04, 0.1));
+        break;
+      case 3:
+        g = MeshLibrary::instance().bar(random, l);
+        break;
+      default:
+        g = MeshLibrary::instance().bar(random, l);
+        offset.R = random.rotation();
     }
     s.bodies.push_back({g, i, offset});
     if (random.chance(0.1)) s.bodies.push_back({Geometry::sphere(0.06), i, {Mat3::Identity(), Vec3(0.05, 0, l)}});
@@ -266,7 +289,8 @@ bool makeTouch(Scene& s, int obstacle, int body, double t, double gap, Random& r
   const Pose M = oracle.kinematics().bodyPose(body, t);
   const Vec3 aim = M * moving.geometry->surfacePoint(random.unit(), random.unit(), random.unit());
   const Vec3 towards = -random.direction();
-  o.pose.p = aim - (moving.geometry->radius() + o.geometry->radius() + 0.1) * 2 * towards - o.pose.R * o.geometry->centre();
+  o.pose.p =
+      aim - (moving.geometry->radius() + o.geometry->radius() + 0.1) * 2 * towards - o.pose.R * o.geometry->centre();
   Proximity p;
   for (int i = 0; i < 40; ++i) {
     p = oracle.at(body, obstacle, t, 1e-3, p);
@@ -352,7 +376,9 @@ void clearWay(Scene& s) {
   }
 }
 
-double grazeOf(Random& random) { return random.sign() * random.logUniform(1e-8, 1e-3); }
+double grazeOf(Random& random) {
+  return random.sign() * random.logUniform(1e-8, 1e-3);
+}
 
 /// A hit on the way of one of the first `movers` bodies, with both ends free where that can be had, else the start.
 void makeBetween(Scene& s, int obstacle, int movers, Random& random) {
@@ -458,17 +484,22 @@ MeshLibrary::MeshLibrary() {
   }
   for (const auto& [rows, columns] : {std::pair{3, 4}, {4, 6}, {6, 9}, {8, 12}, {12, 20}, {20, 30}, {26, 40}})
     for (int i = 0; i < 2; ++i) meshes_.push_back(starMesh(rows, columns, size(), i ? 0.12 : 0.02, random));
-  for (const auto& [rows, columns] : {std::pair{4, 9}, {8, 20}, {20, 50}}) meshes_.push_back(torusMesh(rows, columns, size(), random));
+  for (const auto& [rows, columns] : {std::pair{4, 9}, {8, 20}, {20, 50}})
+    meshes_.push_back(torusMesh(rows, columns, size(), random));
   for (const int n : {12, 40, 150}) meshes_.push_back(soupMesh(n, size(), random));
   for (int i = 0; i < 8; ++i) {
     const double length = 0.12 + 0.04 * i;
     const Vec3 sides(random.uniform(0.03, 0.1), random.uniform(0.03, 0.1), length);
     bars_.push_back(boxMesh(sides, 1 + i % 4, i % 2 ? 0.003 : 0, random));
     const double thick = random.uniform(0.04, 0.1), waist = random.uniform(0.2, 0.8);
-    bars_.push_back(revolved("bar", random.between(4, 12), random.between(5, 16), false, [&](double s, double a) {
-      const double r = thick / 2 * std::sqrt(std::max(0.0, 4 * s * (1 - s))) * (1 - waist * (1 - std::cos(2 * M_PI * s)) / 4);
-      return Vec3(r * std::cos(a), r * std::sin(a), length * (s - 0.5));
-    }, random));
+    bars_.push_back(revolved(
+        "bar", random.between(4, 12), random.between(5, 16), false,
+        [&](double s, double a) {
+          const double r =
+              thick / 2 * std::sqrt(std::max(0.0, 4 * s * (1 - s))) * (1 - waist * (1 - std::cos(2 * M_PI * s)) / 4);
+          return Vec3(r * std::cos(a), r * std::sin(a), length * (s - 0.5));
+        },
+        random));
   }
 }
 

@@ -67,8 +67,8 @@ struct Search {
 
   void visit(int i, int j) {
     const LeafAnswer leaf = compareLeaves(A.piece(i, M_a), B.piece(j, M_b), margin, 0.5 * wanted);
-    const bool better = leaf.clear || (leaf.touching && !best.touching) ||
-                        (leaf.touching == best.touching && leaf.upper < best.upper);
+    const bool better =
+        leaf.clear || (leaf.touching && !best.touching) || (leaf.touching == best.touching && leaf.upper < best.upper);
     best.gap = std::min(best.gap, leaf.gap);
     if (!better) return;
     best.upper = leaf.upper;
@@ -79,7 +79,9 @@ struct Search {
   }
 };
 
-Pose toPose(const Vec3& p) { return {Mat3::Identity(), p}; }
+Pose toPose(const Vec3& p) {
+  return {Mat3::Identity(), p};
+}
 
 }  // namespace
 
@@ -90,7 +92,9 @@ Mat3 rotationAbout(const Vec3& axis, double angle) {
   return c * Mat3::Identity() + s * K + (1 - c) * axis * axis.transpose();
 }
 
-Mat3 Random::rotation() { return rotationAbout(direction(), uniform(-M_PI, M_PI)) * rotationAbout(direction(), uniform(-M_PI, M_PI)); }
+Mat3 Random::rotation() {
+  return rotationAbout(direction(), uniform(-M_PI, M_PI)) * rotationAbout(direction(), uniform(-M_PI, M_PI));
+}
 
 GeometryPtr Geometry::mesh(std::string name, std::vector<Vec3> vertices, std::vector<std::array<int, 3>> triangles,
                            BV bv) {
@@ -168,7 +172,8 @@ Vec3 Geometry::surfacePoint(double u, double v, double w) const {
       const double z = side ? (2 * w - 1) * half_.z() : (u < 0.85 ? half_.z() : -half_.z());
       return {r * std::cos(2 * M_PI * v), r * std::sin(2 * M_PI * v), z};
     }
-    case Piece::sphere: break;
+    case Piece::sphere:
+      break;
   }
   const double z = 2 * v - 1, r = std::sqrt(std::max(0.0, 1 - z * z));
   return half_.x() * Vec3(r * std::cos(2 * M_PI * w), r * std::sin(2 * M_PI * w), z);
@@ -176,7 +181,9 @@ Vec3 Geometry::surfacePoint(double u, double v, double w) const {
 
 void Geometry::buildTree() {
   if (!isMesh()) {
-    radius_ = kind_ == Piece::sphere ? half_.x() : kind_ == Piece::box ? half_.norm() : std::hypot(half_.x(), half_.z());
+    radius_ = kind_ == Piece::sphere ? half_.x()
+              : kind_ == Piece::box  ? half_.norm()
+                                     : std::hypot(half_.x(), half_.z());
     nodes_.push_back({Mat3::Identity(), Vec3::Zero(), half_ * (1 + 1e-15), -1, 0, half_.norm()});
     return;
   }
@@ -212,8 +219,8 @@ void Geometry::split(int node, std::vector<int>& order, int begin, int end) {
   });
   // Grown by some ulp, so that no rounding here or in boxGap() loses a corner.
   const Vec3 half = (high - low) / 2 + Vec3::Constant(1e-14 * (1 + low.norm() + high.norm()));
-  nodes_[static_cast<std::size_t>(node)] = {R, R * ((low + high) / 2), half, -1, order[static_cast<std::size_t>(begin)],
-                                            half.norm()};
+  nodes_[static_cast<std::size_t>(node)] = {
+      R, R * ((low + high) / 2), half, -1, order[static_cast<std::size_t>(begin)], half.norm()};
   if (end - begin == 1) return;
   int longest;
   half.maxCoeff(&longest);

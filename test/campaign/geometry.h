@@ -91,7 +91,7 @@ struct Proximity {
   double upper = 0;       ///< upper bound
   bool touching = false;  ///< they touch as far as doubles tell (meshes: exactly, for the rounded corners)
   bool clear = false;     ///< they touch also after any rounding of the poses
-  int piece_a = 0, piece_b = 0;  ///< nearest pieces; a first guess for the next call
+  int piece_a = 0, piece_b = 0;             ///< nearest pieces; a first guess for the next call
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< nearest points
   Vec3 direction = Vec3::Zero();            ///< unit, from A to B
 };

@@ -3,15 +3,16 @@
 #include <cstdio>
 #include <exception>
 
-#include <CLI/CLI.hpp>
 #include <unistd.h>
+#include <CLI/CLI.hpp>
 
 #include "generator.h"
 #include "run.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{"Seeded queries to fcl_artic against an oracle of its own. Exit status 0: no fault, and hits between 30 and "
-               "70 %; 1: otherwise; 2: wrong use."};
+  CLI::App app{
+      "Seeded queries to fcl_artic against an oracle of its own. Exit status 0: no fault, and hits between 30 and "
+      "70 %; 1: otherwise; 2: wrong use."};
   campaign::Options options;
   std::string spoil = "none";
   std::uint64_t replay = 0;
@@ -20,9 +21,12 @@ int main(int argc, char** argv) {
   app.add_option("--threads", options.threads, "threads")->capture_default_str()->check(CLI::Range(1, 1024));
   app.add_option("--class", options.family, "only this class")->check(CLI::IsMember(campaign::families()));
   const auto* again = app.add_option("--replay", replay, "run the query of this seed (with --class) and dump it");
-  app.add_option("--spoil", spoil, "spoil the answers on purpose, to see that it is noticed: late, drop, invent, widen, point, "
-                                   "normal, poses, certain, pair")->capture_default_str();
-  app.add_flag("--try-spoiling", options.try_corruptions, "spoil a copy of each answer in each way, and count what is noticed");
+  app.add_option("--spoil", spoil,
+                 "spoil the answers on purpose, to see that it is noticed: late, drop, invent, widen, point, "
+                 "normal, poses, certain, pair")
+      ->capture_default_str();
+  app.add_flag("--try-spoiling", options.try_corruptions,
+               "spoil a copy of each answer in each way, and count what is noticed");
   CLI11_PARSE(app, argc, argv);
   try {
     if (*again) {

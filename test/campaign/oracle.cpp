@@ -11,7 +11,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Least step in t: half a millimetre of motion, where that is a sensible share of the motion.
-double leastStep(double speed) { return std::clamp(5e-4 / speed, 1.0 / 2048, 1.0 / 32); }
+double leastStep(double speed) {
+  return std::clamp(5e-4 / speed, 1.0 / 2048, 1.0 / 32);
+}
 
 struct Sample {
   double t = 0;
@@ -24,8 +26,8 @@ Oracle::Oracle(const Scene& scene) : scene_(scene), kinematics_(scene) {}
 
 Proximity Oracle::at(int a, int b, double t, double wanted, const Proximity& hint) const {
   return proximity(*scene_.bodies[static_cast<std::size_t>(a)].geometry, kinematics_.bodyPose(a, t),
-                   *scene_.bodies[static_cast<std::size_t>(b)].geometry, kinematics_.bodyPose(b, t), scene_.margin, wanted,
-                   hint);
+                   *scene_.bodies[static_cast<std::size_t>(b)].geometry, kinematics_.bodyPose(b, t), scene_.margin,
+                   wanted, hint);
 }
 
 template <bool kLeast>

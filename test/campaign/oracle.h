@@ -16,8 +16,8 @@ struct PairTruth {
   double time = 1;
   /// Contact by the rounded corners only, at `time` (a graze at the level of rounding).
   bool doubtful = false;
-  double gap = 0;       ///< least sampled gap; 0 for a hit
-  double gap_time = 0;  ///< where
+  double gap = 0;                 ///< least sampled gap; 0 for a hit
+  double gap_time = 0;            ///< where
   Vec3 direction = Vec3::Zero();  ///< there, unit, from a to b
 };
 
@@ -29,8 +29,8 @@ struct Truth {
 };
 
 /// The motion of one scene, sampled: each pair is looked at as often as its distance and the greatest speed ask for,
-/// never more coarsely, down to a least step; every minimum of the sampled distance that may hide a contact is closed in.
-/// Contacts are found, never proven absent below the least step: an oracle in one direction, for the first contact.
+/// never more coarsely, down to a least step; every minimum of the sampled distance that may hide a contact is closed
+/// in. Contacts are found, never proven absent below the least step: an oracle in one direction, for the first contact.
 class Oracle {
  public:
   explicit Oracle(const Scene& scene);

@@ -15,7 +15,9 @@
 namespace campaign {
 namespace {
 
-Vec3 anyPoint(Random& r, double size = 1) { return Vec3{r.uniform(-size, size), r.uniform(-size, size), r.uniform(-size, size)}; }
+Vec3 anyPoint(Random& r, double size = 1) {
+  return Vec3{r.uniform(-size, size), r.uniform(-size, size), r.uniform(-size, size)};
+}
 
 TEST(Orient3d, AgreesWithRationals) {
   Random r(1);
@@ -93,8 +95,10 @@ TEST(Separation, ClosedForms) {
     const Vec3 in_box = box.R.transpose() * (sphere.centre - box.centre);
     const double to_box = (in_box.cwiseAbs() - box.half).cwiseMax(0).norm() - sphere.half.x();
     const Vec3 in_cylinder = cylinder.R.transpose() * (sphere.centre - cylinder.centre);
-    const double to_cylinder = std::hypot(std::max(0.0, std::hypot(in_cylinder.x(), in_cylinder.y()) - cylinder.half.x()),
-                                          std::max(0.0, std::abs(in_cylinder.z()) - cylinder.half.z())) - sphere.half.x();
+    const double to_cylinder =
+        std::hypot(std::max(0.0, std::hypot(in_cylinder.x(), in_cylinder.y()) - cylinder.half.x()),
+                   std::max(0.0, std::abs(in_cylinder.z()) - cylinder.half.z())) -
+        sphere.half.x();
     for (const auto& [piece, truth] : {std::pair{&box, to_box}, {&cylinder, to_cylinder}}) {
       const Separation d = separation(*piece, sphere, 1e-9);
       ASSERT_LE(d.lower, truth + 1e-14);
@@ -197,7 +201,9 @@ TEST(Oracle, ContactTimeInClosedForm) {
     s.links[1].joint = JointKind::prismatic;
     s.q0 = {0}, s.q1 = {1};
     s.bodies.push_back({Geometry::sphere(0.1), 1, {}});
-    s.bodies.push_back({mesh ? boxMesh({0.4, 0.4, 0.4}, 3, 0, r) : Geometry::box({0.4, 0.4, 0.4}), -1, {Mat3::Identity(), Vec3(0.7, 0.02, 0.03)}});
+    s.bodies.push_back({mesh ? boxMesh({0.4, 0.4, 0.4}, 3, 0, r) : Geometry::box({0.4, 0.4, 0.4}),
+                        -1,
+                        {Mat3::Identity(), Vec3(0.7, 0.02, 0.03)}});
     const Truth t = Oracle(s).judge(false);
     ASSERT_TRUE(t.hit);
     EXPECT_GE(t.time, 0.4 - 1e-15);
@@ -236,7 +242,8 @@ bool deepContact(const Geometry& A, const Pose& M_a, const Geometry& B, const Po
   for (int i = 0; i < A.numPieces(); ++i)
     for (int j = 0; j < B.numPieces(); ++j) {
       const Piece a = A.piece(i, M_a), b = B.piece(j, M_b);
-      if (A.isMesh() && B.isMesh() ? trianglesClearlyCross(a.corners, b.corners, 1e-9) : clearlyOverlap(a, b, 1e-4)) return true;
+      if (A.isMesh() && B.isMesh() ? trianglesClearlyCross(a.corners, b.corners, 1e-9) : clearlyOverlap(a, b, 1e-4))
+        return true;
     }
   return false;
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Geometry>
 #include <gmpxx.h>
+#include <Eigen/Geometry>
 
 namespace campaign {
 namespace {
@@ -87,7 +87,9 @@ std::array<int, 3> sidesOf(const Triangle& s, const Triangle& plane) {
           orient3d(plane[0], plane[1], plane[2], s[2])};
 }
 
-bool oneSided(const std::array<int, 3>& s) { return s[0] == s[1] && s[1] == s[2] && s[0] != 0; }
+bool oneSided(const std::array<int, 3>& s) {
+  return s[0] == s[1] && s[1] == s[2] && s[0] != 0;
+}
 
 bool edgeClearlyCrosses(const Triangle& s, const Triangle& t, double displacement) {
   // A determinant of three differences no longer than `reach`, each off by 2 displacement, is off by at most

@@ -64,7 +64,8 @@ void runOne(const std::string& family, std::uint64_t seed, const Options& option
   tally.doubtful += !truth.hit && truth.doubtful;
   tally.starts += truth.hit && truth.time == 0;
   tally.ends_free += truth.hit && truth.time > 0 && freeAtEnd(oracle);
-  tally.grazes += !truth.hit && std::any_of(truth.pairs.begin(), truth.pairs.end(), [](const PairTruth& p) { return p.gap < 1e-3; });
+  tally.grazes += !truth.hit &&
+                  std::any_of(truth.pairs.begin(), truth.pairs.end(), [](const PairTruth& p) { return p.gap < 1e-3; });
   tally.answers_contact += r.status == Status::contact;
   tally.certain += r.status == Status::contact && r.certain;
   tally.uncertain += r.status == Status::contact && !r.certain;
@@ -89,7 +90,8 @@ std::uint64_t Tally::faulty() const {
 }
 
 void Tally::add(const Tally& o) {
-  queries += o.queries, hits += o.hits, doubtful += o.doubtful, starts += o.starts, ends_free += o.ends_free, grazes += o.grazes;
+  queries += o.queries, hits += o.hits, doubtful += o.doubtful, starts += o.starts, ends_free += o.ends_free,
+      grazes += o.grazes;
   answers_contact += o.answers_contact, certain += o.certain, uncertain += o.uncertain, undecided += o.undecided;
   uncertain_margin += o.uncertain_margin;
   beyond_sampling += o.beyond_sampling;
@@ -128,7 +130,8 @@ Report run(const Options& options) {
   report.elapsed_s = microseconds(begin, Clock::now()) * 1e-6;
   for (const auto& [family, tally] : report.families) report.total.add(tally);
   std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < failures.size() && i < 1000; ++i) report.failures.push_back(std::move(failures[i].second));
+  for (std::size_t i = 0; i < failures.size() && i < 1000; ++i)
+    report.failures.push_back(std::move(failures[i].second));
   return report;
 }
 
@@ -140,14 +143,17 @@ bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
   char line[256];
   for (const PairTruth& p : truth.pairs) {
     std::snprintf(line, sizeof line, "oracle %d %d: %s t %.17g gap %.6g at %.17g\n", p.a, p.b,
-                  p.hit ? "hit" : p.doubtful ? "doubtful" : "free", p.time, p.gap, p.gap_time);
+                  p.hit        ? "hit"
+                  : p.doubtful ? "doubtful"
+                               : "free",
+                  p.time, p.gap, p.gap_time);
     words += line;
   }
   const Answer answer = ask(scene);
   const fcl_artic::CertifiedResult& r = answer.result;
   static const char* status[] = {"free", "contact", "undecided"};
-  std::snprintf(line, sizeof line, "answer %s [%.17g, %.17g]%s in %.1f us\n", status[static_cast<int>(r.status)], r.t_lower,
-                r.t_upper, r.certain ? " certain" : "", answer.elapsed_us);
+  std::snprintf(line, sizeof line, "answer %s [%.17g, %.17g]%s in %.1f us\n", status[static_cast<int>(r.status)],
+                r.t_lower, r.t_upper, r.certain ? " certain" : "", answer.elapsed_us);
   words += line;
   for (const fcl_artic::CertifiedContact& c : r.contacts) {
     std::snprintf(line, sizeof line, "  %d/%ld %d/%ld [%.17g, %.17g]%s point %.9g %.9g %.9g normal %.9g %.9g %.9g\n",
@@ -164,8 +170,9 @@ bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
 std::string toText(const Report& report) {
   std::string out;
   char line[512];
-  std::snprintf(line, sizeof line, "%-20s %8s %6s %6s %8s %6s %8s %9s %6s %6s | %s\n", "class", "queries", "hits%", "start%",
-                "between%", "graze%", "certain%", "uncertain%", "undec", "beyond", "faults; us: query, oracle, making");
+  std::snprintf(line, sizeof line, "%-20s %8s %6s %6s %8s %6s %8s %9s %6s %6s | %s\n", "class", "queries", "hits%",
+                "start%", "between%", "graze%", "certain%", "uncertain%", "undec", "beyond",
+                "faults; us: query, oracle, making");
   out += line;
   const auto row = [&](const std::string& name, const Tally& t) {
     const double n = std::max<double>(1, static_cast<double>(t.queries));
@@ -181,8 +188,8 @@ std::string toText(const Report& report) {
                     static_cast<unsigned long long>(t.faults[static_cast<std::size_t>(f)]));
       out += line;
     }
-    std::snprintf(line, sizeof line, "%s; %.0f, %.0f, %.0f\n", t.faulty() ? "" : "none", t.query_us / n, t.oracle_us / n,
-                  t.generate_us / n);
+    std::snprintf(line, sizeof line, "%s; %.0f, %.0f, %.0f\n", t.faulty() ? "" : "none", t.query_us / n,
+                  t.oracle_us / n, t.generate_us / n);
     out += line;
   };
   for (const auto& [family, tally] : report.families) row(family, tally);
@@ -190,20 +197,25 @@ std::string toText(const Report& report) {
   Tally total = report.total;
   if (!total.lead.empty()) {
     std::sort(total.lead.begin(), total.lead.end());
-    const auto at = [&](double p) { return static_cast<double>(total.lead[static_cast<std::size_t>(p * static_cast<double>(total.lead.size() - 1))]); };
-    std::snprintf(line, sizeof line, "sampled contact - t_lower (certain hits): least %.3g, median %.3g, p95 %.3g, most %.3g\n", at(0),
+    const auto at = [&](double p) {
+      return static_cast<double>(total.lead[static_cast<std::size_t>(p * static_cast<double>(total.lead.size() - 1))]);
+    };
+    std::snprintf(line, sizeof line,
+                  "sampled contact - t_lower (certain hits): least %.3g, median %.3g, p95 %.3g, most %.3g\n", at(0),
                   at(0.5), at(0.95), at(1));
     out += line;
   }
-  std::snprintf(line, sizeof line, "uncertain %llu, of these with a margin %llu; doubtful %llu; %.1f s, %.0f queries/s\n",
-                static_cast<unsigned long long>(total.uncertain), static_cast<unsigned long long>(total.uncertain_margin),
-                static_cast<unsigned long long>(total.doubtful),
-                report.elapsed_s, static_cast<double>(total.queries) / std::max(1e-9, report.elapsed_s));
+  std::snprintf(
+      line, sizeof line, "uncertain %llu, of these with a margin %llu; doubtful %llu; %.1f s, %.0f queries/s\n",
+      static_cast<unsigned long long>(total.uncertain), static_cast<unsigned long long>(total.uncertain_margin),
+      static_cast<unsigned long long>(total.doubtful), report.elapsed_s,
+      static_cast<double>(total.queries) / std::max(1e-9, report.elapsed_s));
   out += line;
   for (std::size_t c = 0; c < total.spoilt.size(); ++c) {
     if (total.spoilt[c] == 0) continue;
-    std::snprintf(line, sizeof line, "spoilt on purpose, %s: %llu, of these seen %llu\n", corruptionName(static_cast<Corruption>(c)),
-                  static_cast<unsigned long long>(total.spoilt[c]), static_cast<unsigned long long>(total.spoilt_seen[c]));
+    std::snprintf(line, sizeof line, "spoilt on purpose, %s: %llu, of these seen %llu\n",
+                  corruptionName(static_cast<Corruption>(c)), static_cast<unsigned long long>(total.spoilt[c]),
+                  static_cast<unsigned long long>(total.spoilt_seen[c]));
     out += line;
   }
   // The first few of each kind, as one kind can be much more frequent than a worse one.

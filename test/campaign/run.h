@@ -16,7 +16,7 @@ struct Options {
   std::uint64_t queries = 20000;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string family;  ///< only this class; empty: all, in their shares
+  std::string family;                        ///< only this class; empty: all, in their shares
   Corruption corruption = Corruption::none;  ///< spoils the answers before they are examined
   bool try_corruptions = false;  ///< besides, spoils a copy of each answer in each way, and counts what is seen
   std::function<void(std::uint64_t done)> progress;  ///< called from any thread
@@ -25,17 +25,17 @@ struct Options {
 /// Counts of one class, or of all.
 struct Tally {
   std::uint64_t queries = 0;
-  std::uint64_t hits = 0;      ///< sampled contacts
-  std::uint64_t doubtful = 0;  ///< contact by the rounded corners alone, at no time a clear one
-  std::uint64_t starts = 0;    ///< hits at t = 0
-  std::uint64_t ends_free = 0; ///< hits with both ends of the motion free
-  std::uint64_t grazes = 0;    ///< no hit, and a least gap below 1e-3 m
+  std::uint64_t hits = 0;       ///< sampled contacts
+  std::uint64_t doubtful = 0;   ///< contact by the rounded corners alone, at no time a clear one
+  std::uint64_t starts = 0;     ///< hits at t = 0
+  std::uint64_t ends_free = 0;  ///< hits with both ends of the motion free
+  std::uint64_t grazes = 0;     ///< no hit, and a least gap below 1e-3 m
   std::uint64_t answers_contact = 0, certain = 0, uncertain = 0, undecided = 0;
-  std::uint64_t uncertain_margin = 0;  ///< of the uncertain ones, those with a margin
-  std::uint64_t beyond_sampling = 0;  ///< certain contacts that the samples did not find
+  std::uint64_t uncertain_margin = 0;                               ///< of the uncertain ones, those with a margin
+  std::uint64_t beyond_sampling = 0;                                ///< certain contacts that the samples did not find
   std::array<std::uint64_t, kCorruptions> spoilt{}, spoilt_seen{};  ///< by try_corruptions
-  std::array<std::uint64_t, kFaults> faults{};  ///< queries with this fault
-  std::vector<float> lead;     ///< sampled contact time - t_lower, of hits that are certain
+  std::array<std::uint64_t, kFaults> faults{};                      ///< queries with this fault
+  std::vector<float> lead;  ///< sampled contact time - t_lower, of hits that are certain
   double query_us = 0, generate_us = 0, oracle_us = 0;
 
   std::uint64_t faulty() const;

@@ -120,7 +120,8 @@ std::vector<std::pair<int, int>> Kinematics::pairs() const {
   const int n = static_cast<int>(scene_.bodies.size());
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n; ++j) {
-      const int a = scene_.bodies[static_cast<std::size_t>(i)].link, b = scene_.bodies[static_cast<std::size_t>(j)].link;
+      const int a = scene_.bodies[static_cast<std::size_t>(i)].link,
+                b = scene_.bodies[static_cast<std::size_t>(j)].link;
       if (a == b || scene_.allowed.count({i, j})) continue;  // of one link, or both obstacles
       const bool self = a >= 0 && b >= 0;
       if (!(self ? scene_.check_self : scene_.check_scene)) continue;
@@ -143,9 +144,9 @@ std::string describe(const Scene& s) {
   };
   static const char* kinds[] = {"fixed", "revolute", "continuous", "prismatic"};
   std::snprintf(line, sizeof line, "scene %s seed %llu  tolerance_time %g tolerance_distance %g margin %g%s%s%s%s\n",
-                s.family.c_str(), static_cast<unsigned long long>(s.seed), s.tolerance_time, s.tolerance_distance, s.margin,
-                s.check_scene ? "" : " no-scene", s.check_self ? "" : " no-self", s.every_pair ? " every-pair" : "",
-                s.shortest ? " shortest" : "");
+                s.family.c_str(), static_cast<unsigned long long>(s.seed), s.tolerance_time, s.tolerance_distance,
+                s.margin, s.check_scene ? "" : " no-scene", s.check_self ? "" : " no-self",
+                s.every_pair ? " every-pair" : "", s.shortest ? " shortest" : "");
   out += line;
   std::size_t v = 0;
   for (std::size_t i = 0; i < s.links.size(); ++i) {

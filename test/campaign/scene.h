@@ -17,9 +17,9 @@ enum class JointKind { fixed, revolute, continuous, prismatic };
 struct Link {
   int parent = -1;  ///< index of an earlier link; -1: a root
   JointKind joint = JointKind::fixed;
-  Pose origin;                  ///< joint frame in the parent's frame
-  Vec3 axis = Vec3::UnitX();    ///< unit, in the joint frame
-  int master = -1;              ///< link whose joint this one mimics; -1: none
+  Pose origin;                ///< joint frame in the parent's frame
+  Vec3 axis = Vec3::UnitX();  ///< unit, in the joint frame
+  int master = -1;            ///< link whose joint this one mimics; -1: none
   double multiplier = 1, offset = 0;
 
   bool hasVariable() const { return parent >= 0 && joint != JointKind::fixed && master < 0; }
