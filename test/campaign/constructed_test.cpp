@@ -25,8 +25,6 @@ struct ConstructedContact : testing::TestWithParam<std::tuple<std::string, std::
 
 TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
   const auto& [contact, chain] = GetParam();
-  if (contact == "face on face" && chain == "revolute")
-    GTEST_SKIP() << "faces don't stay parallel: " << contact << ", " << chain;
   int certain = 0;
   for (std::uint64_t i = 0; i < kCasesEach; ++i) {
     Constructed c = constructContact(contact, chain, Random::mix(4, i));
@@ -77,8 +75,16 @@ std::string nameOf(const testing::TestParamInfo<ConstructedContact::ParamType>& 
   return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Campaign, ConstructedContact,
-                         testing::Combine(testing::ValuesIn(contactKinds()), testing::ValuesIn(chainKinds())), nameOf);
+std::vector<std::tuple<std::string, std::string>> combinations() {
+  std::vector<std::tuple<std::string, std::string>> all;
+  for (const std::string& contact : contactKinds())
+    for (const std::string& chain : chainKinds())
+      // Faces don't stay parallel while they approach by turning.
+      if (contact != "face on face" || chain != "revolute") all.emplace_back(contact, chain);
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Campaign, ConstructedContact, testing::ValuesIn(combinations()), nameOf);
 
 }  // namespace
 }  // namespace campaign
