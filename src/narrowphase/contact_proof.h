@@ -102,7 +102,11 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
     if (s.n == 3) independent = abs(dot(e[2], m)) > 1e-12 * norm(m) * norm(e[2]);
     if (independent) s.v[s.n++] = p;
   }
-  if (s.n == 4 && tetrahedronHoldsOrigin(s.v, eps)) return true;
+  if (s.n == 4 && tetrahedronHoldsOrigin(s.v, eps)) {
+    originWeights(s);
+    witness(s);
+    return true;
+  }
   // Lemma 2, for aligned and symmetric poses where the origin lies on a face of every tetrahedron of extreme points: the
   // corners p_k of a tiny regular tetrahedron (circumradius rho) are each a convex combination of difference points, up
   // to a residual r_k; when eps + |r_k| < rho / 3, its inradius, no plane separates the origin from the difference.
@@ -124,6 +128,7 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
     // Sum of weights off by 1e-15 moves the combination by that part of its size, which eps (a multiple of the sizes
     // of both bodies) exceeds; the rounding of the sum itself stays below 1e-15 size as well.
     if (!(abs(sum - 1) <= 1e-15 && eps + norm(residual) + 2e-15 * size < rho / 3)) return false;
+    witness(h.simplex);  // its combination is the one near the origin, whatever a flat simplex above claimed
   }
   return true;
 }

@@ -108,6 +108,20 @@ inline bool reduceSimplex(Simplex& s, double* v) {
       v[k] = 0;
       for (int i = 0; i < t.n; ++i) v[k] += t.weight[i] * t.v[i].w[k];
     }
+    if (t.n == 3) {
+      // On a face the sum above is off along it by what rounding makes of the weights, and next to a tiny gap that would
+      // turn the direction. The foot of the perpendicular has the face's normal whatever the gap.
+      double ab[3], ac[3], m[3];
+      for (int k = 0; k < 3; ++k) {
+        ab[k] = t.v[1].w[k] - t.v[0].w[k];
+        ac[k] = t.v[2].w[k] - t.v[0].w[k];
+      }
+      cross(ab, ac, m);
+      const double mm = dot(m, m);
+      if (mm > 0) {
+        for (int k = 0; k < 3; ++k) v[k] = dot(m, t.v[0].w) / mm * m[k];
+      }
+    }
     s = t;
   };
   if (s.n == 1) {
