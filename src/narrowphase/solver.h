@@ -736,15 +736,17 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
       GjkResult g;
       gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
       originWeights(g.simplex);
-      for (int j = 0; j < 3; ++j) {
-        contact.point[j] = 0;
-        for (int q = 0; q < g.simplex.n; ++q) {
-          contact.point[j] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[j] + g.simplex.v[q].b[j]);
-        }
-      }
       if (!f.have_normal && !g.overlap) {
         for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
         f.have_normal = true;
+      }
+      // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
+      const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
+      for (int j = 0; j < 3; ++j) {
+        contact.point[j] = out * f.normal[j];
+        for (int q = 0; q < g.simplex.n; ++q) {
+          contact.point[j] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[j] + g.simplex.v[q].b[j]);
+        }
       }
     }
     if (!f.have_normal) {
