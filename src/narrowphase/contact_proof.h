@@ -34,20 +34,44 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
   return true;
 }
 
-/// Barycentric weights of the origin in a tetrahedron that holds it; false when it is flat.
+/// Weights (>= 0, sum 1) that bring a tetrahedron's combination near the origin: barycentric ones, or those of a face where
+/// they come nearer, as in a flat tetrahedron, whose volumes are mostly rounding. False when there is nothing to weigh by.
 inline bool originWeights(Simplex& s) {
   if (s.n != 4) return true;
-  double sum = 0;
+  double best = 1e300, weights[4] = {0, 0, 0, 0};
+  const auto offer = [&](const double* l) {
+    double w[3] = {0, 0, 0};
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < 3; ++k) w[k] += l[i] * s.v[i].w[k];
+    }
+    const double distance = norm(w);
+    if (!(distance < best)) return;
+    best = distance;
+    for (int i = 0; i < 4; ++i) weights[i] = l[i];
+  };
+  double volume[4], sum = 0;
   for (int i = 0; i < 4; ++i) {
     double m[3];
     const double *a = s.v[(i + 1) & 3].w, *b = s.v[(i + 2) & 3].w, *c = s.v[(i + 3) & 3].w;
     cross(b, c, m);
-    s.weight[i] = abs(dot(a, m));
-    sum += s.weight[i];
+    volume[i] = abs(dot(a, m));
+    sum += volume[i];
   }
-  if (!(sum > 0)) return false;
-  for (double& w : s.weight) w /= sum;
-  return true;
+  if (sum > 0) {
+    for (double& x : volume) x /= sum;
+    offer(volume);
+  }
+  for (int out = 0; out < 4; ++out) {
+    const int i = (out + 1) & 3, j = (out + 2) & 3, k = (out + 3) & 3;
+    double l[3], face[4] = {0, 0, 0, 0};
+    nearestOnTriangle(s.v[i].w, s.v[j].w, s.v[k].w, l);
+    face[i] = max(0.0, l[0]);
+    face[j] = max(0.0, l[1]);
+    face[k] = max(0.0, l[2]);
+    offer(face);
+  }
+  for (int i = 0; i < 4; ++i) s.weight[i] = weights[i];
+  return best < 1e300;
 }
 
 /// Proves that the pieces, grown by their radii and the margin, meet at this pose.

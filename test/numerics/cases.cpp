@@ -199,12 +199,19 @@ Real3 quadraticAt(const PairOutput& m, int side, int lane, const Eigen::Vector3d
 
 OwnedPiece::OwnedPiece(Random& random, PieceKind kind, double size, bool centered) {
   piece.kind = kind;
-  if (kind == PieceKind::vertices) {
+  if (kind == PieceKind::vertices || kind == PieceKind::hull) {
     piece.num_vertices = random.chance(0.5) ? 3 : 4 + random.below(8);
+    if (kind == PieceKind::hull) piece.num_vertices = 8 * (1 + random.below(8));
     for (int i = 0; i < piece.num_vertices; ++i) {
       const Eigen::Vector3d p = size * random.in(0.3, 1) * random.direction();
       vertices.insert(vertices.end(), p.data(), p.data() + 3);
       piece.reach = std::max(piece.reach, p.norm() * (1 + 1e-15));
+    }
+    if (kind == PieceKind::hull) {
+      const std::size_t n = static_cast<std::size_t>(piece.num_vertices);
+      hull.reset(static_cast<double*>(std::aligned_alloc(64, 3 * n * sizeof(double))), std::free);
+      for (std::size_t i = 0; i < 3 * n; ++i) hull.get()[i % 3 * n + i / 3] = vertices[i];
+      piece.radius = size * random.size(0.001, 0.1);
     }
     return;
   }
@@ -239,13 +246,14 @@ engine::TreeView OwnedPiece::view() const {
   engine::TreeView v;
   v.pieces = &piece;
   v.vertices = vertices.data();
+  v.hulls = hull.get();
   v.num_pieces = 1;
   v.extent = extent();
   return v;
 }
 
 Real OwnedPiece::support(const Real3& u) const {
-  if (piece.kind == PieceKind::vertices) {
+  if (piece.kind == PieceKind::vertices || piece.kind == PieceKind::hull) {
     Real best;
     for (std::size_t i = 0; i < vertices.size(); i += 3) {
       const Real x = dot(Real3{vertices[i], vertices[i + 1], vertices[i + 2]}, u);

@@ -87,12 +87,13 @@ Eigen::Vector3d pointWithin(Random& random, double extent);
 /// X0 + tau X1 + tau^2 X2 of a point, from doubles without rounding.
 Real3 quadraticAt(const PairOutput& m, int side, int lane, const Eigen::Vector3d& p, double tau);
 
-constexpr int kPieceKinds = 7;
+constexpr int kPieceKinds = 8;
 
 /// One convex piece with what its view points to.
 struct OwnedPiece {
   engine::Piece piece;
   std::vector<double> vertices;
+  std::shared_ptr<double> hull;  ///< a hull's coordinates, 64-byte aligned
   engine::TreeView view() const;
   double extent() const { return (piece.reach + piece.radius) * (1 + 1e-15); }
 
