@@ -31,18 +31,15 @@ float roundDown(double x) { return -roundUp(-x); }
 
 Node makeNode(const Box& box) {
   Node node;
-  double reach = 0, radius = 0;
+  double radius = 0;
   for (int k = 0; k < 3; ++k) {
     node.lo[k] = roundDown(box.lo[k]);
     node.hi[k] = roundUp(box.hi[k]);
-    const double lo = node.lo[k], hi = node.hi[k];
-    const double far = std::max(-lo, hi), half = 0.5 * (hi - lo);
-    reach += far * far;
+    const double half = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
     radius += half * half;
   }
-  node.reach = roundUp(std::sqrt(reach));
   node.radius = roundUp(std::sqrt(radius));
-  node.left = node.right = -1;
+  node.child = -1;
   return node;
 }
 
@@ -53,7 +50,10 @@ class Builder {
     nodes_.reserve(2 * boxes.size());
   }
   std::vector<Node> run() {
-    if (!boxes_.empty()) build(0, order_.size());
+    if (boxes_.empty()) return {};
+    nodes_.resize(2);
+    build(0, 0, order_.size());
+    nodes_[1] = nodes_[0];
     return std::move(nodes_);
   }
 
@@ -64,8 +64,7 @@ class Builder {
   }
   /// Median split across the longest side: as good as a surface area heuristic here (measured) and balanced, so that
   /// recursion is shallow whatever the input.
-  int build(std::size_t begin, std::size_t end) {
-    const int me = static_cast<int>(nodes_.size());
+  void build(std::size_t me, std::size_t begin, std::size_t end) {
     Box box;
     for (int k = 0; k < 3; ++k) {
       box.lo[k] = kInfinity;
@@ -75,10 +74,10 @@ class Builder {
         box.hi[k] = std::max(box.hi[k], boxes_[static_cast<std::size_t>(order_[i])].hi[k]);
       }
     }
-    nodes_.push_back(makeNode(box));
+    nodes_[me] = makeNode(box);
     if (end - begin == 1) {
-      nodes_.back().left = ~order_[begin];
-      return me;
+      nodes_[me].child = ~order_[begin];
+      return;
     }
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
@@ -90,10 +89,11 @@ class Builder {
       const double x = middle(i, axis), y = middle(j, axis);
       return x != y ? x < y : i < j;  // the same tree on every machine
     });
-    const int left = build(begin, half), right = build(half, end);
-    nodes_[static_cast<std::size_t>(me)].left = left;
-    nodes_[static_cast<std::size_t>(me)].right = right;
-    return me;
+    const std::size_t left = nodes_.size();
+    nodes_[me].child = static_cast<std::int32_t>(left);
+    nodes_.resize(left + 2);
+    build(left, begin, half);
+    build(left + 1, half, end);
   }
   const std::vector<Box>& boxes_;
   std::vector<int> order_;
@@ -236,7 +236,7 @@ void ShapeTree::build() {
   view_.vertices = vertices_.data();
   view_.num_nodes = static_cast<std::int32_t>(nodes_.size());
   view_.num_pieces = static_cast<std::int32_t>(pieces_.size());
-  view_.extent = static_cast<double>(nodes_.front().reach);
+  view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
 
 Eigen::Vector3d ShapeTree::lower() const { return Eigen::Vector3f::Map(nodes_.front().lo).cast<double>(); }

@@ -32,16 +32,18 @@ struct Piece {
 
 /// Bounding volume: an axis-aligned box in the tree's frame that holds the pieces below it, radii included. Single
 /// precision, rounded outward: eight lanes then compare in one instruction, and what it loses the leaves win back.
-struct Node {
+/// Half a cache line, and siblings lie side by side: a traversal that descends reads one line.
+struct alignas(32) Node {
   float lo[3], hi[3];
-  float reach;   ///< upper bound of |p| over the box, from the frame's origin
-  float radius;  ///< half the box's diagonal, a size only
-  std::int32_t left, right;  ///< children; a leaf has left < 0 and holds piece ~left
-  bool isLeaf() const { return left < 0; }
-  int piece() const { return ~left; }
+  float radius;        ///< half the box's diagonal, a size only
+  std::int32_t child;  ///< left child, the right one follows it; a leaf has ~piece, which is < 0
+  bool isLeaf() const { return child < 0; }
+  int left() const { return child; }
+  int right() const { return child + 1; }
+  int piece() const { return ~child; }
 };
 
-/// A body's geometry: constant, shared by threads. Node 0 is the root.
+/// A body's geometry: constant, shared by threads. Node 0 is the root, node 1 is not used.
 struct TreeView {
   const Node* nodes = nullptr;
   const Piece* pieces = nullptr;

@@ -39,13 +39,15 @@ struct SweptBox {
 
 /// Bounds of a moving node in the still body's frame, grown by `slack` and the remainder.
 FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double slack, SweptBox& box) {
-  const Lanes grow(m.rem_c + m.rem_R * static_cast<double>(node.reach) + slack);
-  double c[3], h[3];  // sums of floats: exact, but for far smaller addends
+  double c[3], h[3], far2 = 0;  // c and h: sums of floats, exact but for far smaller addends
   for (int k = 0; k < 3; ++k) {
-    const double lo = node.lo[k], hi = node.hi[k];
+    const double lo = node.lo[k], hi = node.hi[k], far = max(-lo, hi);
     c[k] = 0.5 * (lo + hi);
     h[k] = 0.5 * (hi - lo);
+    far2 += far * far;
   }
+  // |p| over the box; a square, two sums and a root are off by less than 8 ulp.
+  const Lanes grow(m.rem_c + m.rem_R * (sqrt(far2) * (1 + 8 * kUlp)) + slack);
   for (int i = 0; i < 3; ++i) {
     Lanes lo, hi;
     for (int k = 0; k < 3; ++k) {
@@ -132,10 +134,13 @@ class Solver {
   // The present pair.
   Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0;
+  /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
+  /// processor's own; what is pushed out is made again.
+  static constexpr int kCached = 2048;
   struct Cached {
-    std::int32_t epoch, slot;
+    std::int32_t node, epoch, slot;
   };
-  Buffer<Cached> cached_[2];  ///< per node of the moving tree of each side
+  Cached cached_[2][kCached] = {};
   Buffer<SweptBox> pool_;
   std::int32_t pair_epoch_ = 0;
 
@@ -278,7 +283,6 @@ inline void Solver::setupPair(int index) {
   amplitude_ = sqrt(maxLane(dot(v, v))) + b.s * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
-  for (int i = 0; i < 2; ++i) cached_[i].resize(max(cached_[i].size(), side_[i].moving->num_nodes));
 }
 
 /// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be there.
@@ -298,9 +302,10 @@ inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion
 
 /// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this batch.
 inline int Solver::sweptNode(int side, int index) {
-  Cached& cached = cached_[side][index];
-  if (cached.epoch == pair_epoch_) return cached.slot;
+  Cached& cached = cached_[side][index & (kCached - 1)];
+  if (cached.epoch == pair_epoch_ && cached.node == index) return cached.slot;
   cached.epoch = pair_epoch_;
+  cached.node = index;
   cached.slot = pool_.size();
   sweepNode(side_[side].m, side_[side].moving->nodes[index], pad_ + query_->margin, pool_.grow());
   return cached.slot;
@@ -470,11 +475,11 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time) {
       entries_.push(e);
     } else if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
-      push({pair, x.right, e.b, e.mask});
-      push({pair, x.left, e.b, e.mask});
+      push({pair, x.right(), e.b, e.mask});
+      push({pair, x.left(), e.b, e.mask});
     } else {
-      push({pair, e.a, y.right, e.mask});
-      push({pair, e.a, y.left, e.mask});
+      push({pair, e.a, y.right(), e.mask});
+      push({pair, e.a, y.left(), e.mask});
     }
   }
   for (Buffer<Entry>& stack : stack_) stack.clear();
@@ -518,8 +523,8 @@ inline void Solver::cull() {
         const unsigned mask = kAllLanes & ~apart(box, node);
         if (!mask) continue;
         if (!node.isLeaf()) {
-          stack.push({0, node.right, 0, 0});
-          stack.push({0, node.left, 0, 0});
+          stack.push({0, node.right(), 0, 0});
+          stack.push({0, node.left(), 0, 0});
           continue;
         }
         const int pair = m * problem_->num_obstacles + node.piece();
@@ -835,9 +840,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   // Epochs only ever grow; long before they overflow the stamps are made new.
   if (batch_ > 1 << 30 || pair_epoch_ > 1 << 30) {
     batch_ = pair_epoch_ = 0;
-    for (Buffer<Cached>& stamps : cached_) {
-      for (int i = 0; i < stamps.size(); ++i) stamps[i].epoch = -1;
-    }
+    __builtin_memset(cached_, -1, sizeof cached_);
   }
 
   const double time0 = now();

@@ -114,15 +114,11 @@ TEST(Motion, SweptNodesHoldExactPoints) {
     const int side = random.below(2);
     const double extent = side ? c.extent_a : c.extent_b;
     engine::Node node;
-    double reach = 0;
     for (int k = 0; k < 3; ++k) {
       const double middle = random.in(-0.4, 0.4) * extent, half = random.unit() * 0.15 * extent;
       node.lo[k] = static_cast<float>(middle - half);
       node.hi[k] = static_cast<float>(middle + half);
-      const double far = std::max(std::abs(node.lo[k]), std::abs(node.hi[k]));
-      reach += far * far;
     }
-    node.reach = std::nextafter(static_cast<float>(std::sqrt(reach)), 1e30f);
     BoxOutput box;
     {
       const ScopedRounding scope(mode);
