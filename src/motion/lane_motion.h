@@ -160,6 +160,7 @@ inline void evaluateSweep(const SweepView& sweep, const StepBounds* bounds, cons
 struct RigidLanes {
   Lanes R[3][9], c[3][3];    ///< X0, X1, X2
   Lanes Rb[3][9], cb[3][3];  ///< Bernstein points
+  Lanes spread[9];           ///< largest |Rb| of the three, entry by entry
   double rem_c = 0, rem_R = 0;  ///< |error| of a point p: rem_c + rem_R |p|
 
   void makeBernstein() {
@@ -168,6 +169,7 @@ struct RigidLanes {
       Rb[0][i] = e - R[1][i];
       Rb[1][i] = R[0][i] - R[2][i];
       Rb[2][i] = e + R[1][i];
+      spread[i] = max(abs(e) + abs(R[1][i]), abs(Rb[1][i]));
     }
     for (int i = 0; i < 3; ++i) {
       const Lanes e = c[0][i] + c[2][i];

@@ -49,16 +49,17 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
   // |p| over the box; a square, two sums and a root are off by less than 8 ulp.
   const Lanes grow(m.rem_c + m.rem_R * (sqrt(far2) * (1 + 8 * kUlp)) + slack);
   for (int i = 0; i < 3; ++i) {
+    const Lanes* S = m.spread + 3 * i;
+    const Lanes half = mulAdd(S[0], h[0], mulAdd(S[1], h[1], mulAdd(S[2], h[2], grow)));
     Lanes lo, hi;
     for (int k = 0; k < 3; ++k) {
       const Lanes* R = m.Rb[k] + 3 * i;
       const Lanes center = mulAdd(R[0], c[0], mulAdd(R[1], c[1], mulAdd(R[2], c[2], m.cb[k][i])));
-      const Lanes half = mulAdd(abs(R[0]), h[0], mulAdd(abs(R[1]), h[1], abs(R[2]) * Lanes(h[2])));
-      lo = k ? min(lo, center - half) : center - half;
-      hi = k ? max(hi, center + half) : center + half;
+      lo = k ? min(lo, center) : center;
+      hi = k ? max(hi, center) : center;
     }
-    box.lo[i] = narrowDown(lo - grow);
-    box.hi[i] = narrowUp(hi + grow);
+    box.lo[i] = narrowDown(lo - half);
+    box.hi[i] = narrowUp(hi + half);
   }
 }
 
@@ -313,9 +314,9 @@ inline int Solver::sweptNode(int side, int index) {
 
 /// Lanes in which a swept box and a still one are apart along an axis.
 FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
-  unsigned mask = 0;
-  for (int i = 0; i < 3; ++i) mask |= greater(box.lo[i], node.hi[i]) | greater(node.lo[i], box.hi[i]);
-  return mask;
+  FloatLanes out = greater(box.lo[0], spread(node.hi[0])) | greater(spread(node.lo[0]), box.hi[0]);
+  for (int i = 1; i < 3; ++i) out = out | greater(box.lo[i], spread(node.hi[i])) | greater(spread(node.lo[i]), box.hi[i]);
+  return lanesOf(out);
 }
 
 inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
@@ -538,11 +539,9 @@ inline void Solver::cull() {
       const LinkPair& pair = problem_->link_pairs[p];
       const SweptBox& a = mover_box_[problem_->bodies[pair.a].mover];
       const SweptBox& b = mover_box_[problem_->bodies[pair.b].mover];
-      unsigned mask = 0;
-      for (int k = 0; k < 3; ++k) {
-        mask |= greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
-      }
-      mask = kAllLanes & ~mask;
+      FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
+      for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
+      const unsigned mask = kAllLanes & ~lanesOf(out);
       if (mask) entries_.push({problem_->num_scene_pairs + p, 0, 0, mask});
     }
   }

@@ -89,7 +89,8 @@ FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
   for (int i = 0; i < kRegisters; ++i) mask |= regGreater(a.r[i], b.r[i]) << (i * kRegisterLanes);
   return mask;
 }
-/// Eight floats: ends of boxes, rounded outward, that only get compared.
+/// Eight floats: ends of boxes, rounded outward, that only get compared. A comparison sets all bits of the lanes where it
+/// holds (never with NaN); lanesOf() makes a mask of them.
 struct alignas(32) FloatLanes {
 #if FCL_ARTIC_ISA_BITS == 128
   __m128 r[2];
@@ -103,13 +104,15 @@ FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
   for (int i = 0; i < 2; ++i) o.r[i] = _mm_movelh_ps(_mm_cvtpd_ps(a.r[2 * i]), _mm_cvtpd_ps(a.r[2 * i + 1]));
   return o;
 }
-FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, float b) {
-  const __m128 y = _mm_set1_ps(b);
-  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.r[0], y)) | _mm_movemask_ps(_mm_cmpgt_ps(a.r[1], y)) << 4);
+FCL_ARTIC_INLINE FloatLanes spread(float x) { return {{_mm_set1_ps(x), _mm_set1_ps(x)}}; }
+FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
+  return {{_mm_cmpgt_ps(a.r[0], b.r[0]), _mm_cmpgt_ps(a.r[1], b.r[1])}};
 }
-FCL_ARTIC_INLINE unsigned greater(float a, const FloatLanes& b) {
-  const __m128 x = _mm_set1_ps(a);
-  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(x, b.r[0])) | _mm_movemask_ps(_mm_cmpgt_ps(x, b.r[1])) << 4);
+FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) {
+  return {{_mm_or_ps(a.r[0], b.r[0]), _mm_or_ps(a.r[1], b.r[1])}};
+}
+FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) {
+  return static_cast<unsigned>(_mm_movemask_ps(a.r[0]) | _mm_movemask_ps(a.r[1]) << 4);
 }
 #else
 FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
@@ -119,21 +122,13 @@ FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
   return {_mm256_set_m128(_mm256_cvtpd_ps(a.r[1]), _mm256_cvtpd_ps(a.r[0]))};
 #endif
 }
-FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, float b) {
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.r, _mm256_set1_ps(b), _CMP_GT_OQ)));
+FCL_ARTIC_INLINE FloatLanes spread(float x) { return {_mm256_set1_ps(x)}; }
+FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
+  return {_mm256_cmp_ps(a.r, b.r, _CMP_GT_OQ)};
 }
-FCL_ARTIC_INLINE unsigned greater(float a, const FloatLanes& b) {
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(_mm256_set1_ps(a), b.r, _CMP_GT_OQ)));
-}
+FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) { return {_mm256_or_ps(a.r, b.r)}; }
+FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) { return static_cast<unsigned>(_mm256_movemask_ps(a.r)); }
 #endif
-FCL_ARTIC_INLINE unsigned greater(const FloatLanes& a, const FloatLanes& b) {
-#if FCL_ARTIC_ISA_BITS == 128
-  return static_cast<unsigned>(_mm_movemask_ps(_mm_cmpgt_ps(a.r[0], b.r[0])) |
-                               _mm_movemask_ps(_mm_cmpgt_ps(a.r[1], b.r[1])) << 4);
-#else
-  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_cmp_ps(a.r, b.r, _CMP_GT_OQ)));
-#endif
-}
 /// Conversion to float errs by at most 2^-23 of the value in any rounding mode; twice that, and a normal number for
 /// values that would vanish, make the result a bound.
 FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) { return narrow(a - mulAdd(abs(a), 0x1p-22, 1e-37)); }
