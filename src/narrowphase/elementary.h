@@ -10,16 +10,11 @@
 #include <Eigen/Core>
 
 #include "fcl_artic/result.h"
+#include "narrowphase/problem.h"
 
 namespace fcl_artic {
 
-/// Motion of B in A's frame over [tm - d, tm + d]: X(t) = X[0] + tau X[1] + tau^2 X[2] + e, tau = (t - tm) / d, for the
-/// rotation R (row-major) and the position c. A point p of B is at R p + c, up to |error| <= rem_c + rem_R |p| + pad.
-struct ScalarMotion {
-  double R[3][9], c[3][3];
-  double rem_c, rem_R;  ///< what the quadratic leaves out: shrinks like d^3
-  double pad;           ///< rounding errors of the coefficients: does not shrink
-};
+using ScalarMotion = engine::PairMotion;
 
 /// Writes the motion over [tm - d, tm + d]. Asked for intervals inside [0, 1], up to 4 ulp; d may be 0.
 using MotionAt = std::function<void(double tm, double d, ScalarMotion& out)>;

@@ -57,13 +57,7 @@ void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& 
     q[i] = Eigen::Vector3d::Map(b.vertices + 3 * (y.first_vertex + i));
   }
   const MotionAt motion = [&](double tm, double d, ScalarMotion& out) {
-    engine::PairMotion m;
-    engine::engine().pairMotion(workspace, leaf.pair, tm, d, m);
-    std::copy(&m.R[0][0], &m.R[0][0] + 27, &out.R[0][0]);
-    std::copy(&m.c[0][0], &m.c[0][0] + 9, &out.c[0][0]);
-    out.rem_c = m.rem_c;
-    out.rem_R = m.rem_R;
-    out.pad = m.pad;
+    engine::engine().pairMotion(workspace, leaf.pair, tm, d, out);
   };
   RefinedContact refined;
   const double end = leaf.certain ? leaf.t_upper : std::min(1.0, leaf.t_lower + tolerance_time);
@@ -79,7 +73,6 @@ void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& 
   Eigen::Vector3d::Map(leaf.normal) = refined.normal;
 }
 
-/// One engine workspace per thread, shared by all managers: nothing in it reaches the next answer.
 class Workspace {
  public:
   Workspace() : memory_(engine::engine().createWorkspace()) {}
@@ -87,15 +80,31 @@ class Workspace {
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
   void* get() const { return memory_; }
+  bool busy = false;
 
  private:
   void* memory_;
 };
 
-void* threadWorkspace() {
-  thread_local Workspace workspace;
-  return workspace.get();
-}
+/// A workspace for one query: the thread's own, shared by all managers, as nothing in it reaches the next answer; another
+/// one while that is busy (a query from within a progress callback).
+class WorkspaceLoan {
+ public:
+  WorkspaceLoan() {
+    thread_local Workspace own;
+    if (own.busy) other_ = std::make_unique<Workspace>();
+    workspace_ = other_ ? other_.get() : &own;
+    workspace_->busy = true;
+  }
+  ~WorkspaceLoan() { workspace_->busy = false; }
+  WorkspaceLoan(const WorkspaceLoan&) = delete;
+  WorkspaceLoan& operator=(const WorkspaceLoan&) = delete;
+  void* get() const { return workspace_->get(); }
+
+ private:
+  std::unique_ptr<Workspace> other_;
+  Workspace* workspace_;
+};
 
 FeatureKind swapped(FeatureKind kind) {
   switch (kind) {
@@ -107,6 +116,45 @@ FeatureKind swapped(FeatureKind kind) {
     case FeatureKind::faceEdge: return FeatureKind::edgeFace;
     default: return kind;
   }
+}
+
+engine::Query makeQuery(const JointMotion& motion, const CertifiedRequest& request) {
+  engine::Query query;
+  query.q0 = motion.q0().data();
+  query.dq = motion.dq().data();
+  query.tolerance_time = request.tolerance_time;
+  query.tolerance_distance = request.tolerance_distance;
+  query.margin = request.margin;
+  query.check_scene = request.check_scene;
+  query.check_self = request.check_self;
+  query.every_pair = request.mode == ContactMode::firstOfEveryPair;
+  query.ignore_initial = request.ignore_initial_contact;
+  query.measure_times = request.measure_times;
+  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
+  query.work_budget = request.work_budget;
+  if (request.progress) {
+    query.progress = [](void* context, double t_lower) {
+      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
+    };
+    query.progress_context = const_cast<CertifiedRequest*>(&request);
+  }
+  return query;
+}
+
+QueryStatistics statisticsOf(const engine::Statistics& s) {
+  QueryStatistics out;
+  out.pairs = s.pairs;
+  out.pairs_after_culling = s.pairs_after_culling;
+  out.batches = s.batches;
+  out.motion_evaluations = s.motion_evaluations;
+  out.node_tests = s.node_tests;
+  out.leaf_tests = s.leaf_tests;
+  out.certificates = s.certificates;
+  out.gjk = s.gjk;
+  out.contact_proofs = s.contact_proofs;
+  out.culling_us = s.culling_us;
+  out.narrowphase_us = s.narrowphase_us;
+  return out;
 }
 
 void requireTolerance(double x, const char* name, bool positive) {
@@ -145,6 +193,9 @@ struct ArticulatedCollisionManager::Impl {
   bool linkAbove(LinkId above, LinkId below) const;
   void readObstacle(Item& item) const;
   void build();
+  engine::Problem problem() const;
+  CertifiedContact report(void* workspace, const JointMotion& motion, const CertifiedRequest& request,
+                          engine::LeafContact leaf) const;
   void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
     objects.erase(item->object);
     if (item->link < 0) obstacle_names.erase(item->name);
@@ -329,6 +380,58 @@ void ArticulatedCollisionManager::Impl::build() {
   ready = true;
 }
 
+/// What the engine sees of the set-up.
+engine::Problem ArticulatedCollisionManager::Impl::problem() const {
+  engine::Problem p;
+  p.bodies = bodies.data();
+  p.num_bodies = static_cast<std::int32_t>(bodies.size());
+  p.movers = movers.data();
+  p.num_movers = static_cast<std::int32_t>(movers.size());
+  p.sweeps = sweep_views.data();
+  p.num_sweeps = static_cast<std::int32_t>(sweep_views.size());
+  p.link_pairs = link_pairs.data();
+  p.num_link_pairs = static_cast<std::int32_t>(link_pairs.size());
+  p.num_scene_pairs = static_cast<std::int32_t>(movers.size() * obstacles.size());
+  p.scene_allowed = scene_allowed.empty() ? nullptr : scene_allowed.data();
+  p.obstacles = obstacle_bodies.data();
+  p.num_obstacles = static_cast<std::int32_t>(obstacles.size());
+  p.obstacle_tree = obstacle_tree.empty() ? nullptr : obstacle_tree.data();
+  return p;
+}
+
+/// A contact as users see it: features named, in world axes, links before obstacles.
+CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, const JointMotion& motion,
+                                                           const CertifiedRequest& request,
+                                                           engine::LeafContact leaf) const {
+  const Item &a = item(leaf.body_a), &b = item(leaf.body_b);
+  CertifiedContact contact;
+  if (request.margin == 0) {
+    refine(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
+  }
+  std::vector<Eigen::Isometry3d> M_0;
+  tree->forwardKinematics(motion.configuration(leaf.t), M_0);
+  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.offset;
+  contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
+  contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
+  contact.body1 = reference(a);
+  contact.body2 = reference(b);
+  contact.o1 = a.geometry;
+  contact.o2 = b.geometry;
+  contact.b1 = a.shape->view().pieces[leaf.piece_a].primitive;
+  contact.b2 = b.shape->view().pieces[leaf.piece_b].primitive;
+  if (a.link < 0) {
+    contact.feature = swapped(contact.feature);
+    std::swap(contact.body1, contact.body2);
+    std::swap(contact.o1, contact.o2);
+    std::swap(contact.b1, contact.b2);
+    contact.normal = -contact.normal;
+  }
+  contact.t_lower = leaf.t_lower;
+  contact.t_upper = leaf.t_upper;
+  contact.certain = leaf.certain;
+  return contact;
+}
+
 ArticulatedCollisionManager::ArticulatedCollisionManager(std::shared_ptr<const KinematicTree> tree)
     : impl_(std::make_unique<Impl>()) {
   if (!tree) throw std::invalid_argument("ArticulatedCollisionManager: the kinematic tree is null");
@@ -482,46 +585,16 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   requireTolerance(request.tolerance_time, "tolerance_time", true);
   requireTolerance(request.tolerance_distance, "tolerance_distance", true);
   requireTolerance(request.margin, "margin", false);
-  const auto begin = std::chrono::steady_clock::now();
 
-  engine::Problem problem;
-  problem.bodies = m.bodies.data();
-  problem.num_bodies = static_cast<std::int32_t>(m.bodies.size());
-  problem.movers = m.movers.data();
-  problem.num_movers = static_cast<std::int32_t>(m.movers.size());
-  problem.sweeps = m.sweep_views.data();
-  problem.num_sweeps = static_cast<std::int32_t>(m.sweep_views.size());
-  problem.link_pairs = m.link_pairs.data();
-  problem.num_link_pairs = static_cast<std::int32_t>(m.link_pairs.size());
-  problem.num_scene_pairs = static_cast<std::int32_t>(m.movers.size() * m.obstacles.size());
-  problem.scene_allowed = m.scene_allowed.empty() ? nullptr : m.scene_allowed.data();
-  problem.obstacles = m.obstacle_bodies.data();
-  problem.num_obstacles = static_cast<std::int32_t>(m.obstacles.size());
-  problem.obstacle_tree = m.obstacle_tree.empty() ? nullptr : m.obstacle_tree.data();
-
-  engine::Query query;
-  query.q0 = motion.q0().data();
-  query.dq = motion.dq().data();
-  query.tolerance_time = request.tolerance_time;
-  query.tolerance_distance = request.tolerance_distance;
-  query.margin = request.margin;
-  query.check_scene = request.check_scene;
-  query.check_self = request.check_self;
-  query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  query.ignore_initial = request.ignore_initial_contact;
-  query.measure_times = request.measure_times;
-  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
-  query.work_budget = request.work_budget;
-  if (request.progress) {
-    query.progress = [](void* context, double t_lower) {
-      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
-    };
-    query.progress_context = const_cast<CertifiedRequest*>(&request);
-  }
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point t) { return std::chrono::duration<double, std::micro>(Clock::now() - t).count(); };
+  const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
+  const WorkspaceLoan workspace;
+  const engine::Problem problem = m.problem();
+  const engine::Query query = makeQuery(motion, request);
   engine::Answer answer;
-  void* workspace = threadWorkspace();
-  engine::engine().solve(workspace, problem, query, answer);
-  const auto solved = std::chrono::steady_clock::now();
+  engine::engine().solve(workspace.get(), problem, query, answer);
+  const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();
 
   result.status = answer.verdict == engine::Verdict::free      ? Status::free
                   : answer.verdict == engine::Verdict::contact ? Status::contact
@@ -530,40 +603,13 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   result.t_upper = answer.t_upper;
   result.certain = answer.certain;
   result.contacts.clear();
-  std::vector<Eigen::Isometry3d> M_0;
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    engine::LeafContact leaf = answer.contacts[i];
-    const Item &a = m.item(leaf.body_a), &b = m.item(leaf.body_b);
-    CertifiedContact contact;
-    if (request.margin == 0) {
-      refine(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
-    }
-    m.tree->forwardKinematics(motion.configuration(leaf.t), M_0);
-    const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.offset;
-    contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
-    contact.normal = M_0a.linear() * Eigen::Vector3d::Map(leaf.normal);
-    contact.normal.normalize();
-    contact.body1 = m.reference(a);
-    contact.body2 = m.reference(b);
-    contact.o1 = a.geometry;
-    contact.o2 = b.geometry;
-    contact.b1 = a.shape->view().pieces[leaf.piece_a].primitive;
-    contact.b2 = b.shape->view().pieces[leaf.piece_b].primitive;
-    if (a.link < 0) {  // links come first
-      contact.feature = swapped(contact.feature);
-      std::swap(contact.body1, contact.body2);
-      std::swap(contact.o1, contact.o2);
-      std::swap(contact.b1, contact.b2);
-      contact.normal = -contact.normal;
-    }
-    contact.t_lower = leaf.t_lower;
-    contact.t_upper = leaf.t_upper;
-    contact.certain = leaf.certain;
-    if (leaf.certain && leaf.t_upper < result.t_upper) {
-      result.t_upper = leaf.t_upper;
+    result.contacts.push_back(m.report(workspace.get(), motion, request, answer.contacts[i]));
+    const CertifiedContact& contact = result.contacts.back();
+    if (contact.certain && contact.t_upper < result.t_upper) {
+      result.t_upper = contact.t_upper;
       result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
     }
-    result.contacts.push_back(std::move(contact));
   }
   m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
@@ -571,23 +617,10 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
     result.ignored_initial_contacts.emplace_back(m.reference(m.item(answer.ignored[i].body_a)),
                                                  m.reference(m.item(answer.ignored[i].body_b)));
   }
-  QueryStatistics& s = result.statistics;
-  s = QueryStatistics();
-  s.pairs = answer.statistics.pairs;
-  s.pairs_after_culling = answer.statistics.pairs_after_culling;
-  s.batches = answer.statistics.batches;
-  s.motion_evaluations = answer.statistics.motion_evaluations;
-  s.node_tests = answer.statistics.node_tests;
-  s.leaf_tests = answer.statistics.leaf_tests;
-  s.certificates = answer.statistics.certificates;
-  s.gjk = answer.statistics.gjk;
-  s.contact_proofs = answer.statistics.contact_proofs;
-  s.culling_us = answer.statistics.culling_us;
-  s.narrowphase_us = answer.statistics.narrowphase_us;
+  result.statistics = statisticsOf(answer.statistics);
   if (request.measure_times) {
-    const auto end = std::chrono::steady_clock::now();
-    s.report_us = std::chrono::duration<double, std::micro>(end - solved).count();
-    s.total_us = std::chrono::duration<double, std::micro>(end - begin).count();
+    result.statistics.report_us = since(solved);
+    result.statistics.total_us = since(begin);
   }
 }
 

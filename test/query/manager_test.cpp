@@ -394,6 +394,44 @@ TEST(Manager, SameBitsOverThreadsAndRepeats) {
   for (int d : different) EXPECT_EQ(d, 0);
 }
 
+// A query from within another's progress callback has a workspace of its own; and what the callback throws comes out.
+TEST(Manager, ProgressMayAskAnotherQueryOrThrow) {
+  // A crank that grazes two posts for long, so that there is progress to tell.
+  auto tree = std::make_shared<KinematicTree>("crank");
+  tree->addLink("base");
+  tree->addLink("arm");
+  tree->addJoint(makeJoint("turn", JointType::continuous, "base", "arm", Vector3d::UnitZ()));
+  auto arm = at(boxMesh(0.5));
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("arm", arm.get());
+  std::vector<std::shared_ptr<fcl::CollisionObjectd>> posts;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = kPi * i / 6;
+    posts.push_back(at(boxMesh(0.1), {0.808 * std::cos(angle), 0.808 * std::sin(angle), 0.6001}));
+    manager.registerObject(posts.back().get());
+  }
+  manager.setup();
+  const auto motion = JointMotion::linear(*tree, VectorXd::Zero(1), VectorXd::Constant(1, 300.0));
+  CertifiedResult alone, nested, inner;
+  CertifiedRequest request;
+  manager.continuousCollide(motion, request, alone);
+  ASSERT_EQ(alone.status, Status::free);
+  int calls = 0;
+  request.progress = [&](double) {
+    ++calls;
+    manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Zero(1), VectorXd::Constant(1, 1)), {}, inner);
+  };
+  manager.continuousCollide(motion, request, nested);
+  EXPECT_GT(calls, 0);
+  EXPECT_EQ(nested.status, alone.status);
+  EXPECT_EQ(nested.statistics.node_tests, alone.statistics.node_tests);
+  request.progress = [](double) { throw std::runtime_error("stop"); };
+  EXPECT_EQ(messageOf<std::runtime_error>([&] { manager.continuousCollide(motion, request, nested); }), "stop");
+  manager.continuousCollide(motion, {}, nested);
+  EXPECT_EQ(nested.status, alone.status);
+  EXPECT_EQ(nested.statistics.node_tests, alone.statistics.node_tests);
+}
+
 TEST(Manager, MovedObstacleIsReadByUpdate) {
   Slider slider(std::make_shared<fcl::Sphered>(0.1));
   auto wall = at(std::make_shared<fcl::Boxd>(1, 1, 1), {1, 0, 0});
