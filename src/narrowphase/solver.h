@@ -849,9 +849,17 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   const int roots = entries_.size();
   if (query.ignore_initial) collectInitialContacts(0, roots);
 
+  // A pose proven in contact and a proof that all of [0, 1] is free would contradict each other: a fault of ours, and then
+  // contact is the answer that harms nobody.
+  const auto contradicted = [&] { return t_upper_ < 2; };
   Verdict verdict = Verdict::free;
   if (!query.every_pair) {
-    if (solveInterval(0, 1, 0, roots, -1) == Step::done) verdict = out_of_budget_ ? Verdict::undecided : Verdict::contact;
+    if (solveInterval(0, 1, 0, roots, -1) == Step::done) {
+      verdict = out_of_budget_ ? Verdict::undecided : Verdict::contact;
+    } else if (contradicted()) {
+      verdict = Verdict::contact;
+      t_lower_ = 0;
+    }
   } else {
     double t_lower = 1, t_upper = 2;
     bool certain = false;
@@ -859,7 +867,10 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
       t_upper_ = 2;
       certain_ = false;
       entries_.truncate(roots);
-      if (solveInterval(0, 1, i, i + 1, -1) != Step::done) continue;
+      if (solveInterval(0, 1, i, i + 1, -1) != Step::done) {
+        if (!contradicted()) continue;
+        t_lower_ = 0;
+      }
       verdict = Verdict::contact;
       if (t_lower_ < t_lower) {
         t_lower = t_lower_;
