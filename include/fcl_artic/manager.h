@@ -61,8 +61,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
   void unbind(fcl::CollisionObjectd* object);
 
-  /// Pairs that may touch, by link and obstacle name. Links joined by a joint (also over links without geometry that
-  /// are rigidly attached) may always touch.
+  /// Pairs that may touch, by link and obstacle name. Neighbours may always touch: links with one moving joint at most
+  /// between them, and no other link with geometry. (Others that are rigidly attached are checked: allow them where they
+  /// touch by construction.)
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   const AllowedCollisionMatrix& allowedCollisions() const;
 

@@ -225,7 +225,7 @@ Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, 
   return item;
 }
 
-/// Joined by one moving joint at most, over links without geometry only; or rigidly attached to each other.
+/// Joined by one moving joint at most, over links without geometry only.
 bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   const auto path = [&](LinkId link) {
     std::vector<LinkId> up{link};
@@ -251,7 +251,7 @@ bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   }
   const LinkId ancestor = x.back();
   if (ancestor != a && ancestor != b) bare = bare && !hasGeometry(ancestor);
-  return moving == 0 || (moving == 1 && bare);
+  return moving <= 1 && bare;
 }
 
 bool ArticulatedCollisionManager::Impl::linkAbove(LinkId above, LinkId below) const {

@@ -306,6 +306,31 @@ TEST(Manager, ParallelFacesHeadOnAreProven) {
   }
 }
 
+// c is fixed to b, which is fixed to a: b is a's neighbour and c's, but a and c are checked though no motion parts them.
+TEST(Manager, RigidlyAttachedLinksThatAreNoNeighboursAreChecked) {
+  auto tree = std::make_shared<KinematicTree>("stack");
+  for (const char* link : {"a", "b", "c"}) tree->addLink(link);
+  tree->addJoint(makeJoint("ab", JointType::fixed, "a", "b", Vector3d::UnitX(), {0.1, 0, 0}));
+  tree->addJoint(makeJoint("bc", JointType::fixed, "b", "c", Vector3d::UnitX(), {0.1, 0, 0}));
+  auto a = at(boxMesh(0.15)), b = at(boxMesh(0.15)), c = at(boxMesh(0.15));
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("a", a.get());
+  manager.bind("b", b.get());
+  manager.bind("c", c.get());
+  manager.setup();
+  CertifiedResult r;
+  manager.collide(VectorXd(), {}, r);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_EQ(r.contacts.at(0).body1.name, "a");
+  EXPECT_EQ(r.contacts.at(0).body2.name, "c");
+  AllowedCollisionMatrix allowed;
+  allowed.allow("a", "c");
+  manager.setAllowedCollisions(allowed);
+  manager.setup();
+  manager.collide(VectorXd(), {}, r);
+  EXPECT_EQ(r.status, Status::free);
+}
+
 // Two robots in one forest, each a slider along its own axis; they meet in the middle.
 TEST(Manager, TwoRootsMeet) {
   auto tree = std::make_shared<KinematicTree>("pair");
