@@ -41,7 +41,6 @@ struct StepBounds {
   double D1, D2, D3;   ///< of the origin
   double length;       ///< |o(t)| and all numbers it is made of, summed
   double ulps;         ///< error of the rotation in kUlp, of the origin in kUlp * length
-  bool moves;
 };
 
 /// All bounds of a sweep under one motion. Derivation: doc/NUMERICS.md, "Chains of revolute and prismatic joints".
@@ -78,7 +77,6 @@ inline void boundSteps(const SweepView& sweep, const double* q0, const double* d
       b.D3 += sp * sp * sp * size + 3 * sp * sp * rate;
       b.length += size;
     }
-    b.moves = (p && p->moves) || rate > 0;
     out[i] = b;
   }
 }

@@ -12,6 +12,10 @@ namespace FCL_ARTIC_ISA {
 /// Pose of B in A's frame at one time.
 struct PoseAt {
   double R[9], c[3];
+  /// The direction opposite to n (A's frame), in B's frame.
+  void opposite(const double* n, double* m) const {
+    for (int j = 0; j < 3; ++j) m[j] = -(R[j] * n[0] + R[3 + j] * n[1] + R[6 + j] * n[2]);
+  }
 };
 
 /// A point w = b - a of the difference B - A, and where it came from (a and b in A's frame).
@@ -38,7 +42,7 @@ struct DifferenceBody {
   void support(const double* n, DifferencePoint& p) const {
     double m[3], x[3] = {0, 0, 0};
     supportPoint(*tree_a, *a, n, p.a);
-    for (int j = 0; j < 3; ++j) m[j] = -(pose.R[j] * n[0] + pose.R[3 + j] * n[1] + pose.R[6 + j] * n[2]);
+    pose.opposite(n, m);
     supportPoint(*tree_b, *b, m, x);
     for (int k = 0; k < 3; ++k) {
       p.b[k] = pose.R[3 * k] * x[0] + pose.R[3 * k + 1] * x[1] + pose.R[3 * k + 2] * x[2] + pose.c[k];

@@ -108,7 +108,6 @@ class Solver {
   int sweptNode(int side, int node);
   DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane) const;
   bool proveAt(int piece_a, int piece_b, int lane, const double* guess, double* point);
-  void addContact(const LeafContact& contact);
   bool outOfBudget();
   double now() const;
 
@@ -382,9 +381,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin, pad_, sign);
     if (mask & ~separated) {
       double n[3];
-      for (int j = 0; j < 3; ++j) {
-        n[j] = -(body.pose.R[j] * g.n[0] + body.pose.R[3 + j] * g.n[1] + body.pose.R[6 + j] * g.n[2]);
-      }
+      body.pose.opposite(g.n, n);
       ++statistics_.certificates;
       separated |= certainlySeparated(side_[1], b, a, n, margin, pad_, sign);
     }
@@ -595,10 +592,6 @@ inline void Solver::collectInitialContacts(int begin, int end) {
   decide_only_ = false;
 }
 
-inline void Solver::addContact(const LeafContact& contact) {
-  if (contacts_.size() < query_->max_contacts) contacts_.push(contact);
-}
-
 /// One batch over [start, start + width] for entries_[begin, end), of which those with parent_lane set count (all, with
 /// their masks as lanes of this batch, when parent_lane < 0). Everything before `start` is proven free.
 inline Solver::Step Solver::solveInterval(double start, double width, int begin, int end, int parent_lane) {
@@ -677,9 +670,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
       for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
       f.have_normal = true;
       double n[3];
-      for (int j = 0; j < 3; ++j) {
-        n[j] = -(body.pose.R[j] * g.n[0] + body.pose.R[3 + j] * g.n[1] + body.pose.R[6 + j] * g.n[2]);
-      }
+      body.pose.opposite(g.n, n);
       const double x = max(certainlyFreePrefix(side_[0], a, b, g.n, query_->margin, pad_, 1),
                            certainlyFreePrefix(side_[1], b, a, n, query_->margin, pad_, 1));
       // The lane is [tm - d, tm + d]; what it certifies beyond `stop` is not used.

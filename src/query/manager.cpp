@@ -32,6 +32,19 @@ struct Item {
   std::array<double, 7> lss = {};  ///< of a link: line swept sphere in the geometry's frame
 };
 
+/// Reads the object's geometry, where it is another one than was read before.
+void readShape(Item& item, const std::string& what) {
+  const fcl::CollisionGeometryd* geometry = item.object->collisionGeometry().get();
+  if (!geometry) throw std::invalid_argument(what + ": the object has no geometry");
+  if (geometry == item.geometry) return;
+  try {
+    item.shape = readGeometry(*geometry);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  item.geometry = geometry;
+}
+
 /// Box in the world of a tree that stands at M.
 /// @param placement  the same.
 void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placement& placement, double* lo, double* hi) {
@@ -215,13 +228,7 @@ Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, 
   }
   Item item;
   item.object = object;
-  item.geometry = object->collisionGeometry().get();
-  if (!item.geometry) throw std::invalid_argument(what + ": the object has no geometry");
-  try {
-    item.shape = readGeometry(*item.geometry);
-  } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(what + ": " + e.what());
-  }
+  readShape(item, what);
   return item;
 }
 
@@ -262,16 +269,7 @@ bool ArticulatedCollisionManager::Impl::linkAbove(LinkId above, LinkId below) co
 void ArticulatedCollisionManager::Impl::readObstacle(Item& item) const {
   const std::string what = "obstacle '" + item.name + "'";
   const Eigen::Isometry3d M = requireRigid(item.object->getTransform(), what);
-  const fcl::CollisionGeometryd* geometry = item.object->collisionGeometry().get();
-  if (!geometry) throw std::invalid_argument(what + ": the object has no geometry");
-  if (geometry != item.geometry) {
-    try {
-      item.shape = readGeometry(*geometry);
-    } catch (const std::invalid_argument& e) {
-      throw std::invalid_argument(what + ": " + e.what());
-    }
-    item.geometry = geometry;
-  }
+  readShape(item, what);
   item.offset = M;
 }
 
