@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The motion of one rigid body as plain data: what every kind of motion, FCL's included, is read into.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "fcl_artic/bounded_motion.h"
+
+namespace fcl_artic {
+
+/// Highest power of t in a motion's polynomials (a quintic).
+constexpr int kMaxDegree = 5;
+
+/// A constant transform, then one moving factor E(t), t in [0, 1], whose parameter is a polynomial of time.
+struct MotionElement {
+  enum class Kind {
+    revolute,   ///< rotation about `axis` by q(t), rad
+    prismatic,  ///< translation along `axis` by q(t), m
+    slide,      ///< translation by the vector q(t), m
+    turn,       ///< rotation exp([q(t)]) by the rotation vector q(t), rad
+    bounded,    ///< what its author says (BoundedMotion); the only element of its motion
+  };
+  Kind kind = Kind::slide;
+  Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
+  /// Column k belongs to t^k; revolute and prismatic: row 0 only.
+  Eigen::Matrix<double, 3, kMaxDegree + 1> coefficients = Eigen::Matrix<double, 3, kMaxDegree + 1>::Zero();
+  const BoundedMotion* bounded = nullptr;  ///< of the caller's
+
+  int degree() const;  ///< largest k with a coefficient that is not 0
+};
+
+/// M_0g(t) = before_1 E_1(t) before_2 E_2(t) ... E_m(t) after: from the geometry's frame to the world.
+struct BodyMotion {
+  std::vector<MotionElement> elements;  ///< from the world on; empty: stands still
+  Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
+
+  /// Pose of the geometry's frame in the world at t in [0, 1], in doubles.
+  Eigen::Isometry3d pose(double t) const;
+};
+
+/// Box in the world that certainly holds a body over all of the motion, rounding included.
+/// @param lower, upper  box of the body in its own frame; infinite where it is unbounded.
+void enclosePath(const BodyMotion& motion, const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,
+                 Eigen::Vector3d& path_lower, Eigen::Vector3d& path_upper);
+
+}  // namespace fcl_artic
