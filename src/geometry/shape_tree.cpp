@@ -29,7 +29,7 @@ float roundUp(double x) {
 }
 float roundDown(double x) { return -roundUp(-x); }
 
-Node makeNode(const Box& box) {
+Node makeNode(const BoxBounds& box) {
   Node node;
   double radius = 0;
   for (int k = 0; k < 3; ++k) {
@@ -45,7 +45,7 @@ Node makeNode(const Box& box) {
 
 class Builder {
  public:
-  explicit Builder(const std::vector<Box>& boxes) : boxes_(boxes), order_(boxes.size()) {
+  explicit Builder(const std::vector<BoxBounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
     std::iota(order_.begin(), order_.end(), 0);
     nodes_.reserve(2 * boxes.size());
   }
@@ -59,13 +59,13 @@ class Builder {
 
  private:
   double middle(int i, int axis) const {
-    const Box& b = boxes_[static_cast<std::size_t>(i)];
+    const BoxBounds& b = boxes_[static_cast<std::size_t>(i)];
     return b.lo[axis] + b.hi[axis];
   }
   /// Median split across the longest side: as good as a surface area heuristic here (measured) and balanced, so that
   /// recursion is shallow whatever the input.
   void build(std::size_t me, std::size_t begin, std::size_t end) {
-    Box box;
+    BoxBounds box;
     for (int k = 0; k < 3; ++k) {
       box.lo[k] = kInfinity;
       box.hi[k] = -kInfinity;
@@ -95,7 +95,7 @@ class Builder {
     build(left, begin, half);
     build(left + 1, half, end);
   }
-  const std::vector<Box>& boxes_;
+  const std::vector<BoxBounds>& boxes_;
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
@@ -124,7 +124,7 @@ void coreHalf(const Piece& p, double* half) {
 
 }  // namespace
 
-std::vector<Node> buildBoxTree(const std::vector<Box>& boxes) { return Builder(boxes).run(); }
+std::vector<Node> buildBoxTree(const std::vector<BoxBounds>& boxes) { return Builder(boxes).run(); }
 
 std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
                                                           const std::vector<std::array<int, 3>>& triangles) {
@@ -208,10 +208,10 @@ void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
 }
 
 void ShapeTree::build() {
-  std::vector<Box> boxes(pieces_.size());
+  std::vector<BoxBounds> boxes(pieces_.size());
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Piece& p = pieces_[i];
-    Box& box = boxes[i];
+    BoxBounds& box = boxes[i];
     double half[3];
     coreHalf(p, half);
     for (int k = 0; k < 3; ++k) {

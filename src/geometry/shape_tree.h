@@ -42,10 +42,10 @@ class ShapeTree {
 };
 
 /// Boxes to be put into a tree: the same builder serves pieces and obstacles.
-struct Box {
+struct BoxBounds {
   double lo[3], hi[3];
 };
 /// Binary tree over boxes, node 0 the root; a leaf holds box ~left. Rounded outward. Empty for no boxes.
-std::vector<engine::Node> buildBoxTree(const std::vector<Box>& boxes);
+std::vector<engine::Node> buildBoxTree(const std::vector<BoxBounds>& boxes);
 
 }  // namespace fcl_artic

@@ -310,7 +310,7 @@ void ArticulatedCollisionManager::Impl::build() {
     bodies[static_cast<std::size_t>(movers[m])].mover = static_cast<std::int32_t>(m);
   }
 
-  std::vector<Box> boxes(obstacles.size());
+  std::vector<BoxBounds> boxes(obstacles.size());
   obstacle_bodies.resize(obstacles.size());
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const Item& item = obstacles[o];
