@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "fcl_artic/bounded_motion.h"
+#include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/fcl_link_motion.h"
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/manager.h"
+#include "fcl_artic/pair_result.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"

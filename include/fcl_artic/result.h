@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <fcl/narrowphase/collision_object.h>
+#include <fcl/narrowphase/contact.h>
 
 #include "fcl_artic/kinematic_tree.h"
 
@@ -39,6 +40,19 @@ struct CertifiedContact {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< world, unit
   double t_lower = 0, t_upper = 1;
   bool certain = false;
+
+  /// The same as FCL's own contact. At first contact nothing has been penetrated: the depth is 0.
+  fcl::Contactd toFcl() const {
+    fcl::Contactd contact;
+    contact.o1 = o1;
+    contact.o2 = o2;
+    contact.b1 = b1;
+    contact.b2 = b2;
+    contact.pos = point;
+    contact.normal = normal;
+    contact.penetration_depth = 0;
+    return contact;
+  }
 };
 
 /// Work of a query, by stage. Times only with CertifiedRequest::measure_times.
