@@ -9,6 +9,8 @@
 
 namespace fcl_artic {
 
+struct BodyMotion;
+
 /// Motion of a geometry that is fixed to one link, as FCL's motion type: FCL's own conservative advancement, and its
 /// naive stepping, then run on exactly the motion of a certified query.
 ///
@@ -65,6 +67,8 @@ class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
     Eigen::Vector3d angular = Eigen::Vector3d::Zero();
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   };
+
+  friend BodyMotion bodyMotion(const FclLinkMotion& motion);  ///< as the library's own queries see it
 
   State stateAt(double t) const;
   double directedBound(const Eigen::Vector3d* points_g, int count, double radius, const Eigen::Vector3d& n) const;

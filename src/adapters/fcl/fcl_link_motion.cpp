@@ -45,6 +45,8 @@
 #include <fcl/math/motion/tbv_motion_bound_visitor.h>
 #include <fcl/math/motion/triangle_motion_bound_visitor.h>
 
+#include "adapters/fcl/fcl_motion.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -126,6 +128,21 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
   }
   addSegment(tail_.translation().norm(), 0);
   state_ = stateAt(0);
+}
+
+BodyMotion bodyMotion(const FclLinkMotion& motion) {
+  BodyMotion body;
+  for (const FclLinkMotion::Step& step : motion.chain_) {
+    MotionElement element;
+    element.kind = step.prismatic ? MotionElement::Kind::prismatic : MotionElement::Kind::revolute;
+    element.before = step.origin;
+    element.axis = step.axis;
+    element.coefficients(0, 0) = step.q0;
+    element.coefficients(0, 1) = step.rate;
+    body.elements.push_back(element);
+  }
+  body.after = motion.tail_;
+  return body;
 }
 
 FclLinkMotion::State FclLinkMotion::stateAt(double t) const {

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "adapters/fcl/fcl_motion.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <type_traits>
+#include <typeinfo>
+
+#include <cxxabi.h>
+#include <fcl/math/motion/interp_motion.h>
+#include <fcl/math/motion/screw_motion.h>
+#include <fcl/math/motion/spline_motion.h>
+#include <fcl/math/motion/translation_motion.h>
+
+#include "numerics/rotation.h"
+
+namespace fcl_artic {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kFarthest = 1e9;  // m
+
+std::string typeName(const std::type_info& type) {
+  const std::unique_ptr<char, void (*)(void*)> name(abi::__cxa_demangle(type.name(), nullptr, nullptr, nullptr),
+                                                    std::free);
+  return name ? name.get() : type.name();
+}
+
+// FCL's motions keep what they are made of protected. A derived class may name it, and so give pointers to the members.
+template <class S>
+struct PeekInterp : fcl::InterpMotion<S> {
+  using Motion = fcl::InterpMotion<S>;
+  static const fcl::Transform3<S>& begin(const Motion& m) { return m.*(&PeekInterp::tf1); }
+  static const fcl::Transform3<S>& end(const Motion& m) { return m.*(&PeekInterp::tf2); }
+};
+template <class S>
+struct PeekScrew : fcl::ScrewMotion<S> {
+  using Motion = fcl::ScrewMotion<S>;
+  static const fcl::Transform3<S>& begin(const Motion& m) { return m.*(&PeekScrew::tf1); }
+  static const fcl::Transform3<S>& end(const Motion& m) { return m.*(&PeekScrew::tf2); }
+};
+template <class S>
+struct PeekSpline : fcl::SplineMotion<S> {
+  using Motion = fcl::SplineMotion<S>;
+  using Points = fcl::Vector3<S>[4];
+  static const Points& positions(const Motion& m) { return m.*(&PeekSpline::Td); }
+  static const Points& rotations(const Motion& m) { return m.*(&PeekSpline::Rd); }
+  static S firstSquare(const Motion& m) { return m.*(&PeekSpline::Rd0Rd0); }
+  static S lastSquare(const Motion& m) { return m.*(&PeekSpline::Rd3Rd3); }
+  static const fcl::Transform3<S>& current(const Motion& m) { return m.*(&PeekSpline::tf); }
+};
+
+void require(bool condition, const std::string& name, const std::string& what) {
+  if (!condition) throw std::invalid_argument(name + " " + what);
+}
+
+void requireLength(const Vector3d& v, const std::string& name, const std::string& what) {
+  require(v.allFinite(), name, "has a " + what + " that is not finite");
+  require(v.cwiseAbs().maxCoeff() <= kFarthest, name, "has a " + what + " of more than 1e9 m");
+}
+
+Isometry3d pureRotation(const Isometry3d& M) {
+  return Isometry3d(Matrix3d(M.linear()));
+}
+
+MotionElement slide(const Vector3d& from, const Vector3d& velocity) {
+  MotionElement element;
+  element.kind = MotionElement::Kind::slide;
+  element.coefficients.col(0) = from;
+  element.coefficients.col(1) = velocity;
+  return element;
+}
+
+MotionElement turnAbout(const Vector3d& axis, double angle) {
+  MotionElement element;
+  element.kind = MotionElement::Kind::revolute;
+  element.axis = axis;
+  element.coefficients(0, 1) = angle;
+  return element;
+}
+
+/// The frame turns about `axis`, while its point o goes along a straight line from where it is at first.
+BodyMotion lineWithTurn(const Isometry3d& begin, const Vector3d& o, const Vector3d& velocity, const Vector3d& axis,
+                        double angle) {
+  BodyMotion motion;
+  if (angle == 0) {
+    motion.elements = {slide(begin.translation(), velocity)};
+    motion.after = pureRotation(begin);
+  } else {
+    motion.elements = {slide(begin * o, velocity), turnAbout(axis, angle)};
+    motion.after = pureRotation(begin) * Eigen::Translation3d(-o);
+  }
+  return motion;
+}
+
+/// A turn by `angle` in (0, pi] about `axis`, with a slide along it, that takes the frame's origin by the vector o.
+///
+/// With o_ the part of o across the axis, the origin stands at w from the nearest point of the screw's axis, where
+///
+///   w = -(o_ + cot(angle / 2) axis x o) / 2,   |w| = |o_| / (2 sin(angle / 2)).
+///
+/// Small angles put that point far away, where it costs digits. The origin's path is, w being normal to the axis,
+///
+///   u(t) = t (axis . o) axis + sin(angle t) b - (1 - cos(angle t)) w,   b = axis x w,
+///
+/// which in powers of t needs only angle w and angle b, both of the size of o. Cut off behind t^5 it is in error by at
+/// most (angle^7 / 5040) |b| + (angle^6 / 720) |w| < angle^5 |o_| / 700, which for angle <= 1e-3 is 1.5e-18 |o_|.
+BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axis, double angle) {
+  constexpr double kSmallAngle = 1e-3;
+  const Vector3d along = axis.dot(o) * axis, across = o - along, normal = axis.cross(o);
+  const double half_cot = angle / 2 / std::tan(angle / 2);  // times angle / 2
+  const Vector3d angle_w = -(0.5 * angle * across + half_cot * normal);
+  BodyMotion motion;
+  if (angle <= kSmallAngle) {
+    const Vector3d angle_b = half_cot * across - 0.5 * angle * normal;
+    MotionElement path = slide(begin.translation(), along + angle_b);
+    path.coefficients.col(2) = -angle / 2 * angle_w;
+    path.coefficients.col(3) = -angle * angle / 6 * angle_b;
+    path.coefficients.col(4) = angle * angle * angle / 24 * angle_w;
+    path.coefficients.col(5) = angle * angle * angle * angle / 120 * angle_b;
+    motion.elements = {path, turnAbout(axis, angle)};
+    motion.after = pureRotation(begin);
+  } else {
+    const Vector3d w = angle_w / angle;
+    motion.elements = {slide(begin.translation() - w, along), turnAbout(axis, angle)};
+    motion.after = Eigen::Translation3d(w) * pureRotation(begin);
+  }
+  return motion;
+}
+
+template <class S>
+BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const std::string& name) {
+  const fcl::TranslationMotion<S> copy(motion);  // all its data are private
+  copy.integrate(0);
+  fcl::Transform3<S> M;
+  copy.getCurrentTransform(M);
+  const Isometry3d begin = readTransform<S>(M, name);
+  const Vector3d velocity = copy.getVelocity().template cast<double>();
+  requireLength(velocity, name, "displacement");
+  return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
+}
+
+/// The axis of a rotation by an angle in [0, pi], as FCL has it.
+template <class S>
+Vector3d requireRotation(const fcl::Vector3<S>& axis, S angle, const std::string& name) {
+  const Vector3d a = axis.template cast<double>();
+  require(std::isfinite(angle) && a.allFinite(), name, "has a rotation that is not finite");
+  require(angle >= 0 && angle < 3.1416 && (angle == 0 || std::abs(a.norm() - 1) < 1e-5), name,
+          "has a rotation that FCL's constructors don't make; was it built without one?");
+  return angle == 0 ? Vector3d::UnitZ() : Vector3d(a.normalized());
+}
+
+template <class S>
+BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const std::string& name) {
+  const Isometry3d begin = readTransform<S>(PeekInterp<S>::begin(motion), name + " (begin)");
+  const Isometry3d end = readTransform<S>(PeekInterp<S>::end(motion), name + " (end)");
+  const Vector3d o = motion.getReferencePoint().template cast<double>();
+  if (!(o.allFinite() && o.cwiseAbs().maxCoeff() <= kFarthest)) {
+    throw std::invalid_argument(name +
+                                " has a reference point that is not finite or more than 1e9 m away: FCL's constructors "
+                                "without a reference point leave it uninitialised; use (R1, T1, R2, T2, O)");
+  }
+  const Vector3d velocity = motion.getLinearVelocity().template cast<double>();
+  const double angle = motion.getAngularVelocity();
+  const Vector3d axis = requireRotation<S>(motion.getAngularAxis(), motion.getAngularVelocity(), name);
+  requireLength(velocity, name, "velocity");
+  const BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
+
+  // What it performs must end at its end pose, but for the rounding in it; where velocities were never set, it doesn't.
+  const double close = std::is_same<S, float>::value ? 1e-3 : 1e-5;
+  const Isometry3d reached = body.pose(1);
+  const double size = begin.translation().norm() + end.translation().norm() + o.norm();
+  if (!((reached.linear() - end.linear()).cwiseAbs().maxCoeff() <= close &&
+        (reached.translation() - end.translation()).norm() <= close * size)) {
+    throw std::invalid_argument(name +
+                                " does not reach its end pose: FCL's constructors () and (tf1, tf2, O) never set the "
+                                "velocities; use (R1, T1, R2, T2, O)");
+  }
+  return body;
+}
+
+template <class S>
+BodyMotion readScrew(const fcl::ScrewMotion<S>& motion, const std::string& name) {
+  const Isometry3d begin = readTransform<S>(PeekScrew<S>::begin(motion), name + " (begin)");
+  const double angle = motion.getAngularVelocity();
+  if (angle == 0) {  // not unit: the displacement between the end poses
+    const Vector3d velocity =
+        motion.getAxis().template cast<double>() * static_cast<double>(motion.getLinearVelocity());
+    requireLength(velocity, name, "displacement");
+    return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
+  }
+  const Vector3d axis = requireRotation<S>(motion.getAxis(), motion.getAngularVelocity(), name);
+  const Isometry3d end = readTransform<S>(PeekScrew<S>::end(motion), name + " (end)");
+  return screw(begin, end.translation() - begin.translation(), axis, angle);
+}
+
+/// FCL's uniform cubic B-spline in powers of t.
+template <class S>
+void setSpline(const fcl::Vector3<S> (&points)[4], MotionElement& element) {
+  Vector3d p[4];
+  for (int i = 0; i < 4; ++i) p[i] = points[i].template cast<double>();
+  element.coefficients.col(0) = (p[0] + 4 * p[1] + p[2]) / 6;
+  element.coefficients.col(1) = (p[2] - p[0]) / 2;
+  element.coefficients.col(2) = (p[0] - 2 * p[1] + p[2]) / 2;
+  element.coefficients.col(3) = (p[3] - p[0] + 3 * (p[1] - p[2])) / 6;
+}
+
+template <class S>
+BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const std::string& name) {
+  using Peek = PeekSpline<S>;
+  const auto& positions = Peek::positions(motion);
+  const auto& rotations = Peek::rotations(motion);
+  for (int i = 0; i < 4; ++i) {
+    requireLength(positions[i].template cast<double>(), name, "control point");
+    require(rotations[i].allFinite() && rotations[i].cwiseAbs().maxCoeff() <= 1e5, name,
+            "has a control point of rotation that is not finite or of more than 1e5 rad");
+  }
+  // What the constructor with control points derives from them must be there, and a rotation as the present one.
+  const auto isSquareOf = [](S square, const fcl::Vector3<S>& v) {
+    return std::abs(square - v.squaredNorm()) <= S(1e-5) * v.squaredNorm();
+  };
+  const fcl::Matrix3<S> R = Peek::current(motion).linear();
+  require(isSquareOf(Peek::firstSquare(motion), rotations[0]) && isSquareOf(Peek::lastSquare(motion), rotations[3]) &&
+              (R * R.transpose() - fcl::Matrix3<S>::Identity()).cwiseAbs().maxCoeff() < 1e-3,
+          name,
+          "has no control points: FCL's constructors by two poses are empty; use the one by eight control points");
+
+  BodyMotion body;
+  body.elements.resize(2);
+  body.elements[0].kind = MotionElement::Kind::slide;
+  setSpline<S>(positions, body.elements[0]);
+  body.elements[1].kind = MotionElement::Kind::turn;
+  setSpline<S>(rotations, body.elements[1]);
+  return body;
+}
+
+/// Takes the author's word, after a look at whether it is one: three poses are rigid and within the bounds.
+BodyMotion readBounded(const BoundedMotion& motion, const std::string& name) {
+  const BoundedMotion::Bounds bounds = motion.bounds(0, 1);
+  const bool derivatives = motion.hasDerivatives();
+  const auto requireBound = [&](double bound, const char* what) {
+    require(std::isfinite(bound) && bound >= 0, name,
+            std::string("has a bound of ") + what + " that is not finite or below 0");
+  };
+  requireBound(bounds.speed, "speed");
+  requireBound(bounds.angular_speed, "angular speed");
+  if (derivatives) {
+    requireBound(bounds.acceleration, "acceleration");
+    requireBound(bounds.jerk, "jerk");
+    requireBound(bounds.angular_acceleration, "angular acceleration");
+    requireBound(bounds.angular_jerk, "angular jerk");
+  }
+  Vector3d last = Vector3d::Zero();
+  for (const double t : {0.0, 0.5, 1.0}) {
+    const BoundedMotion::State state = motion.state(t);
+    const std::string at = name + " at t = " + std::to_string(t);
+    const Matrix3d R = state.pose.linear();
+    require(state.pose.matrix().allFinite(), at, "has a pose that is not finite");
+    require((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-12 && R.determinant() > 0, at,
+            "has a rotation that is not proper to 1e-12");
+    requireLength(state.pose.translation(), at, "position");
+    const auto requireWithin = [&](const Vector3d& v, double bound, const char* what) {
+      require(v.norm() <= bound * (1 + 1e-9) + 1e-12, at, std::string("exceeds its own bound of ") + what);
+    };
+    if (derivatives) {
+      requireWithin(state.velocity, bounds.speed, "speed");
+      requireWithin(state.acceleration, bounds.acceleration, "acceleration");
+      requireWithin(state.angular_velocity, bounds.angular_speed, "angular speed");
+      requireWithin(state.angular_acceleration, bounds.angular_acceleration, "angular acceleration");
+    }
+    if (t > 0) {
+      const double rounding = 1e-12 * (last.norm() + state.pose.translation().norm());
+      require((state.pose.translation() - last).norm() <= 0.5 * bounds.speed * (1 + 1e-9) + rounding, at,
+              "is farther away than its own bound of speed allows");
+    }
+    last = state.pose.translation();
+  }
+  BodyMotion body;
+  body.elements.resize(1);
+  body.elements[0].kind = MotionElement::Kind::bounded;
+  body.elements[0].bounded = &motion;
+  return body;
+}
+
+}  // namespace
+
+template <class S>
+BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
+  const std::type_info& type = typeid(motion);
+  const std::string name = "motion of type " + typeName(type);
+  // By typeid, not by dynamic_cast: that would also take a class which overrides integrate().
+  if (type == typeid(fcl::TranslationMotion<S>)) {
+    return readTranslation(static_cast<const fcl::TranslationMotion<S>&>(motion), name);
+  }
+  if (type == typeid(fcl::InterpMotion<S>)) return readInterp(static_cast<const fcl::InterpMotion<S>&>(motion), name);
+  if (type == typeid(fcl::ScrewMotion<S>)) return readScrew(static_cast<const fcl::ScrewMotion<S>&>(motion), name);
+  if (type == typeid(fcl::SplineMotion<S>)) return readSpline(static_cast<const fcl::SplineMotion<S>&>(motion), name);
+  if constexpr (std::is_same<S, double>::value) {
+    if (type == typeid(FclLinkMotion)) return bodyMotion(static_cast<const FclLinkMotion&>(motion));
+  }
+  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion)) return readBounded(*bounded, name);
+  throw std::invalid_argument(name +
+                              " can't be certified, as nothing bounds it between its poses: derive the class from "
+                              "fcl_artic::BoundedMotion too (fcl_artic/bounded_motion.h)");
+}
+
+template BodyMotion readMotion(const fcl::MotionBase<float>& motion);
+template BodyMotion readMotion(const fcl::MotionBase<double>& motion);
+
+BodyMotion motionBetween(const Isometry3d& begin_pose, const Isometry3d& end_pose, fcl::CCDMotionType type) {
+  if (type == fcl::CCDM_SPLINE) {
+    throw std::invalid_argument(
+        "CCDM_SPLINE: two poses don't make a spline (FCL's SplineMotion(tf1, tf2) is empty); use "
+        "CCDM_LINEAR or CCDM_SCREW, or pass a SplineMotion with its eight control points");
+  }
+  const Isometry3d begin = readTransform<double>(begin_pose, "begin of the motion");
+  const Isometry3d end = readTransform<double>(end_pose, "end of the motion");
+  const Vector3d o = end.translation() - begin.translation();
+  // AngleAxis goes by way of the quaternion, which is as accurate at half a turn as anywhere.
+  Eigen::AngleAxisd turn(Matrix3d(end.linear() * begin.linear().transpose()));
+  if (begin.linear() == end.linear()) turn.angle() = 0;
+  if (type == fcl::CCDM_TRANS || turn.angle() == 0)
+    return lineWithTurn(begin, Vector3d::Zero(), o, Vector3d::UnitZ(), 0);
+  if (type == fcl::CCDM_LINEAR) return lineWithTurn(begin, Vector3d::Zero(), o, turn.axis(), turn.angle());
+  if (type == fcl::CCDM_SCREW) return screw(begin, o, turn.axis(), turn.angle());
+  throw std::invalid_argument("motion type " + std::to_string(static_cast<int>(type)) + " is none of FCL's");
+}
+
+template <class S>
+Isometry3d readTransform(const fcl::Transform3<S>& M, const std::string& what) {
+  require(M.matrix().allFinite(), what, "has a transform that is not finite");
+  const Matrix3d R = M.linear().template cast<double>();
+  const double defect = (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  require(defect <= (std::is_same<S, float>::value ? 1e-4 : 1e-6) && R.determinant() > 0, what,
+          "has a transform whose rotation is not orthonormal (defect " + std::to_string(defect) + ")");
+  Isometry3d rigid = Isometry3d::Identity();
+  rigid.linear() = orthonormal(R);
+  rigid.translation() = M.translation().template cast<double>();
+  require(rigid.translation().cwiseAbs().maxCoeff() <= kFarthest, what, "is more than 1e9 m away");
+  return rigid;
+}
+
+template Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const std::string& what);
+template Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const std::string& what);
+
+}  // namespace fcl_artic

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Swept boxes. Between two times a and b, h apart, a point x of the body stays near the chord of its path: along any
+// unit vector, hence altogether,
+//
+//   |x(t) - chord(t)| <= D2 h^2 / 8   (linear interpolation),   and   <= D1 h / 2   (the nearer end),
+//
+// where |x'| <= D1 and |x''| <= D2 over [0, 1]. A chord lies in the box of its ends. So the boxes at the ends of K
+// equal pieces, grown by the smaller bound, hold the path: no derivative is evaluated, only poses.
+//
+// D1 and D2 sum up along the elements. R is the product of the rotations passed so far; a and b sum the bounds on the
+// first and second derivatives of their angles or rotation vectors; l is the next piece of the way to the point:
+//
+//   |R'| <= a,   |R''| <= a^2 + b   (doc/NUMERICS.md, Lemma 1),
+//   |(R l)'| <= a |l| + |l'|,   |(R l)''| <= (a^2 + b) |l| + 2 a |l'| + |l''|.
+
+#include "motion/body_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fcl_artic {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Coefficients = Eigen::Matrix<double, 3, kMaxDegree + 1>;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// exp([w]) = 1 + a [w] + b [w]^2, a = sin(theta) / theta, b = (1 - cos(theta)) / theta^2 = 2 (sin(theta/2) / theta)^2:
+/// nothing cancels, however small the angle is. A theta that underflows to 0 leaves 1 + [w] + [w]^2 / 2.
+Matrix3d rotationBy(const Vector3d& w) {
+  const double theta = w.norm();
+  const double a = theta > 0 ? std::sin(theta) / theta : 1;
+  const double half = theta > 0 ? std::sin(theta / 2) / theta : 0.5;
+  const double b = 2 * half * half;
+  Matrix3d W;
+  W << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return Matrix3d::Identity() + a * W + b * W * W;
+}
+
+Vector3d valueAt(const Coefficients& q, double t) {
+  Vector3d value = q.col(kMaxDegree);
+  for (int k = kMaxDegree - 1; k >= 0; --k) value = value * t + q.col(k);
+  return value;
+}
+
+bool isScalar(MotionElement::Kind kind) {
+  return kind == MotionElement::Kind::revolute || kind == MotionElement::Kind::prismatic;
+}
+
+/// Bounds on |q|, |q'| and |q''| over [0, 1], and on the sum of the terms that q is computed from.
+struct VariableBounds {
+  double size, first, second, terms;
+};
+
+/// In tau = 2 t - 1, q = sum_k a_k tau^k with a_k = sum_(j >= k) binomial(j, k) c_j / 2^j, and |tau| <= 1.
+VariableBounds boundVariable(const MotionElement& element) {
+  Coefficients c = element.coefficients;
+  if (isScalar(element.kind)) c.bottomRows<2>().setZero();
+  VariableBounds bounds = {0, 0, 0, 0};
+  for (int k = 0; k <= kMaxDegree; ++k) {
+    Vector3d a = Vector3d::Zero();
+    double factor = std::ldexp(1, -k);  // binomial(j, k) / 2^j
+    for (int j = k; j <= kMaxDegree; ++j) {
+      a += factor * c.col(j);
+      factor *= 0.5 * (j + 1) / (j + 1 - k);
+    }
+    bounds.size += a.norm();
+    bounds.first += 2 * k * a.norm();
+    bounds.second += 4 * k * (k - 1) * a.norm();
+    bounds.terms += c.col(k).norm();
+  }
+  return bounds;
+}
+
+/// What is known of all points of a body over [0, 1].
+struct PathBounds {
+  double speed = 0, acceleration = 0;  ///< D1, D2
+  double terms = 0;                    ///< lengths that poses are summed from
+  double ulps = 0;                     ///< error of a pose's rotation in 2^-52; of positions in 2^-52 * terms
+  double extent = 0;                   ///< no path is much longer across (only for the choice of K)
+};
+
+// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product costs less than 24
+// (doc/NUMERICS.md, "Pads"). A rotation about an axis or by a vector: sine and cosine, the products that make its
+// entries, and the axis's own rounding are below 40, its product with the rotations before it 9, its angle is off by
+// less than 3 * degree + 3 = 18 times the sum of its terms (Horner's scheme, and the norm of the vector).
+constexpr double kConstantUlps = 24, kRotationUlps = 64, kAngleUlps = 18;
+// An author's poses are proper to 1e-12, and so are their positions.
+constexpr double kBoundedUlps = 8192;
+// Of the box at a pose: the products and sums that lead to its ends, and those of D1 and D2, twice what they come to.
+constexpr double kBoxUlps = 64;
+
+/// @param reach  largest distance of the body's points from the frame that `after` leads from.
+PathBounds boundPath(const BodyMotion& motion, double reach) {
+  using Kind = MotionElement::Kind;
+  PathBounds path;
+  double a = 0, b = 0;
+  bool second_order = true;
+  const auto addSegment = [&](double size, double first, double second) {
+    path.speed += a * size + first;
+    path.acceleration += (a * a + b) * size + 2 * a * first + second;
+    path.extent += a > 0 ? 2 * size : first;
+  };
+  path.ulps = kConstantUlps + kBoxUlps;
+  for (const MotionElement& element : motion.elements) {
+    const double offset = element.before.translation().norm();
+    addSegment(offset, 0, 0);
+    path.terms += offset;
+    path.ulps += kConstantUlps;
+    if (element.kind == Kind::bounded) {
+      const BoundedMotion::Bounds bounds = element.bounded->bounds(0, 1);
+      const double size = element.bounded->state(0).pose.translation().norm() + bounds.speed;
+      addSegment(size, bounds.speed, bounds.acceleration);
+      a += bounds.angular_speed;
+      b += bounds.angular_acceleration;
+      second_order = element.bounded->hasDerivatives();
+      path.terms += size;
+      path.ulps += kBoundedUlps;
+      continue;
+    }
+    const VariableBounds q = boundVariable(element);
+    path.ulps += kRotationUlps;
+    if (element.kind == Kind::revolute || element.kind == Kind::turn) {
+      a += q.first;
+      b += q.second;
+      path.ulps += kAngleUlps * q.terms;
+    } else {
+      addSegment(q.size, q.first, q.second);
+      path.terms += q.terms;
+    }
+  }
+  addSegment(reach, 0, 0);
+  path.terms += reach;
+  // That D1 and D2 are rounded themselves is less than this part of them.
+  const double slack = 1 + 0x1p-40;
+  path.speed *= slack;
+  path.acceleration = second_order ? path.acceleration * slack : kInfinity;
+  return path;
+}
+
+}  // namespace
+
+int MotionElement::degree() const {
+  int degree = kMaxDegree;
+  const auto isZero = [&](int k) {
+    return isScalar(kind) ? coefficients(0, k) == 0 : (coefficients.col(k).array() == 0).all();
+  };
+  while (degree > 0 && isZero(degree)) --degree;
+  return degree;
+}
+
+Isometry3d BodyMotion::pose(double t) const {
+  Isometry3d M = Isometry3d::Identity();
+  for (const MotionElement& element : elements) {
+    M = M * element.before;
+    switch (element.kind) {
+      case MotionElement::Kind::revolute:
+        M.rotate(Eigen::AngleAxisd(valueAt(element.coefficients, t)[0], element.axis));
+        break;
+      case MotionElement::Kind::prismatic:
+        M.translate(valueAt(element.coefficients, t)[0] * element.axis);
+        break;
+      case MotionElement::Kind::slide:
+        M.translate(valueAt(element.coefficients, t));
+        break;
+      case MotionElement::Kind::turn:
+        M.rotate(rotationBy(valueAt(element.coefficients, t)));
+        break;
+      case MotionElement::Kind::bounded:
+        M = M * element.bounded->state(t).pose;
+        break;
+    }
+  }
+  return M * after;
+}
+
+void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper, Vector3d& path_lower,
+                 Vector3d& path_upper) {
+  path_lower.setConstant(-kInfinity);
+  path_upper.setConstant(kInfinity);
+  if (!lower.allFinite() || !upper.allFinite()) return;
+
+  double reach = 0;  // a norm is largest at a corner
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3d x(corner & 1 ? upper[0] : lower[0], corner & 2 ? upper[1] : lower[1],
+                     corner & 4 ? upper[2] : lower[2]);
+    reach = std::max(reach, (motion.after * x).norm());
+  }
+  reach += 0x1p-46 * (motion.after.translation().norm() + lower.norm() + upper.norm());
+  const PathBounds path = boundPath(motion, reach);
+
+  // So many pieces that the boxes grow by 1/500 of the path's size, were they no more than 256. Infinity and NaN choose
+  // 256.
+  constexpr int kMostPieces = 256;
+  const double growth = 2e-3 * (std::min(path.speed, path.extent) + (upper - lower).norm());
+  const double wanted =
+      path.acceleration == 0 ? 1 : std::min(std::sqrt(path.acceleration / (8 * growth)), path.speed / (2 * growth));
+  const int pieces = wanted < kMostPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMostPieces;
+  const double h = (1 + 0x1p-40) / pieces;  // the times are rounded
+  const double remainder = std::min(path.acceleration * h * h / 8, path.speed * h / 2);
+  const double numbers = path.terms + motion.after.translation().norm() + lower.norm() + upper.norm();
+  const double slack = remainder + 0x1p-52 * path.ulps * (numbers + remainder);
+
+  const Vector3d center = 0.5 * lower + 0.5 * upper, half = 0.5 * upper - 0.5 * lower;
+  Vector3d lo = Vector3d::Constant(kInfinity), hi = -lo;
+  for (int k = 0; k <= pieces; ++k) {
+    const Isometry3d M = motion.pose(static_cast<double>(k) / pieces);
+    if (!M.matrix().allFinite()) return;
+    const Vector3d c = M * center, e = M.linear().cwiseAbs() * half.cwiseAbs();
+    lo = lo.cwiseMin(c - e);
+    hi = hi.cwiseMax(c + e);
+  }
+  lo.array() -= slack;
+  hi.array() += slack;
+  for (int i = 0; i < 3; ++i) {
+    if (lo[i] <= hi[i] && std::isfinite(slack)) {  // else overflow somewhere: no claim
+      path_lower[i] = lo[i];
+      path_upper[i] = hi[i];
+    }
+  }
+}
+
+}  // namespace fcl_artic
