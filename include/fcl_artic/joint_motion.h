@@ -16,13 +16,19 @@ class FCL_ARTIC_EXPORT JointMotion {
   ///   would not be the one of q1.
   static JointMotion shortest(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
 
-  const Eigen::VectorXd& q0() const { return q0_; }
-  const Eigen::VectorXd& dq() const { return dq_; }
-  Eigen::VectorXd configuration(double t) const { return q0_ + t * dq_; }
+  Eigen::VectorXd q0() const { return coefficients_.col(0); }
+  Eigen::VectorXd dq() const { return coefficients_.col(1); }
+  Eigen::VectorXd configuration(double t) const { return coefficients_.col(0) + t * coefficients_.col(1); }
+  /// Number of joint variables.
+  Eigen::Index size() const { return coefficients_.rows(); }
+  /// Column k belongs to t^k.
+  const Eigen::MatrixXd& coefficients() const { return coefficients_; }
 
  private:
-  JointMotion(Eigen::VectorXd q0, Eigen::VectorXd dq) : q0_(std::move(q0)), dq_(std::move(dq)) {}
-  Eigen::VectorXd q0_, dq_;
+  JointMotion(const Eigen::VectorXd& q0, const Eigen::VectorXd& dq) : coefficients_(q0.size(), 2) {
+    coefficients_ << q0, dq;
+  }
+  Eigen::MatrixXd coefficients_;
 };
 
 }  // namespace fcl_artic

@@ -35,8 +35,9 @@ JointMotion JointMotion::shortest(const KinematicTree& tree, const Eigen::Vector
   Eigen::Array<bool, Eigen::Dynamic, 1> wrapped(tree.dof());
   for (int v = 0; v < tree.dof(); ++v) {
     const bool continuous = tree.joint(tree.variableJoint(v)).type == JointType::continuous;
-    wrapped[v] = continuous && std::abs(motion.dq_[v]) > kTwoPi / 2;
-    if (wrapped[v]) motion.dq_[v] = std::remainder(motion.dq_[v], kTwoPi);
+    double& dq = motion.coefficients_(v, 1);
+    wrapped[v] = continuous && std::abs(dq) > kTwoPi / 2;
+    if (wrapped[v]) dq = std::remainder(dq, kTwoPi);
   }
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     const Joint& joint = tree.joint(j);

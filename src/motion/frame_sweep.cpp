@@ -81,56 +81,102 @@ Carrier FrameSweep::carrier(LinkId link) {
   return at;
 }
 
+namespace {
+
+/// Multiplies a constant transform in; translations are summed: where they cancel, their rounding does not.
+void moveBy(Carrier& carrier, const Eigen::Isometry3d& M, const Eigen::Isometry3d& stored) {
+  carrier.offset = carrier.offset * M;
+  carrier.length += stored.translation().norm() * (1 + 1e-15);
+  carrier.ulps += kTransformUlps;
+}
+
+}  // namespace
+
+Carrier FrameSweep::append(const Carrier& from, engine::SweepStep step, const Eigen::Vector3d& axis) {
+  const Eigen::Matrix3d Q = frameWithZ(axis);
+  const Eigen::Isometry3d C = from.offset * Eigen::Isometry3d(Q);
+  step.parent = from.step;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) step.C[3 * i + j] = C.linear()(i, j);
+    step.p[i] = C.translation()[i];
+  }
+  step.length = from.length;
+  step.ulps = from.ulps + kTransformUlps;
+  const bool split = from.step >= 0 && steps_[static_cast<std::size_t>(from.step)].kind == engine::StepKind::revolute;
+  const double error = 0x1p-52 * step.ulps * step.length;
+  step.axial = split ? std::abs(step.p[2]) + error : 0;
+  step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) + error : step.length;
+  Carrier to;
+  to.step = static_cast<int>(steps_.size());
+  to.offset = Eigen::Isometry3d(Eigen::Matrix3d(Q.transpose()));
+  to.ulps = kStoredUlps;
+  steps_.push_back(step);
+  return to;
+}
+
 Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
   const Joint& joint = tree_->joint(id);
-  const double sign = down ? 1 : -1;
   Carrier to = from;
-  const auto grow = [&] {  // translations are summed: where they cancel, their rounding does not
-    to.length += joint.origin.translation().norm() * (1 + 1e-15);
-    to.ulps += kTransformUlps;
-  };
-  if (down) {
-    to.offset = to.offset * joint.origin;
-    grow();
-  }
+  if (down) moveBy(to, joint.origin, joint.origin);
   if (joint.type != JointType::fixed) {
     const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
       return o.parent == from.step && o.joint == id && o.down == down;
     });
-    const Eigen::Matrix3d Q = frameWithZ(joint.axis);
     if (known != origin_.end()) {
+      to = Carrier();
       to.step = static_cast<int>(known - origin_.begin());
+      to.offset = Eigen::Isometry3d(Eigen::Matrix3d(frameWithZ(joint.axis).transpose()));
+      to.ulps = kStoredUlps;
     } else {
-      const Eigen::Isometry3d C = to.offset * Eigen::Isometry3d(Q);
+      const double sign = down ? 1 : -1;
       engine::SweepStep step;
-      step.parent = from.step;
-      step.revolute = joint.type != JointType::prismatic;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) step.C[3 * i + j] = C.linear()(i, j);
-        step.p[i] = C.translation()[i];
-      }
-      step.length = to.length;
-      step.ulps = to.ulps + kTransformUlps;
-      const bool split = from.step >= 0 && steps_[static_cast<std::size_t>(from.step)].revolute;
-      const double error = 0x1p-52 * step.ulps * step.length;
-      step.axial = split ? std::abs(step.p[2]) + error : 0;
-      step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) + error : step.length;
+      step.kind = joint.type == JointType::prismatic ? engine::StepKind::prismatic : engine::StepKind::revolute;
       step.variable = tree_->jointVariable(id);
       step.multiplier = sign * (joint.mimics ? joint.mimic.multiplier : 1);
       step.offset = sign * (joint.mimics ? joint.mimic.offset : 0);
-      to.step = static_cast<int>(steps_.size());
-      steps_.push_back(step);
+      to = append(to, step, joint.axis);
       origin_.push_back({from.step, id, down});
     }
-    to.offset = Eigen::Isometry3d(Eigen::Matrix3d(Q.transpose()));
-    to.length = 0;
-    to.ulps = kStoredUlps;
   }
-  if (!down) {
-    to.offset = to.offset * joint.origin.inverse();
-    grow();
-  }
+  if (!down) moveBy(to, joint.origin.inverse(), joint.origin);
   return to;
+}
+
+Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int variable,
+                          const engine::BoundedSource* source, bool down) {
+  using Kind = MotionElement::Kind;
+  Carrier to = from;
+  if (down) moveBy(to, element.before, element.before);
+  engine::SweepStep step;
+  step.kind = element.kind == Kind::revolute    ? engine::StepKind::revolute
+              : element.kind == Kind::prismatic ? engine::StepKind::prismatic
+              : element.kind == Kind::slide     ? engine::StepKind::slide
+              : element.kind == Kind::turn      ? engine::StepKind::turn
+                                                : engine::StepKind::bounded;
+  step.variable = variable;
+  step.multiplier = down ? 1 : -1;
+  step.source = source;
+  step.inverse = !down;
+  const bool has_axis = element.kind == Kind::revolute || element.kind == Kind::prismatic;
+  to = append(to, step, has_axis ? element.axis : Eigen::Vector3d(Eigen::Vector3d::UnitZ()));
+  if (!down) moveBy(to, element.before.inverse(), element.before);
+  return to;
+}
+
+engine::SweepView FrameSweep::view() const {
+  engine::SweepView view;
+  view.steps = steps_.data();
+  view.num_steps = static_cast<std::int32_t>(steps_.size());
+  for (const engine::SweepStep& step : steps_) {
+    view.local_bounds = view.local_bounds || step.source;
+    view.first_order = view.first_order || (step.source && !step.source->derivatives);
+  }
+  return view;
+}
+
+void FrameSweep::clear() {
+  steps_.clear();
+  origin_.clear();
 }
 
 }  // namespace fcl_artic

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kinematic tree as seen from one base frame: the moving joints on the way to every link of interest, fixed joints
+// Moving bodies as seen from one base frame: the moving factors on the way to every body of interest, constant transforms
 // multiplied in, each joint's axis turned to z. World motion is the sweep from the world; relative motion of two links
-// is a sweep along the path between them, so that joints which do not move them apart drop out exactly.
+// is a sweep along the path between them, so that joints which do not move them apart drop out exactly; relative motion of
+// two free bodies goes up the one's motion and down the other's.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "fcl_artic/kinematic_tree.h"
+#include "motion/body_motion.h"
 #include "narrowphase/problem.h"
 
 namespace fcl_artic {
@@ -31,18 +33,30 @@ class FrameSweep {
   /// A sweep from a link's frame, empty until carrier() asks for links.
   static FrameSweep fromLink(const KinematicTree& tree, LinkId base);
 
+  /// A sweep from no tree: for cross() with the elements of body motions.
+  FrameSweep() = default;
+
   /// Adds the steps on the way to the link where they are not there yet.
   Carrier carrier(LinkId link);
 
-  engine::SweepView view() const { return {steps_.data(), static_cast<std::int32_t>(steps_.size())}; }
+  /// Crosses one element of a body's motion, outwards (down) or back towards the world.
+  /// @param variable  of its first row of coefficients.
+  /// @param source  of a bounded element; the view keeps the pointer.
+  Carrier cross(const Carrier& from, const MotionElement& element, int variable, const engine::BoundedSource* source,
+                bool down);
+
+  engine::SweepView view() const;
+  void clear();
 
  private:
   explicit FrameSweep(const KinematicTree& tree, LinkId base) : tree_(&tree), base_(base) {}
   /// Crosses a joint: downwards (parent to child) or upwards.
   Carrier cross(const Carrier& from, JointId joint, bool down);
+  /// The step behind `from` with that factor; its axis becomes z.
+  Carrier append(const Carrier& from, engine::SweepStep factor, const Eigen::Vector3d& axis);
 
-  const KinematicTree* tree_;
-  LinkId base_;  ///< -1: the world
+  const KinematicTree* tree_ = nullptr;
+  LinkId base_ = -1;  ///< -1: the world
   std::vector<engine::SweepStep> steps_;
   struct Origin {
     int parent;

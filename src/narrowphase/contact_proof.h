@@ -74,12 +74,44 @@ inline bool originWeights(Simplex& s) {
   return best < 1e300;
 }
 
+/// A half-space holds a point of the other piece, or a plane lies between two of its points: known from support points alone.
+/// Each is off by eps at most, and its distance from the boundary, n.x - offset, is the difference point's n.w.
+inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, double eps, double* point) {
+  const bool of_a = unbounded(*body.a);
+  const Piece &piece = of_a ? *body.a : *body.b, &other = of_a ? *body.b : *body.a;
+  double n[3];
+  for (int k = 0; k < 3; ++k) n[k] = of_a ? piece.size[k] : -dot(body.pose.R + 3 * k, piece.size);
+  DifferencePoint lowest, highest;
+  body.support(n, lowest);
+  const double low = dot(n, lowest.w);
+  if (!(low + 2 * eps < radii)) return false;
+  double part = 0;  // of the way from the lowest to the highest point
+  highest = lowest;
+  if (piece.kind == PieceKind::plane) {
+    double m[3];
+    for (int k = 0; k < 3; ++k) m[k] = -n[k];
+    body.support(m, highest);
+    const double high = dot(n, highest.w);  // along n again, of the other's far end
+    if (!(high > 2 * eps - radii)) return false;
+    if (low < 0 && high > 0) part = low / (low - high);
+    else if (low < 0) part = 1;
+  }
+  // The other piece's core comes this near to the boundary, or goes into it; its ball reaches out along the normal.
+  const double reach = part == 0 ? min(other.radius, max(0.0, low)) : 0;
+  for (int k = 0; k < 3; ++k) {
+    const double x = of_a ? lowest.b[k] : lowest.a[k], y = of_a ? highest.b[k] : highest.a[k];
+    point[k] = x + part * (y - x) - (of_a ? reach : -reach) * n[k];
+  }
+  return true;
+}
+
 /// Proves that the pieces, grown by their radii and the margin, meet at this pose.
 /// @param eps  bound on the error of a computed difference point.
 /// @param[out] point  in A's frame, about midway between points of both that are in contact.
 inline bool certainlyTouching(const DifferenceBody& body, double margin, double eps, const double* guess,
                               double* point) {
   const double radii = body.a->radius + body.b->radius + margin;
+  if (unbounded(*body.a) || unbounded(*body.b)) return certainlyTouchesUnbounded(body, radii, eps, point);
   GjkResult g;
   gjk(body, guess, 1e-12, 0.0, 64, g);
   const auto witness = [&](const Simplex& s) {

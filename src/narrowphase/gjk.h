@@ -38,11 +38,19 @@ struct DifferenceBody {
   PoseAt pose;
   double shift[3] = {0, 0, 0};
 
+  /// The direction opposite to n (A's frame), in B's frame; bit for bit B's own where B is unbounded and has no other.
+  void opposite(const double* n, double* m) const {
+    pose.opposite(n, m);
+    if (!unbounded(*b)) return;
+    const double sign = dot(m, b->size) < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) m[k] = sign * b->size[k];
+  }
+
   /// The difference's point that is least along n.
   void support(const double* n, DifferencePoint& p) const {
     double m[3], x[3] = {0, 0, 0};
     supportPoint(*tree_a, *a, n, p.a);
-    pose.opposite(n, m);
+    opposite(n, m);
     supportPoint(*tree_b, *b, m, x);
     for (int k = 0; k < 3; ++k) {
       p.b[k] = pose.R[3 * k] * x[0] + pose.R[3 * k + 1] * x[1] + pose.R[3 * k + 2] * x[2] + pose.c[k];
@@ -183,12 +191,37 @@ inline bool reduceSimplex(Simplex& s, double* v) {
   return true;
 }
 
+/// An unbounded piece against a bounded one: there is one direction, or two for a plane, and no search.
+inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& out) {
+  const bool of_a = unbounded(*body.a);
+  const Piece& piece = of_a ? *body.a : *body.b;
+  double n[3];  // from A to B
+  for (int k = 0; k < 3; ++k) n[k] = of_a ? piece.size[k] : -dot(body.pose.R + 3 * k, piece.size);
+  for (int side = 0; side < (piece.kind == PieceKind::plane ? 2 : 1); ++side) {
+    DifferencePoint p;
+    body.support(n, p);
+    const double gap = dot(n, p.w);
+    if (gap > out.lower) {
+      out.lower = gap;
+      out.simplex.v[0] = p;
+      for (int k = 0; k < 3; ++k) out.n[k] = n[k];
+    }
+    for (int k = 0; k < 3; ++k) n[k] = -n[k];
+  }
+  out.simplex.weight[0] = 1;
+  out.simplex.n = 1;
+  out.iterations = 1;
+  out.overlap = out.lower <= radii;
+  out.distance = max(0.0, out.lower);
+}
+
 /// @param guess  direction from A to B to start with, any length but 0.
 /// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
 /// @param radii  rounding radii and margin: cores nearer than this overlap.
 inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
                 GjkResult& out) {
   out = GjkResult();
+  if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
   double length = norm(guess);
   for (int k = 0; k < 3; ++k) out.n[k] = length > 1e-100 ? guess[k] / length : (k == 0);  // far from underflow: unit
   Simplex& s = out.simplex;

@@ -14,20 +14,6 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-// Scalars get the vocabulary of lanes, so that one text serves both.
-FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
-FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
-FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }
-FCL_ARTIC_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
-FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) { return a * b + c; }
-FCL_ARTIC_INLINE double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
-  o[0] = a[1] * b[2] - a[2] * b[1];
-  o[1] = a[2] * b[0] - a[0] * b[2];
-  o[2] = a[0] * b[1] - a[1] * b[0];
-}
-FCL_ARTIC_INLINE double norm(const double* a) { return __builtin_sqrt(dot(a, a)); }
-
 /// Values of p.u over a hull's vertices, for eight directions.
 FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Lanes* u, Lanes& lower, Lanes& upper) {
   lower = upper = mulAdd(u[2], x[2 * n], mulAdd(u[1], x[n], u[0] * Lanes(x[0])));
@@ -55,17 +41,36 @@ FCL_ARTIC_INLINE void hullRange(const double* x, int n, const double* u, double&
 }
 /// Index of a vertex farthest along u.
 inline int hullSupport(const double* x, int n, const double* u) {
-  Lanes values[engine::kMaxHullVertices / kLanes], most = hullValues(x, n, 0, u);
-  values[0] = most;
+  Lanes most = hullValues(x, n, 0, u), block(0.0);  // lane by lane the largest value, and the block it stands in
   for (int i = kLanes; i < n; i += kLanes) {
-    values[i / kLanes] = hullValues(x, n, i, u);
-    most = max(most, values[i / kLanes]);
+    const Lanes value = hullValues(x, n, i, u);
+    const unsigned larger = greater(value, most);
+    if (!larger) continue;
+    most = max(most, value);
+    for (unsigned m = larger; m; m &= m - 1) block.set(__builtin_ctz(m), i);
   }
-  const Lanes top(maxLane(most));
-  for (int i = 0; i < n / kLanes; ++i) {
-    if (const unsigned reached = kAllLanes & ~greater(top, values[i])) return kLanes * i + __builtin_ctz(reached);
-  }
-  return 0;
+  const unsigned reached = kAllLanes & ~greater(Lanes(maxLane(most)), most);
+  const int lane = reached ? __builtin_ctz(reached) : 0;
+  return static_cast<int>(block[lane]) + lane;
+}
+
+/// Half-spaces and planes: they have one direction, and no search along any other makes sense.
+FCL_ARTIC_INLINE bool unbounded(const Piece& piece) {
+  return piece.kind == PieceKind::halfspace || piece.kind == PieceKind::plane;
+}
+constexpr double kInfinite = __builtin_huge_val();
+/// Ends of n.x: known along the piece's own normal, bit for bit (a still piece), and along no other direction.
+inline void unboundedRange(const Piece& piece, const double* u, double& lower, double& upper) {
+  const double *n = piece.size, offset = piece.center[0];
+  const bool along = u[0] == n[0] && u[1] == n[1] && u[2] == n[2];
+  const bool against = u[0] == -n[0] && u[1] == -n[1] && u[2] == -n[2];
+  const bool plane = piece.kind == PieceKind::plane;
+  lower = along && plane ? offset : against ? -offset : -kInfinite;
+  upper = against && plane ? -offset : along ? offset : kInfinite;
+}
+inline void unboundedRange(const Piece&, const Lanes*, Lanes& lower, Lanes& upper) {
+  lower = Lanes(-kInfinite);
+  upper = Lanes(kInfinite);
 }
 
 /// Values of p.u over the core: lower end -h(-u), upper end h(u). T: double, or Lanes for eight directions.
@@ -82,6 +87,7 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
     return;
   }
   if (piece.kind == PieceKind::hull) return hullRange(tree.hulls + piece.first_vertex, piece.num_vertices, u, lower, upper);
+  if (unbounded(piece)) return unboundedRange(piece, u, lower, upper);
   const T m = dot(u, piece.center);
   const double *e = piece.size;
   T h(0.0);
@@ -113,7 +119,8 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
   upper = m + h;
 }
 
-/// A point of the core farthest along u (unit or not).
+/// A point of the core farthest along u (unit or not); of an unbounded piece the foot of its boundary, which is right along
+/// its own normal only.
 inline void supportPoint(const TreeView& tree, const Piece& piece, const double* u, double* x) {
   const double* e = piece.size;
   const double* m = piece.center;
@@ -168,6 +175,10 @@ inline void supportPoint(const TreeView& tree, const Piece& piece, const double*
       for (int k = 0; k < 3; ++k) x[k] = m[k] + f * e[k] * y[k];
       return;
     }
+    case PieceKind::halfspace:
+    case PieceKind::plane:
+      for (int k = 0; k < 3; ++k) x[k] = m[0] * e[k];
+      return;
   }
 }
 

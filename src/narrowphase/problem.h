@@ -19,8 +19,6 @@ enum class PieceKind : std::int32_t {
 };
 /// Half size of an unbounded piece's box, far beyond all coordinates allowed (1e9 m).
 constexpr float kUnbounded = 1e30f;
-/// Most vertices that a `hull` has.
-constexpr std::int32_t kMaxHullVertices = 64;
 
 /// One convex leaf, in its tree's frame; its axes are the frame's.
 struct Piece {
@@ -68,21 +66,48 @@ struct Placement {
   bool identity = true;
 };
 
-/// One moving joint on the way from a base frame: X = X_parent * C * J(q), with J a rotation about z or a slide along z.
+/// What moves between a step's frame and the one before it.
+enum class StepKind : std::int32_t {
+  revolute,   ///< a turn about z by q
+  prismatic,  ///< a slide along z by q
+  slide,      ///< a translation by the vector q
+  turn,       ///< exp([q]), q a rotation vector
+  bounded,    ///< BoundedSource, or its inverse
+};
+
+/// A motion that only its author knows: plain functions, so that the engine can ask.
+struct BoundedSource {
+  const void* self = nullptr;
+  /// Rotation (row-major), origin, its velocity and acceleration, angular velocity and acceleration: 9 + 5 * 3 numbers.
+  void (*state)(const void* self, double t, double* out) = nullptr;
+  /// Upper bounds over [begin, end]: origin's first to third derivative, angular velocity and its two derivatives.
+  void (*bounds)(const void* self, double begin, double end, double* out) = nullptr;
+  bool derivatives = true;  ///< false: only pose, speed and angular speed are meaningful
+};
+
+/// Highest power of t in a variable.
+constexpr std::int32_t kMaxDegree = 5;
+
+/// One moving factor on the way from a base frame: X = X_parent * C * J(t).
 struct SweepStep {
   std::int32_t parent = -1;  ///< step before this one, -1: the base frame
-  bool revolute = true;
+  StepKind kind = StepKind::revolute;
   double C[9], p[3];         ///< constant transform from the parent step's frame
-  double perp = 0, axial = 0;  ///< |p| across and along the parent's axis (axial 0, perp |p| where the parent slides)
+  double perp = 0, axial = 0;  ///< |p| across and along the axis of a revolute parent (axial 0, perp |p| behind others)
   double length = 0, ulps = 0;  ///< of C and p, as in Placement
-  std::int32_t variable = -1;
-  double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset
+  std::int32_t variable = -1;   ///< revolute, prismatic: the variable; slide, turn: the first of three
+  double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset; slide, turn: offset 0
+  const BoundedSource* source = nullptr;  ///< bounded
+  bool inverse = false;                   ///< bounded: J is the inverse of the source's pose
 };
 
 /// Steps from one base frame, parents first.
 struct SweepView {
   const SweepStep* steps = nullptr;
   std::int32_t num_steps = 0;
+  /// Bounds hold for one batch of intervals only (a bounded motion), not for all of [0, 1].
+  bool local_bounds = false;
+  bool first_order = false;  ///< a bounded motion without derivatives is among the steps
 };
 
 /// A rigid body of the query.
@@ -126,8 +151,9 @@ struct Problem {
 };
 
 struct Query {
-  const double* q0 = nullptr;
-  const double* dq = nullptr;
+  /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
+  const double* coefficients = nullptr;
+  std::int32_t num_variables = 0, degree = 1;
   double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   std::int32_t max_contacts = 1;

@@ -37,6 +37,9 @@ struct SweptBox {
   FloatLanes lo[3], hi[3];
 };
 
+/// Pieces whose `size` is a direction worth trying.
+FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) { return piece.kind == PieceKind::vertices || unbounded(piece); }
+
 /// Bounds of a moving node in the still body's frame, grown by `slack` and the remainder.
 FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double slack, SweptBox& box) {
   double c[3], h[3], far2 = 0;  // c and h: sums of floats, exact but for far smaller addends
@@ -101,6 +104,7 @@ class Solver {
   Step finishLane(double start, double width, int begin, int end, int lane, int* refine);
   void traverse(int pair, int a, int b, unsigned mask);
   unsigned nodesMayTouch(int a, int b, unsigned mask);
+  unsigned apartFromUnbounded(int a, int b);
   template <class F>
   unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
   unsigned hullsMayTouch(unsigned mask);
@@ -118,6 +122,7 @@ class Solver {
   // The present batch.
   Lanes tm_;
   double lane_start_[kLanes], lane_end_[kLanes], tm_at_[kLanes], d_ = 0;
+  double begin_ = 0, end_ = 1;  ///< hull of all intervals
   unsigned live_ = 0;   ///< lanes that may still hold the first contact
   unsigned contact_lane_ = 0;  ///< the lane with the earliest proven contact: it is split whatever else is found in it
   bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
@@ -203,7 +208,12 @@ inline void Solver::evaluateAt(const double* tm, double d) {
   for (int i = 0; i < kLanes; ++i) {
     tm_at_[i] = tm[i];
     tm_.set(i, tm[i]);
+    begin_ = i ? min(begin_, tm[i]) : tm[i];
+    end_ = i ? max(end_, tm[i]) : tm[i];
   }
+  // What the intervals are claimed for lies in [0, 1]; kUlp: rounding of the ends.
+  begin_ = max(0.0, begin_ - d - kUlp);
+  end_ = min(1.0, end_ + d + kUlp);
   d_ = d;
   ++batch_;
   pair_epoch_ += 1;
@@ -222,11 +232,12 @@ inline void Solver::updateLive() {
 inline const FrameLanes* Solver::frames(int sweep) {
   const engine::SweepView& view = problem_->sweeps[sweep];
   const int first = first_step_[sweep];
-  if (!bounds_ready_[sweep]) {
-    boundSteps(view, query_->q0, query_->dq, bounds_.data() + first);
-    bounds_ready_[sweep] = 1;
-  }
   if (sweep_epoch_[sweep] != batch_) {
+    const bool local = query_->degree > 1 || view.local_bounds;
+    if (local || !bounds_ready_[sweep]) {
+      boundSteps(view, *query_, local ? begin_ : 0, local ? end_ : 1, bounds_.data() + first);
+      bounds_ready_[sweep] = 1;
+    }
     evaluateSweep(view, bounds_.data() + first, tm_, d_, frames_.data() + first);
     sweep_epoch_[sweep] = batch_;
     ++statistics_.motion_evaluations;
@@ -260,27 +271,25 @@ inline void Solver::setupPair(int index) {
   const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);
-  StepBounds b = {};
-  if (pair.step_b >= 0) {
-    frame += pair.step_b;
-    b = bounds_[first_step_[pair.sweep] + pair.step_b];
-  } else {
-    frame = nullptr;
-  }
+  static const StepBounds kStill = {};
+  const StepBounds& b = pair.step_b >= 0 ? bounds_[first_step_[pair.sweep] + pair.step_b] : kStill;
   RigidLanes& m = side_[0].m;
-  const PairPads pads = relateBodies(frame, b, *pair.inverse_a, *pair.placement_b, A.tree->extent + B.tree->extent,
-                                     query_->margin, d_, m, side_[1].m);
+  const PairPads pads = relateBodies(pair.step_b >= 0 ? frame + pair.step_b : nullptr, b,
+                                     problem_->sweeps[pair.sweep].first_order, *pair.inverse_a, *pair.placement_b,
+                                     A.tree->extent + B.tree->extent, query_->margin, d_, m, side_[1].m);
   pad_ = pads.pad;
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
 
-  const Node& root = B.tree->nodes[0];
+  // How far the motion takes the body in half an interval: B seen from A, or A from a B that is unbounded.
+  const Side& side = side_[B.tree->nodes[0].radius < engine::kUnbounded ? 0 : 1];
+  const Node& root = side.moving->nodes[0];
   double center[3];
   middleOf(root, center);
   Lanes v[3];
-  for (int k = 0; k < 3; ++k) v[k] = dot(m.R[1] + 3 * k, center) + m.c[1][k];
-  amplitude_ = sqrt(maxLane(dot(v, v))) + b.s * d_ * root.radius;
+  for (int k = 0; k < 3; ++k) v[k] = dot(side.m.R[1] + 3 * k, center) + side.m.c[1][k];
+  amplitude_ = sqrt(maxLane(dot(v, v))) + b.rates.a * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
 }
@@ -323,7 +332,34 @@ inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
   mask &= ~apart(pool_[sweptNode(0, b)], A);
   if (!mask) return 0;
-  return mask & ~apart(pool_[sweptNode(1, a)], B);
+  mask &= ~apart(pool_[sweptNode(1, a)], B);
+  if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
+  return mask & ~apartFromUnbounded(a, b);
+}
+
+/// Lanes in which a node is apart from the whole of an unbounded body, along that one's normal.
+inline unsigned Solver::apartFromUnbounded(int a, int b) {
+  unsigned separated = 0;
+  for (int s = 0; s < 2; ++s) {
+    const Side& side = side_[s];
+    const Piece& still = side.still->pieces[0];
+    const Node& node = side.moving->nodes[s ? a : b];
+    if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
+    Piece box;
+    box.kind = PieceKind::box;
+    middleOf(node, box.center);
+    double far2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      box.size[k] = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
+      const double far = max(abs(node.lo[k]), abs(node.hi[k]));
+      far2 += far * far;
+    }
+    box.reach = sqrt(far2) * (1 + 8 * kUlp);
+    double sign = 0;
+    ++statistics_.certificates;
+    separated |= certainlySeparated(side, still, box, still.size, query_->margin, pad_, sign);
+  }
+  return separated;
 }
 
 inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane) const {
@@ -381,7 +417,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin, pad_, sign);
     if (mask & ~separated) {
       double n[3];
-      body.pose.opposite(g.n, n);
+      body.opposite(g.n, n);
       ++statistics_.certificates;
       separated |= certainlySeparated(side_[1], b, a, n, margin, pad_, sign);
     }
@@ -416,12 +452,12 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   ++statistics_.leaf_tests;
   const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
   double sign = 0;
-  if (a.kind == PieceKind::vertices) {
+  if (hasDirection(a)) {
     ++statistics_.certificates;
     mask &= ~certainlySeparated(side_[0], a, b, a.size, query_->margin, pad_, sign);
     if (!mask) return 0;
   }
-  if (b.kind == PieceKind::vertices) {
+  if (hasDirection(b)) {
     ++statistics_.certificates;
     mask &= ~certainlySeparated(side_[1], b, a, b.size, query_->margin, pad_, sign);
     if (!mask) return 0;
@@ -496,8 +532,9 @@ inline void Solver::sweptLss(int mover, SweptBox& box) {
   const FrameLanes& f = frames(0)[body.step];
   const StepBounds& b = bounds_[first_step_[0] + body.step];
   const double radius = (body.lss[6] + query_->margin) * (1 + 4 * kUlp);
+  const bool first_order = problem_->sweeps[0].first_order;
   Lanes lo[2][3], hi[2][3];
-  for (int end = 0; end < 2; ++end) sweepBall(f, b, body.lss + 3 * end, radius, d_, lo[end], hi[end]);
+  for (int end = 0; end < 2; ++end) sweepBall(f, b, first_order, body.lss + 3 * end, radius, d_, lo[end], hi[end]);
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = narrowDown(min(lo[0][k], lo[1][k]));
     box.hi[k] = narrowUp(max(hi[0][k], hi[1][k]));
@@ -530,7 +567,10 @@ inline void Solver::cull() {
       }
     }
   }
-  if (query_->check_self) {
+  if (query_->check_self && !problem_->num_movers) {  // no stage 1: pairs of free bodies
+    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
+    for (int p = 0; p < problem_->num_link_pairs; ++p) entries_.push({problem_->num_scene_pairs + p, 0, 0, kAllLanes});
+  } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
     for (int p = 0; p < problem_->num_link_pairs; ++p) {
       const LinkPair& pair = problem_->link_pairs[p];
@@ -670,7 +710,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
       for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
       f.have_normal = true;
       double n[3];
-      body.pose.opposite(g.n, n);
+      body.opposite(g.n, n);
       const double x = max(certainlyFreePrefix(side_[0], a, b, g.n, query_->margin, pad_, 1),
                            certainlyFreePrefix(side_[1], b, a, n, query_->margin, pad_, 1));
       // The lane is [tm - d, tm + d]; what it certifies beyond `stop` is not used.

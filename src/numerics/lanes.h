@@ -20,6 +20,20 @@ namespace FCL_ARTIC_ISA {
 
 #define FCL_ARTIC_INLINE inline __attribute__((always_inline))
 
+// Scalars get the vocabulary of lanes, so that one text serves both.
+FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
+FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }
+FCL_ARTIC_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
+FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) { return a * b + c; }
+FCL_ARTIC_INLINE double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
+  o[0] = a[1] * b[2] - a[2] * b[1];
+  o[1] = a[2] * b[0] - a[0] * b[2];
+  o[2] = a[0] * b[1] - a[1] * b[0];
+}
+FCL_ARTIC_INLINE double norm(const double* a) { return __builtin_sqrt(dot(a, a)); }
+
 constexpr int kLanes = 8;
 constexpr unsigned kAllLanes = 0xff;
 

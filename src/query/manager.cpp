@@ -13,8 +13,8 @@
 #include "adapters/fcl/fcl_geometry.h"
 #include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
-#include "narrowphase/elementary.h"
 #include "narrowphase/problem.h"
+#include "query/engine_query.h"
 
 namespace fcl_artic {
 namespace {
@@ -58,67 +58,6 @@ void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placemen
   }
 }
 
-/// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). The verdict stays
-/// the solver's.
-void refine(void* workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
-            engine::LeafContact& leaf, FeatureKind& feature) {
-  const engine::Piece &x = a.pieces[leaf.piece_a], &y = b.pieces[leaf.piece_b];
-  if (x.num_vertices != 3 || y.num_vertices != 3) return;
-  Eigen::Vector3d p[3], q[3];
-  for (int i = 0; i < 3; ++i) {
-    p[i] = Eigen::Vector3d::Map(a.vertices + 3 * (x.first_vertex + i));
-    q[i] = Eigen::Vector3d::Map(b.vertices + 3 * (y.first_vertex + i));
-  }
-  const MotionAt motion = [&](double tm, double d, ScalarMotion& out) {
-    engine::engine().pairMotion(workspace, leaf.pair, tm, d, out);
-  };
-  RefinedContact refined;
-  const double end = leaf.certain ? leaf.t_upper : std::min(1.0, leaf.t_lower + tolerance_time);
-  if (!refineTriangleContact(p, q, motion, leaf.t_lower, end, refined)) return;
-  feature = refined.feature;
-  leaf.t_lower = refined.t_lower;
-  if (refined.certain) {
-    leaf.certain = true;
-    leaf.t_upper = refined.t_upper;
-  }
-  leaf.t = refined.certain ? refined.t_upper : refined.t_lower;
-  Eigen::Vector3d::Map(leaf.point) = refined.point;
-  Eigen::Vector3d::Map(leaf.normal) = refined.normal;
-}
-
-class Workspace {
- public:
-  Workspace() : memory_(engine::engine().createWorkspace()) {}
-  ~Workspace() { engine::engine().destroyWorkspace(memory_); }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-  void* get() const { return memory_; }
-  bool busy = false;
-
- private:
-  void* memory_;
-};
-
-/// A workspace for one query: the thread's own, shared by all managers, as nothing in it reaches the next answer; another
-/// one while that is busy (a query from within a progress callback).
-class WorkspaceLoan {
- public:
-  WorkspaceLoan() {
-    thread_local Workspace own;
-    if (own.busy) other_ = std::make_unique<Workspace>();
-    workspace_ = other_ ? other_.get() : &own;
-    workspace_->busy = true;
-  }
-  ~WorkspaceLoan() { workspace_->busy = false; }
-  WorkspaceLoan(const WorkspaceLoan&) = delete;
-  WorkspaceLoan& operator=(const WorkspaceLoan&) = delete;
-  void* get() const { return workspace_->get(); }
-
- private:
-  std::unique_ptr<Workspace> other_;
-  Workspace* workspace_;
-};
-
 FeatureKind swapped(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::vertexEdge: return FeatureKind::edgeVertex;
@@ -128,52 +67,6 @@ FeatureKind swapped(FeatureKind kind) {
     case FeatureKind::edgeFace: return FeatureKind::faceEdge;
     case FeatureKind::faceEdge: return FeatureKind::edgeFace;
     default: return kind;
-  }
-}
-
-engine::Query makeQuery(const JointMotion& motion, const CertifiedRequest& request) {
-  engine::Query query;
-  query.q0 = motion.q0().data();
-  query.dq = motion.dq().data();
-  query.tolerance_time = request.tolerance_time;
-  query.tolerance_distance = request.tolerance_distance;
-  query.margin = request.margin;
-  query.check_scene = request.check_scene;
-  query.check_self = request.check_self;
-  query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  query.ignore_initial = request.ignore_initial_contact;
-  query.measure_times = request.measure_times;
-  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
-  query.work_budget = request.work_budget;
-  if (request.progress) {
-    query.progress = [](void* context, double t_lower) {
-      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
-    };
-    query.progress_context = const_cast<CertifiedRequest*>(&request);
-  }
-  return query;
-}
-
-QueryStatistics statisticsOf(const engine::Statistics& s) {
-  QueryStatistics out;
-  out.pairs = s.pairs;
-  out.pairs_after_culling = s.pairs_after_culling;
-  out.batches = s.batches;
-  out.motion_evaluations = s.motion_evaluations;
-  out.node_tests = s.node_tests;
-  out.leaf_tests = s.leaf_tests;
-  out.certificates = s.certificates;
-  out.gjk = s.gjk;
-  out.contact_proofs = s.contact_proofs;
-  out.culling_us = s.culling_us;
-  out.narrowphase_us = s.narrowphase_us;
-  return out;
-}
-
-void requireTolerance(double x, const char* name, bool positive) {
-  if (!std::isfinite(x) || x < 0 || (positive && x == 0)) {
-    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(x) +
-                                (positive ? ", not a positive number" : ", not a number >= 0"));
   }
 }
 
@@ -404,7 +297,7 @@ CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, cons
   const Item &a = item(leaf.body_a), &b = item(leaf.body_b);
   CertifiedContact contact;
   if (request.margin == 0) {
-    refine(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
+    refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
   }
   std::vector<Eigen::Isometry3d> M_0;
   tree->forwardKinematics(motion.configuration(leaf.t), M_0);
@@ -576,33 +469,31 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   if (!m.ready) {
     throw std::logic_error("ArticulatedCollisionManager: call setup() after changing objects, links or allowed pairs");
   }
-  if (motion.q0().size() != m.tree->dof()) {
-    throw std::invalid_argument("the motion has " + std::to_string(motion.q0().size()) + " joint values, robot '" +
+  if (motion.size() != m.tree->dof()) {
+    throw std::invalid_argument("the motion has " + std::to_string(motion.size()) + " joint values, robot '" +
                                 m.tree->name() + "' has " + std::to_string(m.tree->dof()));
   }
-  requireTolerance(request.tolerance_time, "tolerance_time", true);
-  requireTolerance(request.tolerance_distance, "tolerance_distance", true);
-  requireTolerance(request.margin, "margin", false);
+  engine::Query query = makeQuery(request);
+  query.coefficients = motion.coefficients().data();
+  query.num_variables = static_cast<std::int32_t>(motion.size());
+  query.degree = static_cast<std::int32_t>(motion.coefficients().cols()) - 1;
 
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point t) { return std::chrono::duration<double, std::micro>(Clock::now() - t).count(); };
   const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
   const WorkspaceLoan workspace;
   const engine::Problem problem = m.problem();
-  const engine::Query query = makeQuery(motion, request);
   engine::Answer answer;
-  engine::engine().solve(workspace.get(), problem, query, answer);
+  engine::engine().solve(workspace->engine(), problem, query, answer);
   const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();
 
-  result.status = answer.verdict == engine::Verdict::free      ? Status::free
-                  : answer.verdict == engine::Verdict::contact ? Status::contact
-                                                               : Status::undecided;
+  result.status = statusOf(answer.verdict);
   result.t_lower = answer.t_lower;
   result.t_upper = answer.t_upper;
   result.certain = answer.certain;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(m.report(workspace.get(), motion, request, answer.contacts[i]));
+    result.contacts.push_back(m.report(workspace->engine(), motion, request, answer.contacts[i]));
     const CertifiedContact& contact = result.contacts.back();
     if (contact.certain && contact.t_upper < result.t_upper) {
       result.t_upper = contact.t_upper;

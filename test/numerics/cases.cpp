@@ -133,8 +133,10 @@ PairCase::PairCase(Random& random, int rounding) {
   in.placement_b = makePlacement(carrier, offset_b);
   in.inverse_a = makePlacement(offset_a.inverse());
   in.extents = extent_a + extent_b;
-  in.q0 = q0.data();
-  in.dq = dq.data();
+  coefficients = q0;
+  coefficients.insert(coefficients.end(), dq.begin(), dq.end());
+  in.query.coefficients = coefficients.data();
+  in.query.num_variables = static_cast<std::int32_t>(q0.size());
 }
 
 RealRigid PairCase::pose(LinkId link, const Real& t) const {

@@ -62,6 +62,7 @@ struct PairCase {
   Eigen::Isometry3d offset_a, offset_b;
   double extent_a = 0, extent_b = 0;
   std::vector<double> q0, dq;
+  std::vector<double> coefficients;  ///< q0, then dq
   std::unique_ptr<FrameSweep> sweep;
   Carrier carrier;  ///< of link_b
   PairInput in;

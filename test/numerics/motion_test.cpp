@@ -85,8 +85,9 @@ TEST(Motion, RemainderOfOneRevoluteJointIsAttained) {
   in.sweep = sweep.view();
   in.step_b = sweep.carrier(1).step;
   in.extents = 1;
-  in.q0 = &q0;
-  in.dq = &dq;
+  const double coefficients[2] = {q0, dq};
+  in.query.coefficients = coefficients;
+  in.query.num_variables = 1;
   in.d = 1.0 / 64;
   for (double& tm : in.tm) tm = 0.5;
   for (const Subject* subject : subjects()) {

@@ -20,7 +20,7 @@ struct PairInput {
   std::int32_t step_b = -1;
   engine::Placement inverse_a, placement_b;
   double extents = 0, margin = 0;
-  const double *q0 = nullptr, *dq = nullptr;
+  engine::Query query;  ///< its coefficients count
   double tm[8] = {}, d = 0;
 };
 

@@ -25,8 +25,13 @@ struct Chain {
   FrameLanes frames[kMostSteps];
   explicit Chain(const PairInput& in) {
     Lanes tm;
-    for (int i = 0; i < kLanes; ++i) tm.set(i, in.tm[i]);
-    boundSteps(in.sweep, in.q0, in.dq, bounds);
+    double begin = in.tm[0], end = in.tm[0];
+    for (int i = 0; i < kLanes; ++i) {
+      tm.set(i, in.tm[i]);
+      begin = min(begin, in.tm[i]);
+      end = max(end, in.tm[i]);
+    }
+    boundSteps(in.sweep, in.query, max(0.0, begin - in.d), min(1.0, end + in.d), bounds);
     evaluateSweep(in.sweep, bounds, tm, in.d, frames);
   }
 };
@@ -35,8 +40,8 @@ PairPads relateSides(const PairInput& in, Side* side) {
   const Chain chain(in);
   StepBounds none = {};
   return relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
-                      in.step_b < 0 ? none : chain.bounds[in.step_b], in.inverse_a, in.placement_b, in.extents,
-                      in.margin, in.d, side[0].m, side[1].m);
+                      in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.inverse_a, in.placement_b,
+                      in.extents, in.margin, in.d, side[0].m, side[1].m);
 }
 
 void write(const Side* side, const PairPads& pads, PairOutput& out) {
@@ -94,7 +99,7 @@ void sweepNodeOf(const PairInput& in, int side, const engine::Node& node, BoxOut
 void sweepBallOf(const PairInput& in, const double* p, double radius, BoxOutput& out) {
   const Chain chain(in);
   Lanes lo[3], hi[3];
-  sweepBall(chain.frames[in.step_b], chain.bounds[in.step_b], p, radius, in.d, lo, hi);
+  sweepBall(chain.frames[in.step_b], chain.bounds[in.step_b], in.sweep.first_order, p, radius, in.d, lo, hi);
   for (int k = 0; k < 3; ++k) {
     for (int lane = 0; lane < kLanes; ++lane) {
       out.lo[lane][k] = lo[k][lane];

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/engine_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "narrowphase/elementary.h"
+
+namespace fcl_artic {
+namespace {
+
+void requireTolerance(double x, const char* name, bool positive) {
+  if (!std::isfinite(x) || x < 0 || (positive && x == 0)) {
+    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(x) +
+                                (positive ? ", not a positive number" : ", not a number >= 0"));
+  }
+}
+
+}  // namespace
+
+WorkspaceLoan::WorkspaceLoan() {
+  thread_local Workspace own;
+  if (own.busy_) other_ = std::make_unique<Workspace>();
+  workspace_ = other_ ? other_.get() : &own;
+  workspace_->busy_ = true;
+}
+
+engine::Query makeQuery(const CertifiedRequest& request) {
+  requireTolerance(request.tolerance_time, "tolerance_time", true);
+  requireTolerance(request.tolerance_distance, "tolerance_distance", true);
+  requireTolerance(request.margin, "margin", false);
+  engine::Query query;
+  query.tolerance_time = request.tolerance_time;
+  query.tolerance_distance = request.tolerance_distance;
+  query.margin = request.margin;
+  query.check_scene = request.check_scene;
+  query.check_self = request.check_self;
+  query.every_pair = request.mode == ContactMode::firstOfEveryPair;
+  query.ignore_initial = request.ignore_initial_contact;
+  query.measure_times = request.measure_times;
+  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
+  query.work_budget = request.work_budget;
+  if (request.progress) {
+    query.progress = [](void* context, double t_lower) {
+      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
+    };
+    query.progress_context = const_cast<CertifiedRequest*>(&request);
+  }
+  return query;
+}
+
+QueryStatistics statisticsOf(const engine::Statistics& s) {
+  QueryStatistics out;
+  out.pairs = s.pairs;
+  out.pairs_after_culling = s.pairs_after_culling;
+  out.batches = s.batches;
+  out.motion_evaluations = s.motion_evaluations;
+  out.node_tests = s.node_tests;
+  out.leaf_tests = s.leaf_tests;
+  out.certificates = s.certificates;
+  out.gjk = s.gjk;
+  out.contact_proofs = s.contact_proofs;
+  out.culling_us = s.culling_us;
+  out.narrowphase_us = s.narrowphase_us;
+  return out;
+}
+
+Status statusOf(engine::Verdict verdict) {
+  switch (verdict) {
+    case engine::Verdict::free: return Status::free;
+    case engine::Verdict::contact: return Status::contact;
+    default: return Status::undecided;
+  }
+}
+
+void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
+                   engine::LeafContact& leaf, FeatureKind& feature) {
+  const engine::Piece &x = a.pieces[leaf.piece_a], &y = b.pieces[leaf.piece_b];
+  if (x.num_vertices != 3 || y.num_vertices != 3) return;
+  Eigen::Vector3d p[3], q[3];
+  for (int i = 0; i < 3; ++i) {
+    p[i] = Eigen::Vector3d::Map(a.vertices + 3 * (x.first_vertex + i));
+    q[i] = Eigen::Vector3d::Map(b.vertices + 3 * (y.first_vertex + i));
+  }
+  const MotionAt motion = [&](double tm, double d, ScalarMotion& out) {
+    engine::engine().pairMotion(engine_workspace, leaf.pair, tm, d, out);
+  };
+  RefinedContact refined;
+  const double end = leaf.certain ? leaf.t_upper : std::min(1.0, leaf.t_lower + tolerance_time);
+  if (!refineTriangleContact(p, q, motion, leaf.t_lower, end, refined)) return;
+  feature = refined.feature;
+  leaf.t_lower = refined.t_lower;
+  if (refined.certain) {
+    leaf.certain = true;
+    leaf.t_upper = refined.t_upper;
+  }
+  leaf.t = refined.certain ? refined.t_upper : refined.t_lower;
+  Eigen::Vector3d::Map(leaf.point) = refined.point;
+  Eigen::Vector3d::Map(leaf.normal) = refined.normal;
+}
+
+}  // namespace fcl_artic

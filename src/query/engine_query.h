@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What all queries share on their way to the engine and back: memory, request, statistics, contacts of triangles.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fcl_artic/request.h"
+#include "fcl_artic/result.h"
+#include "motion/frame_sweep.h"
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+
+/// Memory of one query at a time. Nothing in it reaches the next answer.
+class Workspace {
+ public:
+  Workspace() : engine_(engine::engine().createWorkspace()) {}
+  ~Workspace() { engine::engine().destroyWorkspace(engine_); }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  void* engine() const { return engine_; }
+  FrameSweep sweep;                            ///< of a pair query
+  std::vector<double> coefficients;            ///< of its variables
+  std::vector<engine::BoundedSource> sources;  ///< of its bounded motions
+
+ private:
+  friend class WorkspaceLoan;
+  void* engine_;
+  bool busy_ = false;
+};
+
+/// A workspace for one query: the thread's own, shared by all managers; another one while that is busy (a query from within
+/// a progress callback).
+class WorkspaceLoan {
+ public:
+  WorkspaceLoan();
+  ~WorkspaceLoan() { workspace_->busy_ = false; }
+  WorkspaceLoan(const WorkspaceLoan&) = delete;
+  WorkspaceLoan& operator=(const WorkspaceLoan&) = delete;
+  Workspace& operator*() const { return *workspace_; }
+  Workspace* operator->() const { return workspace_; }
+
+ private:
+  std::unique_ptr<Workspace> other_;
+  Workspace* workspace_;
+};
+
+/// The request as the engine takes it, without the motion.
+/// @throws std::invalid_argument for a tolerance or margin that is negative or not finite.
+engine::Query makeQuery(const CertifiedRequest& request);
+
+Status statusOf(engine::Verdict verdict);
+QueryStatistics statisticsOf(const engine::Statistics& statistics);
+
+/// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). The verdict stays
+/// the solver's.
+void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
+                   engine::LeafContact& leaf, FeatureKind& feature);
+
+}  // namespace fcl_artic

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/pair_query.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/frame_sweep.h"
+#include "query/engine_query.h"
+
+namespace fcl_artic {
+namespace {
+
+using engine::Piece;
+using engine::PieceKind;
+
+int numRows(const MotionElement& element) {
+  switch (element.kind) {
+    case MotionElement::Kind::revolute:
+    case MotionElement::Kind::prismatic: return 1;
+    case MotionElement::Kind::slide:
+    case MotionElement::Kind::turn: return 3;
+    default: return 0;
+  }
+}
+
+void stateOf(const void* self, double t, double* out) {
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const BoundedMotion::State state = static_cast<const BoundedMotion*>(self)->state(t);
+  Eigen::Map<RowMajor>(out, 3, 3) = state.pose.linear();
+  Eigen::Vector3d::Map(out + 9) = state.pose.translation();
+  Eigen::Vector3d::Map(out + 12) = state.velocity;
+  Eigen::Vector3d::Map(out + 15) = state.acceleration;
+  Eigen::Vector3d::Map(out + 18) = state.angular_velocity;
+  Eigen::Vector3d::Map(out + 21) = state.angular_acceleration;
+}
+
+void boundsOf(const void* self, double begin, double end, double* out) {
+  const BoundedMotion::Bounds b = static_cast<const BoundedMotion*>(self)->bounds(begin, end);
+  const double all[6] = {b.speed, b.acceleration, b.jerk, b.angular_speed, b.angular_acceleration, b.angular_jerk};
+  std::copy(all, all + 6, out);
+}
+
+/// The way from body 1 to body 2: up the one's motion, down the other's.
+struct Path {
+  engine::SweepView sweep;
+  engine::Placement inverse_1, placement_2;
+  int step_2 = -1;
+};
+
+/// @param[out] query  gets the variables, kept in the workspace.
+Path pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace& workspace, engine::Query& query) {
+  int degree = 1, variables = 0;
+  std::size_t bounded = 0;
+  for (const BodyMotion* motion : {&motion1, &motion2}) {
+    for (const MotionElement& element : motion->elements) {
+      degree = std::max(degree, element.degree());
+      variables += numRows(element);
+      bounded += element.bounded != nullptr;
+    }
+  }
+  workspace.coefficients.assign(static_cast<std::size_t>((degree + 1) * std::max(variables, 1)), 0);
+  workspace.sources.clear();
+  workspace.sources.reserve(bounded);  // steps point into it
+  workspace.sweep.clear();
+  Carrier at;
+  int variable = 0;
+  const auto cross = [&](const MotionElement& element, bool down) {
+    const engine::BoundedSource* source = nullptr;
+    if (element.bounded) {
+      workspace.sources.push_back({element.bounded, &stateOf, &boundsOf, element.bounded->hasDerivatives()});
+      source = &workspace.sources.back();
+    }
+    const int rows = numRows(element);
+    for (int k = 0; k <= degree; ++k) {
+      for (int r = 0; r < rows; ++r) {
+        workspace.coefficients[static_cast<std::size_t>(k * variables + variable + r)] = element.coefficients(r, k);
+      }
+    }
+    at = workspace.sweep.cross(at, element, variable, source, down);
+    variable += rows;
+  };
+  for (auto it = motion1.elements.rbegin(); it != motion1.elements.rend(); ++it) cross(*it, false);
+  for (const MotionElement& element : motion2.elements) cross(element, true);
+
+  query.coefficients = workspace.coefficients.data();
+  query.num_variables = variables;
+  query.degree = degree;
+  Path path;
+  path.sweep = workspace.sweep.view();
+  path.inverse_1 = makePlacement(motion1.after.inverse());
+  path.placement_2 = makePlacement(at, motion2.after);
+  path.step_2 = at.step;
+  return path;
+}
+
+const Piece* unboundedPiece(const ShapeTree& shape) {
+  const Piece& piece = shape.view().pieces[0];
+  const bool unbounded = piece.kind == PieceKind::halfspace || piece.kind == PieceKind::plane;
+  return shape.view().num_pieces == 1 && unbounded ? &piece : nullptr;
+}
+
+bool onlyTranslates(const BodyMotion& motion) {
+  return std::all_of(motion.elements.begin(), motion.elements.end(), [](const MotionElement& element) {
+    using Kind = MotionElement::Kind;
+    if (element.kind == Kind::slide || element.kind == Kind::prismatic) return true;
+    return element.kind != Kind::bounded && element.coefficients.rightCols<kMaxDegree>().isZero(0);
+  });
+}
+
+void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+                  CertifiedPairResult& result);
+
+/// Two half-spaces or planes. They meet, unless their normals are parallel and stay so: then the distance of the one's
+/// boundary from the other is that of any of its points, and a point takes its place. Normals within rounding of parallel
+/// count as parallel: bodies lie within 1e9 m of the origin, and there they cannot be told from parallel ones.
+void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
+                    const CertifiedRequest& request, CertifiedPairResult& result) {
+  constexpr double kParallel = 64 * 0x1p-52;
+  const Eigen::Isometry3d M1 = body1.motion.pose(0), M2 = body2.motion.pose(0);
+  const Eigen::Vector3d n1 = M1.linear() * Eigen::Vector3d::Map(piece1.size);
+  const Eigen::Vector3d n2 = M2.linear() * Eigen::Vector3d::Map(piece2.size);
+  const bool parallel = n1.cross(n2).norm() <= kParallel;
+  const bool solids = piece1.kind == PieceKind::halfspace && piece2.kind == PieceKind::halfspace;
+  const bool alike = solids && n1.dot(n2) > 0;  // one holds the other, wherever they are
+  if (parallel && !alike && onlyTranslates(body1.motion) && onlyTranslates(body2.motion)) {
+    const bool keep_first = piece1.kind == PieceKind::halfspace || piece2.kind == PieceKind::plane;
+    const Piece& other = keep_first ? piece2 : piece1;
+    Piece point;
+    point.kind = PieceKind::point;
+    for (int k = 0; k < 3; ++k) point.center[k] = other.center[0] * other.size[k];
+    const std::shared_ptr<const ShapeTree> shape = ShapeTree::fromPiece(point);
+    const MovingShape &stays = keep_first ? body1 : body2, &goes = keep_first ? body2 : body1;
+    const MovingShape pointwise{*shape, goes.motion, goes.geometry};
+    return keep_first ? solveBounded(stays, pointwise, request, result) : solveBounded(pointwise, stays, request, result);
+  }
+  result = CertifiedPairResult();
+  result.status = Status::contact;
+  result.ignored_initial_contact = request.ignore_initial_contact && (!parallel || alike);
+  if (result.ignored_initial_contact) result.status = Status::free;  // and they never separate for good
+  result.t_lower = result.status == Status::free ? 1 : 0;
+  result.certain = result.status == Status::contact && (!parallel || alike);
+  result.t_upper = result.certain ? 0 : 1;
+  result.tf1_at_lower = body1.motion.pose(result.t_lower);
+  result.tf2_at_lower = body2.motion.pose(result.t_lower);
+  result.tf1_at_upper = body1.motion.pose(result.t_upper);
+  result.tf2_at_upper = body2.motion.pose(result.t_upper);
+  if (result.status == Status::free) return;
+  CertifiedContact contact;
+  contact.o1 = body1.geometry;
+  contact.o2 = body2.geometry;
+  contact.normal = n1;
+  contact.point = M1 * Eigen::Vector3d(piece1.center[0] * Eigen::Vector3d::Map(piece1.size));
+  if (!parallel) {  // a point of both boundaries: the one nearest to the first's own
+    const Eigen::Vector3d across = (n2 - n1.dot(n2) * n1).normalized();
+    const Eigen::Vector3d p2 = M2 * Eigen::Vector3d(piece2.center[0] * Eigen::Vector3d::Map(piece2.size));
+    contact.point += across * (n2.dot(p2 - contact.point) / n2.dot(across));
+  }
+  contact.t_lower = 0;
+  contact.t_upper = result.t_upper;
+  contact.certain = result.certain;
+  result.contacts.push_back(contact);
+}
+
+/// At least one of the bodies is bounded.
+void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+                  CertifiedPairResult& result) {
+  engine::Query query = makeQuery(request);
+  query.check_scene = false;
+  query.check_self = true;
+  query.every_pair = false;
+  const WorkspaceLoan workspace;
+  const Path path = pathBetween(body1.motion, body2.motion, *workspace, query);
+
+  engine::Body bodies[2];
+  bodies[0].tree = &body1.shape.view();
+  bodies[1].tree = &body2.shape.view();
+  engine::LinkPair pair;
+  pair.a = 0;
+  pair.b = 1;
+  pair.step_b = path.step_2;
+  pair.inverse_a = path.inverse_1;
+  pair.placement_b = path.placement_2;
+  engine::Problem problem;
+  problem.bodies = bodies;
+  problem.num_bodies = 2;
+  problem.sweeps = &path.sweep;
+  problem.num_sweeps = 1;
+  problem.link_pairs = &pair;
+  problem.num_link_pairs = 1;
+  engine::Answer answer;
+  engine::engine().solve(workspace->engine(), problem, query, answer);
+
+  result.status = statusOf(answer.verdict);
+  result.t_lower = answer.t_lower;
+  result.t_upper = answer.t_upper;
+  result.certain = answer.certain;
+  result.ignored_initial_contact = answer.num_ignored > 0;
+  result.statistics = statisticsOf(answer.statistics);
+  result.contacts.clear();
+  for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
+    engine::LeafContact leaf = answer.contacts[i];
+    CertifiedContact contact;
+    if (request.margin == 0) {
+      refineContact(workspace->engine(), body1.shape.view(), body2.shape.view(), request.tolerance_time, leaf,
+                    contact.feature);
+    }
+    const Eigen::Isometry3d M_01 = body1.motion.pose(leaf.t);
+    contact.point = M_01 * Eigen::Vector3d::Map(leaf.point);
+    contact.normal = (M_01.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
+    contact.o1 = body1.geometry;
+    contact.o2 = body2.geometry;
+    contact.b1 = body1.shape.view().pieces[leaf.piece_a].primitive;
+    contact.b2 = body2.shape.view().pieces[leaf.piece_b].primitive;
+    contact.t_lower = leaf.t_lower;
+    contact.t_upper = leaf.t_upper;
+    contact.certain = leaf.certain;
+    if (contact.certain && contact.t_upper < result.t_upper) {
+      result.t_upper = contact.t_upper;
+      result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
+    }
+    result.contacts.push_back(contact);
+  }
+  result.tf1_at_lower = body1.motion.pose(result.t_lower);
+  result.tf2_at_lower = body2.motion.pose(result.t_lower);
+  result.tf1_at_upper = body1.motion.pose(result.t_upper);
+  result.tf2_at_upper = body2.motion.pose(result.t_upper);
+}
+
+}  // namespace
+
+void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+               CertifiedPairResult& result) {
+  const Piece *piece1 = unboundedPiece(body1.shape), *piece2 = unboundedPiece(body2.shape);
+  if (piece1 && piece2) {
+    makeQuery(request);  // throws for what it throws
+    return solveUnbounded(body1, *piece1, body2, *piece2, request, result);
+  }
+  solveBounded(body1, body2, request, result);
+}
+
+}  // namespace fcl_artic
