@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/continuous_manager.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+
+#include "adapters/fcl/fcl_geometry.h"
+#include "adapters/fcl/fcl_motion.h"
+#include "culling/box_overlap.h"
+#include "query/engine_query.h"
+#include "query/pair_query.h"
+
+namespace fcl_artic {
+namespace {
+
+using Object = fcl::ContinuousCollisionObjectd;
+using Geometry = fcl::CollisionGeometryd;
+
+/// Where boxes end that have no end: far beyond all coordinates allowed (1e9 m), and a number, as trees are built of numbers.
+constexpr double kFarAway = 1e29;
+
+/// A moving object, as it was read.
+struct Item {
+  Object* object = nullptr;
+  std::shared_ptr<const Geometry> geometry;
+  std::shared_ptr<const ShapeTree> shape;
+  BodyMotion motion;
+  BoxBounds box = {};  ///< in the world, over all of the motion
+};
+
+/// Trees of geometries by address. Each geometry in it is kept alive by an item, or its tree has expired.
+using KnownShapes = std::unordered_map<const Geometry*, std::weak_ptr<const ShapeTree>>;
+
+std::shared_ptr<const ShapeTree> shapeOf(const Geometry& geometry, KnownShapes& known) {
+  std::weak_ptr<const ShapeTree>& entry = known[&geometry];
+  std::shared_ptr<const ShapeTree> shape = entry.lock();
+  if (!shape) entry = shape = readGeometry(geometry);
+  return shape;
+}
+
+/// @param what  begins the messages.
+Item readObject(const Object& object, const std::string& what, KnownShapes& known) {
+  Item item;
+  item.geometry = object.collisionGeometry();
+  if (!item.geometry) throw std::invalid_argument(what + " has no geometry");
+  const fcl::MotionBased* motion = object.getMotion();
+  if (!motion) {
+    throw std::invalid_argument(what + " (" + geometryName(*item.geometry) +
+                                ") has no motion; what stands still has a TranslationMotion from its pose to the same pose");
+  }
+  try {
+    item.shape = shapeOf(*item.geometry, known);
+    item.motion = readMotion(*motion);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  Eigen::Vector3d lower, upper;
+  enclosePath(item.motion, item.shape->lower(), item.shape->upper(), lower, upper);
+  for (int k = 0; k < 3; ++k) {  // written so that NaN, too, ends far away
+    item.box.lo[k] = lower[k] > -kFarAway ? std::min(lower[k], kFarAway) : -kFarAway;
+    item.box.hi[k] = upper[k] < kFarAway ? std::max(upper[k], -kFarAway) : kFarAway;
+  }
+  return item;
+}
+
+Item readObject(Object* object, const std::string& what, KnownShapes& known) {
+  if (!object) throw std::invalid_argument(what + " is null");
+  Item item = readObject(*object, what, known);
+  item.object = object;
+  return item;
+}
+
+fcl::AABBd publicBox(const BoxBounds& box) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  fcl::AABBd aabb;
+  for (int k = 0; k < 3; ++k) {
+    aabb.min_[k] = box.lo[k] > -kFarAway ? box.lo[k] : -kInfinity;
+    aabb.max_[k] = box.hi[k] < kFarAway ? box.hi[k] : kInfinity;
+  }
+  return aabb;
+}
+
+/// The box grown by the margin to all sides: a sum of doubles is at most one step from the true one, in any rounding mode.
+BoxBounds grown(const BoxBounds& box, double margin) {
+  if (margin == 0) return box;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  BoxBounds out;
+  for (int k = 0; k < 3; ++k) {
+    out.lo[k] = std::nextafter(box.lo[k] - margin, -kInfinity);
+    out.hi[k] = std::nextafter(box.hi[k] + margin, kInfinity);
+  }
+  return out;
+}
+
+void requireQuery(ContinuousCollisionManager::Callback callback, double margin) {
+  if (!callback) throw std::invalid_argument("collide: the callback is null");
+  if (!(margin >= 0) || !std::isfinite(margin)) {
+    throw std::invalid_argument("collide: the margin is " + std::to_string(margin) + ", not a number >= 0");
+  }
+}
+
+/// Collects the answers of pairs into one.
+class Earliest {
+ public:
+  /// @throws std::invalid_argument for a request that solvePair() refuses.
+  Earliest(const CertifiedRequest& request, CertifiedPairsResult& result) : request_(request), result_(result) {
+    result_ = CertifiedPairsResult();  // what is left when something throws
+    makeQuery(request);
+    if (request.measure_times) begin_ = Clock::now();
+    request_.progress = nullptr;
+  }
+
+  /// @return true when nothing that follows can change the answer.
+  bool operator()(const Item& a, const Item& b) {
+    MovingPair pair;
+    pair.object1 = a.object;
+    pair.object2 = b.object;
+    const std::uint64_t work = result_.statistics.node_tests + result_.statistics.leaf_tests;
+    const std::uint64_t budget = request_.work_budget;
+    const bool spent = budget != 0 && work >= budget;
+    if (spent) {  // the pair stays undecided from t = 0 on
+      pair.result.tf1_at_lower = a.motion.pose(0);
+      pair.result.tf2_at_lower = b.motion.pose(0);
+      pair.result.tf1_at_upper = a.motion.pose(1);
+      pair.result.tf2_at_upper = b.motion.pose(1);
+    } else {
+      request_.work_budget = budget == 0 ? 0 : budget - work;
+      solvePair({*a.shape, a.motion, a.geometry.get()}, {*b.shape, b.motion, b.geometry.get()}, request_, pair.result);
+      request_.work_budget = budget;
+      add(pair.result.statistics);
+    }
+    if (pair.result.ignored_initial_contact) result_.ignored_initial_contacts.emplace_back(a.object, b.object);
+    if (pair.result.isFree()) return false;
+
+    const CertifiedPairResult& r = pair.result;
+    proven_ = proven_ || r.certain || r.t_upper < 1;
+    result_.t_upper = std::min(result_.t_upper, r.t_upper);
+    if (request_.mode == ContactMode::firstOfEveryPair || result_.pairs.empty()) {
+      result_.pairs.push_back(std::move(pair));
+    } else if (r.t_lower < result_.pairs[0].result.t_lower) {
+      result_.pairs[0] = std::move(pair);
+    }
+    const CertifiedPairResult& first = result_.pairs[0].result;
+    return spent || (request_.mode == ContactMode::first && first.certain && first.t_upper == 0);
+  }
+
+  /// @param pairs  number of pairs that were asked about.
+  void finish(std::size_t pairs) {
+    std::stable_sort(result_.pairs.begin(), result_.pairs.end(), [](const MovingPair& a, const MovingPair& b) {
+      return a.result.t_lower < b.result.t_lower;
+    });
+    if (result_.pairs.empty()) {
+      result_.status = Status::free;
+      result_.t_lower = 1;
+    } else {
+      const CertifiedPairResult& first = result_.pairs[0].result;
+      result_.status = first.status;
+      result_.t_lower = first.t_lower;
+      const bool close = proven_ && result_.t_upper - result_.t_lower <= request_.tolerance_time;
+      result_.certain = first.status == Status::contact && (first.certain || close);
+    }
+    result_.statistics.pairs = pairs;
+    if (request_.measure_times) {
+      result_.statistics.total_us = std::chrono::duration<double, std::micro>(Clock::now() - begin_).count();
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void add(const QueryStatistics& s) {
+    QueryStatistics& sum = result_.statistics;
+    ++sum.pairs_after_culling;
+    sum.batches += s.batches;
+    sum.motion_evaluations += s.motion_evaluations;
+    sum.node_tests += s.node_tests;
+    sum.leaf_tests += s.leaf_tests;
+    sum.certificates += s.certificates;
+    sum.gjk += s.gjk;
+    sum.contact_proofs += s.contact_proofs;
+    sum.culling_us += s.culling_us;
+    sum.narrowphase_us += s.narrowphase_us;
+    sum.report_us += s.report_us;
+  }
+
+  CertifiedRequest request_;
+  CertifiedPairsResult& result_;
+  bool proven_ = false;  ///< some pair certainly touches, by result_.t_upper
+  Clock::time_point begin_;
+};
+
+}  // namespace
+
+fcl::AABBd sweptAABB(const fcl::ContinuousCollisionObjectd& object) {
+  KnownShapes known;
+  return publicBox(readObject(object, "sweptAABB: the object", known).box);
+}
+
+struct ContinuousCollisionManager::Impl {
+  std::vector<Item> items;                              ///< in order of registration
+  std::unordered_map<const Object*, std::size_t> index;  ///< into items
+  KnownShapes known;
+  bool ready = true;  ///< as long as there is nothing to set up
+
+  // Made by build(), read by queries.
+  std::vector<BoxBounds> boxes;
+  std::vector<engine::Node> tree;
+
+  void add(Object* object, const std::string& what) {
+    if (index.count(object)) throw std::invalid_argument(what + " is registered already");
+    items.push_back(readObject(object, what, known));
+    index[object] = items.size() - 1;
+    ready = false;
+  }
+  void build() {
+    boxes.clear();
+    for (const Item& item : items) boxes.push_back(item.box);
+    tree = buildBoxTree(boxes);
+    for (auto entry = known.begin(); entry != known.end();) {
+      entry = entry->second.expired() ? known.erase(entry) : std::next(entry);
+    }
+    ready = true;
+  }
+  void requireReady() const {
+    if (!ready) throw std::logic_error("ContinuousCollisionManager: call setup() after changing the objects");
+  }
+  const Item& item(int i) const { return items[static_cast<std::size_t>(i)]; }
+  const Item* find(const Object* object) const {
+    const auto known_object = index.find(object);
+    return known_object == index.end() ? nullptr : &items[known_object->second];
+  }
+  /// Indices in order, of items from `begin` on whose boxes come near the box.
+  void near(const BoxBounds& box, double margin, int begin, std::vector<int>& found) const {
+    found.clear();
+    appendOverlaps(tree, boxes, grown(box, margin), found);
+    found.erase(std::remove_if(found.begin(), found.end(), [=](int i) { return i < begin; }), found.end());
+    std::sort(found.begin(), found.end());
+  }
+
+  // The three kinds of query: each calls visit(item, item) for all pairs whose boxes meet, until it returns true, and
+  // returns the number of all pairs.
+
+  template <class Visit>
+  std::size_t visitOwn(double margin, Visit&& visit) const {
+    requireReady();
+    const std::size_t n = items.size(), pairs = n == 0 ? 0 : n * (n - 1) / 2;
+    std::vector<int> found;
+    for (std::size_t i = 0; i < n; ++i) {
+      near(items[i].box, margin, static_cast<int>(i) + 1, found);
+      for (const int j : found) {
+        if (visit(items[i], item(j))) return pairs;
+      }
+    }
+    return pairs;
+  }
+
+  template <class Visit>
+  std::size_t visitObject(Object* object, double margin, Visit&& visit) const {
+    requireReady();
+    Item read;
+    const Item* one = find(object);
+    const std::size_t pairs = items.size() - (one ? 1 : 0);
+    if (!one) {
+      KnownShapes none;
+      read = readObject(object, "collide: the object", none);
+      one = &read;
+    }
+    std::vector<int> found;
+    near(one->box, margin, 0, found);
+    for (const int j : found) {
+      if (item(j).object != object && visit(*one, item(j))) break;
+    }
+    return pairs;
+  }
+
+  template <class Visit>
+  std::size_t visitOther(const ContinuousCollisionManager* other_manager, double margin, Visit&& visit) const {
+    if (!other_manager) throw std::invalid_argument("collide: the other manager is null");
+    const Impl& other = *other_manager->impl_;
+    if (&other == this) return visitOwn(margin, visit);
+    requireReady();
+    other.requireReady();
+    std::size_t shared = 0;
+    for (const Item& item : items) shared += other.index.count(item.object);
+    const std::size_t pairs = items.size() * other.items.size() - shared - (shared == 0 ? 0 : shared * (shared - 1) / 2);
+    std::vector<int> found;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const Item& a = items[i];
+      other.near(a.box, margin, 0, found);
+      for (const int j : found) {
+        const Item& b = other.item(j);
+        if (a.object == b.object) continue;
+        if (shared > 0 && other.index.count(a.object)) {
+          const auto b_here = index.find(b.object);
+          if (b_here != index.end() && b_here->second < i) continue;  // came as (b, a)
+        }
+        if (visit(a, b)) return pairs;
+      }
+    }
+    return pairs;
+  }
+};
+
+ContinuousCollisionManager::ContinuousCollisionManager() : impl_(std::make_unique<Impl>()) {}
+ContinuousCollisionManager::~ContinuousCollisionManager() = default;
+ContinuousCollisionManager::ContinuousCollisionManager(ContinuousCollisionManager&&) noexcept = default;
+ContinuousCollisionManager& ContinuousCollisionManager::operator=(ContinuousCollisionManager&&) noexcept = default;
+
+void ContinuousCollisionManager::registerObject(Object* object) { impl_->add(object, "registerObject: the object"); }
+
+void ContinuousCollisionManager::registerObjects(const std::vector<Object*>& objects) {
+  const std::size_t before = size();
+  const bool ready = impl_->ready;
+  try {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      impl_->add(objects[i], "registerObjects: object " + std::to_string(i));
+    }
+  } catch (...) {
+    while (size() > before) {
+      impl_->index.erase(impl_->items.back().object);
+      impl_->items.pop_back();
+    }
+    impl_->ready = ready;
+    throw;
+  }
+}
+
+void ContinuousCollisionManager::unregisterObject(Object* object) {
+  const auto known = impl_->index.find(object);
+  if (known == impl_->index.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
+  const std::size_t i = known->second;
+  impl_->index.erase(known);
+  impl_->items.erase(impl_->items.begin() + static_cast<std::ptrdiff_t>(i));
+  for (std::size_t j = i; j < size(); ++j) impl_->index[impl_->items[j].object] = j;
+  impl_->ready = false;
+}
+
+void ContinuousCollisionManager::setup() {
+  if (!impl_->ready) impl_->build();
+}
+
+void ContinuousCollisionManager::update() {
+  std::vector<Object*> objects;
+  getObjects(objects);
+  update(objects);
+}
+
+void ContinuousCollisionManager::update(Object* object) { update(std::vector<Object*>{object}); }
+
+void ContinuousCollisionManager::update(const std::vector<Object*>& objects) {
+  KnownShapes known;
+  std::vector<Item> items;  // all or nothing
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const std::string what = "update: object " + std::to_string(i);
+    if (!impl_->find(objects[i])) throw std::invalid_argument(what + " is not registered");
+    items.push_back(readObject(objects[i], what, known));
+  }
+  for (Item& item : items) impl_->items[impl_->index[item.object]] = std::move(item);
+  for (const auto& [geometry, shape] : known) impl_->known[geometry] = shape;
+  impl_->build();
+}
+
+void ContinuousCollisionManager::clear() { *impl_ = Impl(); }
+
+void ContinuousCollisionManager::getObjects(std::vector<Object*>& objects) const {
+  objects.clear();
+  for (const Item& item : impl_->items) objects.push_back(item.object);
+}
+
+std::size_t ContinuousCollisionManager::size() const { return impl_->items.size(); }
+
+fcl::AABBd ContinuousCollisionManager::sweptAABB(const Object* object) const {
+  const Item* item = impl_->find(object);
+  if (!item) throw std::invalid_argument("sweptAABB: the object is not registered");
+  return publicBox(item->box);
+}
+
+void ContinuousCollisionManager::collide(void* cdata, Callback callback, double margin) const {
+  requireQuery(callback, margin);
+  impl_->visitOwn(margin, [&](const Item& a, const Item& b) { return callback(a.object, b.object, cdata); });
+}
+
+void ContinuousCollisionManager::collide(Object* object, void* cdata, Callback callback, double margin) const {
+  requireQuery(callback, margin);
+  impl_->visitObject(object, margin, [&](const Item& a, const Item& b) { return callback(a.object, b.object, cdata); });
+}
+
+void ContinuousCollisionManager::collide(const ContinuousCollisionManager* other, void* cdata, Callback callback,
+                                         double margin) const {
+  requireQuery(callback, margin);
+  impl_->visitOther(other, margin, [&](const Item& a, const Item& b) { return callback(a.object, b.object, cdata); });
+}
+
+void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request, CertifiedPairsResult& result) const {
+  Earliest earliest(request, result);
+  earliest.finish(impl_->visitOwn(request.margin, earliest));
+}
+
+void ContinuousCollisionManager::continuousCollide(Object* object, const CertifiedRequest& request,
+                                                   CertifiedPairsResult& result) const {
+  Earliest earliest(request, result);
+  earliest.finish(impl_->visitObject(object, request.margin, earliest));
+}
+
+void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other, const CertifiedRequest& request,
+                                                   CertifiedPairsResult& result) const {
+  Earliest earliest(request, result);
+  earliest.finish(impl_->visitOther(other, request.margin, earliest));
+}
+
+}  // namespace fcl_artic
