@@ -318,17 +318,18 @@ BodyMotion motionBetween(const Isometry3d& begin_pose, const Isometry3d& end_pos
         "CCDM_SPLINE: two poses don't make a spline (FCL's SplineMotion(tf1, tf2) is empty); use "
         "CCDM_LINEAR or CCDM_SCREW, or pass a SplineMotion with its eight control points");
   }
+  if (type != fcl::CCDM_TRANS && type != fcl::CCDM_LINEAR && type != fcl::CCDM_SCREW) {
+    throw std::invalid_argument("motion type " + std::to_string(static_cast<int>(type)) + " is none of FCL's");
+  }
   const Isometry3d begin = readTransform<double>(begin_pose, "begin of the motion");
   const Isometry3d end = readTransform<double>(end_pose, "end of the motion");
   const Vector3d o = end.translation() - begin.translation();
   // AngleAxis goes by way of the quaternion, which is as accurate at half a turn as anywhere.
   Eigen::AngleAxisd turn(Matrix3d(end.linear() * begin.linear().transpose()));
-  if (begin.linear() == end.linear()) turn.angle() = 0;
-  if (type == fcl::CCDM_TRANS || turn.angle() == 0)
-    return lineWithTurn(begin, Vector3d::Zero(), o, Vector3d::UnitZ(), 0);
+  if (type == fcl::CCDM_TRANS || begin.linear() == end.linear()) turn.angle() = 0;
+  if (turn.angle() == 0) return lineWithTurn(begin, Vector3d::Zero(), o, Vector3d::UnitZ(), 0);
   if (type == fcl::CCDM_LINEAR) return lineWithTurn(begin, Vector3d::Zero(), o, turn.axis(), turn.angle());
-  if (type == fcl::CCDM_SCREW) return screw(begin, o, turn.axis(), turn.angle());
-  throw std::invalid_argument("motion type " + std::to_string(static_cast<int>(type)) + " is none of FCL's");
+  return screw(begin, o, turn.axis(), turn.angle());
 }
 
 template <class S>
