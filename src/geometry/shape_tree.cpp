@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -21,84 +21,112 @@ using engine::Piece;
 using engine::PieceKind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Coordinates allowed: what the pads still leave precise.
+constexpr double kFarthest = 1e9;
+/// So that three coordinates each are counted in 32 bits.
+constexpr std::size_t kMostHullPoints = 500000000;
 
-/// Nearest float that is surely not below x, whatever the rounding mode.
+/// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
 float roundUp(double x) {
-  return std::nextafter(std::nextafter(static_cast<float>(x), std::numeric_limits<float>::max()),
-                        std::numeric_limits<float>::max());
+  const float f = static_cast<float>(x);
+  std::int32_t bits;
+  std::memcpy(&bits, &f, sizeof bits);
+  // Floats in the order of integers, both zeros in one place, and back.
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  const std::int32_t order = (bits < 0 ? kLeast - bits : bits) + 2;
+  bits = order < 0 ? kLeast - order : order;
+  float up;
+  std::memcpy(&up, &bits, sizeof up);
+  return up;
 }
 float roundDown(double x) { return -roundUp(-x); }
 
-Node makeNode(const BoxBounds& box) {
-  Node node;
+void setRadius(Node& node) {
   double radius = 0;
   for (int k = 0; k < 3; ++k) {
-    node.lo[k] = roundDown(box.lo[k]);
-    node.hi[k] = roundUp(box.hi[k]);
     const double half = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
     radius += half * half;
   }
   node.radius = roundUp(std::sqrt(radius));
-  node.child = -1;
+}
+
+Node makeLeaf(const BoxBounds& box, std::int32_t piece) {
+  Node node;
+  for (int k = 0; k < 3; ++k) {
+    node.lo[k] = roundDown(box.lo[k]);
+    node.hi[k] = roundUp(box.hi[k]);
+  }
+  setRadius(node);
+  node.child = ~piece;
   return node;
 }
 
+/// The tree over given leaves; leaf i holds piece i.
 class Builder {
  public:
-  explicit Builder(const std::vector<BoxBounds>& boxes) : boxes_(boxes), order_(boxes.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    nodes_.reserve(2 * boxes.size());
+  explicit Builder(const std::vector<Node>& leaves) : leaves_(leaves), order_(leaves.size()), keys_(leaves.size()) {
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
   }
   std::vector<Node> run() {
-    if (boxes_.empty()) return {};
-    nodes_.resize(2);
-    build(0, 0, order_.size());
+    if (leaves_.empty()) return {};
+    nodes_.resize(2 * leaves_.size());
+    used_ = 2;
+    build(0, 0, leaves_.size());
     nodes_[1] = nodes_[0];
     return std::move(nodes_);
   }
 
  private:
-  double middle(int i, int axis) const {
-    const BoxBounds& b = boxes_[static_cast<std::size_t>(i)];
-    return b.lo[axis] + b.hi[axis];
-  }
   /// Median split across the longest side: as good as a surface area heuristic here (measured) and balanced, so that
   /// recursion is shallow whatever the input.
   void build(std::size_t me, std::size_t begin, std::size_t end) {
-    BoxBounds box;
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = kInfinity;
-      box.hi[k] = -kInfinity;
-      for (std::size_t i = begin; i < end; ++i) {
-        box.lo[k] = std::min(box.lo[k], boxes_[static_cast<std::size_t>(order_[i])].lo[k]);
-        box.hi[k] = std::max(box.hi[k], boxes_[static_cast<std::size_t>(order_[i])].hi[k]);
-      }
-    }
-    nodes_[me] = makeNode(box);
     if (end - begin == 1) {
-      nodes_[me].child = ~order_[begin];
+      nodes_[me] = leaves_[order_[begin]];
       return;
     }
+    Node node = leaves_[order_[begin]];
+    for (std::size_t i = begin + 1; i < end; ++i) {
+      const Node& leaf = leaves_[order_[i]];
+      for (int k = 0; k < 3; ++k) {
+        node.lo[k] = std::min(node.lo[k], leaf.lo[k]);
+        node.hi[k] = std::max(node.hi[k], leaf.hi[k]);
+      }
+    }
+    setRadius(node);
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
-      if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
+      if (node.hi[k] - node.lo[k] > node.hi[axis] - node.lo[axis]) axis = k;
     }
     const std::size_t half = (begin + end) / 2;
-    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(at(begin), at(half), at(end), [&](int i, int j) {
-      const double x = middle(i, axis), y = middle(j, axis);
-      return x != y ? x < y : i < j;  // the same tree on every machine
-    });
-    const std::size_t left = nodes_.size();
-    nodes_[me].child = static_cast<std::int32_t>(left);
-    nodes_.resize(left + 2);
+    if (end - begin > 2) {
+      // Keys order by the boxes' middles, then by the index: the same tree on every machine, in one comparison.
+      for (std::size_t i = begin; i < end; ++i) {
+        const Node& leaf = leaves_[order_[i]];
+        const float middle = leaf.lo[axis] + leaf.hi[axis] + 0.0f;  // + 0: no negative zero
+        std::uint32_t bits;
+        std::memcpy(&bits, &middle, sizeof bits);
+        bits ^= bits >> 31 ? 0xffffffffu : 0x80000000u;
+        keys_[i] = static_cast<std::uint64_t>(bits) << 32 | order_[i];
+      }
+      const auto at = [&](std::size_t i) { return keys_.begin() + static_cast<std::ptrdiff_t>(i); };
+      std::nth_element(at(begin), at(half), at(end));
+      for (std::size_t i = begin; i < end; ++i) order_[i] = static_cast<std::uint32_t>(keys_[i]);
+    }
+    const std::size_t left = used_;
+    used_ += 2;
+    node.child = static_cast<std::int32_t>(left);
+    nodes_[me] = node;
     build(left, begin, half);
     build(left + 1, half, end);
   }
-  const std::vector<BoxBounds>& boxes_;
-  std::vector<int> order_;
+  const std::vector<Node>& leaves_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint64_t> keys_;
   std::vector<Node> nodes_;
+  std::size_t used_ = 0;
 };
+
+bool isUnbounded(const Piece& p) { return p.kind == PieceKind::halfspace || p.kind == PieceKind::plane; }
 
 /// Half sizes of a shape's core along the axes.
 void coreHalf(const Piece& p, double* half) {
@@ -117,68 +145,185 @@ void coreHalf(const Piece& p, double* half) {
       half[0] = half[1] = 0;
       half[2] = e[2];
       return;
-    default:
+    case PieceKind::point:
       half[0] = half[1] = half[2] = 0;
+      return;
+    default:
+      throw std::invalid_argument("this kind of piece has no size of its own");
   }
+}
+
+/// Box of a bounded shape; sets its reach.
+BoxBounds measure(Piece& piece) {
+  BoxBounds box;
+  double half[3], sum = 0;
+  coreHalf(piece, half);
+  for (int k = 0; k < 3; ++k) {
+    const double far = std::abs(piece.center[k]) + half[k];
+    sum += far * far;
+    box.lo[k] = piece.center[k] - half[k] - piece.radius;
+    box.hi[k] = piece.center[k] + half[k] + piece.radius;
+  }
+  piece.reach = std::sqrt(sum) * (1 + 1e-15);
+  if (!(piece.reach + piece.radius <= kFarthest)) throw std::invalid_argument("a size is not finite or beyond 1e9 m");
+  return box;
+}
+
+void requirePoints(const std::vector<Eigen::Vector3d>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest) continue;
+    throw std::invalid_argument("vertex " + std::to_string(i) +
+                                (points[i].allFinite() ? " is more than 1e9 m away" : " is not finite"));
+  }
+}
+
+/// Adds a triangle's vertices to those of the pieces, and gives its box.
+BoxBounds addTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                      std::vector<double>& vertices, Piece& piece) {
+  piece.kind = PieceKind::vertices;
+  piece.first_vertex = static_cast<std::int32_t>(vertices.size() / 3);
+  piece.num_vertices = 3;
+  BoxBounds box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = std::min({a[k], b[k], c[k]});
+    box.hi[k] = std::max({a[k], b[k], c[k]});
+  }
+  for (const Eigen::Vector3d* v : {&a, &b, &c}) vertices.insert(vertices.end(), v->data(), v->data() + 3);
+  piece.reach = std::sqrt(std::max({a.squaredNorm(), b.squaredNorm(), c.squaredNorm()})) * (1 + 1e-15);
+  const Eigen::Vector3d n = (b - a).cross(c - a).normalized();
+  const bool unit = std::abs(n.squaredNorm() - 1) <= 2e-15;  // not where slivers let it underflow
+  for (int k = 0; k < 3; ++k) piece.size[k] = unit ? n[k] : 0;
+  return box;
 }
 
 }  // namespace
 
-std::vector<Node> buildBoxTree(const std::vector<BoxBounds>& boxes) { return Builder(boxes).run(); }
+std::vector<Node> buildBoxTree(const std::vector<BoxBounds>& boxes) {
+  std::vector<Node> leaves(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) leaves[i] = makeLeaf(boxes[i], static_cast<std::int32_t>(i));
+  return Builder(leaves).run();
+}
 
 std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
                                                           const std::vector<std::array<int, 3>>& triangles) {
   if (triangles.empty()) throw std::invalid_argument("the mesh has no triangle");
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (!vertices[i].allFinite()) throw std::invalid_argument("vertex " + std::to_string(i) + " is not finite");
-    if (vertices[i].cwiseAbs().maxCoeff() > 1e9) {
-      throw std::invalid_argument("vertex " + std::to_string(i) + " is more than 1e9 m away");
-    }
-  }
-  auto tree = std::shared_ptr<ShapeTree>(new ShapeTree);
-  tree->pieces_.reserve(triangles.size());
+  requirePoints(vertices);
+  auto tree = std::make_shared<ShapeTree>(Private());
+  std::vector<Node> leaves(triangles.size());
+  tree->pieces_.resize(triangles.size());
   tree->vertices_.reserve(9 * triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    Piece piece;
-    piece.kind = PieceKind::vertices;
-    piece.first_vertex = static_cast<std::int32_t>(tree->vertices_.size() / 3);
-    piece.num_vertices = 3;
-    piece.primitive = static_cast<std::int32_t>(i);
-    std::array<Eigen::Vector3d, 3> v;
+    const Eigen::Vector3d* v[3];
     for (std::size_t k = 0; k < 3; ++k) {
       const int index = triangles[i][k];
       if (index < 0 || static_cast<std::size_t>(index) >= vertices.size()) {
         throw std::invalid_argument("triangle " + std::to_string(i) + " has a vertex index out of range");
       }
-      v[k] = vertices[static_cast<std::size_t>(index)];
-      tree->vertices_.insert(tree->vertices_.end(), v[k].data(), v[k].data() + 3);
-      piece.reach = std::max(piece.reach, v[k].norm() * (1 + 1e-15));
+      v[k] = &vertices[static_cast<std::size_t>(index)];
     }
-    const Eigen::Vector3d n = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
-    const bool unit = std::abs(n.squaredNorm() - 1) <= 2e-15;  // not where slivers let it underflow
-    for (int k = 0; k < 3; ++k) piece.size[k] = unit ? n[k] : 0;
-    tree->pieces_.push_back(piece);
+    Piece& piece = tree->pieces_[i];
+    piece.primitive = static_cast<std::int32_t>(i);
+    leaves[i] = makeLeaf(addTriangle(*v[0], *v[1], *v[2], tree->vertices_, piece), piece.primitive);
   }
-  tree->build();
+  tree->nodes_ = Builder(leaves).run();
+  tree->show();
   tree->makeOuter(vertices);
   return tree;
 }
 
-std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& given) {
-  Piece piece = given;
-  auto tree = std::shared_ptr<ShapeTree>(new ShapeTree);
-  double half[3];
-  coreHalf(piece, half);
-  const double far[3] = {std::abs(piece.center[0]) + half[0], std::abs(piece.center[1]) + half[1],
-                         std::abs(piece.center[2]) + half[2]};
-  piece.reach = std::sqrt(far[0] * far[0] + far[1] * far[1] + far[2] * far[2]) * (1 + 1e-15);
-  if (!std::isfinite(piece.reach + piece.radius) || piece.reach + piece.radius > 1e9) {
-    throw std::invalid_argument("a size is not finite or beyond 1e9 m");
-  }
-  tree->pieces_.push_back(piece);
-  tree->build();
-  tree->view_.outer = tree->pieces_.data();
+std::shared_ptr<const ShapeTree> ShapeTree::fromTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                                         const Eigen::Vector3d& c) {
+  requirePoints({a, b, c});
+  auto tree = std::make_shared<ShapeTree>(Private());
+  tree->root_[0] = makeLeaf(addTriangle(a, b, c, tree->vertices_, tree->outer_), 0);
+  tree->show();
   return tree;
+}
+
+std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Vector3d>& points) {
+  if (points.empty()) throw std::invalid_argument("it has no vertex");
+  if (points.size() > kMostHullPoints) throw std::invalid_argument("it has too many vertices");
+  requirePoints(points);
+  auto tree = std::make_shared<ShapeTree>(Private());
+  tree->storeHull(points);
+  BoxBounds box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = kInfinity;
+    box.hi[k] = -kInfinity;
+    for (const Eigen::Vector3d& p : points) {
+      box.lo[k] = std::min(box.lo[k], p[k]);
+      box.hi[k] = std::max(box.hi[k], p[k]);
+    }
+  }
+  tree->root_[0] = makeLeaf(box, 0);
+  tree->show();
+  return tree;
+}
+
+std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
+  auto tree = std::make_shared<ShapeTree>(Private());
+  tree->outer_ = piece;
+  if (!isUnbounded(piece)) {
+    tree->root_[0] = makeLeaf(measure(tree->outer_), 0);
+    tree->show();
+    return tree;
+  }
+  const double* n = piece.size;
+  if (!(std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) <= 2e-15)) {
+    throw std::invalid_argument("its normal is not of unit length");
+  }
+  if (!(std::abs(piece.center[0]) <= kFarthest)) throw std::invalid_argument("it is not finite or more than 1e9 m away");
+  tree->outer_.reach = std::abs(piece.center[0]);
+  Node& root = tree->root_[0];
+  for (int k = 0; k < 3; ++k) {
+    root.lo[k] = -engine::kUnbounded;
+    root.hi[k] = engine::kUnbounded;
+  }
+  setRadius(root);
+  root.child = ~0;
+  tree->show();
+  tree->view_.outer = nullptr;  // the box tells all that can be told without the normal
+  tree->view_.extent = tree->outer_.reach;
+  return tree;
+}
+
+std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces) {
+  if (pieces.size() == 1) return fromPiece(pieces[0]);
+  if (pieces.empty()) {
+    Piece point;
+    point.kind = PieceKind::point;
+    auto tree = std::make_shared<ShapeTree>(Private());
+    tree->outer_ = point;
+    tree->root_[0] = makeLeaf(measure(tree->outer_), 0);
+    tree->show();
+    tree->view_.num_pieces = 0;
+    return tree;
+  }
+  auto tree = std::make_shared<ShapeTree>(Private());
+  std::vector<Node> leaves(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) leaves[i] = makeLeaf(measure(pieces[i]), static_cast<std::int32_t>(i));
+  tree->pieces_ = std::move(pieces);
+  tree->nodes_ = Builder(leaves).run();
+  tree->show();
+  return tree;
+}
+
+/// Makes points the hull that `outer_` is, eight lanes wide; its radius is left alone.
+void ShapeTree::storeHull(const std::vector<Eigen::Vector3d>& points) {
+  const std::size_t n = (points.size() + 7) / 8 * 8;
+  hulls_.resize(3 * n + 7);
+  const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(hulls_.data()) / sizeof(double) % 8;
+  double* x = hulls_.data() + (8 - misaligned) % 8;
+  double reach = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3d& v = points[std::min(i, points.size() - 1)];  // the last one fills up
+    for (std::size_t k = 0; k < 3; ++k) x[k * n + i] = v[static_cast<Eigen::Index>(k)];
+    reach = std::max(reach, v.squaredNorm());
+  }
+  view_.hulls = x;
+  outer_.kind = PieceKind::hull;
+  outer_.num_vertices = static_cast<std::int32_t>(n);
+  outer_.reach = std::sqrt(reach) * (1 + 1e-15);
 }
 
 /// One piece around a body of many: a hull of few vertices, grown so far that it holds all points.
@@ -189,68 +334,44 @@ void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
   }
   const OuterHull hull = makeOuterHull(points);
   if (hull.vertices.empty()) return;
-  const std::size_t n = (hull.vertices.size() + 7) / 8 * 8;
-  hulls_.resize(3 * n + 8);
-  const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(hulls_.data()) / sizeof(double) % 8;
-  double* x = hulls_.data() + (8 - misaligned) % 8;
-  outer_.kind = PieceKind::hull;
-  outer_.first_vertex = 0;
-  outer_.num_vertices = static_cast<std::int32_t>(n);
+  storeHull(hull.vertices);
   outer_.radius = hull.radius;
-  for (int k = 0; k < 3; ++k) outer_.size[k] = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d& v = hull.vertices[std::min(i, hull.vertices.size() - 1)];  // the last one fills up
-    for (std::size_t k = 0; k < 3; ++k) x[k * n + i] = v[static_cast<Eigen::Index>(k)];
-    outer_.reach = std::max(outer_.reach, v.norm() * (1 + 1e-15));
-  }
-  view_.hulls = x;
   view_.outer = &outer_;
 }
 
-void ShapeTree::build() {
-  std::vector<BoxBounds> boxes(pieces_.size());
-  for (std::size_t i = 0; i < pieces_.size(); ++i) {
-    const Piece& p = pieces_[i];
-    BoxBounds& box = boxes[i];
-    double half[3];
-    coreHalf(p, half);
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = p.center[k] - half[k];
-      box.hi[k] = p.center[k] + half[k];
-      if (p.kind == PieceKind::vertices) {
-        box.lo[k] = kInfinity;
-        box.hi[k] = -kInfinity;
-        for (int j = 0; j < p.num_vertices; ++j) {
-          const double x = vertices_[static_cast<std::size_t>(3 * (p.first_vertex + j) + k)];
-          box.lo[k] = std::min(box.lo[k], x);
-          box.hi[k] = std::max(box.hi[k], x);
-        }
-      }
-      box.lo[k] -= p.radius;
-      box.hi[k] += p.radius;
-    }
-  }
-  nodes_ = buildBoxTree(boxes);
-  view_.nodes = nodes_.data();
-  view_.pieces = pieces_.data();
+/// Points the view at what was built: a tree over pieces, or else the single piece.
+void ShapeTree::show() {
+  const bool single = pieces_.empty();
+  if (single) root_[1] = root_[0];
+  view_.nodes = single ? root_ : nodes_.data();
+  view_.num_nodes = single ? 2 : static_cast<std::int32_t>(nodes_.size());
+  view_.pieces = single ? &outer_ : pieces_.data();
+  view_.num_pieces = single ? 1 : static_cast<std::int32_t>(pieces_.size());
   view_.vertices = vertices_.data();
-  view_.num_nodes = static_cast<std::int32_t>(nodes_.size());
-  view_.num_pieces = static_cast<std::int32_t>(pieces_.size());
+  if (single) view_.outer = &outer_;
   view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
 
-Eigen::Vector3d ShapeTree::lower() const { return Eigen::Vector3f::Map(nodes_.front().lo).cast<double>(); }
-
-Eigen::Vector3d ShapeTree::upper() const { return Eigen::Vector3f::Map(nodes_.front().hi).cast<double>(); }
+std::size_t ShapeTree::bytes() const {
+  return sizeof(*this) + nodes_.capacity() * sizeof(Node) + pieces_.capacity() * sizeof(Piece) +
+         (vertices_.capacity() + hulls_.capacity()) * sizeof(double);
+}
 
 std::array<double, 7> ShapeTree::lineSweptSphere() const {
   // Points whose balls hold the body: vertices, or the corners of a shape's box (radii added at the end).
   std::vector<Eigen::Vector3d> points;
   double radius = 0;
   for (std::size_t i = 0; i + 2 < vertices_.size(); i += 3) points.push_back(Eigen::Vector3d::Map(&vertices_[i]));
-  for (const Piece& p : pieces_) {
+  for (int i = 0; i < std::max(1, view_.num_pieces); ++i) {
+    const Piece& p = view_.pieces[i];
+    if (isUnbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
     radius = std::max(radius, p.radius);
     if (p.kind == PieceKind::vertices) continue;
+    if (p.kind == PieceKind::hull) {
+      const double* x = view_.hulls + p.first_vertex;
+      for (int j = 0; j < p.num_vertices; ++j) points.emplace_back(x[j], x[p.num_vertices + j], x[2 * p.num_vertices + j]);
+      continue;
+    }
     double half[3];
     coreHalf(p, half);
     for (int corner = 0; corner < 8; ++corner) {

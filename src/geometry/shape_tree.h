@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -12,32 +13,53 @@
 namespace fcl_artic {
 
 /// A geometry as a tree of boxes over convex pieces: owner of what engine::TreeView shows. Constant once built.
+///
+/// A tree may be empty (view().num_pieces == 0): nothing touches it. It still has node 0 and piece 0, a point at the
+/// origin: whoever forgets to ask finds a contact that is none, never the other way round.
 class ShapeTree {
+  struct Private {};
+
  public:
-  /// A triangle surface; triangle i becomes a piece with primitive id ids[i]. Degenerate triangles (no area) count as the
+  /// A triangle surface; triangle i becomes a piece with primitive id i. Degenerate triangles (no area) count as the
   /// segments or points that they are.
   /// @throws std::invalid_argument: no triangle, an index out of range, a vertex that is not finite.
   static std::shared_ptr<const ShapeTree> fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
                                                         const std::vector<std::array<int, 3>>& triangles);
-  /// One convex piece, as SHAPES section 1.3 has it; sizes must be positive and finite.
+  /// One triangle that is a shape: its primitive id is -1.
+  static std::shared_ptr<const ShapeTree> fromTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                                       const Eigen::Vector3d& c);
+  /// The convex hull of points, of any number from 1 on, as one piece. They need not all be its corners.
+  static std::shared_ptr<const ShapeTree> fromHull(const std::vector<Eigen::Vector3d>& points);
+  /// One convex piece without vertices, as SHAPES section 1.3 has it; sizes must be positive and finite. halfspace and
+  /// plane: a unit normal; the whole is unbounded then, and its box ends at engine::kUnbounded.
   static std::shared_ptr<const ShapeTree> fromPiece(const engine::Piece& piece);
+  /// Bounded pieces without vertices, their primitive ids as given; empty for none.
+  static std::shared_ptr<const ShapeTree> fromPieces(std::vector<engine::Piece> pieces);
 
   const engine::TreeView& view() const { return view_; }
   /// Box of the whole in its own frame.
-  Eigen::Vector3d lower() const;
-  Eigen::Vector3d upper() const;
+  Eigen::Vector3d lower() const { return Eigen::Vector3f::Map(view_.nodes[0].lo).cast<double>(); }
+  Eigen::Vector3d upper() const { return Eigen::Vector3f::Map(view_.nodes[0].hi).cast<double>(); }
   /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
+  /// @throws std::invalid_argument when it is unbounded.
   std::array<double, 7> lineSweptSphere() const;
+  /// Memory that it takes, roughly.
+  std::size_t bytes() const;
+
+  explicit ShapeTree(Private) {}
+  ShapeTree(const ShapeTree&) = delete;
+  ShapeTree& operator=(const ShapeTree&) = delete;
 
  private:
-  ShapeTree() = default;
-  void build();
+  void show();
+  void storeHull(const std::vector<Eigen::Vector3d>& points);
   void makeOuter(const std::vector<Eigen::Vector3d>& points);
+  engine::Node root_[2];  ///< a single piece's node: most shapes then need no memory but this object's
+  engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece
   std::vector<engine::Node> nodes_;
   std::vector<engine::Piece> pieces_;
   std::vector<double> vertices_;
   std::vector<double> hulls_;  ///< with room for alignment
-  engine::Piece outer_;
   engine::TreeView view_;
 };
 
