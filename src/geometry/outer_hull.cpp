@@ -153,7 +153,8 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points) {
   }
   HullDistance distance(hull.vertices);
   // Some points from all over first: most others then need no more than the proof that they are no farther.
-  for (std::size_t i = 0; i < points.size(); i += 61) hull.radius = std::max(hull.radius, distance(points[i], hull.radius));
+  for (std::size_t i = 0; i < points.size(); i += 61)
+    hull.radius = std::max(hull.radius, distance(points[i], hull.radius));
   for (const Eigen::Vector3d& p : points) hull.radius = std::max(hull.radius, distance(p, hull.radius));
   return hull;
 }

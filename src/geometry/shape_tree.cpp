@@ -39,7 +39,9 @@ float roundUp(double x) {
   std::memcpy(&up, &bits, sizeof up);
   return up;
 }
-float roundDown(double x) { return -roundUp(-x); }
+float roundDown(double x) {
+  return -roundUp(-x);
+}
 
 void setRadius(Node& node) {
   double radius = 0;
@@ -126,11 +128,13 @@ class Builder {
   std::size_t used_ = 0;
 };
 
-bool isUnbounded(const Piece& p) { return p.kind == PieceKind::halfspace || p.kind == PieceKind::plane; }
+bool isUnbounded(const Piece& p) {
+  return p.kind == PieceKind::halfspace || p.kind == PieceKind::plane;
+}
 
 /// Half sizes of a shape's core along the axes.
 void coreHalf(const Piece& p, double* half) {
-  const double *e = p.size;
+  const double* e = p.size;
   switch (p.kind) {
     case PieceKind::box:
     case PieceKind::ellipsoid:
@@ -272,7 +276,8 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
   if (!(std::abs(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1) <= 2e-15)) {
     throw std::invalid_argument("its normal is not of unit length");
   }
-  if (!(std::abs(piece.center[0]) <= kFarthest)) throw std::invalid_argument("it is not finite or more than 1e9 m away");
+  if (!(std::abs(piece.center[0]) <= kFarthest))
+    throw std::invalid_argument("it is not finite or more than 1e9 m away");
   tree->outer_.reach = std::abs(piece.center[0]);
   Node& root = tree->root_[0];
   for (int k = 0; k < 3; ++k) {
@@ -301,7 +306,8 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
   }
   auto tree = std::make_shared<ShapeTree>(Private());
   std::vector<Node> leaves(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) leaves[i] = makeLeaf(measure(pieces[i]), static_cast<std::int32_t>(i));
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+    leaves[i] = makeLeaf(measure(pieces[i]), static_cast<std::int32_t>(i));
   tree->pieces_ = std::move(pieces);
   tree->nodes_ = Builder(leaves).run();
   tree->show();
@@ -369,7 +375,8 @@ std::array<double, 7> ShapeTree::lineSweptSphere() const {
     if (p.kind == PieceKind::vertices) continue;
     if (p.kind == PieceKind::hull) {
       const double* x = view_.hulls + p.first_vertex;
-      for (int j = 0; j < p.num_vertices; ++j) points.emplace_back(x[j], x[p.num_vertices + j], x[2 * p.num_vertices + j]);
+      for (int j = 0; j < p.num_vertices; ++j)
+        points.emplace_back(x[j], x[p.num_vertices + j], x[2 * p.num_vertices + j]);
       continue;
     }
     double half[3];
