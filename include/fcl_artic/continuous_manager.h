@@ -76,8 +76,8 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
 
   /// Makes all changes effective; needed before the first query and after objects were registered or unregistered.
   void setup();
-  /// Reads motions and geometries again, of all objects or of some, and makes that effective. A geometry that several of
-  /// them share is read once.
+  /// Reads motions and geometries again, of all objects or of some, and makes all changes effective. (Of a mesh that is
+  /// what it was, that costs a comparison.)
   /// @throws std::invalid_argument as registerObject(); when one is not registered. Nothing is changed then.
   void update();
   void update(Object* object);
@@ -97,8 +97,8 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// @throws std::logic_error when objects were registered or unregistered after the last setup() or update().
   /// @throws std::invalid_argument: callback null, margin negative or not finite.
   void collide(void* cdata, Callback callback, double margin = 0) const;
-  /// One object against all registered ones but itself. It need not be registered; else it is taken as read last. A large
-  /// mesh that is asked about often is better registered somewhere than read each time.
+  /// One object against all registered ones but itself. It need not be registered, and is read then; else it is taken as
+  /// read last.
   /// @throws std::invalid_argument also what registerObject() throws of an object.
   void collide(Object* object, void* cdata, Callback callback, double margin = 0) const;
   /// Objects of this manager, which come first, against those of another one. An object is not paired with itself; two that

@@ -33,18 +33,8 @@ struct Item {
   BoxBounds box = {};  ///< in the world, over all of the motion
 };
 
-/// Trees of geometries by address. Each geometry in it is kept alive by an item, or its tree has expired.
-using KnownShapes = std::unordered_map<const Geometry*, std::weak_ptr<const ShapeTree>>;
-
-std::shared_ptr<const ShapeTree> shapeOf(const Geometry& geometry, KnownShapes& known) {
-  std::weak_ptr<const ShapeTree>& entry = known[&geometry];
-  std::shared_ptr<const ShapeTree> shape = entry.lock();
-  if (!shape) entry = shape = readGeometry(geometry);
-  return shape;
-}
-
 /// @param what  begins the messages.
-Item readObject(const Object& object, const std::string& what, KnownShapes& known) {
+Item readObject(const Object& object, const std::string& what) {
   Item item;
   item.geometry = object.collisionGeometry();
   if (!item.geometry) throw std::invalid_argument(what + " has no geometry");
@@ -54,7 +44,7 @@ Item readObject(const Object& object, const std::string& what, KnownShapes& know
                                 ") has no motion; what stands still has a TranslationMotion from its pose to the same pose");
   }
   try {
-    item.shape = shapeOf(*item.geometry, known);
+    item.shape = cachedGeometry(*item.geometry);
     item.motion = readMotion(*motion);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(what + ": " + e.what());
@@ -68,9 +58,9 @@ Item readObject(const Object& object, const std::string& what, KnownShapes& know
   return item;
 }
 
-Item readObject(Object* object, const std::string& what, KnownShapes& known) {
+Item readObject(Object* object, const std::string& what) {
   if (!object) throw std::invalid_argument(what + " is null");
-  Item item = readObject(*object, what, known);
+  Item item = readObject(*object, what);
   item.object = object;
   return item;
 }
@@ -197,14 +187,12 @@ class Earliest {
 }  // namespace
 
 fcl::AABBd sweptAABB(const fcl::ContinuousCollisionObjectd& object) {
-  KnownShapes known;
-  return publicBox(readObject(object, "sweptAABB: the object", known).box);
+  return publicBox(readObject(object, "sweptAABB: the object").box);
 }
 
 struct ContinuousCollisionManager::Impl {
-  std::vector<Item> items;                              ///< in order of registration
+  std::vector<Item> items;                               ///< in order of registration
   std::unordered_map<const Object*, std::size_t> index;  ///< into items
-  KnownShapes known;
   bool ready = true;  ///< as long as there is nothing to set up
 
   // Made by build(), read by queries.
@@ -213,7 +201,7 @@ struct ContinuousCollisionManager::Impl {
 
   void add(Object* object, const std::string& what) {
     if (index.count(object)) throw std::invalid_argument(what + " is registered already");
-    items.push_back(readObject(object, what, known));
+    items.push_back(readObject(object, what));
     index[object] = items.size() - 1;
     ready = false;
   }
@@ -221,9 +209,6 @@ struct ContinuousCollisionManager::Impl {
     boxes.clear();
     for (const Item& item : items) boxes.push_back(item.box);
     tree = buildBoxTree(boxes);
-    for (auto entry = known.begin(); entry != known.end();) {
-      entry = entry->second.expired() ? known.erase(entry) : std::next(entry);
-    }
     ready = true;
   }
   void requireReady() const {
@@ -231,8 +216,8 @@ struct ContinuousCollisionManager::Impl {
   }
   const Item& item(int i) const { return items[static_cast<std::size_t>(i)]; }
   const Item* find(const Object* object) const {
-    const auto known_object = index.find(object);
-    return known_object == index.end() ? nullptr : &items[known_object->second];
+    const auto known = index.find(object);
+    return known == index.end() ? nullptr : &items[known->second];
   }
   /// Indices in order, of items from `begin` on whose boxes come near the box.
   void near(const BoxBounds& box, double margin, int begin, std::vector<int>& found) const {
@@ -266,8 +251,7 @@ struct ContinuousCollisionManager::Impl {
     const Item* one = find(object);
     const std::size_t pairs = items.size() - (one ? 1 : 0);
     if (!one) {
-      KnownShapes none;
-      read = readObject(object, "collide: the object", none);
+      read = readObject(object, "collide: the object");
       one = &read;
     }
     std::vector<int> found;
@@ -353,15 +337,13 @@ void ContinuousCollisionManager::update() {
 void ContinuousCollisionManager::update(Object* object) { update(std::vector<Object*>{object}); }
 
 void ContinuousCollisionManager::update(const std::vector<Object*>& objects) {
-  KnownShapes known;
   std::vector<Item> items;  // all or nothing
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const std::string what = "update: object " + std::to_string(i);
     if (!impl_->find(objects[i])) throw std::invalid_argument(what + " is not registered");
-    items.push_back(readObject(objects[i], what, known));
+    items.push_back(readObject(objects[i], what));
   }
   for (Item& item : items) impl_->items[impl_->index[item.object]] = std::move(item);
-  for (const auto& [geometry, shape] : known) impl_->known[geometry] = shape;
   impl_->build();
 }
 
