@@ -80,24 +80,17 @@ inline double positivePrefix(const double* G) {
   return 0;
 }
 
-/// Bernstein coefficients over a lane's interval of a lower bound of the gap beyond `margin` along n.
-inline void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n, double margin,
-                     double pad, int lane, double* G) {
+/// Bernstein coefficients of a lower bound of the gap beyond `margin` along n, over each lane's interval.
+/// @param n  in the frame of side.still, from still to moving.
+FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n, double margin,
+                               double pad, Lanes* G) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
-  Lanes lower[3], upper[3];
-  movingRange(side, moving, n, lower, upper);
-  const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
-  for (int k = 0; k < 3; ++k) G[k] = lower[k][lane] - s_upper - slack;
-}
-
-/// How much of a lane's interval n certifies, from its left end: a fraction in [0, 1].
-/// @param n  in the frame of side.still, from still to moving.
-inline double certainlyFreePrefix(const Side& side, const Piece& still, const Piece& moving, const double* n,
-                                  double margin, double pad, int lane) {
-  double G[3];
-  gapBound(side, still, moving, n, margin, pad, lane, G);
-  return positivePrefix(G);
+  Lanes upper[3];
+  movingRange(side, moving, n, G, upper);
+  const Lanes slack(s_upper +
+                    (margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad));
+  for (int k = 0; k < 3; ++k) G[k] = G[k] - slack;
 }
 
 }  // namespace FCL_ARTIC_ISA

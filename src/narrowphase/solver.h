@@ -5,8 +5,9 @@
 //   solve            stage 1 leaves (pair, lanes); then solveInterval on [0, 1]
 //   solveInterval    one batch: eight equal parts of an interval; dual traversal of the pairs left; then, lane by lane from
 //                    the earliest, the same again on what that lane left undecided
-//   traverse         node pairs by swept boxes, leaf pairs by certificates; a pose proven in contact ends all later lanes
-//   finishLane       the last lane: t_lower by prefix roots, t_upper by proofs of contact
+//   traverse         node pairs by swept boxes, leaf pairs by certificates; where GJK claims overlap, later lanes are put off
+//   finishLane       a few leaf pairs are left in a lane: each is followed by itself (advance: t_lower by the certificate's
+//                    first root, a Newton step), then t_upper by proofs of contact
 //
 // What is discarded is discarded by the certificate (certificate.h) or by a swept box (boxes along the frames' axes are the
 // same certificate with n an axis). Everything else here is order and effort.
@@ -94,6 +95,7 @@ class Solver {
   const FrameLanes* frames(int sweep);
   void setupPair(int pair);
   void updateLive();
+  bool isLeafPair(const Entry& e) const;
 
   // Stages.
   void cull();
@@ -101,7 +103,12 @@ class Solver {
   void collectInitialContacts(int begin, int end);
   double firstFreeTime(double start, double width, int begin, int end);
   Step solveInterval(double start, double width, int begin, int end, int parent_lane);
-  Step finishLane(double start, double width, int begin, int end, int lane, int* refine);
+  Step finishLane(double start, double width, int begin, int end, int lane, bool* refine);
+  struct Final;
+  bool advance(Final& f, double stop, bool patient);
+  bool prove(Final& f);
+  void describe(Final& f, LeafContact& contact);
+  void orderContacts(int begin, double bracket);
   void traverse(int pair, int a, int b, unsigned mask);
   unsigned nodesMayTouch(int a, int b, unsigned mask);
   unsigned apartFromUnbounded(int a, int b);
@@ -110,8 +117,7 @@ class Solver {
   unsigned hullsMayTouch(unsigned mask);
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
   int sweptNode(int side, int node);
-  DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane) const;
-  bool proveAt(int piece_a, int piece_b, int lane, const double* guess, double* point);
+  DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane, double tau = 0) const;
   bool outOfBudget();
   double now() const;
 
@@ -123,9 +129,10 @@ class Solver {
   Lanes tm_;
   double lane_start_[kLanes], lane_end_[kLanes], tm_at_[kLanes], d_ = 0;
   double begin_ = 0, end_ = 1;  ///< hull of all intervals
-  unsigned live_ = 0;   ///< lanes that may still hold the first contact
-  unsigned contact_lane_ = 0;  ///< the lane with the earliest proven contact: it is split whatever else is found in it
+  unsigned live_ = 0;   ///< lanes that are worth work: not behind a contact that is proven or claimed
+  unsigned contact_lane_ = 0;  ///< the lane with the earliest of these: it is split whatever else is found in it
   bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
+  double claimed_ = 2;  ///< earliest time at which GJK claimed overlap; 2: none. Lanes behind it are put off, not dropped.
   bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
   unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
 
@@ -153,11 +160,16 @@ class Solver {
   Buffer<Entry> entries_;
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
   Buffer<Ignored> ignored_;
+  /// A leaf pair that is followed by itself.
   struct Final {
     Entry entry;
-    double t_lower;
-    double normal[3];
+    double t_lower;    ///< free before
+    double normal[3];  ///< GJK's witness at t_lower
+    double gap;        ///< along it
     bool have_normal;
+    bool stuck;        ///< the gap is gone at t_lower, as far as can be told
+    bool certain;
+    double t_upper, point[3];  ///< a proven contact
   };
   Buffer<Final> finals_;
   Buffer<LeafContact> contacts_;
@@ -173,6 +185,8 @@ constexpr double kSplitTime = 0.7;
 constexpr double kNarrowestLane = 1.0 / (1ull << 45);
 /// Hulls that overlap in so many lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;
+/// So many leaf pairs in a lane are followed one by one; more are split in time first.
+constexpr int kFewLeaves = 6;
 /// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -191,6 +205,7 @@ inline bool Solver::outOfBudget() {
 }
 
 inline void Solver::beginBatch(double start, double width) {
+  if (claimed_ <= start) claimed_ = 2;  // all is proven free up to here: it was no contact
   double tm[kLanes];
   const double w = width / kLanes;
   for (int i = 0; i < kLanes; ++i) {
@@ -222,8 +237,9 @@ inline void Solver::evaluateAt(const double* tm, double d) {
 inline void Solver::updateLive() {
   live_ = contact_lane_ = 0;
   for (int i = 0; i < kLanes; ++i) {
-    live_ |= static_cast<unsigned>(lane_start_[i] < t_upper_) << i;
-    contact_lane_ |= static_cast<unsigned>(lane_start_[i] < t_upper_ && t_upper_ < lane_end_[i]) << i;
+    const double end = last_ ? t_upper_ : min(t_upper_, claimed_);  // nothing is put off in the last lanes
+    live_ |= static_cast<unsigned>(lane_start_[i] < end) << i;
+    contact_lane_ |= static_cast<unsigned>(lane_start_[i] < end && end < lane_end_[i]) << i;
   }
   if (last_) contact_lane_ = 0;
 }
@@ -256,6 +272,11 @@ inline Solver::PairParts Solver::parts(int index) const {
   }
   const int a = problem_->obstacles[index % problem_->num_obstacles], b = problem_->movers[index / problem_->num_obstacles];
   return {a, b, 0, problem_->bodies[b].step, &problem_->bodies[a].inverse, &problem_->bodies[b].placement};
+}
+
+inline bool Solver::isLeafPair(const Entry& e) const {
+  const PairParts pair = parts(e.pair);
+  return problem_->bodies[pair.a].tree->nodes[e.a].isLeaf() && problem_->bodies[pair.b].tree->nodes[e.b].isLeaf();
 }
 
 /// Time from which a pair is watched: 0 but for ignored initial contacts.
@@ -362,29 +383,27 @@ inline unsigned Solver::apartFromUnbounded(int a, int b) {
   return separated;
 }
 
-inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane) const {
+/// The pieces at a lane's middle, or, but for the remainder, at any tau of it.
+inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane, double tau) const {
   DifferenceBody body;
   body.tree_a = side_[0].still;
   body.tree_b = side_[0].moving;
   body.a = &a;
   body.b = &b;
-  for (int i = 0; i < 9; ++i) body.pose.R[i] = side_[0].m.R[0][i][lane];
-  for (int i = 0; i < 3; ++i) body.pose.c[i] = side_[0].m.c[0][i][lane];
+  const RigidLanes& m = side_[0].m;
+  for (int i = 0; i < 9; ++i) body.pose.R[i] = m.R[0][i][lane];
+  for (int i = 0; i < 3; ++i) body.pose.c[i] = m.c[0][i][lane];
+  if (tau != 0) {
+    for (int i = 0; i < 9; ++i) body.pose.R[i] += tau * (m.R[1][i][lane] + tau * m.R[2][i][lane]);
+    for (int i = 0; i < 3; ++i) body.pose.c[i] += tau * (m.c[1][i][lane] + tau * m.c[2][i][lane]);
+  }
   return body;
-}
-
-/// Proof of contact at a lane's middle.
-inline bool Solver::proveAt(int piece_a, int piece_b, int lane, const double* guess, double* point) {
-  ++statistics_.contact_proofs;
-  const DifferenceBody body =
-      differenceAt(side_[0].still->pieces[piece_a], side_[0].moving->pieces[piece_b], lane);
-  return certainlyTouching(body, query_->margin, pose_error_, guess, point);
 }
 
 /// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
 /// lanes, each frozen in one frame and in the other and tried on all lanes.
 /// @param most  so many overlapping middles end the search.
-/// @param onOverlap  called with a lane at whose middle GJK claims overlap, and a direction between the pieces.
+/// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
 inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap) {
   const double margin = query_->margin;
@@ -410,7 +429,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     have_guess = true;
     if (g.overlap) {
       --most;
-      onOverlap(lane, guess);
+      onOverlap(lane);
       continue;
     }
     ++statistics_.certificates;
@@ -424,7 +443,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     mask &= ~separated;
     untried &= mask;
   }
-  return mask & live_;
+  return mask;
 }
 
 /// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
@@ -444,7 +463,7 @@ inline unsigned Solver::hullsMayTouch(unsigned mask) {
     }
     if (inside) return mask;
   }
-  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [](int, const double*) {});
+  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [](int) {});
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
@@ -462,13 +481,10 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     mask &= ~certainlySeparated(side_[1], b, a, b.size, query_->margin, pad_, sign);
     if (!mask) return 0;
   }
-  return notSeparated(a, b, mask, kLanes, [&](int lane, const double* guess) {
-    double point[3];
-    if (!decide_only_ && tm_at_[lane] < t_upper_ && tm_at_[lane] >= watchFrom(pair) &&
-        proveAt(piece_a, piece_b, lane, guess, point)) {
-      t_upper_ = tm_at_[lane];
-      updateLive();
-    }
+  return notSeparated(a, b, mask, kLanes, [&](int lane) {
+    if (decide_only_ || last_ || tm_at_[lane] >= claimed_ || tm_at_[lane] < watchFrom(pair)) return;
+    claimed_ = tm_at_[lane];
+    updateLive();
   });
 }
 
@@ -478,7 +494,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   if (a == 0 && b == 0) {
-    mask = nodesMayTouch(0, 0, mask & live_);
+    mask = nodesMayTouch(0, 0, mask);
     if (mask) mask = hullsMayTouch(mask);
     if (!mask) return;
   }
@@ -491,8 +507,11 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     }
     Entry e = stack_[lane][stack_[lane].size() - 1];
     stack_[lane].truncate(stack_[lane].size() - 1);
-    e.mask &= live_;
-    if (!e.mask) continue;
+    if (const unsigned later = e.mask & ~live_) {
+      if (!decide_only_) entries_.push({pair, e.a, e.b, later});
+      e.mask &= live_;
+      if (!e.mask) continue;
+    }
     if (outOfBudget()) break;
     e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
@@ -651,7 +670,11 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
     }
     const double from = watchFrom(e.pair);
     for (int k = 0; k < kLanes && lane_end_[k] <= from; ++k) mask &= ~(1u << k);
-    if (!(mask & live_)) continue;
+    if (!mask) continue;
+    if (!(mask & live_)) {
+      entries_.push({e.pair, e.a, e.b, mask});
+      continue;
+    }
     if (e.pair != present) setupPair(present = e.pair);
     traverse(e.pair, e.a, e.b, mask);
     if (out_of_budget_) return Step::done;
@@ -661,170 +684,185 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
   for (int lane = 0; lane < kLanes; ++lane) {
     const double lane_start = start + lane * w;
     if (lane_start >= t_upper_) break;
-    bool open = false;
-    for (int i = out_begin; i < out_end && !open; ++i) open = entries_[i].mask >> lane & 1;
+    int open = 0;
+    bool leaves = true;
+    for (int i = out_begin; i < out_end && (last || open <= kFewLeaves); ++i) {
+      const Entry& e = entries_[i];
+      if (!(e.mask >> lane & 1)) continue;
+      ++open;
+      leaves = leaves && isLeafPair(e);
+    }
     if (!open) continue;
-    int refine = !last;
-    if (last && finishLane(lane_start, w, out_begin, out_end, lane, &refine) == Step::done) return Step::done;
+    bool refine = true;
+    if (leaves && (last || open <= kFewLeaves) &&
+        finishLane(lane_start, w, out_begin, out_end, lane, &refine) == Step::done) {
+      return Step::done;
+    }
     if (refine && solveInterval(lane_start, w, out_begin, out_end, lane) == Step::done) return Step::done;
     entries_.truncate(out_end);
   }
   return Step::free;
 }
 
-/// A lane no wider than the tolerance that its leaf pairs leave undecided: how far is it free, and is there contact?
-/// @param[out] refine  1 when the pairs are farther apart than the distance tolerance, so that narrower lanes must decide.
-inline Solver::Step Solver::finishLane(double start, double width, int begin, int end, int lane, int* refine) {
-  *refine = 0;
-  finals_.clear();
-  for (int i = begin; i < end; ++i) {
-    const Entry& e = entries_[i];
-    if (!(e.mask >> lane & 1)) continue;
-    finals_.push({e, max(start, watchFrom(e.pair)), {0, 0, 0}, false});
-  }
-  const double stop = start + width;
-  // Prefix roots, from the earliest time any pair is left at: Newton steps on an approach (SHAPES, section 3).
-  double t = start;
-  for (int round = 0; round < 4; ++round) {
-    t = 2;
-    for (int i = 0; i < finals_.size(); ++i) t = min(t, finals_[i].t_lower);
-    if (t >= stop) return Step::free;  // all of the lane is certified after all
-    // Lane 0: the pose at t. Lane 1: [t, stop], a little wider than it, so that rounding of tm loses nothing.
-    const double d = 0.5 * (stop - t) + 4 * kUlp;
-    const double tm[kLanes] = {t, t + 0.5 * (stop - t), t, t, t, t, t, t};
+/// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the first
+/// root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so far.
+/// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
+/// @return false where it ended before `stop` (and before the earliest proven contact).
+inline bool Solver::advance(Final& f, double stop, bool patient) {
+  const double expected = query_->tolerance_time / 16;
+  double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kWitnessAccuracy;
+  f.stuck = false;
+  for (int round = 0; round < (patient ? 48 : 24); ++round) {
+    const double t = f.t_lower;
+    stop = min(stop, t_upper_);
+    if (t >= stop) return true;
+    span = min(span, stop - t);
+    const double w = span / kLanes, d = 0.5 * w + 4 * kUlp;  // a little wider, so that rounding of tm loses nothing
+    double tm[kLanes];
+    for (int k = 0; k < kLanes; ++k) tm[k] = t + (k + 0.5) * w;
     evaluateAt(tm, d);
-    int present = -1;
-    bool progress = false;
-    for (int i = 0; i < finals_.size(); ++i) {
-      Final& f = finals_[i];
-      if (f.t_lower >= stop || f.t_lower > t + 0.5 * (stop - t)) continue;
-      if (f.entry.pair != present) setupPair(present = f.entry.pair);
-      const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
-      const Piece& a = side_[0].still->pieces[A[f.entry.a].piece()];
-      const Piece& b = side_[0].moving->pieces[B[f.entry.b].piece()];
-      const DifferenceBody body = differenceAt(a, b, 0);
-      GjkResult g;
-      gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, a.radius + b.radius + query_->margin, 64, g);
-      ++statistics_.gjk;
-      if (g.overlap) continue;
-      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
-      f.have_normal = true;
-      double n[3];
-      body.opposite(g.n, n);
-      const double x = max(certainlyFreePrefix(side_[0], a, b, g.n, query_->margin, pad_, 1),
-                           certainlyFreePrefix(side_[1], b, a, n, query_->margin, pad_, 1));
-      // The lane is [tm - d, tm + d]; what it certifies beyond `stop` is not used.
-      const double reached = x >= 1 ? stop : min(stop, (tm[1] - d) + 2 * d * x - 4 * kUlp);
-      if (reached > f.t_lower) {
-        progress |= reached - f.t_lower > 1e-3 * (stop - t);
-        f.t_lower = reached;
-      }
-    }
-    if (!progress) break;
-  }
-  t = 2;
-  int first = 0;
-  for (int i = 0; i < finals_.size(); ++i) {
-    if (finals_[i].t_lower < t) {
-      t = finals_[i].t_lower;
-      first = i;
-    }
-  }
-  if (t >= stop) return Step::free;
-  t_lower_ = t;
-
-  // Proofs of contact, ever later within the tolerance.
-  static const double kOffsets[kLanes] = {0, 0x1p-20, 0x1p-14, 0x1p-9, 0x1p-6, 0x1p-3, 0.5, 1};
-  double tm[kLanes];
-  for (int k = 0; k < kLanes; ++k) tm[k] = min(1.0, t + kOffsets[k] * query_->tolerance_time);
-  evaluateAt(tm, 0);
-  const int contacts_before = contacts_.size();
-  for (int i = 0; i < finals_.size(); ++i) {
-    Final& f = finals_[i];
-    LeafContact contact = {};
-    const PairParts bodies = parts(f.entry.pair);
-    contact.pair = f.entry.pair;
-    contact.body_a = bodies.a;
-    contact.body_b = bodies.b;
     setupPair(f.entry.pair);
-    const Piece *pieces_a = side_[0].still->pieces, *pieces_b = side_[0].moving->pieces;
-    contact.piece_a = side_[0].still->nodes[f.entry.a].piece();
-    contact.piece_b = side_[0].moving->nodes[f.entry.b].piece();
-    contact.t_lower = f.t_lower;
-    contact.t_upper = 1;
-    const Piece &a = pieces_a[contact.piece_a], &b = pieces_b[contact.piece_b];
-    int k = 0;
-    for (; k < kLanes; ++k) {
-      if (tm[k] < f.t_lower) continue;
-      const DifferenceBody body = differenceAt(a, b, k);
-      if (proveAt(contact.piece_a, contact.piece_b, k, f.have_normal ? f.normal : body.pose.c,
-                  contact.point)) {
-        contact.certain = true;
-        contact.t = contact.t_upper = tm[k];
-        t_upper_ = min(t_upper_, tm[k]);
-        break;
-      }
-    }
-    if (!contact.certain) {
-      contact.t = f.t_lower;
-      const DifferenceBody body = differenceAt(a, b, 0);  // at t, within the tolerance of its own time
-      GjkResult g;
-      gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
-      originWeights(g.simplex);
-      if (!f.have_normal && !g.overlap) {
-        for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
-        f.have_normal = true;
-      }
-      // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
-      const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
-      for (int j = 0; j < 3; ++j) {
-        contact.point[j] = out * f.normal[j];
-        for (int q = 0; q < g.simplex.n; ++q) {
-          contact.point[j] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[j] + g.simplex.v[q].b[j]);
-        }
-      }
-    }
-    if (!f.have_normal) {
-      // In contact from the start: the direction between the pieces' middles is the best there is.
-      const DifferenceBody body = differenceAt(a, b, 0);
-      double m[3], x[3], y[3], size = 0;
-      middleOf(side_[0].still->nodes[f.entry.a], x);
-      middleOf(side_[0].moving->nodes[f.entry.b], y);
-      for (int j = 0; j < 3; ++j) {
-        m[j] = dot(body.pose.R + 3 * j, y) + body.pose.c[j] - x[j];
-        size += m[j] * m[j];
-      }
-      for (int j = 0; j < 3; ++j) f.normal[j] = size > 0 ? m[j] / sqrt(size) : (j == 2);
-    }
-    for (int j = 0; j < 3; ++j) contact.normal[j] = f.normal[j];
-    contacts_.push(contact);
-    if (finals_.size() > 256 && contact.certain && i > 256) break;
-  }
-  if (t_upper_ - t <= query_->tolerance_time * (1 + 1e-9)) {
-    certain_ = true;
-  } else if (width > kNarrowestLane) {
-    // Undecided. Farther apart than the distance tolerance, narrower lanes will tell.
-    const Final& f = finals_[first];
-    setupPair(f.entry.pair);
+    ++statistics_.leaf_tests;
     const Piece& a = side_[0].still->pieces[side_[0].still->nodes[f.entry.a].piece()];
     const Piece& b = side_[0].moving->pieces[side_[0].moving->nodes[f.entry.b].piece()];
-    GjkResult g;
-    const DifferenceBody body = differenceAt(a, b, 0);
-    gjk(body, f.normal, 1e-7, a.radius + b.radius + query_->margin, 64, g);
-    if (!g.overlap && g.lower - a.radius - b.radius - query_->margin > 0.5 * query_->tolerance_distance) {
-      contacts_.truncate(contacts_before);
-      *refine = 1;
-      return Step::free;
+    const double radii = a.radius + b.radius + query_->margin;
+    // A witness at some time of the present lanes; false: the gap is gone there, or so it seems.
+    const auto look = [&](int lane, double tau) {
+      const DifferenceBody body = differenceAt(a, b, lane, tau);
+      GjkResult g;
+      gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g);
+      ++statistics_.gjk;
+      if (g.overlap) return false;
+      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.gap = g.lower - radii;
+      return f.have_normal = true;
+    };
+    if (!f.have_normal && !look(0, -1)) break;
+
+    statistics_.certificates += 2;
+    const DifferenceBody here = differenceAt(a, b, 0);
+    double n[3];
+    here.opposite(f.normal, n);
+    Lanes G[2][3];
+    gapBound(side_[0], a, b, f.normal, query_->margin, pad_, G[0]);
+    gapBound(side_[1], b, a, n, query_->margin, pad_, G[1]);
+    unsigned separated = 0;
+    for (const Lanes* g : G) separated |= greater(min(min(g[0], g[1]), g[2]), Lanes(0.0));
+    if (separated == kAllLanes) {
+      f.t_lower = min(stop, t + span);
+      span *= 4;
+      continue;
+    }
+    const int lane = __builtin_ctz(~separated);
+    double x = 0;
+    for (const Lanes* g : G) {
+      const double coefficients[3] = {g[0][lane], g[1][lane], g[2][lane]};
+      x = max(x, positivePrefix(coefficients));
+    }
+    // Lanes before it are free, and it is [tm - d, tm + d].
+    const double root = x >= 1 ? tm[lane] + d - 4 * kUlp : (tm[lane] - d) + 2 * d * x - 4 * kUlp;
+    f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
+    const double progress = f.t_lower - t, gap = f.gap;
+    if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
+    if (progress > 0 && gap > 0) {
+      const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
+      if (!patient && left < expected) break;
+      span = min(4 * span, max(2 * left, kNarrowestLane));
+    } else {
+      // Not even a beginning: a better witness, narrower lanes.
+      if (w < 64 * kUlp) break;
+      accuracy = 1e-7;
+      span *= 0.125;
     }
   }
-  // The first contact first; of the others those that begin within the bracket.
-  int kept = contacts_before;
-  const double bracket = certain_ ? t_upper_ : t + query_->tolerance_time;
-  for (int i = contacts_before; i < contacts_.size(); ++i) {
+  f.stuck = f.t_lower < min(stop, t_upper_);
+  return !f.stuck;
+}
+
+/// Proof of contact within the tolerance behind t_lower.
+inline bool Solver::prove(Final& f) {
+  static const double kOffsets[kLanes] = {0.25, 0.5, 1, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
+  double tm[kLanes];
+  for (int k = 0; k < kLanes; ++k) tm[k] = min(1.0, f.t_lower + kOffsets[k] * query_->tolerance_time);
+  evaluateAt(tm, 0);
+  setupPair(f.entry.pair);
+  const Piece& a = side_[0].still->pieces[side_[0].still->nodes[f.entry.a].piece()];
+  const Piece& b = side_[0].moving->pieces[side_[0].moving->nodes[f.entry.b].piece()];
+  const int head = f.have_normal ? 0 : kLanes - 1;  // never seen apart: in contact at t_lower itself
+  for (int i = 0; i < kLanes; ++i) {
+    const int k = (head + i) % kLanes;
+    const DifferenceBody body = differenceAt(a, b, k);
+    ++statistics_.contact_proofs;
+    if (certainlyTouching(body, query_->margin, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point)) {
+      f.certain = true;
+      f.t_upper = tm[k];
+      t_upper_ = min(t_upper_, tm[k]);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Point and normal of a pair that is stuck.
+inline void Solver::describe(Final& f, LeafContact& contact) {
+  const double tm[kLanes] = {f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower};
+  evaluateAt(tm, 0);
+  setupPair(f.entry.pair);
+  const PairParts bodies = parts(f.entry.pair);
+  contact = {};
+  contact.pair = f.entry.pair;
+  contact.body_a = bodies.a;
+  contact.body_b = bodies.b;
+  contact.piece_a = side_[0].still->nodes[f.entry.a].piece();
+  contact.piece_b = side_[0].moving->nodes[f.entry.b].piece();
+  contact.t_lower = f.t_lower;
+  contact.certain = f.certain;
+  contact.t_upper = f.certain ? f.t_upper : 1;
+  contact.t = f.certain ? f.t_upper : f.t_lower;
+  const Piece &a = side_[0].still->pieces[contact.piece_a], &b = side_[0].moving->pieces[contact.piece_b];
+  const DifferenceBody body = differenceAt(a, b, 0);
+  for (int k = 0; k < 3; ++k) contact.point[k] = f.point[k];
+  if (!f.certain) {
+    GjkResult g;
+    gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
+    originWeights(g.simplex);
+    if (!f.have_normal && !g.overlap) {
+      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.have_normal = true;
+    }
+    // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
+    const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
+    for (int k = 0; k < 3; ++k) {
+      contact.point[k] = out * f.normal[k];
+      for (int q = 0; q < g.simplex.n; ++q) {
+        contact.point[k] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[k] + g.simplex.v[q].b[k]);
+      }
+    }
+  }
+  if (!f.have_normal) {
+    // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.
+    double x[3], y[3], m[3], size = 0;
+    middleOf(side_[0].still->nodes[f.entry.a], x);
+    middleOf(side_[0].moving->nodes[f.entry.b], y);
+    for (int k = 0; k < 3; ++k) {
+      m[k] = dot(body.pose.R + 3 * k, y) + body.pose.c[k] - x[k];
+      if (unbounded(a)) m[k] = a.size[k];
+      if (unbounded(b)) m[k] = -dot(body.pose.R + 3 * k, b.size);
+      size += m[k] * m[k];
+    }
+    for (int k = 0; k < 3; ++k) f.normal[k] = size > 0 ? m[k] / sqrt(size) : (k == 2);
+  }
+  for (int k = 0; k < 3; ++k) contact.normal[k] = f.normal[k];
+}
+
+/// Of contacts_[begin, ...) those that begin within the bracket, the first contact first, as many as are asked for.
+inline void Solver::orderContacts(int begin, double bracket) {
+  int kept = begin;
+  for (int i = begin; i < contacts_.size(); ++i) {
     if (contacts_[i].t_lower <= bracket) contacts_[kept++] = contacts_[i];
   }
-  contacts_.truncate(kept);
-  for (int i = contacts_before; i < kept; ++i) {  // a few: selection sort by certainty, then time
+  const int end = min(kept, begin + query_->max_contacts);
+  for (int i = begin; i < end; ++i) {  // a few: selection sort by certainty, then time
     int best = i;
     for (int j = i + 1; j < kept; ++j) {
       const LeafContact &x = contacts_[j], &y = contacts_[best];
@@ -833,14 +871,62 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
                                                  : x.t_lower < y.t_lower;
       if (better) best = j;
     }
-    if (best != i) {
-      const LeafContact swap = contacts_[i];
-      contacts_[i] = contacts_[best];
-      contacts_[best] = swap;
-    }
-    if (i - contacts_before >= query_->max_contacts) break;
+    const LeafContact swap = contacts_[i];
+    contacts_[i] = contacts_[best];
+    contacts_[best] = swap;
   }
-  contacts_.truncate(min(kept, contacts_before + query_->max_contacts));
+  contacts_.truncate(end);
+}
+
+/// The leaf pairs that a lane leaves undecided, one by one: how far is each free, and is there contact?
+/// @param[out] refine  the lane is to be split: it is wider than the tolerance, or the pairs are farther apart than the
+///   distance tolerance, and nothing is proven.
+inline Solver::Step Solver::finishLane(double start, double width, int begin, int end, int lane, bool* refine) {
+  const bool last = last_;
+  const double stop = start + width;
+  finals_.clear();
+  for (int i = begin; i < end; ++i) {
+    const Entry& e = entries_[i];
+    if (!(e.mask >> lane & 1)) continue;
+    Final f = {};
+    f.entry = e;
+    f.t_lower = max(start, watchFrom(e.pair));
+    finals_.push(f);
+  }
+  *refine = false;
+  int first = -1;
+  for (int i = 0; i < finals_.size(); ++i) {
+    Final& f = finals_[i];
+    if (advance(f, stop, false) || prove(f)) continue;
+    if (!advance(f, stop, true)) prove(f);
+    if (outOfBudget()) return Step::done;
+    // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
+    if (f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts)) {
+      finals_.truncate(i + 1);
+      break;
+    }
+  }
+  for (int i = 0; i < finals_.size(); ++i) {
+    const Final& f = finals_[i];
+    if (f.stuck && f.t_lower <= t_upper_ && (first < 0 || f.t_lower < finals_[first].t_lower)) first = i;
+  }
+  if (first < 0) return Step::free;
+  const double t = finals_[first].t_lower;
+  const bool certain = t_upper_ - t <= query_->tolerance_time * (1 + 1e-9);
+  if (!certain && width > kNarrowestLane) {
+    const Final& f = finals_[first];
+    if (!last || (f.have_normal && f.gap > 0.5 * query_->tolerance_distance)) {
+      *refine = true;
+      return Step::free;
+    }
+  }
+  t_lower_ = t;
+  certain_ = certain;
+  const int contacts_before = contacts_.size();
+  for (int i = 0; i < finals_.size(); ++i) {
+    if (finals_[i].stuck) describe(finals_[i], contacts_.grow());
+  }
+  orderContacts(contacts_before, certain_ ? t_upper_ : t + query_->tolerance_time);
   return Step::done;
 }
 
@@ -854,6 +940,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   ignored_.clear();
   t_lower_ = 0;
   t_upper_ = 2;
+  claimed_ = 2;
   certain_ = out_of_budget_ = decide_only_ = false;
   first_step_.resize(problem.num_sweeps);
   bounds_ready_.resize(problem.num_sweeps);
@@ -895,7 +982,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
     double t_lower = 1, t_upper = 2;
     bool certain = false;
     for (int i = 0; i < roots && !out_of_budget_; ++i) {
-      t_upper_ = 2;
+      t_upper_ = claimed_ = 2;
       certain_ = false;
       entries_.truncate(roots);
       if (solveInterval(0, 1, i, i + 1, -1) != Step::done) {

@@ -23,6 +23,8 @@ namespace FCL_ARTIC_ISA {
 // Scalars get the vocabulary of lanes, so that one text serves both.
 FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
 FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE int max(int a, int b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE int min(int a, int b) { return a < b ? a : b; }
 FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }
 FCL_ARTIC_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
 FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) { return a * b + c; }

@@ -76,9 +76,11 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
   out.sign = 0;
   out.separated = certainlySeparated(s, still, moving, in.n, in.motion.margin, pads.pad, out.sign);
+  Lanes G[3];
+  gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
   for (int lane = 0; lane < kLanes; ++lane) {
-    gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, lane, out.G[lane]);
-    out.prefix[lane] = certainlyFreePrefix(s, still, moving, in.n, in.motion.margin, pads.pad, lane);
+    for (int k = 0; k < 3; ++k) out.G[lane][k] = G[k][lane];
+    out.prefix[lane] = positivePrefix(out.G[lane]);
   }
 }
 
