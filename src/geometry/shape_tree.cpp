@@ -302,6 +302,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
     tree->root_[0] = makeLeaf(measure(tree->outer_), 0);
     tree->show();
     tree->view_.num_pieces = 0;
+    tree->view_.outer = nullptr;
     return tree;
   }
   auto tree = std::make_shared<ShapeTree>(Private());

@@ -57,7 +57,8 @@ double distanceToSegment(const Vector3d& x, const Vector3d& p0, const Vector3d& 
 
 }  // namespace
 
-// A set lies in a convex one when its support function does, in every direction: 2,000 of them, and those to the points.
+// A set lies in a convex one when its support function does, in every direction: 2,000 of them, and those to the
+// points.
 TEST(OuterHull, HoldsAllPoints) {
   Random random(1);
   int made = 0;
@@ -143,4 +144,69 @@ TEST(ShapeTree, RefusesWhatItCannotHold) {
   EXPECT_THROW(ShapeTree::fromTriangles(points, {{{0, 1, 3}}}), std::invalid_argument);
   EXPECT_THROW(ShapeTree::fromTriangles(points, {{{0, 1, -1}}}), std::invalid_argument);
   EXPECT_THROW(ShapeTree::fromTriangles({{0, 0, 0}, {1, 0, NAN}, {0, 1, 0}}, {{{0, 1, 2}}}), std::invalid_argument);
+}
+
+TEST(ShapeTree, ManyPieces) {
+  Random random(5);
+  std::vector<engine::Piece> pieces;
+  for (int i = 0; i < 300; ++i) {
+    engine::Piece piece;
+    const engine::PieceKind kinds[] = {engine::PieceKind::box, engine::PieceKind::point, engine::PieceKind::cone};
+    piece.kind = kinds[i % 3];
+    piece.primitive = 1000 + i;
+    piece.radius = i % 3 == 1 ? 0.1 : 0;
+    for (int k = 0; k < 3; ++k) {
+      piece.size[k] = piece.kind == engine::PieceKind::point ? 0 : uniform(random, 0.01, 0.3);
+      piece.center[k] = uniform(random, -2, 2);
+    }
+    pieces.push_back(piece);
+  }
+  const auto tree = ShapeTree::fromPieces(pieces);
+  const engine::TreeView& view = tree->view();
+  ASSERT_EQ(view.num_pieces, 300);
+  std::vector<int> seen(300, 0), open{0};
+  while (!open.empty()) {
+    const engine::Node& node = view.nodes[open.back()];
+    open.pop_back();
+    if (!node.isLeaf()) {
+      open.insert(open.end(), {node.left(), node.right()});
+      for (const int child : {node.left(), node.right()}) {
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_LE(node.lo[k], view.nodes[child].lo[k]);
+          EXPECT_GE(node.hi[k], view.nodes[child].hi[k]);
+        }
+      }
+      continue;
+    }
+    const engine::Piece& piece = view.pieces[node.piece()];
+    ++seen[static_cast<std::size_t>(node.piece())];
+    EXPECT_EQ(piece.primitive, 1000 + node.piece());
+    double far = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double half = piece.kind == engine::PieceKind::cone && k == 1 ? piece.size[0] : piece.size[k];
+      EXPECT_LE(static_cast<double>(node.lo[k]), piece.center[k] - half - piece.radius);
+      EXPECT_GE(static_cast<double>(node.hi[k]), piece.center[k] + half + piece.radius);
+      far += std::pow(std::abs(piece.center[k]) + half, 2);
+    }
+    EXPECT_GE(piece.reach, std::sqrt(far));
+  }
+  for (const int n : seen) EXPECT_EQ(n, 1);
+  // Nothing at all: whoever reads on finds a point at the origin.
+  const auto empty = ShapeTree::fromPieces({});
+  EXPECT_EQ(empty->view().num_pieces, 0);
+  ASSERT_TRUE(empty->view().nodes[0].isLeaf());
+  EXPECT_EQ(empty->view().pieces[empty->view().nodes[0].piece()].kind, engine::PieceKind::point);
+  EXPECT_EQ(empty->view().outer, nullptr);
+}
+
+// Boxes are rounded outward by two floats, whatever the sign and the size.
+TEST(ShapeTree, BoxesAreRoundedOutward) {
+  for (const double x : {0.0, -0.0, 1e-300, 0.1, 1.0, 1 - 0x1p-25, 1 + 0x1p-25, 3e5, 1e9}) {
+    for (const double y : {x, -x}) {
+      const engine::Node node = buildBoxTree({{{y, y, y}, {y, y, y}}})[0];
+      const float at = static_cast<float>(y);
+      EXPECT_EQ(node.lo[0], std::nextafter(std::nextafter(at, -1e30f), -1e30f)) << y;
+      EXPECT_EQ(node.hi[0], std::nextafter(std::nextafter(at, 1e30f), 1e30f)) << y;
+    }
+  }
 }
