@@ -23,28 +23,24 @@ namespace fcl_artic {
 //   1e-6 m and contact can't be told from none: that counts as contact too. Without contact it is 1, and
 //   result.is_collide is false; a contact at exactly t = 1 is one.
 // - The result is written in full. contact_tf1 and contact_tf2 are the poses at time_of_contact, those at t = 1 without
-// contact.
-//   At time_of_contact fcl::collide mostly finds nothing yet; CertifiedPairResult has poses from which it does.
-// - Any geometry that FCL has, in any pairing, but for point clouds: Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder,
-// Convex,
-//   Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its occupancy threshold).
-//   Shapes and cells are solids; meshes, TriangleP and Plane are surfaces.
-// - Request: toc_err is the wanted tolerance of time; 0 means as fine as can be. The motion_type matters for transforms
-// only.
-//   num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one answer.
-// - Geometries, motions and objects are read only: the same ones may be used by many threads at once. The state that a
-// motion's
-//   integrate() left does not matter, nor does its AABB.
+//   contact. At time_of_contact fcl::collide mostly finds nothing yet; CertifiedPairResult has poses where it does.
+// - Any geometry that FCL has but point clouds, in any pairing: Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder,
+//   Convex, Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its occupancy
+//   threshold). Shapes and cells are solids; meshes, TriangleP and Plane are surfaces.
+// - Of the request, toc_err is the wanted tolerance of time (1e-12 where it is less, 0 say), and ccd_motion_type the
+//   way between two transforms. num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one
+//   answer.
+// - Geometries, motions and objects are only read: many threads may share them. Neither the state that a motion's
+//   integrate() left nor an object's AABB matters.
 // - Nothing is printed.
 //
 // What all of them throw: std::invalid_argument that names the object, for null pointers, a geometry that is a point
-// cloud, empty or not finite, a motion whose bounds are unknown (see BoundedMotion), a transform that is not rigid,
-// toc_err negative or not finite. The result then is the one of nothing proven: contact at t = 0, poses the identity.
+// cloud, empty or not finite, a motion whose bounds are unknown (see BoundedMotion), a transform that is not rigid, and
+// toc_err negative or not finite. The result then says what is proven, nothing: contact at t = 0, poses the identity.
 
 /// First contact of two geometries along two motions.
 /// @param motion1, motion2  TranslationMotion, InterpMotion, ScrewMotion, SplineMotion, FclLinkMotion, or a class that
-/// is a
-///   BoundedMotion too; pose of the geometry in the world, m.
+///   is a BoundedMotion too; pose of the geometry in the world, m.
 /// @return time of contact in [0, 1]; 1 also without contact.
 template <typename S>
 FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::MotionBase<S>* motion1,
@@ -53,9 +49,9 @@ FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionGeometry<S>* o1, const 
                                      fcl::ContinuousCollisionResult<S>& result);
 
 /// First contact of two geometries that move from one pose to another, in the world, in the way of
-/// request.ccd_motion_type: CCDM_TRANS keeps the start's rotation and drops the end's (FCL's default), CCDM_LINEAR
-/// turns about the geometry's origin while that moves straight, CCDM_SCREW moves along one screw axis; CCDM_SPLINE, an
-/// empty stub in FCL, is said in doc/MIGRATION.md.
+/// request.ccd_motion_type: CCDM_TRANS (FCL's default) goes straight, keeps the start's rotation and drops the end's;
+/// CCDM_LINEAR turns about the geometry's origin while that goes straight; CCDM_SCREW turns about an axis and slides
+/// along it. CCDM_SPLINE, an empty stub in FCL, throws std::invalid_argument: two poses don't make a spline.
 template <typename S>
 FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1_beg,
                                      const fcl::Transform3<S>& tf1_end, const fcl::CollisionGeometry<S>* o2,

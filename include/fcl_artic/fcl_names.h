@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's names in this library's namespace, so that code written for FCL compiles with `namespace ccd = fcl_artic;` in place
-// of `namespace ccd = fcl;`. They are the very same types and functions; only `continuousCollide` and the continuous `collide`,
-// in <fcl_artic/continuous_collision.h>, are this library's own.
+// FCL's names in this library's namespace, so that code written for FCL compiles with `namespace ccd = fcl_artic;` in
+// place of `namespace ccd = fcl;`. They are the very same types and functions; only `continuousCollide`, the continuous
+// `collide` and DefaultContinuousCollisionFunction, in <fcl_artic/continuous_collision.h>, are this library's own.
 //
 // Named one by one and not by `using namespace fcl`: that would make ::time and fcl::time ambiguous for whoever writes
 // `using namespace fcl_artic`. What is in fcl::detail and fcl::time keeps its own name.
@@ -82,8 +82,8 @@
 #include <fcl/narrowphase/gjk_solver_type.h>
 
 namespace fcl {
-// <fcl/broadphase/default_broadphase_callbacks.h> is left to those who use it: it brings FCL's own continuousCollide, of the same
-// name and signature, and the slowest of FCL's headers.
+// <fcl/broadphase/default_broadphase_callbacks.h> is left to those who use it: it brings FCL's own continuousCollide,
+// of the same name and signature, and the slowest of FCL's headers.
 template <typename S>
 struct DefaultCollisionData;
 template <typename S>
@@ -480,8 +480,9 @@ using fcl::DefaultDistanceFunction;
 using fcl::distance;
 
 // <fcl/narrowphase/collision.h>
-// Forwarded, as a using-declaration would bring FCL's continuous `collide` along wherever that is known. `Request` is a parameter of
-// its own to make these templates the less specialised ones: an unqualified call, which sees FCL's too, is not ambiguous.
+// Forwarded, as a using-declaration would bring FCL's continuous `collide` along wherever that is known. `Request` is a
+// parameter of its own to make these templates the less specialised ones: an unqualified call, which sees FCL's too, is
+// not ambiguous.
 
 /// FCL's static query.
 template <typename S, typename Request>

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The drop-in: reads FCL's objects, asks solvePair(), writes FCL's result.
+#include "fcl_artic/continuous_collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "adapters/fcl/fcl_geometry.h"
+#include "adapters/fcl/fcl_motion.h"
+#include "query/pair_query.h"
+
+namespace fcl_artic {
+namespace {
+
+template <class T>
+const T& require(const T* pointer, const char* what) {
+  if (!pointer) throw std::invalid_argument(std::string("its ") + what + " is null");
+  return *pointer;
+}
+
+/// One of the two bodies, read.
+template <class S>
+struct Body {
+  const fcl::CollisionGeometry<S>* geometry;
+  std::shared_ptr<const ShapeTree> shape;
+  BodyMotion motion;
+};
+
+template <class S>
+Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
+  return {geometry, cachedGeometry(require(geometry, "geometry")), readMotion(require(motion, "motion"))};
+}
+
+template <class S>
+Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
+             fcl::CCDMotionType type) {
+  return {geometry, cachedGeometry(require(geometry, "geometry")),
+          motionBetween(readTransform(begin, "its start"), readTransform(end, "its end"), type)};
+}
+
+template <class S>
+Body<S> read(const fcl::CollisionObject<S>* object, const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
+  if (!object) throw std::invalid_argument("it is null");
+  return read<S>(object->collisionGeometry().get(), object->getTransform(), end, type);
+}
+
+template <class S>
+Body<S> read(const fcl::ContinuousCollisionObject<S>* object) {
+  if (!object) throw std::invalid_argument("it is null");
+  return read<S>(object->collisionGeometry().get(), object->getMotion());
+}
+
+/// Reads object 1 or 2; what is wrong with it is said with that number.
+template <class S, class... Args>
+Body<S> body(int number, const Args&... args) {
+  try {
+    return read<S>(args...);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument("object " + std::to_string(number) + ": " + e.what());
+  }
+}
+
+const fcl::CollisionGeometryd* reported(const fcl::CollisionGeometryd* geometry) {
+  return geometry;
+}
+const fcl::CollisionGeometryd* reported(const fcl::CollisionGeometry<float>*) {
+  return nullptr;
+}
+
+template <class S>
+void solve(const Body<S>& body1, const Body<S>& body2, const CertifiedRequest& request, CertifiedPairResult& result) {
+  solvePair({*body1.shape, body1.motion, reported(body1.geometry)},
+            {*body2.shape, body2.motion, reported(body2.geometry)}, request, result);
+}
+
+/// The largest S that is not later than t.
+double roundedDown(double t, double) {
+  return t;
+}
+float roundedDown(double t, float) {
+  const float rounded = static_cast<float>(t);
+  return static_cast<double>(rounded) > t ? std::nextafter(rounded, 0.0f) : rounded;
+}
+
+/// What FCL's result says while nothing is proven.
+template <class S>
+void reset(fcl::ContinuousCollisionResult<S>& result) {
+  result.is_collide = true;
+  result.time_of_contact = 0;
+  result.contact_tf1.setIdentity();
+  result.contact_tf2.setIdentity();
+}
+
+void reset(CertifiedPairResult& result) {
+  result = CertifiedPairResult();
+}
+
+/// Runs a query; a result that it can't give is reset. Not before: the input may lie in the result, where someone goes
+/// on from the poses of the last query.
+template <class Result, class Query>
+auto answering(Result& result, Query&& query) {
+  try {
+    return query();
+  } catch (...) {
+    reset(result);
+    throw;
+  }
+}
+
+template <class S>
+CertifiedRequest certified(const fcl::ContinuousCollisionRequest<S>& request) {
+  const double tolerance = static_cast<double>(request.toc_err);
+  if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
+    throw std::invalid_argument("the request's toc_err is " + std::to_string(tolerance) + ", not a tolerance of time");
+  }
+  constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: what doubles can tell apart
+  CertifiedRequest certified;
+  certified.tolerance_time = std::max(tolerance, kFinest);
+  return certified;
+}
+
+template <class S>
+S answer(const Body<S>& body1, const Body<S>& body2, const fcl::ContinuousCollisionRequest<S>& request,
+         fcl::ContinuousCollisionResult<S>& result) {
+  CertifiedPairResult proven;
+  solve(body1, body2, certified(request), proven);
+  result.is_collide = !proven.isFree();
+  result.time_of_contact = result.is_collide ? roundedDown(proven.t_lower, S()) : S(1);
+  const double t = static_cast<double>(result.time_of_contact);
+  result.contact_tf1 = body1.motion.pose(t).template cast<S>();
+  result.contact_tf2 = body2.motion.pose(t).template cast<S>();
+  return result.time_of_contact;
+}
+
+}  // namespace
+
+template <class S>
+S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::MotionBase<S>* motion1,
+                    const fcl::CollisionGeometry<S>* o2, const fcl::MotionBase<S>* motion2,
+                    const fcl::ContinuousCollisionRequest<S>& request, fcl::ContinuousCollisionResult<S>& result) {
+  return answering(result, [&] { return answer(body<S>(1, o1, motion1), body<S>(2, o2, motion2), request, result); });
+}
+
+template <class S>
+S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::Transform3<S>& tf1_beg,
+                    const fcl::Transform3<S>& tf1_end, const fcl::CollisionGeometry<S>* o2,
+                    const fcl::Transform3<S>& tf2_beg, const fcl::Transform3<S>& tf2_end,
+                    const fcl::ContinuousCollisionRequest<S>& request, fcl::ContinuousCollisionResult<S>& result) {
+  return answering(result, [&] {
+    return answer(body<S>(1, o1, tf1_beg, tf1_end, request.ccd_motion_type),
+                  body<S>(2, o2, tf2_beg, tf2_end, request.ccd_motion_type), request, result);
+  });
+}
+
+template <class S>
+S continuousCollide(const fcl::CollisionObject<S>* o1, const fcl::Transform3<S>& tf1_end,
+                    const fcl::CollisionObject<S>* o2, const fcl::Transform3<S>& tf2_end,
+                    const fcl::ContinuousCollisionRequest<S>& request, fcl::ContinuousCollisionResult<S>& result) {
+  return answering(result, [&] {
+    return answer(body<S>(1, o1, tf1_end, request.ccd_motion_type), body<S>(2, o2, tf2_end, request.ccd_motion_type),
+                  request, result);
+  });
+}
+
+template <class S>
+S collide(const fcl::ContinuousCollisionObject<S>* o1, const fcl::ContinuousCollisionObject<S>* o2,
+          const fcl::ContinuousCollisionRequest<S>& request, fcl::ContinuousCollisionResult<S>& result) {
+  return answering(result, [&] { return answer(body<S>(1, o1), body<S>(2, o2), request, result); });
+}
+
+Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBased* motion1,
+                         const fcl::CollisionGeometryd* o2, const fcl::MotionBased* motion2,
+                         const CertifiedRequest& request, CertifiedPairResult& result) {
+  return answering(result, [&] {
+    solve(body<double>(1, o1, motion1), body<double>(2, o2, motion2), request, result);
+    return result.status;
+  });
+}
+
+Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::Transform3d& tf1_beg,
+                         const fcl::Transform3d& tf1_end, const fcl::CollisionGeometryd* o2,
+                         const fcl::Transform3d& tf2_beg, const fcl::Transform3d& tf2_end,
+                         fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
+  return answering(result, [&] {
+    solve(body<double>(1, o1, tf1_beg, tf1_end, motion_type), body<double>(2, o2, tf2_beg, tf2_end, motion_type),
+          request, result);
+    return result.status;
+  });
+}
+
+Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d& tf1_end,
+                         const fcl::CollisionObjectd* o2, const fcl::Transform3d& tf2_end,
+                         fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
+  return answering(result, [&] {
+    solve(body<double>(1, o1, tf1_end, motion_type), body<double>(2, o2, tf2_end, motion_type), request, result);
+    for (CertifiedContact& contact : result.contacts) {
+      contact.body1.object = o1;
+      contact.body2.object = o2;
+    }
+    return result.status;
+  });
+}
+
+Status collide(const fcl::ContinuousCollisionObjectd* o1, const fcl::ContinuousCollisionObjectd* o2,
+               const CertifiedRequest& request, CertifiedPairResult& result) {
+  return answering(result, [&] {
+    solve(body<double>(1, o1), body<double>(2, o2), request, result);
+    return result.status;
+  });
+}
+
+#define FCL_ARTIC_INSTANTIATE(S)                                                                                 \
+  template FCL_ARTIC_EXPORT S continuousCollide<S>(                                                              \
+      const fcl::CollisionGeometry<S>*, const fcl::MotionBase<S>*, const fcl::CollisionGeometry<S>*,             \
+      const fcl::MotionBase<S>*, const fcl::ContinuousCollisionRequest<S>&, fcl::ContinuousCollisionResult<S>&); \
+  template FCL_ARTIC_EXPORT S continuousCollide<S>(                                                              \
+      const fcl::CollisionGeometry<S>*, const fcl::Transform3<S>&, const fcl::Transform3<S>&,                    \
+      const fcl::CollisionGeometry<S>*, const fcl::Transform3<S>&, const fcl::Transform3<S>&,                    \
+      const fcl::ContinuousCollisionRequest<S>&, fcl::ContinuousCollisionResult<S>&);                            \
+  template FCL_ARTIC_EXPORT S continuousCollide<S>(                                                              \
+      const fcl::CollisionObject<S>*, const fcl::Transform3<S>&, const fcl::CollisionObject<S>*,                 \
+      const fcl::Transform3<S>&, const fcl::ContinuousCollisionRequest<S>&, fcl::ContinuousCollisionResult<S>&); \
+  template FCL_ARTIC_EXPORT S collide<S>(                                                                        \
+      const fcl::ContinuousCollisionObject<S>*, const fcl::ContinuousCollisionObject<S>*,                        \
+      const fcl::ContinuousCollisionRequest<S>&, fcl::ContinuousCollisionResult<S>&);
+FCL_ARTIC_INSTANTIATE(double)
+FCL_ARTIC_INSTANTIATE(float)
+#undef FCL_ARTIC_INSTANTIATE
+
+}  // namespace fcl_artic
