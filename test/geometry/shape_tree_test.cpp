@@ -10,6 +10,10 @@
 
 #include "geometry/outer_hull.h"
 
+#define FCL_ARTIC_ISA sse2
+#define FCL_ARTIC_ISA_BITS 128
+#include "narrowphase/gjk.h"
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -78,6 +82,50 @@ TEST(OuterHull, HoldsAllPoints) {
     }
   }
   EXPECT_GT(made, 40);  // the test is telling
+}
+
+// The same for points in the order of a mesh, and for each the one direction that tells most: from the hull straight to
+// it.
+TEST(OuterHull, HoldsEachPointOfAMesh) {
+  Random random(11);
+  int near_surface = 0;
+  for (int round = 0; round < 30; ++round) {
+    std::vector<Vector3d> points;
+    const double waves = uniform(random, 1, 5), bump = uniform(random, 0, 0.4);
+    for (int i = 0; i < 30; ++i) {
+      for (int j = 0; j < 40; ++j) {
+        const double a = 3.1416 * i / 29, b = 2 * 3.1416 * j / 40,
+                     r = 1 + bump * std::sin(waves * a) * std::cos(waves * b);
+        points.emplace_back(r * std::sin(a) * std::cos(b), 0.7 * r * std::sin(a) * std::sin(b), 0.4 * r * std::cos(a));
+      }
+    }
+    const OuterHull hull = makeOuterHull(points);
+    std::vector<double> packed;
+    for (const Vector3d& v : hull.vertices) packed.insert(packed.end(), v.data(), v.data() + 3);
+    engine::TreeView view;
+    view.vertices = packed.data();
+    engine::Piece piece, origin;
+    piece.num_vertices = static_cast<std::int32_t>(hull.vertices.size());
+    origin.kind = engine::PieceKind::point;
+    sse2::DifferenceBody body;
+    body.tree_a = body.tree_b = &view;
+    body.a = &piece;
+    body.b = &origin;
+    for (int i = 0; i < 9; ++i) body.pose.R[i] = i % 4 == 0;
+    double farthest = 0;
+    for (const Vector3d& p : points) {
+      for (int k = 0; k < 3; ++k) body.pose.c[k] = p[k];
+      sse2::GjkResult g;
+      sse2::gjk(body, p.data(), 1e-6, 0, 100, g);
+      const Vector3d u = Vector3d::Map(g.n);
+      double inside = -INFINITY;
+      for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v));
+      ASSERT_LE(u.dot(p), inside + hull.radius) << "round " << round;
+      farthest = std::max(farthest, u.dot(p) - inside);
+    }
+    near_surface += farthest > 0.998 * hull.radius;  // and the radius is no larger than it needs to be
+  }
+  EXPECT_EQ(near_surface, 30);
 }
 
 TEST(ShapeTree, EveryNodeHoldsItsPieces) {
