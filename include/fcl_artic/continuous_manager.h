@@ -16,8 +16,8 @@
 namespace fcl_artic {
 
 /// Box in the world that certainly holds the object at every time of its motion, rounding included; infinite where the
-/// object is. (fcl::ContinuousCollisionObject::computeAABB() does not hold the motion; this neither calls it nor changes
-/// what getAABB() returns.)
+/// object is. (fcl::ContinuousCollisionObject::computeAABB() does not hold the motion; this neither calls it nor
+/// changes what getAABB() returns.)
 /// @throws std::invalid_argument: null geometry or motion, and what fcl_artic::continuousCollide refuses of either.
 FCL_ARTIC_EXPORT fcl::AABBd sweptAABB(const fcl::ContinuousCollisionObjectd& object);
 
@@ -37,8 +37,9 @@ struct CertifiedPairsResult {
   /// proven contact.
   double t_upper = 1;
   bool certain = false;
-  /// Empty when free. Otherwise the pair with the earliest t_lower comes first; with ContactMode::first it is the only one,
-  /// with firstOfEveryPair all that are not proven free follow. Pairs of the same t_lower are in order of registration.
+  /// Empty when free. Otherwise the pair with the earliest t_lower comes first; with ContactMode::first it is the only
+  /// one, with firstOfEveryPair all that are not proven free follow. Pairs of the same t_lower are in order of
+  /// registration.
   std::vector<MovingPair> pairs;
   /// Pairs that touch at t = 0, where that was ignored (CertifiedRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
@@ -48,13 +49,13 @@ struct CertifiedPairsResult {
 };
 
 /// Continuous collision of many moving objects, in FCL's manager idiom: boxes around whole motions tell which pairs may
-/// meet. What FCL declares for this, BroadPhaseContinuousCollisionManager, is no base of this class: its collide() takes
-/// callbacks for pairs of *still* objects, so that no moving pair could be delivered through it.
+/// meet. What FCL declares for this, BroadPhaseContinuousCollisionManager, is no base of this class: its collide()
+/// takes callbacks for pairs of *still* objects, so that no moving pair could be delivered through it.
 ///
-/// Objects, geometries and motions stay the caller's and are never written to. An object is read when it is registered or
-/// updated: whoever then changes its motion or geometry in place calls update(). An object without motion is refused; one
-/// that stands still has a motion from a pose to the same pose, `fcl::TranslationMotiond(tf, tf)`. Many still objects that
-/// touch each other are best kept in a manager of their own, to be asked against the moving ones.
+/// Objects, geometries and motions stay the caller's and are never written to. An object is read when it is registered
+/// or updated: whoever then changes its motion or geometry in place calls update(). An object without motion is
+/// refused; one that stands still has a motion from a pose to the same pose, `fcl::TranslationMotiond(tf, tf)`. Many
+/// still objects that touch each other are best kept in a manager of their own, to be asked against the moving ones.
 ///
 /// After setup() all const members may be called from many threads at once.
 class FCL_ARTIC_EXPORT ContinuousCollisionManager {
@@ -91,18 +92,18 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// sweptAABB() of a registered object, as it was read last.
   fcl::AABBd sweptAABB(const Object* object) const;
 
-  /// Hands every pair whose swept boxes come within `margin` of each other to the callback, once, until it returns true:
-  /// all that touch at some time are among them. Pairs and their objects come in order of registration.
+  /// Hands every pair whose swept boxes come within `margin` of each other to the callback, once, until it returns
+  /// true: all that touch at some time are among them. Pairs and their objects come in order of registration.
   /// @param margin  m; for callbacks that ask whether objects come nearer than that.
   /// @throws std::logic_error when objects were registered or unregistered after the last setup() or update().
   /// @throws std::invalid_argument: callback null, margin negative or not finite.
   void collide(void* cdata, Callback callback, double margin = 0) const;
-  /// One object against all registered ones but itself. It need not be registered, and is read then; else it is taken as
-  /// read last.
+  /// One object against all registered ones but itself. It need not be registered, and is read then; else it is taken
+  /// as read last.
   /// @throws std::invalid_argument also what registerObject() throws of an object.
   void collide(Object* object, void* cdata, Callback callback, double margin = 0) const;
-  /// Objects of this manager, which come first, against those of another one. An object is not paired with itself; two that
-  /// are in both managers are paired once.
+  /// Objects of this manager, which come first, against those of another one. An object is not paired with itself; two
+  /// that are in both managers are paired once.
   void collide(const ContinuousCollisionManager* other, void* cdata, Callback callback, double margin = 0) const;
 
   /// First contact of all pairs of registered objects, or the proof that there is none.

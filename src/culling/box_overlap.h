@@ -10,8 +10,8 @@
 
 namespace fcl_artic {
 
-/// Boxes that share a point. Sides are compared as they are: whoever computed them saw to rounding. What is not a number
-/// compares false, hence meets everything.
+/// Boxes that share a point. Sides are compared as they are: whoever computed them saw to rounding. What is not a
+/// number compares false, hence meets everything.
 inline bool meet(const BoxBounds& a, const BoxBounds& b) {
   for (int k = 0; k < 3; ++k) {
     if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;
@@ -21,8 +21,8 @@ inline bool meet(const BoxBounds& a, const BoxBounds& b) {
 
 /// Appends the indices, in any order, of all boxes that meet `box`.
 /// @param tree  buildBoxTree(boxes): its nodes are the boxes rounded outward.
-inline void appendOverlaps(const std::vector<engine::Node>& tree, const std::vector<BoxBounds>& boxes, const BoxBounds& box,
-                           std::vector<int>& found) {
+inline void appendOverlaps(const std::vector<engine::Node>& tree, const std::vector<BoxBounds>& boxes,
+                           const BoxBounds& box, std::vector<int>& found) {
   if (tree.empty()) return;
   std::array<int, 64> stack;  // the tree is balanced: one sibling waits per level, of at most 32
   std::size_t waiting = 0;

@@ -21,7 +21,8 @@ namespace {
 using Object = fcl::ContinuousCollisionObjectd;
 using Geometry = fcl::CollisionGeometryd;
 
-/// Where boxes end that have no end: far beyond all coordinates allowed (1e9 m), and a number, as trees are built of numbers.
+/// Where boxes end that have no end: far beyond all coordinates allowed (1e9 m), and a number, as trees are built of
+/// numbers.
 constexpr double kFarAway = 1e29;
 
 /// A moving object, as it was read.
@@ -40,8 +41,9 @@ Item readObject(const Object& object, const std::string& what) {
   if (!item.geometry) throw std::invalid_argument(what + " has no geometry");
   const fcl::MotionBased* motion = object.getMotion();
   if (!motion) {
-    throw std::invalid_argument(what + " (" + geometryName(*item.geometry) +
-                                ") has no motion; what stands still has a TranslationMotion from its pose to the same pose");
+    throw std::invalid_argument(
+        what + " (" + geometryName(*item.geometry) +
+        ") has no motion; what stands still has a TranslationMotion from its pose to the same pose");
   }
   try {
     item.shape = cachedGeometry(*item.geometry);
@@ -75,7 +77,8 @@ fcl::AABBd publicBox(const BoxBounds& box) {
   return aabb;
 }
 
-/// The box grown by the margin to all sides: a sum of doubles is at most one step from the true one, in any rounding mode.
+/// The box grown by the margin to all sides: a sum of doubles is at most one step from the true one, in any rounding
+/// mode.
 BoxBounds grown(const BoxBounds& box, double margin) {
   if (margin == 0) return box;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -141,9 +144,8 @@ class Earliest {
 
   /// @param pairs  number of pairs that were asked about.
   void finish(std::size_t pairs) {
-    std::stable_sort(result_.pairs.begin(), result_.pairs.end(), [](const MovingPair& a, const MovingPair& b) {
-      return a.result.t_lower < b.result.t_lower;
-    });
+    std::stable_sort(result_.pairs.begin(), result_.pairs.end(),
+                     [](const MovingPair& a, const MovingPair& b) { return a.result.t_lower < b.result.t_lower; });
     if (result_.pairs.empty()) {
       result_.status = Status::free;
       result_.t_lower = 1;
@@ -193,7 +195,7 @@ fcl::AABBd sweptAABB(const fcl::ContinuousCollisionObjectd& object) {
 struct ContinuousCollisionManager::Impl {
   std::vector<Item> items;                               ///< in order of registration
   std::unordered_map<const Object*, std::size_t> index;  ///< into items
-  bool ready = true;  ///< as long as there is nothing to set up
+  bool ready = true;                                     ///< as long as there is nothing to set up
 
   // Made by build(), read by queries.
   std::vector<BoxBounds> boxes;
@@ -271,7 +273,8 @@ struct ContinuousCollisionManager::Impl {
     other.requireReady();
     std::size_t shared = 0;
     for (const Item& item : items) shared += other.index.count(item.object);
-    const std::size_t pairs = items.size() * other.items.size() - shared - (shared == 0 ? 0 : shared * (shared - 1) / 2);
+    const std::size_t pairs =
+        items.size() * other.items.size() - shared - (shared == 0 ? 0 : shared * (shared - 1) / 2);
     std::vector<int> found;
     for (std::size_t i = 0; i < items.size(); ++i) {
       const Item& a = items[i];
@@ -295,7 +298,9 @@ ContinuousCollisionManager::~ContinuousCollisionManager() = default;
 ContinuousCollisionManager::ContinuousCollisionManager(ContinuousCollisionManager&&) noexcept = default;
 ContinuousCollisionManager& ContinuousCollisionManager::operator=(ContinuousCollisionManager&&) noexcept = default;
 
-void ContinuousCollisionManager::registerObject(Object* object) { impl_->add(object, "registerObject: the object"); }
+void ContinuousCollisionManager::registerObject(Object* object) {
+  impl_->add(object, "registerObject: the object");
+}
 
 void ContinuousCollisionManager::registerObjects(const std::vector<Object*>& objects) {
   const std::size_t before = size();
@@ -334,7 +339,9 @@ void ContinuousCollisionManager::update() {
   update(objects);
 }
 
-void ContinuousCollisionManager::update(Object* object) { update(std::vector<Object*>{object}); }
+void ContinuousCollisionManager::update(Object* object) {
+  update(std::vector<Object*>{object});
+}
 
 void ContinuousCollisionManager::update(const std::vector<Object*>& objects) {
   std::vector<Item> items;  // all or nothing
@@ -347,14 +354,18 @@ void ContinuousCollisionManager::update(const std::vector<Object*>& objects) {
   impl_->build();
 }
 
-void ContinuousCollisionManager::clear() { *impl_ = Impl(); }
+void ContinuousCollisionManager::clear() {
+  *impl_ = Impl();
+}
 
 void ContinuousCollisionManager::getObjects(std::vector<Object*>& objects) const {
   objects.clear();
   for (const Item& item : impl_->items) objects.push_back(item.object);
 }
 
-std::size_t ContinuousCollisionManager::size() const { return impl_->items.size(); }
+std::size_t ContinuousCollisionManager::size() const {
+  return impl_->items.size();
+}
 
 fcl::AABBd ContinuousCollisionManager::sweptAABB(const Object* object) const {
   const Item* item = impl_->find(object);
@@ -378,7 +389,8 @@ void ContinuousCollisionManager::collide(const ContinuousCollisionManager* other
   impl_->visitOther(other, margin, [&](const Item& a, const Item& b) { return callback(a.object, b.object, cdata); });
 }
 
-void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request, CertifiedPairsResult& result) const {
+void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request,
+                                                   CertifiedPairsResult& result) const {
   Earliest earliest(request, result);
   earliest.finish(impl_->visitOwn(request.margin, earliest));
 }
@@ -389,7 +401,8 @@ void ContinuousCollisionManager::continuousCollide(Object* object, const Certifi
   earliest.finish(impl_->visitObject(object, request.margin, earliest));
 }
 
-void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other, const CertifiedRequest& request,
+void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other,
+                                                   const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
   Earliest earliest(request, result);
   earliest.finish(impl_->visitOther(other, request.margin, earliest));
