@@ -227,22 +227,23 @@ TEST(FclMotionTest, FloatMotionsAsPerformed) {
   }
 }
 
-/// One object of each kind, in the state that integrate(t) leaves.
-std::vector<std::unique_ptr<fcl::MotionBased>> oneOfEach(double t) {
+/// One object of each kind, in the state that integrate(t) leaves. (Not by new: FCL's library frees what it deletes in
+/// another way than C++17 allocates it.)
+std::vector<std::shared_ptr<fcl::MotionBased>> oneOfEach(double t) {
   Random random(7);
   const Poses p{randomPose(random, 1), randomPose(random, 2)};
   const auto tree = test::randomTree(random, 5, 0.5);
-  std::vector<std::unique_ptr<fcl::MotionBased>> motions;
-  motions.emplace_back(new fcl::TranslationMotiond(p.begin, p.end));
-  motions.emplace_back(new fcl::InterpMotion<double>(p.begin.linear(), p.begin.translation(), p.end.linear(),
-                                                     p.end.translation(), Vector3d(1, 2, 3)));
-  motions.emplace_back(new fcl::ScrewMotion<double>(p.begin, p.end));
+  std::vector<std::shared_ptr<fcl::MotionBased>> motions;
+  motions.push_back(std::make_shared<fcl::TranslationMotiond>(p.begin, p.end));
+  motions.push_back(std::make_shared<fcl::InterpMotion<double>>(p.begin.linear(), p.begin.translation(), p.end.linear(),
+                                                                p.end.translation(), Vector3d(1, 2, 3)));
+  motions.push_back(std::make_shared<fcl::ScrewMotion<double>>(p.begin, p.end));
   Vector3d v[8];
   for (auto& x : v) x = randomDirection(random);
-  motions.emplace_back(new fcl::SplineMotion<double>(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]));
-  motions.emplace_back(new FclLinkMotion(*tree, test::randomMotion(*tree, random, 2), tree->numLinks() - 1));
-  motions.emplace_back(new test::SwayingMotion(p.begin, v[0], 2, 1, 3));
-  motions.emplace_back(new test::SpeedBoundedMotion(p.begin, v[0], 2, 1, 3));
+  motions.push_back(std::make_shared<fcl::SplineMotion<double>>(v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]));
+  motions.push_back(std::make_shared<FclLinkMotion>(*tree, test::randomMotion(*tree, random, 2), tree->numLinks() - 1));
+  motions.push_back(std::make_shared<test::SwayingMotion>(p.begin, v[0], 2, 1, 3));
+  motions.push_back(std::make_shared<test::SpeedBoundedMotion>(p.begin, v[0], 2, 1, 3));
   for (const auto& motion : motions) motion->integrate(t);
   return motions;
 }
