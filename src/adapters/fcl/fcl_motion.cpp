@@ -249,12 +249,10 @@ BodyMotion readBounded(const BoundedMotion& motion, const std::string& name) {
   };
   requireBound(bounds.speed, "speed");
   requireBound(bounds.angular_speed, "angular speed");
-  if (derivatives) {
-    requireBound(bounds.acceleration, "acceleration");
-    requireBound(bounds.jerk, "jerk");
-    requireBound(bounds.angular_acceleration, "angular acceleration");
-    requireBound(bounds.angular_jerk, "angular jerk");
-  }
+  requireBound(bounds.acceleration, "acceleration");
+  requireBound(bounds.jerk, "jerk");
+  requireBound(bounds.angular_acceleration, "angular acceleration");
+  requireBound(bounds.angular_jerk, "angular jerk");
   Vector3d last = Vector3d::Zero();
   for (const double t : {0.0, 0.5, 1.0}) {
     const BoundedMotion::State state = motion.state(t);
