@@ -47,12 +47,18 @@ Triangles hullOf(const std::vector<Vec3>& points) {
 std::shared_ptr<fcl::CollisionGeometryd> fclShape(const Body& b) {
   const Vec3& h = b.half;
   switch (b.kind) {
-    case Kind::box: return std::make_shared<fcl::Boxd>(2 * h.x(), 2 * h.y(), 2 * h.z());
-    case Kind::sphere: return std::make_shared<fcl::Sphered>(b.radius);
-    case Kind::capsule: return std::make_shared<fcl::Capsuled>(b.radius, 2 * h.z());
-    case Kind::cylinder: return std::make_shared<fcl::Cylinderd>(h.x(), 2 * h.z());
-    case Kind::cone: return std::make_shared<fcl::Coned>(h.x(), 2 * h.z());
-    case Kind::ellipsoid: return std::make_shared<fcl::Ellipsoidd>(h.x(), h.y(), h.z());
+    case Kind::box:
+      return std::make_shared<fcl::Boxd>(2 * h.x(), 2 * h.y(), 2 * h.z());
+    case Kind::sphere:
+      return std::make_shared<fcl::Sphered>(b.radius);
+    case Kind::capsule:
+      return std::make_shared<fcl::Capsuled>(b.radius, 2 * h.z());
+    case Kind::cylinder:
+      return std::make_shared<fcl::Cylinderd>(h.x(), 2 * h.z());
+    case Kind::cone:
+      return std::make_shared<fcl::Coned>(h.x(), 2 * h.z());
+    case Kind::ellipsoid:
+      return std::make_shared<fcl::Ellipsoidd>(h.x(), h.y(), h.z());
     case Kind::convex: {
       auto faces = std::make_shared<std::vector<int>>();
       const Triangles triangles = hullOf(b.vertices);
@@ -60,10 +66,14 @@ std::shared_ptr<fcl::CollisionGeometryd> fclShape(const Body& b) {
       return std::make_shared<fcl::Convexd>(std::make_shared<const std::vector<fcl::Vector3d>>(b.vertices),
                                             static_cast<int>(triangles.size()), faces, true);
     }
-    case Kind::triangle: return std::make_shared<fcl::TrianglePd>(b.vertices[0], b.vertices[1], b.vertices[2]);
-    case Kind::halfspace: return std::make_shared<fcl::Halfspaced>(b.normal, b.offset);
-    case Kind::plane: return std::make_shared<fcl::Planed>(b.normal, b.offset);
-    case Kind::mesh: break;
+    case Kind::triangle:
+      return std::make_shared<fcl::TrianglePd>(b.vertices[0], b.vertices[1], b.vertices[2]);
+    case Kind::halfspace:
+      return std::make_shared<fcl::Halfspaced>(b.normal, b.offset);
+    case Kind::plane:
+      return std::make_shared<fcl::Planed>(b.normal, b.offset);
+    case Kind::mesh:
+      break;
   }
   return nullptr;
 }
@@ -71,11 +81,19 @@ std::shared_ptr<fcl::CollisionGeometryd> fclShape(const Body& b) {
 double reachOf(const Body& b) {
   double core = 0;
   switch (b.kind) {
-    case Kind::box: core = b.half.norm(); break;
-    case Kind::capsule: core = b.half.z(); break;
+    case Kind::box:
+      core = b.half.norm();
+      break;
+    case Kind::capsule:
+      core = b.half.z();
+      break;
     case Kind::cylinder:
-    case Kind::cone: core = std::hypot(b.half.x(), b.half.z()); break;
-    case Kind::ellipsoid: core = b.half.maxCoeff(); break;
+    case Kind::cone:
+      core = std::hypot(b.half.x(), b.half.z());
+      break;
+    case Kind::ellipsoid:
+      core = b.half.maxCoeff();
+      break;
     default:
       for (const Vec3& v : b.vertices) core = std::max(core, v.norm());
   }
@@ -84,8 +102,8 @@ double reachOf(const Body& b) {
 
 void split(Body& body, int node, std::vector<int>& order, int begin, int end) {
   const auto corner = [&](int t, int k) -> const Vec3& {
-    return body.vertices[static_cast<std::size_t>(
-        body.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)])];
+    return body
+        .vertices[static_cast<std::size_t>(body.triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)])];
   };
   Vec3 low = Vec3::Constant(1e300), high = -low;
   for (int i = begin; i < end; ++i) {
@@ -145,7 +163,7 @@ void noisyBox(const Vec3& half, int n, double noise, Random& random, std::vector
         x[axis] = side % 2 ? half[axis] : -half[axis];
         x[(axis + 1) % 3] = half[(axis + 1) % 3] * (2.0 * i / n - 1);
         x[(axis + 2) % 3] = half[(axis + 2) % 3] * (2.0 * j / n - 1);
-        v.push_back(x + noise * random.unit() * random.direction());
+        v.push_back(x + random.vector(0, noise));
       }
     }
     for (int i = 0; i < n; ++i) {
@@ -177,7 +195,9 @@ BodyPtr randomShape(Kind kind, Random& random) {
     case Kind::ellipsoid:
       for (int k = 0; k < 3; ++k) h[k] = size();
       break;
-    case Kind::sphere: body->radius = size(); break;
+    case Kind::sphere:
+      body->radius = size();
+      break;
     case Kind::capsule:
       body->radius = random.uniform(kLeast, kMost / 2);
       h.z() = size();
@@ -192,24 +212,24 @@ BodyPtr randomShape(Kind kind, Random& random) {
       for (int i = 0; i < 20; ++i) body->vertices.push_back(h.cwiseProduct(random.direction()));
       break;
     case Kind::triangle:
-      for (int i = 0; i < 3; ++i) {
-        const double length = size();
-        body->vertices.push_back(length * random.direction());
-      }
+      for (int i = 0; i < 3; ++i) body->vertices.push_back(random.vector(kLeast, kMost));
       break;
     case Kind::halfspace:
     case Kind::plane:
       body->normal = random.direction();
       body->offset = random.uniform(-0.5, 0.5);
       break;
-    case Kind::mesh: return randomMesh(Volume::obbrss, random);
+    case Kind::mesh:
+      return randomMesh(Volume::obbrss, random);
   }
   body->geometry = fclShape(*body);
   body->geometry->computeLocalAABB();
   if (body->unbounded()) {  // FCL makes the normal a unit one once more
     const auto read = [&](const auto& g) { body->normal = g.n, body->offset = g.d; };
-    if (kind == Kind::halfspace) read(static_cast<const fcl::Halfspaced&>(*body->geometry));
-    else read(static_cast<const fcl::Planed&>(*body->geometry));
+    if (kind == Kind::halfspace)
+      read(static_cast<const fcl::Halfspaced&>(*body->geometry));
+    else
+      read(static_cast<const fcl::Planed&>(*body->geometry));
   } else {
     body->reach = reachOf(*body);
   }
@@ -240,10 +260,13 @@ BodyPtr randomMesh(Volume volume, Random& random) {
       const double thick = random.uniform(0.2, 0.45);
       const int rows = std::max(3, static_cast<int>(std::sqrt(wanted / 4)));
       const int columns = std::max(3, static_cast<int>(wanted / (2 * rows)));
-      revolve(rows, columns, true, [&](double s, double a) {
-        const double r = size / 2 * (1 - thick / 2 + thick / 2 * std::cos(2 * kPi * s));
-        return Vec3(r * std::cos(a), r * std::sin(a), size / 2 * thick / 2 * std::sin(2 * kPi * s));
-      }, v, t);
+      revolve(
+          rows, columns, true,
+          [&](double s, double a) {
+            const double r = size / 2 * (1 - thick / 2 + thick / 2 * std::cos(2 * kPi * s));
+            return Vec3(r * std::cos(a), r * std::sin(a), size / 2 * thick / 2 * std::sin(2 * kPi * s));
+          },
+          v, t);
       break;
     }
     case 2:
@@ -257,8 +280,7 @@ BodyPtr randomMesh(Volume volume, Random& random) {
     case 4: {  // loose triangles, slivers among them
       const int n = static_cast<int>(wanted);
       for (int i = 0; i < n; ++i) {
-        const double distance = size / 2 * random.unit();
-        const Vec3 c = distance * random.direction(), u = random.direction();
+        const Vec3 c = random.vector(0, size / 2), u = random.direction();
         const Vec3 w = u.cross(random.direction()).normalized();
         const double a = size * random.uniform(0.05, 0.3), b = a * random.logUniform(0.02, 1), s = random.unit();
         v.insert(v.end(), {c, c + a * u, c + s * a * u + b * w});
@@ -268,19 +290,21 @@ BodyPtr randomMesh(Volume volume, Random& random) {
     }
     default: {  // 2 columns x (rows - 1) triangles
       std::array<Vec3, 4> wave;
-      for (Vec3& w : wave) w = random.direction();
-      for (Vec3& w : wave) w *= random.uniform(1, 6);
+      for (Vec3& w : wave) w = random.vector(1, 6);
       const double bumps = random.uniform(0, 0.12);
       Vec3 half;
       for (int k = 0; k < 3; ++k) half[k] = size / 2 * random.uniform(0.4, 1);
       const int rows = std::max(3, static_cast<int>(std::sqrt(wanted / 2)));
       const int columns = std::max(3, static_cast<int>(wanted / (2 * (rows - 1))));
-      revolve(rows, columns, false, [&](double s, double a) {
-        const Vec3 d(std::sin(kPi * s) * std::cos(a), std::sin(kPi * s) * std::sin(a), std::cos(kPi * s));
-        double r = 1;
-        for (const Vec3& w : wave) r += bumps * std::sin(w.dot(d));
-        return Vec3(r * d.cwiseProduct(half));
-      }, v, t);
+      revolve(
+          rows, columns, false,
+          [&](double s, double a) {
+            const Vec3 d(std::sin(kPi * s) * std::cos(a), std::sin(kPi * s) * std::sin(a), std::cos(kPi * s));
+            double r = 1;
+            for (const Vec3& w : wave) r += bumps * std::sin(w.dot(d));
+            return Vec3(r * d.cwiseProduct(half));
+          },
+          v, t);
     }
   }
   return makeMesh(std::move(v), std::move(t), volume);

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Core>
 #include <fcl/geometry/collision_geometry.h>
+#include <Eigen/Core>
 
 #include "pairs/random.h"
 
@@ -24,11 +24,11 @@ constexpr int kVolumes = 8;
 /// A geometry in its own frame, as convex pieces, and the same one for FCL. A piece is a core and a radius around it.
 struct Body {
   Kind kind = Kind::box;
-  Vec3 half = Vec3::Zero();  ///< half sizes; radius, radius and half length; half axes; of the core
-  double radius = 0;         ///< around the core: sphere and capsule
+  Vec3 half = Vec3::Zero();     ///< half sizes; radius, radius and half length; half axes; of the core
+  double radius = 0;            ///< around the core: sphere and capsule
   Vec3 normal = Vec3::UnitZ();  ///< half-space (normal . x <= offset) and plane
   double offset = 0;
-  std::vector<Vec3> vertices;  ///< of convex, triangle and mesh
+  std::vector<Vec3> vertices;                 ///< of convex, triangle and mesh
   std::vector<std::array<int, 3>> triangles;  ///< of a mesh, each a piece
   std::shared_ptr<fcl::CollisionGeometryd> geometry;
   double reach = 0;  ///< no point lies farther from the frame's origin; unbounded bodies: 0

@@ -28,14 +28,22 @@ std::shared_ptr<fcl::CollisionGeometryd> build(const std::vector<Vec3>& vertices
 std::shared_ptr<fcl::CollisionGeometryd> makeFclMesh(const std::vector<Vec3>& vertices,
                                                      const std::vector<std::array<int, 3>>& triangles, Volume volume) {
   switch (volume) {
-    case Volume::rss: return build<fcl::RSSd>(vertices, triangles);
-    case Volume::obbrss: return build<fcl::OBBRSSd>(vertices, triangles);
-    case Volume::aabb: return build<fcl::AABBd>(vertices, triangles);
-    case Volume::obb: return build<fcl::OBBd>(vertices, triangles);
-    case Volume::kios: return build<fcl::kIOSd>(vertices, triangles);
-    case Volume::kdop16: return build<fcl::KDOPd<16>>(vertices, triangles);
-    case Volume::kdop18: return build<fcl::KDOPd<18>>(vertices, triangles);
-    case Volume::kdop24: return build<fcl::KDOPd<24>>(vertices, triangles);
+    case Volume::rss:
+      return build<fcl::RSSd>(vertices, triangles);
+    case Volume::obbrss:
+      return build<fcl::OBBRSSd>(vertices, triangles);
+    case Volume::aabb:
+      return build<fcl::AABBd>(vertices, triangles);
+    case Volume::obb:
+      return build<fcl::OBBd>(vertices, triangles);
+    case Volume::kios:
+      return build<fcl::kIOSd>(vertices, triangles);
+    case Volume::kdop16:
+      return build<fcl::KDOPd<16>>(vertices, triangles);
+    case Volume::kdop18:
+      return build<fcl::KDOPd<18>>(vertices, triangles);
+    case Volume::kdop24:
+      return build<fcl::KDOPd<24>>(vertices, triangles);
   }
   return nullptr;
 }

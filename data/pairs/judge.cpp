@@ -98,7 +98,8 @@ Truth Judge::march(double begin, double end) const {
       if (std::min(current.p.gap, next.p.gap) - speed_ * (hi - lo) / 2 < (kLeast ? truth.gap : 0)) {
         // Golden section; the gap need not be unimodal, so whatever is met on the way counts.
         constexpr double kGolden = 0.6180339887498949, kFine = 1e-5;
-        Sample x = look(hi - kGolden * (hi - lo), kFine, current.p), y = look(lo + kGolden * (hi - lo), kFine, current.p);
+        Sample x = look(hi - kGolden * (hi - lo), kFine, current.p),
+               y = look(lo + kGolden * (hi - lo), kFine, current.p);
         for (int i = 0; i < 60; ++i) {
           if (note(x)) return close(lo, x);
           if (note(y)) return close(x.t, y);
@@ -123,7 +124,11 @@ Truth Judge::march(double begin, double end) const {
   return truth;
 }
 
-Truth Judge::firstContact(double begin, double end) const { return march<false>(begin, end); }
-Truth Judge::leastGap() const { return march<true>(0, 1); }
+Truth Judge::firstContact(double begin, double end) const {
+  return march<false>(begin, end);
+}
+Truth Judge::leastGap() const {
+  return march<true>(0, 1);
+}
 
 }  // namespace pairs

@@ -24,7 +24,7 @@ std::string describe(const PairQuery& query);
 struct Nearness {
   double gap = 0;    ///< lower bound on their distance, from a direction that parts them; not positive when they touch
   double upper = 0;  ///< distance of two points of theirs
-  bool clear = false;  ///< they are in each other by more than kClear, as far as long doubles tell
+  bool clear = false;             ///< they are in each other by more than kClear, as far as long doubles tell
   int piece1 = 0, piece2 = 0;     ///< nearest pieces; a first guess for the next call
   Vec3 direction = Vec3::Zero();  ///< unit, from 1 to 2
 };
@@ -39,12 +39,13 @@ Nearness nearness(const Body& a, const Pose& M_a, const Body& b, const Pose& M_b
 /// Distance of a point from the body, 0 inside a solid. @param piece  only this one; -1: all
 double distanceTo(const Body& body, int piece, const Pose& M, const Vec3& point);
 /// Gap along the unit direction n: least n.x over a piece of b less the largest over a piece of a. Bounded bodies.
-double gapAlong(const Body& a, int piece_a, const Pose& M_a, const Body& b, int piece_b, const Pose& M_b, const Vec3& n);
+double gapAlong(const Body& a, int piece_a, const Pose& M_a, const Body& b, int piece_b, const Pose& M_b,
+                const Vec3& n);
 
 /// What sampling found out.
 struct Truth {
-  /// A sampled time has a clear contact; `time` is the first one found, bisected down to neighbouring doubles or nearly.
-  /// The true first contact lies at or before it.
+  /// A sampled time has a clear contact; `time` is the first one found, bisected down to neighbouring doubles or
+  /// nearly. The true first contact lies at or before it.
   bool hit = false;
   double time = 1;
   double gap = 0;  ///< least sampled gap; 0 for a hit
@@ -53,8 +54,8 @@ struct Truth {
 };
 
 /// Samples a query as often as distance and speed ask for, never more coarsely; at least 32 and, near contact, up to
-/// 2,048 times, and closes in on every minimum of the distance that may hide a contact. Contacts are found, never proven
-/// absent: an oracle in one direction. It shares nothing with the library but FCL's types.
+/// 2,048 times, and closes in on every minimum of the distance that may hide a contact. Contacts are found, never
+/// proven absent: an oracle in one direction. It shares nothing with the library but FCL's types.
 class Judge {
  public:
   using Look = std::function<Nearness(const Pose& M_1, const Pose& M_2, double wanted, const Nearness& hint)>;

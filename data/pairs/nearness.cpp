@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances by the algorithm of Gilbert, Johnson and Keerthi: in doubles where the bodies are apart, in long doubles where
-// they may touch. What it claims is shown by a direction or by points, never by its having stopped.
+// Distances by the algorithm of Gilbert, Johnson and Keerthi: in doubles where the bodies are apart, in long doubles
+// where they may touch. What it claims is shown by a direction or by points, never by its having stopped.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,9 +34,12 @@ struct Placed {
     const Vec<R> h = body.half.template cast<R>();
     const auto end = [&](int k) { return u[k] > 0 ? h[k] : -h[k]; };
     switch (body.kind) {
-      case Kind::box: return {end(0), end(1), end(2)};
-      case Kind::sphere: return Vec<R>::Zero();
-      case Kind::capsule: return {0, 0, end(2)};
+      case Kind::box:
+        return {end(0), end(1), end(2)};
+      case Kind::sphere:
+        return Vec<R>::Zero();
+      case Kind::capsule:
+        return {0, 0, end(2)};
       case Kind::cylinder:
       case Kind::cone: {
         const R side = std::sqrt(u.x() * u.x() + u.y() * u.y()), s = side > 0 ? h.x() / side : 0;
@@ -66,7 +69,8 @@ struct Placed {
         return best;
       }
       case Kind::halfspace:
-      case Kind::plane: break;
+      case Kind::plane:
+        break;
     }
     throw std::logic_error("an unbounded body has no support point");
   }
@@ -80,7 +84,8 @@ struct Simplex {
   R weight[4];
 };
 
-/// Weights of the point nearest to the origin in a triangle (Ericson 2005, Section 5.1.5); returns its squared distance.
+/// Weights of the point nearest to the origin in a triangle (Ericson 2005, Section 5.1.5); returns its squared
+/// distance.
 template <class R>
 R nearestOnTriangle(const Vec<R>& a, const Vec<R>& b, const Vec<R>& c, R* out) {
   const auto result = [&](R x, R y, R z) {
@@ -193,7 +198,8 @@ Distance<R> distance(const Placed<R>& A, const Placed<R>& B, const Vec<R>& p, do
 /// points within depth / 10 of the four corners of a regular tetrahedron of that inradius.
 bool deeperThan(const Placed<Real>& A, const Placed<Real>& B, Real depth) {
   const Real q = 3 * depth / std::sqrt(Real(3));
-  for (const Vec<Real>& corner : {Vec<Real>(q, q, q), Vec<Real>(q, -q, -q), Vec<Real>(-q, q, -q), Vec<Real>(-q, -q, q)}) {
+  for (const Vec<Real>& corner :
+       {Vec<Real>(q, q, q), Vec<Real>(q, -q, -q), Vec<Real>(-q, q, -q), Vec<Real>(-q, -q, q)}) {
     if (!(distance<Real>(A, B, corner, 0, 0).upper <= depth / 10)) return false;
   }
   return true;
@@ -273,7 +279,8 @@ Nearness nearness(const Body& a, const Pose& M_a, const Body& b, const Pose& M_b
   if (a.nodes.empty() && b.nodes.empty()) return best;
 
   // Of a mesh the tree, of a shape one box around all of it.
-  const Body::Node whole_a{Vec3::Zero(), Vec3::Constant(a.reach), -1, 0}, whole_b{Vec3::Zero(), Vec3::Constant(b.reach), -1, 0};
+  const Body::Node whole_a{Vec3::Zero(), Vec3::Constant(a.reach), -1, 0},
+      whole_b{Vec3::Zero(), Vec3::Constant(b.reach), -1, 0};
   const auto node = [](const Body& body, const Body::Node& whole, int k) -> const Body::Node& {
     return body.nodes.empty() ? whole : body.nodes[static_cast<std::size_t>(k)];
   };

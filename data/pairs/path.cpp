@@ -12,7 +12,9 @@
 namespace pairs {
 namespace {
 
-Vec<Real> real(const Vec3& v) { return v.cast<Real>(); }
+Vec<Real> real(const Vec3& v) {
+  return v.cast<Real>();
+}
 
 /// c(t) = start + velocity t + D(t) arm and R(t) = D(t) R1 with D(t) = exp(t angle axis): all motions of FCL that turn
 /// evenly, each with the numbers that the FCL object holds, its roundings included.
@@ -33,7 +35,8 @@ class TwistPath : public Path {
       case Type::interp: {
         const auto m = interp();
         const Vec<Real> arm = ends.R1.cast<Real>() * real(m.getReferencePoint());
-        twist_ = {real(m.getAngularAxis()), m.getAngularVelocity(), real(ends.T1) + arm, real(m.getLinearVelocity()), -arm};
+        twist_ = {real(m.getAngularAxis()), m.getAngularVelocity(), real(ends.T1) + arm, real(m.getLinearVelocity()),
+                  -arm};
         break;
       }
       case Type::screw: {
@@ -61,9 +64,12 @@ class TwistPath : public Path {
   }
   std::shared_ptr<fcl::MotionBased> motion() const override {
     switch (type_) {
-      case Type::interp: return std::make_shared<fcl::InterpMotion<double>>(interp());
-      case Type::screw: return std::make_shared<fcl::ScrewMotion<double>>(screw());
-      case Type::translation: break;
+      case Type::interp:
+        return std::make_shared<fcl::InterpMotion<double>>(interp());
+      case Type::screw:
+        return std::make_shared<fcl::ScrewMotion<double>>(screw());
+      case Type::translation:
+        break;
     }
     return std::make_shared<fcl::TranslationMotion<double>>(ends_.R1, ends_.T1, ends_.T2);
   }

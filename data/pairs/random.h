@@ -31,7 +31,6 @@ class Random {
   double logUniform(double lower, double upper) { return lower * std::pow(upper / lower, unit()); }
   int below(int count) { return static_cast<int>(bits() % static_cast<std::uint64_t>(count)); }
   bool chance(double p) { return unit() < p; }
-  double sign() { return chance(0.5) ? 1 : -1; }
 
   Eigen::Vector3d direction() {
     for (;;) {
@@ -40,6 +39,11 @@ class Random {
       const double square = v.squaredNorm();
       if (square > 1e-4 && square <= 1) return v / std::sqrt(square);
     }
+  }
+  /// Of a length between the two, in any direction. (One draw after the other: operands have no order.)
+  Eigen::Vector3d vector(double least, double most) {
+    const double length = uniform(least, most);
+    return length * direction();
   }
   Eigen::Matrix3d rotation(double most = 3.14159265358979323846) {
     const Eigen::Vector3d axis = direction();

@@ -13,40 +13,39 @@ constexpr Kind kBounded[] = {Kind::box,  Kind::sphere,    Kind::capsule, Kind::c
 PathPtr randomPath(const PairOptions& options, bool moves, double from_origin, double scale, Random& random) {
   Ends ends;
   ends.R1 = random.rotation();
-  const double distance = from_origin * random.uniform(0.6, 1.6) * scale;
-  ends.T1 = distance * random.direction();
+  ends.T1 = from_origin * scale * random.vector(0.6, 1.6);
   if (!moves) {
     ends.R2 = ends.R1, ends.T2 = ends.T1;
     return options.moves == Moves::interp ? interpPath(ends, Vec3::Zero()) : translationPath(ends);
   }
   if (options.moves == Moves::spline) {
     std::array<Vec3, 4> positions, rotations;
-    Vec3 turn = random.uniform(0, kPi) * random.direction();
+    Vec3 turn = random.vector(0, kPi);
     for (std::size_t k = 0; k < 4; ++k) {
-      const double length = random.uniform(0, 2.5) * scale;
-      positions[k] = length * random.direction();
+      positions[k] = scale * random.vector(0, 2.5);
       rotations[k] = turn;
-      turn += random.uniform(0, 1.5) * random.direction();
+      turn += random.vector(0, 1.5);
     }
     if (from_origin > 0.5) positions[0] *= 2;
     return splinePath(positions, rotations);
   }
   const Vec3 axis = random.direction();
-  ends.R2 = Eigen::AngleAxisd(random.uniform(options.moves == Moves::screw ? 0.01 : 0, kPi), axis).toRotationMatrix() * ends.R1;
-  const double length = random.uniform(0, 1.6) * scale;
-  ends.T2 = length * random.direction();
+  ends.R2 = Eigen::AngleAxisd(random.uniform(options.moves == Moves::screw ? 0.01 : 0, kPi), axis).toRotationMatrix() *
+            ends.R1;
+  ends.T2 = scale * random.vector(0, 1.6);
   if (options.moves == Moves::translation) return translationPath(ends);
   if (options.moves == Moves::screw) return screwPath(ends);
   const bool about_origin = random.chance(0.5);
-  const double arm = about_origin ? 0 : random.uniform(0, 0.5) * scale;
-  return interpPath(ends, arm * random.direction());
+  return interpPath(ends, about_origin ? Vec3::Zero() : Vec3(scale * random.vector(0, 0.5)));
 }
 
 BodyPtr randomBody(const PairOptions& options, bool mesh, bool unbounded, Random& random) {
-  if (mesh) return randomMesh(options.any_volume ? static_cast<Volume>(random.below(kVolumes)) : options.volume, random);
+  if (mesh)
+    return randomMesh(options.any_volume ? static_cast<Volume>(random.below(kVolumes)) : options.volume, random);
   if (unbounded) return randomShape(random.chance(0.5) ? Kind::halfspace : Kind::plane, random);
   if (options.kinds.empty()) return randomShape(kBounded[random.below(8)], random);
-  return randomShape(options.kinds[static_cast<std::size_t>(random.below(static_cast<int>(options.kinds.size())))], random);
+  return randomShape(options.kinds[static_cast<std::size_t>(random.below(static_cast<int>(options.kinds.size())))],
+                     random);
 }
 
 PairQuery drawPair(const PairOptions& options, Random& random) {
@@ -76,7 +75,8 @@ PairQuery makePair(const PairOptions& options, std::uint64_t seed) {
   for (int tries = 0; options.graze && tries < 30; ++tries, q = drawPair(options, random)) {
     const Truth truth = Judge(q).leastGap();
     if (truth.hit || !(truth.gap > 0)) continue;
-    const double depth = random.sign() * random.logUniform(1e-8, 1e-3);
+    double depth = random.logUniform(1e-8, 1e-3);
+    if (random.chance(0.5)) depth = -depth;
     q.path2 = q.path2->shifted(-(truth.gap + depth) * truth.direction);
     break;
   }

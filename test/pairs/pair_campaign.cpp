@@ -1,0 +1,559 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair_campaign.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "bounded_path.h"
+#include "exact_look.h"
+
+namespace pair_campaign {
+namespace {
+
+using fcl_artic::CertifiedContact;
+using fcl_artic::CertifiedPairResult;
+using fcl_artic::Status;
+using pairs::Judge;
+using pairs::PairQuery;
+using pairs::Random;
+using pairs::Truth;
+using pairs::Vec3;
+using Clock = std::chrono::steady_clock;
+
+/// A contact proven by the library shows to the judge up to the rounding of poses and of FCL's own parameters.
+constexpr double kRounding = 1e-12;
+/// Poses of the library and of the judge: rounding of FCL's screw axes, which may lie far away.
+constexpr double kPose = 1e-11;
+
+std::string format(const char* text, ...) {
+  char line[400];
+  va_list arguments;
+  va_start(arguments, text);
+  std::vsnprintf(line, sizeof line, text, arguments);
+  va_end(arguments);
+  return line;
+}
+
+const Family& familyOf(const std::string& name) {
+  for (const Family& f : families())
+    if (f.name == name) return f;
+  throw std::invalid_argument("no class of queries is named '" + name + "'");
+}
+
+pairs::PathPtr randomWobble(bool near, double scale, Random& random) {
+  Wobble w;
+  w.R1 = random.rotation();
+  w.axis = random.direction();
+  w.turn = random.uniform(-3, 3);
+  w.turn_swing = random.uniform(0, 1);
+  w.start = scale * (near ? random.vector(0, 0.5) : random.vector(0.6, 1.6));
+  w.way = scale * random.vector(0, near ? 0.5 : 1.6);
+  if (!near) w.way -= w.start;
+  w.swing = scale * random.vector(0, 0.3);
+  w.frequency = random.uniform(0.5, 6);
+  w.has_derivatives = random.chance(0.5);
+  return boundedPath(w);
+}
+
+double offFrom(const pairs::PathPtr& path, double t, const Eigen::Isometry3d& M) {
+  const auto own = path->pose(t).cast<double>();
+  return std::max((own.rotation - M.linear()).cwiseAbs().maxCoeff(),
+                  (own.position - M.translation()).cwiseAbs().maxCoeff());
+}
+
+class Examination {
+ public:
+  Examination(const PairQuery& query, const Judge& judge, const Truth& truth, const Answer& answer)
+      : query_(query), judge_(judge), truth_(truth), answer_(answer), result_(answer.result) {}
+
+  std::vector<Finding> run() {
+    status();
+    if (result_.status == Status::contact) contact();
+    poses();
+    swapped();
+    dropIn();
+    return std::move(findings_);
+  }
+
+ private:
+  void add(Fault fault, const std::string& text) { findings_.push_back({fault, text}); }
+
+  void status() {
+    const CertifiedPairResult& r = result_;
+    if (r.status == Status::undecided) add(Fault::undecided, format("from %.17g", r.t_lower));
+    if (!(r.t_lower >= 0 && r.t_lower <= r.t_upper && r.t_upper <= 1))
+      add(Fault::fields, format("bracket [%.17g, %.17g]", r.t_lower, r.t_upper));
+    if (r.status == Status::free) {
+      if (truth_.hit) add(Fault::missed, format("contact at t = %.17g", truth_.time));
+      if (r.t_lower != 1 || r.certain || !r.contacts.empty()) add(Fault::fields, "free, with more than that");
+    } else if (truth_.hit && r.t_lower > truth_.time) {
+      add(Fault::late,
+          format("t_lower %.17g, contact at t = %.17g (%.3g before)", r.t_lower, truth_.time, r.t_lower - truth_.time));
+    }
+  }
+
+  void contact() {
+    const CertifiedPairResult& r = result_;
+    const double tolerance = answer_.request.tolerance_time, near = answer_.request.tolerance_distance;
+    if (r.contacts.size() != 1) {
+      add(Fault::fields, format("%zu contacts", r.contacts.size()));
+      return;
+    }
+    const CertifiedContact& c = r.contacts[0];
+    // The contact's own bracket may be narrower: it is of two pieces, sharpened by the equations of their features.
+    if (!(c.t_lower >= r.t_lower && c.t_lower <= c.t_upper) || c.certain != r.certain ||
+        (r.certain && c.t_upper > r.t_upper))
+      add(Fault::fields,
+          format("contact in [%.17g, %.17g], answer in [%.17g, %.17g]", c.t_lower, c.t_upper, r.t_lower, r.t_upper));
+    if (c.o1 != query_.body1->geometry.get() || c.o2 != query_.body2->geometry.get())
+      add(Fault::fields, "contact of other geometries");
+    const auto good = [](const pairs::Body& b, std::intptr_t id) {
+      return b.kind == pairs::Kind::mesh ? id >= 0 && id < b.numPieces() : id == -1;
+    };
+    if (!good(*query_.body1, c.b1) || !good(*query_.body2, c.b2)) {
+      add(Fault::fields, format("ids %ld and %ld", static_cast<long>(c.b1), static_cast<long>(c.b2)));
+      return;
+    }
+
+    const double end = r.certain ? r.t_upper : std::min(r.t_upper, r.t_lower + tolerance);
+    const double way = judge_.speed() * (end - r.t_lower);
+    if (r.certain) {
+      const double gap = judge_.at(r.t_upper, 1e-6).gap;
+      if (!(gap <= kRounding)) add(Fault::unproven, format("gap %.3g m at t_upper %.17g", gap, r.t_upper));
+      // 1e-15: t_upper is rounded
+      if (r.t_upper - r.t_lower > tolerance + 1e-15 && way > near)
+        add(Fault::wide, format("width %.3g, way %.3g m", r.t_upper - r.t_lower, way));
+    } else {
+      const double gap = judge_.at(r.t_lower, 1e-6).gap;
+      if (!(gap <= near + way)) add(Fault::false_contact, format("gap %.6g m at t_lower %.17g", gap, r.t_lower));
+    }
+
+    const double time = r.certain ? r.t_upper : r.t_lower;
+    const pairs::Pose M_1 = query_.path1->pose(time), M_2 = query_.path2->pose(time);
+    const int i = std::max(0, static_cast<int>(c.b1)), j = std::max(0, static_cast<int>(c.b2));
+    const double allowed = 1e-5 + way + (r.certain ? 0 : near);
+    const double from1 = pairs::distanceTo(*query_.body1, i, M_1, c.point),
+                 from2 = pairs::distanceTo(*query_.body2, j, M_2, c.point);
+    if (!(from1 <= allowed && from2 <= allowed))
+      add(Fault::point, format("point %.3g m and %.3g m from its pieces, allowed %.3g", from1, from2, allowed));
+
+    if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add(Fault::normal, format("normal of length %.17g", c.normal.norm()));
+    if (r.t_lower > 0) {
+      // At t_lower the pieces are not yet in each other, and the normal parts them, up to some 1e-3 rad of it.
+      const pairs::Pose L_1 = query_.path1->pose(r.t_lower), L_2 = query_.path2->pose(r.t_lower);
+      const double gap = along(*query_.body1, i, L_1, *query_.body2, j, L_2, c.normal);
+      if (!(gap >= -(1e-4 + 2 * way + near)))
+        add(Fault::normal, format("pieces overlap by %.3g m along the normal", -gap));
+    }
+  }
+
+  /// Gap along n; a half-space or plane has but its own normal.
+  static double along(const pairs::Body& a, int i, const pairs::Pose& M_a, const pairs::Body& b, int j,
+                      const pairs::Pose& M_b, const Vec3& n) {
+    if (!a.unbounded() && !b.unbounded()) return pairs::gapAlong(a, i, M_a, b, j, M_b, n);
+    const pairs::Nearness p = pairs::nearness(a, M_a, b, M_b, 1e-6);
+    return p.direction.dot(n) > 0.999 ? p.gap : -1;
+  }
+
+  void poses() {
+    const CertifiedPairResult& r = result_;
+    const double off =
+        std::max({offFrom(query_.path1, r.t_lower, r.tf1_at_lower), offFrom(query_.path2, r.t_lower, r.tf2_at_lower),
+                  offFrom(query_.path1, r.t_upper, r.tf1_at_upper), offFrom(query_.path2, r.t_upper, r.tf2_at_upper)});
+    if (!(off <= kPose)) add(Fault::poses, format("off by %.3g", off));
+  }
+
+  void swapped() {
+    const CertifiedPairResult &r = result_, &s = answer_.swapped;
+    const double tolerance = answer_.request.tolerance_time;
+    if (r.certain && s.certain) {
+      if (std::max(r.t_lower, s.t_lower) > std::min(r.t_upper, s.t_upper) ||
+          std::abs(r.t_lower - s.t_lower) > tolerance || std::abs(r.t_upper - s.t_upper) > tolerance)
+        add(Fault::swapped,
+            format("[%.17g, %.17g], swapped [%.17g, %.17g]", r.t_lower, r.t_upper, s.t_lower, s.t_upper));
+    } else if (r.status != s.status && (r.certain || s.certain)) {
+      add(Fault::swapped, "contact proven one way round, free the other");
+    } else if (r.status == Status::contact && s.status == Status::contact) {
+      // One of them is a graze to its solver: proven times of contact still end after proven free ones.
+      if (std::max(r.t_lower, s.t_lower) > std::min(r.certain ? r.t_upper : 1.0, s.certain ? s.t_upper : 1.0))
+        add(Fault::swapped, "brackets contradict each other");
+    }
+  }
+
+  void dropIn() {
+    const auto& d = answer_.drop_in;
+    const double toc = d.time_of_contact;
+    const double toc_err = fcl::ContinuousCollisionRequestd().toc_err;
+    if (answer_.drop_in_time != toc || !(toc >= 0 && toc <= 1) || (!d.is_collide && toc != 1))
+      add(Fault::drop_in, format("returns %.17g, result says %d at %.17g", answer_.drop_in_time, d.is_collide, toc));
+    const double off = std::max(offFrom(query_.path1, toc, d.contact_tf1), offFrom(query_.path2, toc, d.contact_tf2));
+    if (!(off <= kPose)) add(Fault::drop_in, format("contact_tf off by %.3g", off));
+    if (truth_.hit && !d.is_collide) add(Fault::drop_in, format("missed, contact at t = %.17g", truth_.time));
+    if (truth_.hit && toc > truth_.time)
+      add(Fault::drop_in, format("late: %.17g, contact at t = %.17g", toc, truth_.time));
+    if (!d.is_collide) return;
+    const Truth after = judge_.firstContact(toc, std::min(1.0, toc + toc_err + 1e-12));
+    if (!after.hit && after.gap > answer_.request.tolerance_distance)
+      add(Fault::drop_in, format("contact at t = %.17g, gap %.3g m for toc_err from there on", toc, after.gap));
+  }
+
+  const PairQuery& query_;
+  const Judge& judge_;
+  const Truth& truth_;
+  const Answer& answer_;
+  const CertifiedPairResult& result_;
+  std::vector<Finding> findings_;
+};
+
+void runOne(const Family& family, std::uint64_t seed, const Options& options, Tally& tally,
+            std::vector<Finding>& findings) {
+  const PairQuery query = makeQuery(family, seed);
+  const Judge judge(query, exactLook(query));
+  const Truth truth = judge.firstContact();
+  ++tally.queries;
+  tally.hits += truth.hit;
+  tally.starts += truth.hit && truth.time == 0;
+  tally.between += truth.hit && truth.time > 0 && judge.at(1, 0.5).gap > 0;
+  tally.grazes += !truth.hit && truth.gap <= 1e-3;
+  try {
+    const Answer answer = ask(query);
+    for (int c = 0; options.try_corruptions && c < kCorruptions; ++c) {
+      Answer spoilt = answer;
+      if (!corrupt(static_cast<Corruption>(c), query, spoilt)) continue;
+      ++tally.spoilt[static_cast<std::size_t>(c)];
+      tally.spoilt_seen[static_cast<std::size_t>(c)] += !examine(query, judge, truth, spoilt).empty();
+    }
+    findings = examine(query, judge, truth, answer);
+    const CertifiedPairResult& r = answer.result;
+    tally.certain += r.status == Status::contact && r.certain;
+    tally.uncertain += r.status == Status::contact && !r.certain;
+    tally.beyond_sampling += r.certain && !truth.hit;
+    (r.status == Status::free ? tally.free_us : tally.hit_us).push_back(static_cast<float>(answer.elapsed_us));
+    if (r.certain && truth.hit) tally.lead.push_back(static_cast<float>(truth.time - r.t_lower));
+  } catch (const std::exception& e) {
+    findings.push_back({Fault::fields, std::string("threw: ") + e.what()});
+  }
+  bool seen[kFaults] = {};
+  for (const Finding& f : findings) seen[static_cast<int>(f.fault)] = true;
+  for (int f = 0; f < kFaults; ++f) tally.faults[static_cast<std::size_t>(f)] += seen[f];
+}
+
+double quantile(std::vector<float> v, double p) {
+  if (v.empty()) return 0;
+  std::sort(v.begin(), v.end());
+  return static_cast<double>(v[std::min(v.size() - 1, static_cast<std::size_t>(p * static_cast<double>(v.size())))]);
+}
+
+/// Where the first query of a class stands among kShares.
+int firstShare(const Family& family) {
+  int first = 0;
+  for (const Family& f : families()) {
+    if (f.name == family.name) break;
+    first += f.share;
+  }
+  return first;
+}
+
+/// The classes take turns: 37 is prime to kShares.
+const Family& familyAt(std::uint64_t index) {
+  const int slot = static_cast<int>((index * 37) % kShares);
+  for (const Family& f : families())
+    if (slot >= firstShare(f) && slot < firstShare(f) + f.share) return f;
+  throw std::logic_error("shares do not add up");
+}
+
+}  // namespace
+
+const char* faultName(Fault fault) {
+  static constexpr const char* kNames[] = {"missed", "late",  "false",  "unproven", "wide",    "undecided",
+                                           "fields", "point", "normal", "poses",    "swapped", "drop-in"};
+  return kNames[static_cast<int>(fault)];
+}
+
+const char* corruptionName(Corruption corruption) {
+  static constexpr const char* kNames[] = {"late",  "drop",    "invent", "widen",   "point",  "normal",
+                                           "poses", "certain", "ids",    "swapped", "drop-in"};
+  return kNames[static_cast<int>(corruption)];
+}
+
+const std::vector<Family>& families() {
+  using pairs::Bodies;
+  static const std::vector<Family> all = {
+      {"mesh-mesh/interp", Bodies::meshes, "interp", 20},
+      {"shape-shape/interp", Bodies::shapes, "interp", 40},
+      {"mesh-shape/interp", Bodies::mixed, "interp", 6},
+      {"mesh-mesh/translation", Bodies::meshes, "translation", 1},
+      {"shape-shape/translation", Bodies::shapes, "translation", 1},
+      {"mesh-shape/translation", Bodies::mixed, "translation", 1},
+      {"mesh-mesh/screw", Bodies::meshes, "screw", 1},
+      {"shape-shape/screw", Bodies::shapes, "screw", 1},
+      {"mesh-shape/screw", Bodies::mixed, "screw", 1},
+      {"mesh-mesh/spline", Bodies::meshes, "spline", 1},
+      {"shape-shape/spline", Bodies::shapes, "spline", 2},
+      {"mesh-shape/spline", Bodies::mixed, "spline", 1},
+      {"mesh-mesh/bounded", Bodies::meshes, "bounded", 1},
+      {"shape-shape/bounded", Bodies::shapes, "bounded", 2},
+      {"mesh-shape/bounded", Bodies::mixed, "bounded", 1},
+  };
+  return all;
+}
+
+PairQuery makeQuery(const Family& family, std::uint64_t seed) {
+  Random random(seed);
+  pairs::PairOptions options;
+  options.bodies = family.bodies;
+  options.both_move = random.chance(0.5);
+  options.graze = random.chance(0.25);
+  options.any_volume = true;
+  options.unbounded = true;
+  if (family.motion == "translation") options.moves = pairs::Moves::translation;
+  if (family.motion == "screw") options.moves = pairs::Moves::screw;
+  if (family.motion == "spline") options.moves = pairs::Moves::spline;
+  if (family.motion != "bounded") {
+    PairQuery q = pairs::makePair(options, random.bits());
+    q.family = family.name;
+    q.seed = seed;
+    return q;
+  }
+  const bool graze = options.graze;
+  options.graze = false;
+  PairQuery q = pairs::makePair(options, random.bits());
+  const double scale = family.bodies == pairs::Bodies::shapes ? 1 : 0.65;
+  q.path1 = randomWobble(false, scale, random);
+  if (options.both_move) q.path2 = randomWobble(true, scale, random);
+  if (graze) {
+    const Truth truth = Judge(q).leastGap();
+    double depth = random.logUniform(1e-8, 1e-3);
+    if (random.chance(0.5)) depth = -depth;
+    if (!truth.hit && truth.gap > 0) q.path2 = q.path2->shifted(-(truth.gap + depth) * truth.direction);
+  }
+  q.family = family.name;
+  q.seed = seed;
+  return q;
+}
+
+Answer ask(const PairQuery& q) {
+  Answer answer;
+  Random random(q.seed ^ 0xa5);
+  if (random.chance(0.2)) answer.request.tolerance_time = random.logUniform(1e-9, 1e-3);
+  if (random.chance(0.2)) answer.request.tolerance_distance = random.logUniform(1e-8, 1e-3);
+  const auto *o1 = q.body1->geometry.get(), *o2 = q.body2->geometry.get();
+  const auto motion1 = q.path1->motion(), motion2 = q.path2->motion();
+  const auto begin = Clock::now();
+  fcl_artic::continuousCollide(o1, motion1.get(), o2, motion2.get(), answer.request, answer.result);
+  answer.elapsed_us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  fcl_artic::continuousCollide(o2, motion2.get(), o1, motion1.get(), answer.request, answer.swapped);
+  // What is left in it must not matter.
+  answer.drop_in.is_collide = random.chance(0.5);
+  answer.drop_in.time_of_contact = 7;
+  answer.drop_in_time = fcl_artic::continuousCollide<double>(o1, motion1.get(), o2, motion2.get(),
+                                                             fcl::ContinuousCollisionRequestd(), answer.drop_in);
+  return answer;
+}
+
+std::vector<Finding> examine(const PairQuery& query, const Judge& judge, const Truth& truth, const Answer& answer) {
+  return Examination(query, judge, truth, answer).run();
+}
+
+bool corrupt(Corruption corruption, const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  Random random(query.seed ^ 0xbad);
+  const bool hit = r.status == Status::contact && !r.contacts.empty();
+  const auto moveTo = [&](double lower, double upper) {
+    r.t_lower = lower, r.t_upper = upper;
+    for (CertifiedContact& c : r.contacts) c.t_lower = lower, c.t_upper = upper;
+    const auto pose = [](const pairs::PathPtr& path, double t) {
+      const auto M = path->pose(t).cast<double>();
+      Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+      out.linear() = M.rotation, out.translation() = M.position;
+      return out;
+    };
+    r.tf1_at_lower = pose(query.path1, lower), r.tf2_at_lower = pose(query.path2, lower);
+    r.tf1_at_upper = pose(query.path1, upper), r.tf2_at_upper = pose(query.path2, upper);
+  };
+  switch (corruption) {
+    case Corruption::late: {
+      if (!hit || !r.certain) return false;
+      const double by = std::max(1e-5, 2 * (r.t_upper - r.t_lower));
+      moveTo(std::min(1.0, r.t_lower + by), std::min(1.0, r.t_upper + by));
+      return r.t_lower < 1;
+    }
+    case Corruption::drop:
+      if (!hit || !r.certain) return false;
+      r.contacts.clear();
+      r.status = Status::free;
+      r.certain = false;
+      moveTo(1, 1);
+      answer.swapped = r;  // both ways round, so that only the oracle can tell
+      return true;
+    case Corruption::invent: {
+      if (r.status != Status::free) return false;
+      r.status = Status::contact;
+      CertifiedContact c;
+      c.o1 = query.body1->geometry.get(), c.o2 = query.body2->geometry.get();
+      if (query.body1->kind == pairs::Kind::mesh) c.b1 = 0;
+      if (query.body2->kind == pairs::Kind::mesh) c.b2 = 0;
+      r.contacts = {c};
+      moveTo(0.5, 0.5 + answer.request.tolerance_time);
+      return true;
+    }
+    case Corruption::widen:
+      if (!hit || !r.certain || r.t_lower < 0.02) return false;
+      moveTo(r.t_lower - 0.02, r.t_upper);
+      return true;
+    case Corruption::point:
+      if (hit) r.contacts[0].point += 5e-3 * random.direction();
+      return hit;
+    case Corruption::normal:
+      if (hit) r.contacts[0].normal *= -1;
+      return hit && r.t_lower > 0;
+    case Corruption::poses:
+      r.tf2_at_upper.translation().x() += 1e-9;
+      return true;
+    case Corruption::certain:  // claims a proof somewhat before the contact
+      if (!hit || r.t_lower < 2e-3) return false;
+      r.certain = true;
+      for (CertifiedContact& c : r.contacts) c.certain = true;
+      moveTo(r.t_lower - 1e-3, r.t_lower - 1e-3);
+      return true;
+    case Corruption::ids:
+      if (hit) r.contacts[0].b1 += 100000;
+      return hit;
+    case Corruption::swapped:
+      if (!hit || !r.certain) return false;
+      answer.swapped = {};
+      answer.swapped.status = Status::free;
+      return true;
+    case Corruption::drop_in:
+      answer.drop_in.time_of_contact = answer.drop_in_time = std::min(1.0, 0.99 * answer.drop_in_time + 0.02);
+      return true;
+    case Corruption::count:
+      break;
+  }
+  return false;
+}
+
+std::uint64_t Tally::faulty() const {
+  std::uint64_t n = 0;
+  for (const std::uint64_t f : faults) n += f;
+  return n;
+}
+
+void Tally::add(const Tally& o) {
+  queries += o.queries, hits += o.hits, starts += o.starts, between += o.between, grazes += o.grazes;
+  certain += o.certain, uncertain += o.uncertain, beyond_sampling += o.beyond_sampling;
+  for (std::size_t f = 0; f < faults.size(); ++f) faults[f] += o.faults[f];
+  for (std::size_t c = 0; c < spoilt.size(); ++c) spoilt[c] += o.spoilt[c], spoilt_seen[c] += o.spoilt_seen[c];
+  free_us.insert(free_us.end(), o.free_us.begin(), o.free_us.end());
+  hit_us.insert(hit_us.end(), o.hit_us.begin(), o.hit_us.end());
+  lead.insert(lead.end(), o.lead.begin(), o.lead.end());
+}
+
+Report run(const Options& options) {
+  const Family* only = options.family.empty() ? nullptr : &familyOf(options.family);
+  Report report;
+  std::mutex mutex;
+  std::atomic<std::uint64_t> next{0};
+  std::vector<std::pair<std::uint64_t, Failure>> failures;
+  const auto work = [&] {
+    std::map<std::string, Tally> tallies;
+    for (std::uint64_t i; (i = next++) < options.queries;) {
+      const Family& family = only ? *only : familyAt(i);
+      const std::uint64_t seed = Random::mix(options.seed, i);
+      std::vector<Finding> findings;
+      runOne(family, seed, options, tallies[family.name], findings);
+      if (findings.empty()) continue;
+      const std::lock_guard<std::mutex> lock(mutex);
+      failures.push_back({i, {family.name, seed, std::move(findings)}});
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const auto& [name, tally] : tallies) report.families[name].add(tally);
+  };
+  const auto begin = Clock::now();
+  std::vector<std::thread> threads;
+  for (int t = 0; t < std::max(1, options.threads); ++t) threads.emplace_back(work);
+  for (std::thread& t : threads) t.join();
+  report.elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  for (const auto& [name, tally] : report.families) report.total.add(tally);
+  std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [index, failure] : failures) report.failures.push_back(std::move(failure));
+  return report;
+}
+
+std::string toText(const Report& report) {
+  std::string out =
+      format("%-24s %7s %6s %6s %8s %6s %8s %9s %6s | %9s %9s | %s\n", "class", "queries", "hits%", "start%",
+             "between%", "graze%", "certain", "uncertain", "beyond", "free us", "hit us", "faults");
+  const auto row = [&](const std::string& name, const Tally& t) {
+    const double n = std::max<double>(1, static_cast<double>(t.queries));
+    const auto share = [&](std::uint64_t k) { return 100 * static_cast<double>(k) / n; };
+    const auto number = [](std::uint64_t k) { return static_cast<unsigned long long>(k); };
+    out +=
+        format("%-24s %7llu %6.1f %6.1f %8.1f %6.1f %8llu %9llu %6llu | %9.1f %9.1f | ", name.c_str(),
+               number(t.queries), share(t.hits), share(t.starts), share(t.between), share(t.grazes), number(t.certain),
+               number(t.uncertain), number(t.beyond_sampling), quantile(t.free_us, 0.5), quantile(t.hit_us, 0.5));
+    for (int f = 0; f < kFaults; ++f) {
+      const std::uint64_t k = t.faults[static_cast<std::size_t>(f)];
+      if (k) out += format("%s %llu ", faultName(static_cast<Fault>(f)), number(k));
+    }
+    out += t.faulty() ? "\n" : "none\n";
+  };
+  for (const auto& [name, tally] : report.families) row(name, tally);
+  row("all", report.total);
+  out += format("sampled contact - t_lower (certain hits): least %.3g, median %.3g, p95 %.3g; %.1f s\n",
+                quantile(report.total.lead, 0), quantile(report.total.lead, 0.5), quantile(report.total.lead, 0.95),
+                report.elapsed_s);
+  for (std::size_t c = 0; c < report.total.spoilt.size(); ++c) {
+    if (report.total.spoilt[c] == 0) continue;
+    out += format("spoilt on purpose, %s: %llu, of these seen %llu\n", corruptionName(static_cast<Corruption>(c)),
+                  static_cast<unsigned long long>(report.total.spoilt[c]),
+                  static_cast<unsigned long long>(report.total.spoilt_seen[c]));
+  }
+  // The first few of each kind, as one kind can be much more frequent than a worse one.
+  std::array<int, kFaults> shown{};
+  for (const Failure& f : report.failures) {
+    for (const Finding& finding : f.findings) {
+      if (++shown[static_cast<std::size_t>(finding.fault)] > 6) continue;
+      out += format("--class %s --replay %llu: %s: ", f.family.c_str(), static_cast<unsigned long long>(f.seed),
+                    faultName(finding.fault)) +
+             finding.text + "\n";
+    }
+  }
+  return out;
+}
+
+bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
+  const PairQuery query = makeQuery(familyOf(family), seed);
+  const Judge judge(query, exactLook(query));
+  const Truth truth = judge.firstContact();
+  words = pairs::describe(query) + "\n" +
+          format("oracle: %s t %.17g gap %.6g at %.17g\n", truth.hit ? "hit" : "free", truth.time, truth.gap,
+                 truth.gap_time);
+  const Answer answer = ask(query);
+  const auto line = [&](const char* name, const CertifiedPairResult& r) {
+    static constexpr const char* kStatus[] = {"free", "contact", "undecided"};
+    words += format("%s: %s [%.17g, %.17g]%s\n", name, kStatus[static_cast<int>(r.status)], r.t_lower, r.t_upper,
+                    r.certain ? " certain" : "");
+    for (const CertifiedContact& c : r.contacts) {
+      words += format("  %ld %ld point %.9g %.9g %.9g normal %.9g %.9g %.9g\n", static_cast<long>(c.b1),
+                      static_cast<long>(c.b2), c.point.x(), c.point.y(), c.point.z(), c.normal.x(), c.normal.y(),
+                      c.normal.z());
+    }
+  };
+  words += format("tolerances %.3g, %.3g m\n", answer.request.tolerance_time, answer.request.tolerance_distance);
+  line("answer", answer.result);
+  line("swapped", answer.swapped);
+  words += format("drop-in: %d at %.17g\n", answer.drop_in.is_collide, answer.drop_in.time_of_contact);
+  const std::vector<Finding> findings = examine(query, judge, truth, answer);
+  for (const Finding& f : findings) words += std::string("FAULT ") + faultName(f.fault) + ": " + f.text + "\n";
+  return findings.empty();
+}
+
+}  // namespace pair_campaign
