@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "check.h"
+#include "compare.h"
 #include "exit_status.h"
 #include "generate.h"
 
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   int exit_status = kExitError;
   addCheck(program, exit_status);
+  addCompare(program, exit_status);
   addGenerate(program, exit_status);
   try {
     program.parse(argc, argv);

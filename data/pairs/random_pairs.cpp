@@ -94,4 +94,14 @@ PairQuery referencePair(Bodies bodies, std::uint64_t seed, std::uint64_t index) 
   return makePair(options, Random::mix(seed, index));
 }
 
+PairQuery withVolume(const PairQuery& query, Volume volume) {
+  const auto rebuilt = [&](const BodyPtr& b) {
+    return b->kind == Kind::mesh ? makeMesh(b->vertices, b->triangles, volume) : b;
+  };
+  PairQuery q = query;
+  q.body1 = rebuilt(q.body1);
+  q.body2 = rebuilt(q.body2);
+  return q;
+}
+
 }  // namespace pairs

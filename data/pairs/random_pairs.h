@@ -30,4 +30,7 @@ PairQuery makePair(const PairOptions& options, std::uint64_t seed);
 /// Query `index` of a reference set, by InterpMotion: half of them with both bodies moving, a quarter near-grazing.
 PairQuery referencePair(Bodies bodies, std::uint64_t seed, std::uint64_t index);
 
+/// The same query with its meshes built anew, on trees of this bounding volume.
+PairQuery withVolume(const PairQuery& query, Volume volume);
+
 }  // namespace pairs
