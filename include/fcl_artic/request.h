@@ -10,6 +10,7 @@ namespace fcl_artic {
 /// What to look for.
 enum class ContactMode {
   first,             ///< the first contact of the whole motion
+  any,               ///< any contact that can be proven soon: cheaper where only the verdict counts; free is as certain
   firstOfEveryPair,  ///< the first contact of every pair of bodies that touches
 };
 

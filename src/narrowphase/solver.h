@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The shared solver: every undecided pair on one subdivision of time, eight intervals at once, earliest first.
+// The solver: first contact over all pairs, eight time intervals at once.
 //
-//   solve            stage 1 leaves (pair, lanes); then solveInterval on [0, 1]
-//   solveInterval    one batch: eight equal parts of an interval; dual traversal of the pairs left; then, lane by lane from
-//                    the earliest, the same again on what that lane left undecided
+//   solve            stage 1 (cull), then all pairs left on one batch, [0, 1] in eight lanes: boxes and hulls of whole bodies
+//   solveLane        lane by lane from the earliest, the pairs that may touch in it: hulls followed to where they meet
+//                    (advance), then the pieces below from there on, the pair that meets first before the others
+//   solveInterval    one pair: eight equal parts of an interval; dual traversal; then, lane by lane from the earliest, the
+//                    same again on what that lane left undecided
 //   traverse         node pairs by swept boxes, leaf pairs by certificates; where GJK claims overlap, later lanes are put off
 //   finishLane       a few leaf pairs are left in a lane: each is followed by itself (advance: t_lower by the certificate's
 //                    first root, a Newton step), then t_upper by proofs of contact
@@ -70,8 +72,9 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
   std::int32_t pair, a, b;
-  unsigned mask;
+  unsigned mask;  ///< with kPutOff: not looked at, as contact was claimed before these lanes
 };
+constexpr unsigned kPutOff = 0x100;
 
 class Solver {
  public:
@@ -80,6 +83,7 @@ class Solver {
 
  private:
   enum class Step { free, done };
+  struct Final;
 
   /// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
   struct PairParts {
@@ -102,10 +106,17 @@ class Solver {
   void sweptLss(int mover, SweptBox& box);
   void collectInitialContacts(int begin, int end);
   double firstFreeTime(double start, double width, int begin, int end);
+  void solvePairs();
+  bool movesFar() const;
+  void solveLane(int lane, int begin, int end);
+  Step solveOpenLane(double start, double width, int begin, int end, int lane, bool last);
+  void solvePieces(const Final& f, double stop, int begin, int end, int lane);
+  void descend(int begin, int end, unsigned mask);
   Step solveInterval(double start, double width, int begin, int end, int parent_lane);
   Step finishLane(double start, double width, int begin, int end, int lane, bool* refine);
-  struct Final;
+  void piecesOf(const Final& f, const Piece*& a, const Piece*& b) const;
   bool advance(Final& f, double stop, bool patient);
+  bool settle(Final& f, double stop);
   bool prove(Final& f);
   void describe(Final& f, LeafContact& contact);
   void orderContacts(int begin, double bracket);
@@ -114,7 +125,8 @@ class Solver {
   unsigned apartFromUnbounded(int a, int b);
   template <class F>
   unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
-  unsigned hullsMayTouch(unsigned mask);
+  void claimOverlap(int lane);
+  unsigned hullsMayTouch(unsigned mask, bool claim);
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
   int sweptNode(int side, int node);
   DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane, double tau = 0) const;
@@ -146,6 +158,9 @@ class Solver {
   // The present pair.
   Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0;
+  double witness_[3];          ///< the last direction that GJK found between pieces of this pair
+  bool have_witness_ = false;
+  std::int32_t witness_pair_ = -1;
   /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
   /// processor's own; what is pushed out is made again.
   static constexpr int kCached = 2048;
@@ -163,30 +178,44 @@ class Solver {
   /// A leaf pair that is followed by itself.
   struct Final {
     Entry entry;
+    bool hulls;        ///< of the hulls around the bodies, not of two leaves
+    bool pieces;       ///< of neither: of the entries only
+    std::int32_t first, count;  ///< of the hulls: the entries below them
     double t_lower;    ///< free before
     double normal[3];  ///< GJK's witness at t_lower
     double gap;        ///< along it
+    double speed;      ///< of the one body seen from the other, about
     bool have_normal;
     bool stuck;        ///< the gap is gone at t_lower, as far as can be told
     bool certain;
     double t_upper, point[3];  ///< a proven contact
   };
-  Buffer<Final> finals_;
+  Buffer<Final> finals_, candidates_;
   Buffer<LeafContact> contacts_;
 
-  double t_lower_ = 0, t_upper_ = 2;  ///< t_upper_: earliest proven contact so far, 2: none
-  bool certain_ = false, out_of_budget_ = false;
+  double front_ = 0;   ///< all pairs are proven free before
+  double t_upper_ = 2;  ///< earliest proven contact so far; 2: none
+  double limit_ = 2;    ///< what lies behind does not matter any more: t_upper_, or the tolerance behind an undecided contact
+  bool out_of_budget_ = false;
 };
 
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
 /// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
 constexpr double kSplitTime = 0.7;
-/// Width below which time is not split any more; dyadic times down to here are exact.
+/// Width below which time is not split any more.
 constexpr double kNarrowestLane = 1.0 / (1ull << 45);
+/// Lanes are certified a little wider than they are, so that rounding of their ends and middles, numbers up to 1, loses
+/// nothing (doc/NUMERICS.md, "Time").
+constexpr double kLaneSlack = 8 * kUlp;
 /// Hulls that overlap in so many lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;
 /// So many leaf pairs in a lane are followed one by one; more are split in time first.
 constexpr int kFewLeaves = 6;
+/// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
+/// in it.
+constexpr double kFirstWindow = 0.1;
+/// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not looked at.
+constexpr double kLongMotion = 0.2;
 /// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -209,11 +238,11 @@ inline void Solver::beginBatch(double start, double width) {
   double tm[kLanes];
   const double w = width / kLanes;
   for (int i = 0; i < kLanes; ++i) {
-    lane_start_[i] = start + i * w;  // exact: dyadic, see kNarrowestLane
+    lane_start_[i] = start + i * w;
     lane_end_[i] = start + (i + 1) * w;
     tm[i] = start + (i + 0.5) * w;
   }
-  evaluateAt(tm, 0.5 * w);
+  evaluateAt(tm, 0.5 * w + kLaneSlack);
   ++statistics_.batches;
   last_ = w <= max(query_->tolerance_time, kNarrowestLane);
   updateLive();
@@ -237,7 +266,7 @@ inline void Solver::evaluateAt(const double* tm, double d) {
 inline void Solver::updateLive() {
   live_ = contact_lane_ = 0;
   for (int i = 0; i < kLanes; ++i) {
-    const double end = last_ ? t_upper_ : min(t_upper_, claimed_);  // nothing is put off in the last lanes
+    const double end = last_ ? limit_ : min(limit_, claimed_);  // nothing is put off in the last lanes
     live_ |= static_cast<unsigned>(lane_start_[i] < end) << i;
     contact_lane_ |= static_cast<unsigned>(lane_start_[i] < end && end < lane_end_[i]) << i;
   }
@@ -313,6 +342,8 @@ inline void Solver::setupPair(int index) {
   amplitude_ = sqrt(maxLane(dot(v, v))) + b.rates.a * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
+  if (witness_pair_ != index) have_witness_ = false;
+  witness_pair_ = index;
 }
 
 /// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be there.
@@ -432,6 +463,8 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
       onOverlap(lane);
       continue;
     }
+    for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
+    have_witness_ = true;
     ++statistics_.certificates;
     unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin, pad_, sign);
     if (mask & ~separated) {
@@ -446,9 +479,17 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
   return mask;
 }
 
+/// Puts the lanes behind this one off: there seems to be contact at its middle.
+inline void Solver::claimOverlap(int lane) {
+  if (decide_only_ || last_ || tm_at_[lane] >= claimed_) return;
+  claimed_ = tm_at_[lane];
+  updateLive();
+}
+
 /// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
 /// before any of their triangles is looked at.
-inline unsigned Solver::hullsMayTouch(unsigned mask) {
+/// @param claim  overlapping hulls count as a claim of contact.
+inline unsigned Solver::hullsMayTouch(unsigned mask, bool claim) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
   if (!A.outer || !B.outer || (A.num_pieces == 1 && B.num_pieces == 1)) return mask;
   for (const Side& side : side_) {  // a small body within the bounds of a large mesh: its hull would say nothing
@@ -463,7 +504,9 @@ inline unsigned Solver::hullsMayTouch(unsigned mask) {
     }
     if (inside) return mask;
   }
-  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [](int) {});
+  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [&](int lane) {
+    if (claim) claimOverlap(lane);
+  });
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
@@ -481,10 +524,13 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     mask &= ~certainlySeparated(side_[1], b, a, b.size, query_->margin, pad_, sign);
     if (!mask) return 0;
   }
+  if (have_witness_) {
+    ++statistics_.certificates;
+    mask &= ~certainlySeparated(side_[0], a, b, witness_, query_->margin, pad_, sign);
+    if (!mask) return 0;
+  }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
-    if (decide_only_ || last_ || tm_at_[lane] >= claimed_ || tm_at_[lane] < watchFrom(pair)) return;
-    claimed_ = tm_at_[lane];
-    updateLive();
+    if (tm_at_[lane] >= watchFrom(pair)) claimOverlap(lane);
   });
 }
 
@@ -493,9 +539,9 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
-  if (a == 0 && b == 0) {
+  if (decide_only_ && a == 0 && b == 0) {
     mask = nodesMayTouch(0, 0, mask);
-    if (mask) mask = hullsMayTouch(mask);
+    if (mask) mask = hullsMayTouch(mask, false);
     if (!mask) return;
   }
   push({pair, a, b, mask});
@@ -508,7 +554,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     Entry e = stack_[lane][stack_[lane].size() - 1];
     stack_[lane].truncate(stack_[lane].size() - 1);
     if (const unsigned later = e.mask & ~live_) {
-      if (!decide_only_) entries_.push({pair, e.a, e.b, later});
+      if (!decide_only_) entries_.push({pair, e.a, e.b, later | kPutOff});
       e.mask &= live_;
       if (!e.mask) continue;
     }
@@ -651,57 +697,209 @@ inline void Solver::collectInitialContacts(int begin, int end) {
   decide_only_ = false;
 }
 
-/// One batch over [start, start + width] for entries_[begin, end), of which those with parent_lane set count (all, with
-/// their masks as lanes of this batch, when parent_lane < 0). Everything before `start` is proven free.
+/// A lane that entries_[begin, end) of one pair leave open, some of them: few leaf pairs are followed one by one, else the lane
+/// is split.
+inline Solver::Step Solver::solveOpenLane(double start, double width, int begin, int end, int lane, bool last) {
+  int open = 0;
+  bool leaves = true;
+  for (int i = begin; i < end && (last || open <= kFewLeaves); ++i) {
+    const Entry& e = entries_[i];
+    if (!(e.mask >> lane & 1)) continue;
+    ++open;
+    leaves = leaves && isLeafPair(e);
+  }
+  if (!open) return Step::free;
+  bool refine = true;
+  if (leaves && (last || open <= kFewLeaves)) {
+    last_ = last;
+    if (finishLane(start, width, begin, end, lane, &refine) == Step::done) return Step::done;
+  }
+  return refine ? solveInterval(start, width, begin, end, lane) : Step::free;
+}
+
+/// One batch over [start, start + width] for entries_[begin, end), of which those with parent_lane set count (all, when
+/// parent_lane < 0). The pair is proven free before `start`.
 inline Solver::Step Solver::solveInterval(double start, double width, int begin, int end, int parent_lane) {
   const double w = width / kLanes;
-  t_lower_ = start;
   beginBatch(start, width);
-  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, query_->every_pair ? 0 : start);
+  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, front_);
   const int out_begin = entries_.size();
-  int present = -1;
+  setupPair(entries_[begin].pair);
   for (int i = begin; i < end; ++i) {
     const Entry e = entries_[i];
-    unsigned mask = kAllLanes;
-    if (parent_lane < 0) {
-      mask = e.mask;
-    } else if (!(e.mask >> parent_lane & 1)) {
-      continue;
-    }
-    const double from = watchFrom(e.pair);
-    for (int k = 0; k < kLanes && lane_end_[k] <= from; ++k) mask &= ~(1u << k);
-    if (!mask) continue;
-    if (!(mask & live_)) {
-      entries_.push({e.pair, e.a, e.b, mask});
-      continue;
-    }
-    if (e.pair != present) setupPair(present = e.pair);
-    traverse(e.pair, e.a, e.b, mask);
+    if (parent_lane >= 0 && !(e.mask >> parent_lane & 1)) continue;
+    traverse(e.pair, e.a, e.b, kAllLanes);
     if (out_of_budget_) return Step::done;
   }
   const int out_end = entries_.size();
   const bool last = last_;
   for (int lane = 0; lane < kLanes; ++lane) {
     const double lane_start = start + lane * w;
-    if (lane_start >= t_upper_) break;
-    int open = 0;
-    bool leaves = true;
-    for (int i = out_begin; i < out_end && (last || open <= kFewLeaves); ++i) {
-      const Entry& e = entries_[i];
-      if (!(e.mask >> lane & 1)) continue;
-      ++open;
-      leaves = leaves && isLeafPair(e);
-    }
-    if (!open) continue;
-    bool refine = true;
-    if (leaves && (last || open <= kFewLeaves) &&
-        finishLane(lane_start, w, out_begin, out_end, lane, &refine) == Step::done) {
-      return Step::done;
-    }
-    if (refine && solveInterval(lane_start, w, out_begin, out_end, lane) == Step::done) return Step::done;
+    if (lane_start >= limit_) break;
+    if (solveOpenLane(lane_start, w, out_begin, out_end, lane, last) == Step::done) return Step::done;
     entries_.truncate(out_end);
   }
   return Step::free;
+}
+
+/// The pieces of one pair, in a lane of the first batch, in windows that begin with how long the motion takes for a small
+/// part of the smaller body: where hulls meet, the surfaces are not far.
+inline void Solver::solvePieces(const Final& f, double stop, int begin, int end, int lane) {
+  if (f.pieces) {
+    const int roots = entries_.size();
+    solveOpenLane(f.t_lower, stop - f.t_lower, begin, end, lane, false);
+    entries_.truncate(roots);
+    return;
+  }
+  setupPair(f.entry.pair);
+  for (int k = 0; k < 3; ++k) witness_[k] = f.normal[k];
+  have_witness_ = f.have_normal;
+  const double size = kFirstWindow * min(side_[0].still->nodes[0].radius, side_[0].moving->nodes[0].radius);
+  stop = min(stop, limit_);
+  double span = f.speed * (stop - f.t_lower) > size ? size / f.speed : stop - f.t_lower;
+  const int roots = entries_.size();
+  for (double t = f.t_lower; t < min(stop, limit_); span *= 8) {
+    const double next = t + 1.5 * span < min(stop, limit_) ? t + span : min(stop, limit_);
+    const Step step = solveInterval(t, next - t, begin, end, lane);
+    entries_.truncate(roots);
+    if (step == Step::done) return;
+    t = next;
+  }
+}
+
+/// One eighth of the motion: the pairs that may touch in it, those that meet first before the others.
+inline void Solver::solveLane(int lane, int begin, int end) {
+  const double lane_start = 0.125 * lane, stop = 0.125 * (lane + 1);
+  candidates_.clear();
+  const int roots = entries_.size();
+  for (int i = begin; i < end && !out_of_budget_;) {
+    // A run of entries of one pair.
+    const int first = entries_.size(), pair_index = entries_[i].pair;
+    bool leaves = true;
+    for (; i < end && entries_[i].pair == pair_index; ++i) {
+      const Entry e = entries_[i];
+      if (!(e.mask >> lane & 1)) continue;
+      leaves = leaves && isLeafPair(e);
+      entries_.push(e);
+    }
+    const int count = entries_.size() - first;
+    if (count == 0) continue;
+    Final f = {};
+    f.entry = entries_[first];
+    f.t_lower = max(lane_start, watchFrom(pair_index));
+    f.first = first;
+    f.count = count;
+    // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or parts of
+    // them that the first batch has come to already.
+    const PairParts pair = parts(pair_index);
+    const bool whole = f.entry.a == 0 && f.entry.b == 0;
+    f.hulls = whole && !leaves && problem_->bodies[pair.a].tree->outer && problem_->bodies[pair.b].tree->outer;
+    f.pieces = !(leaves && count == 1) && !f.hulls;
+    if (f.t_lower >= stop || (!f.pieces && advance(f, stop, false))) {
+      entries_.truncate(first);
+      continue;
+    }
+    candidates_.push(f);
+    outOfBudget();
+  }
+  for (int done = 0; done < candidates_.size() && !out_of_budget_; ++done) {
+    int first = done;
+    for (int i = done + 1; i < candidates_.size(); ++i) {
+      if (candidates_[i].t_lower < candidates_[first].t_lower) first = i;
+    }
+    Final f = candidates_[first];
+    candidates_[first] = candidates_[done];
+    front_ = max(front_, f.t_lower);
+    if (f.t_lower >= limit_) break;
+    if (!f.hulls && !f.pieces) {
+      if (settle(f, stop)) continue;
+      if (f.certain) {
+        describe(f, contacts_.grow());
+        continue;
+      }
+    }
+    claimed_ = 2;
+    solvePieces(f, stop, f.first, f.first + f.count, lane);
+  }
+  entries_.truncate(roots);
+  if (!out_of_budget_) front_ = stop;
+}
+
+/// A lane takes the present pair so far that little can be told of its pieces before the lane is split; of its hulls can.
+inline bool Solver::movesFar() const {
+  return amplitude_ > kLongMotion * min(side_[0].still->nodes[0].radius, side_[0].moving->nodes[0].radius);
+}
+
+/// Goes down from entries_[begin, end) over the batch at hand, in the lanes of `mask`; what stays undecided is appended.
+inline void Solver::descend(int begin, int end, unsigned mask) {
+  int present = -1;
+  for (int i = begin; i < end && !out_of_budget_; ++i) {
+    const Entry e = entries_[i];
+    if (!(e.mask & mask)) continue;
+    if (e.pair != present) setupPair(present = e.pair);
+    if (movesFar()) {
+      entries_.push({e.pair, e.a, e.b, e.mask & mask});
+    } else {
+      traverse(e.pair, e.a, e.b, e.mask & mask);
+    }
+  }
+}
+
+/// All pairs on one batch over [0, 1]; then lane by lane.
+inline void Solver::solvePairs() {
+  int roots = entries_.size();
+  for (int i = 0; i < roots && !out_of_budget_; ++i) {
+    Entry& e = entries_[i];
+    setupPair(e.pair);
+    e.mask = nodesMayTouch(0, 0, e.mask);
+    if (e.mask) e.mask = hullsMayTouch(e.mask, !query_->every_pair && movesFar());
+    outOfBudget();
+  }
+  int open = 0;
+  for (int i = 0; i < roots; ++i) {
+    if (entries_[i].mask) entries_[open++] = entries_[i];
+  }
+  entries_.truncate(roots = open);
+  const auto search = [&](int begin, int end) {
+    t_upper_ = limit_ = 2;
+    front_ = 0;
+    int from = entries_.size();
+    descend(begin, end, kAllLanes);
+    for (int lane = 0; lane < kLanes && 0.125 * lane < limit_ && !out_of_budget_; ++lane) {
+      solveLane(lane, from, entries_.size());
+      const unsigned later = kAllLanes & ~((2u << lane) - 1);
+      if (!later || limit_ <= 0.125 * (lane + 1)) continue;
+      bool put_off = false;
+      const int end_now = entries_.size();
+      for (int i = from; i < end_now; ++i) put_off = put_off || ((entries_[i].mask & kPutOff) && (entries_[i].mask & later));
+      if (!put_off) continue;
+      // What was claimed was no contact: the lanes that were put off are looked at after all, all at once.
+      claimed_ = 2;
+      beginBatch(0, 1);
+      int present = -1;
+      for (int i = from; i < end_now; ++i) {
+        const Entry e = entries_[i];
+        if (!(e.mask & kPutOff)) continue;
+        entries_[i].mask = 0;
+        if (e.pair != present) setupPair(present = e.pair);
+        traverse(e.pair, e.a, e.b, e.mask & later);
+      }
+    }
+  };
+  if (!query_->every_pair) return search(0, open);
+  double t_upper = 2;
+  for (int i = 0; i < open && !out_of_budget_; ++i) {
+    const int before = contacts_.size();
+    entries_.truncate(open);
+    beginBatch(0, 1);
+    claimed_ = 2;
+    updateLive();
+    search(i, i + 1);
+    orderContacts(before, limit_);
+    t_upper = min(t_upper, t_upper_);
+  }
+  t_upper_ = t_upper;
+  front_ = 0;
 }
 
 /// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the first
@@ -714,17 +912,19 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
   f.stuck = false;
   for (int round = 0; round < (patient ? 48 : 24); ++round) {
     const double t = f.t_lower;
-    stop = min(stop, t_upper_);
+    stop = min(stop, limit_);
     if (t >= stop) return true;
     span = min(span, stop - t);
-    const double w = span / kLanes, d = 0.5 * w + 4 * kUlp;  // a little wider, so that rounding of tm loses nothing
+    const double w = span / kLanes, d = 0.5 * w + kLaneSlack;
     double tm[kLanes];
     for (int k = 0; k < kLanes; ++k) tm[k] = t + (k + 0.5) * w;
     evaluateAt(tm, d);
     setupPair(f.entry.pair);
+    f.speed = amplitude_ / d;
     ++statistics_.leaf_tests;
-    const Piece& a = side_[0].still->pieces[side_[0].still->nodes[f.entry.a].piece()];
-    const Piece& b = side_[0].moving->pieces[side_[0].moving->nodes[f.entry.b].piece()];
+    const Piece *piece_a, *piece_b;
+    piecesOf(f, piece_a, piece_b);
+    const Piece &a = *piece_a, &b = *piece_b;
     const double radii = a.radius + b.radius + query_->margin;
     // A witness at some time of the present lanes; false: the gap is gone there, or so it seems.
     const auto look = [&](int lane, double tau) {
@@ -733,9 +933,9 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g);
       ++statistics_.gjk;
       if (g.overlap) return false;
-      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      for (int k = 0; k < 3; ++k) f.normal[k] = witness_[k] = g.n[k];
       f.gap = g.lower - radii;
-      return f.have_normal = true;
+      return f.have_normal = have_witness_ = true;
     };
     if (!f.have_normal && !look(0, -1)) break;
 
@@ -760,7 +960,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       x = max(x, positivePrefix(coefficients));
     }
     // Lanes before it are free, and it is [tm - d, tm + d].
-    const double root = x >= 1 ? tm[lane] + d - 4 * kUlp : (tm[lane] - d) + 2 * d * x - 4 * kUlp;
+    const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
     const double progress = f.t_lower - t, gap = f.gap;
     if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
@@ -775,8 +975,22 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       span *= 0.125;
     }
   }
-  f.stuck = f.t_lower < min(stop, t_upper_);
+  f.stuck = f.t_lower < min(stop, limit_);
   return !f.stuck;
+}
+
+inline void Solver::piecesOf(const Final& f, const Piece*& a, const Piece*& b) const {
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  a = f.hulls ? A.outer : &A.pieces[A.nodes[f.entry.a].piece()];
+  b = f.hulls ? B.outer : &B.pieces[B.nodes[f.entry.b].piece()];
+}
+
+/// Decides a leaf pair that is stuck, as far as can be: true when it is free after all; else f.certain tells.
+inline bool Solver::settle(Final& f, double stop) {
+  if (prove(f)) return false;
+  if (advance(f, stop, true)) return true;
+  prove(f);
+  return false;
 }
 
 /// Proof of contact within the tolerance behind t_lower.
@@ -797,6 +1011,7 @@ inline bool Solver::prove(Final& f) {
       f.certain = true;
       f.t_upper = tm[k];
       t_upper_ = min(t_upper_, tm[k]);
+      limit_ = min(limit_, tm[k]);
       return true;
     }
   }
@@ -894,42 +1109,29 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
     finals_.push(f);
   }
   *refine = false;
-  int first = -1;
   for (int i = 0; i < finals_.size(); ++i) {
     Final& f = finals_[i];
-    if (advance(f, stop, false) || prove(f)) continue;
-    if (!advance(f, stop, true)) prove(f);
+    if (!advance(f, stop, false)) settle(f, stop);
     if (outOfBudget()) return Step::done;
     // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
-    if (f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts)) {
-      finals_.truncate(i + 1);
-      break;
-    }
+    if (f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts)) finals_.truncate(i + 1);
   }
+  const bool narrow = width <= kNarrowestLane;
   for (int i = 0; i < finals_.size(); ++i) {
     const Final& f = finals_[i];
-    if (f.stuck && f.t_lower <= t_upper_ && (first < 0 || f.t_lower < finals_[first].t_lower)) first = i;
-  }
-  if (first < 0) return Step::free;
-  const double t = finals_[first].t_lower;
-  const bool certain = t_upper_ - t <= query_->tolerance_time * (1 + 1e-9);
-  if (!certain && width > kNarrowestLane) {
-    const Final& f = finals_[first];
-    if (!last || (f.have_normal && f.gap > 0.5 * query_->tolerance_distance)) {
+    if (!f.stuck || f.certain || f.t_lower >= limit_) continue;
+    if (!narrow && (!last || (f.have_normal && f.gap > 0.5 * query_->tolerance_distance))) {
       *refine = true;
       return Step::free;
     }
+    limit_ = min(limit_, f.t_lower + query_->tolerance_time);
   }
-  t_lower_ = t;
-  certain_ = certain;
-  const int contacts_before = contacts_.size();
+  const int before = contacts_.size();
   for (int i = 0; i < finals_.size(); ++i) {
-    if (finals_[i].stuck) describe(finals_[i], contacts_.grow());
+    if (finals_[i].stuck && finals_[i].t_lower <= limit_) describe(finals_[i], contacts_.grow());
   }
-  orderContacts(contacts_before, certain_ ? t_upper_ : t + query_->tolerance_time);
-  return Step::done;
+  return contacts_.size() > before ? Step::done : Step::free;
 }
-
 
 inline void Solver::solve(const Problem& problem, const Query& query, Answer& answer) {
   problem_ = &problem;
@@ -938,10 +1140,10 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   entries_.clear();
   contacts_.clear();
   ignored_.clear();
-  t_lower_ = 0;
-  t_upper_ = 2;
-  claimed_ = 2;
-  certain_ = out_of_budget_ = decide_only_ = false;
+  front_ = 0;
+  witness_pair_ = -1;
+  t_upper_ = limit_ = claimed_ = 2;
+  out_of_budget_ = decide_only_ = false;
   first_step_.resize(problem.num_sweeps);
   bounds_ready_.resize(problem.num_sweeps);
   sweep_epoch_.resize(problem.num_sweeps);
@@ -964,53 +1166,29 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   cull();
   const double time1 = now();
   statistics_.culling_us = time1 - time0;
-  const int roots = entries_.size();
-  if (query.ignore_initial) collectInitialContacts(0, roots);
+  if (query.ignore_initial) {
+    collectInitialContacts(0, entries_.size());
+    beginBatch(0, 1);
+  }
 
+  if (!out_of_budget_) solvePairs();
+
+  double t_lower = 2;
+  for (int i = 0; i < contacts_.size(); ++i) t_lower = min(t_lower, contacts_[i].t_lower);
   // A pose proven in contact and a proof that all of [0, 1] is free would contradict each other: a fault of ours, and then
   // contact is the answer that harms nobody.
-  const auto contradicted = [&] { return t_upper_ < 2; };
-  Verdict verdict = Verdict::free;
-  if (!query.every_pair) {
-    if (solveInterval(0, 1, 0, roots, -1) == Step::done) {
-      verdict = out_of_budget_ ? Verdict::undecided : Verdict::contact;
-    } else if (contradicted()) {
-      verdict = Verdict::contact;
-      t_lower_ = 0;
-    }
-  } else {
-    double t_lower = 1, t_upper = 2;
-    bool certain = false;
-    for (int i = 0; i < roots && !out_of_budget_; ++i) {
-      t_upper_ = claimed_ = 2;
-      certain_ = false;
-      entries_.truncate(roots);
-      if (solveInterval(0, 1, i, i + 1, -1) != Step::done) {
-        if (!contradicted()) continue;
-        t_lower_ = 0;
-      }
-      verdict = Verdict::contact;
-      if (t_lower_ < t_lower) {
-        t_lower = t_lower_;
-        certain = certain_;
-      }
-      t_upper = min(t_upper, t_upper_);
-    }
-    t_lower_ = out_of_budget_ ? 0 : t_lower;  // pairs that were not looked at are not proven free at all
-    t_upper_ = t_upper;
-    certain_ = certain;
-  }
-  if (out_of_budget_) {
-    // Where the budget ended among the initial contacts, nothing is known of when they are over.
-    if (verdict == Verdict::free) t_lower_ = 0;
-    verdict = Verdict::undecided;
-  }
-  answer.verdict = verdict;
-  answer.certain = verdict == Verdict::contact && certain_;
-  answer.t_lower = verdict == Verdict::free ? 1 : t_lower_;
-  answer.t_upper = verdict == Verdict::free ? 1 : min(1.0, t_upper_);
+  if (t_upper_ < t_lower) t_lower = 0;
+  const bool contact = t_lower < 2;
+  // Where the budget ended among the initial contacts, nothing is known of when they are over.
+  if (out_of_budget_) t_lower = query.ignore_initial ? 0 : min(front_, t_lower);
+  const bool certain = contact && t_upper_ - t_lower <= query.tolerance_time * (1 + 1e-9);
+  if (!query.every_pair) orderContacts(0, certain ? t_upper_ : t_lower + query.tolerance_time);
+  answer.verdict = out_of_budget_ ? Verdict::undecided : contact ? Verdict::contact : Verdict::free;
+  answer.certain = answer.verdict == Verdict::contact && certain;
+  answer.t_lower = answer.verdict == Verdict::free ? 1 : t_lower;
+  answer.t_upper = answer.verdict == Verdict::free ? 1 : min(1.0, t_upper_);
   answer.contacts = contacts_.data();
-  answer.num_contacts = verdict == Verdict::contact ? contacts_.size() : 0;
+  answer.num_contacts = answer.verdict == Verdict::contact ? contacts_.size() : 0;
   answer.ignored = ignored_.data();
   answer.num_ignored = ignored_.size();
   statistics_.narrowphase_us = now() - time1;

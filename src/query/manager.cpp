@@ -234,11 +234,22 @@ void ArticulatedCollisionManager::Impl::build() {
     }
   }
 
+  // Nothing touches an empty tree (an OcTree without an occupied cell).
+  const auto empty = [](const Item& item) { return item.shape->view().num_pieces == 0; };
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    for (std::size_t m = 0; m < movers.size(); ++m) {
+      if (!empty(obstacles[o]) && !empty(item(movers[m]))) continue;
+      scene_allowed.resize(movers.size() * obstacles.size(), 0);
+      scene_allowed[m * obstacles.size() + o] = 1;
+    }
+  }
+
   link_pairs.clear();
   std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
       if (links[i].link == links[j].link || allowed.allowed(links[i].name, links[j].name)) continue;
+      if (empty(links[i]) || empty(links[j])) continue;
       if (adjacent(links[i].link, links[j].link)) continue;
       // The shorter path first: an ancestor is the base.
       std::size_t a = i, b = j;

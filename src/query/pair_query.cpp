@@ -230,6 +230,15 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
 
 void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
                CertifiedPairResult& result) {
+  if (!body1.shape.view().num_pieces || !body2.shape.view().num_pieces) {  // an OcTree without an occupied cell
+    makeQuery(request);
+    result = CertifiedPairResult();
+    result.status = Status::free;
+    result.t_lower = 1;
+    result.tf1_at_lower = result.tf1_at_upper = body1.motion.pose(1);
+    result.tf2_at_lower = result.tf2_at_upper = body2.motion.pose(1);
+    return;
+  }
   const Piece *piece1 = unboundedPiece(body1.shape), *piece2 = unboundedPiece(body2.shape);
   if (piece1 && piece2) {
     makeQuery(request);  // throws for what it throws
