@@ -156,6 +156,7 @@ struct Query {
   std::int32_t num_variables = 0, degree = 1;
   double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
+  bool any = false;  ///< stop at the first contact that is proven, wherever on the way it is
   std::int32_t max_contacts = 1;
   std::uint64_t work_budget = 0;
   void (*progress)(void* context, double t_lower) = nullptr;

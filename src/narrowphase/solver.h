@@ -126,7 +126,11 @@ class Solver {
   template <class F>
   unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
   void claimOverlap(int lane);
-  unsigned hullsMayTouch(unsigned mask, bool claim);
+  unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
+  bool proveVertexInside(int pair, int lane);
+  bool proveLeaves(int pair, int piece_a, int piece_b, int lane, const double* guess);
+  bool proveAnywhere();
+  bool finished() const { return out_of_budget_ || (query_->any && limit_ < 2); }
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
   int sweptNode(int side, int node);
   DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane, double tau = 0) const;
@@ -144,6 +148,7 @@ class Solver {
   unsigned live_ = 0;   ///< lanes that are worth work: not behind a contact that is proven or claimed
   unsigned contact_lane_ = 0;  ///< the lane with the earliest of these: it is split whatever else is found in it
   bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
+  unsigned overlaps_ = 0;  ///< lanes in whose middles hulls overlap, as far as looked at
   double claimed_ = 2;  ///< earliest time at which GJK claimed overlap; 2: none. Lanes behind it are put off, not dropped.
   bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
   unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
@@ -173,6 +178,7 @@ class Solver {
 
   Buffer<SweptBox> mover_box_;
   Buffer<Entry> entries_;
+  Buffer<Entry> overlapping_;  ///< pairs whose hulls overlap in the middles of lanes of the first batch
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
   Buffer<Ignored> ignored_;
   /// A leaf pair that is followed by itself.
@@ -271,6 +277,7 @@ inline void Solver::updateLive() {
     contact_lane_ |= static_cast<unsigned>(lane_start_[i] < end && end < lane_end_[i]) << i;
   }
   if (last_) contact_lane_ = 0;
+  if (query_->any && limit_ < 2) live_ = 0;
 }
 
 /// Frames of a sweep in this batch, evaluated when first asked for.
@@ -489,9 +496,10 @@ inline void Solver::claimOverlap(int lane) {
 /// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
 /// before any of their triangles is looked at.
 /// @param claim  overlapping hulls count as a claim of contact.
-inline unsigned Solver::hullsMayTouch(unsigned mask, bool claim) {
+inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  if (!A.outer || !B.outer || (A.num_pieces == 1 && B.num_pieces == 1)) return mask;
+  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
+  if (!A.outer || !B.outer) return mask;
   for (const Side& side : side_) {  // a small body within the bounds of a large mesh: its hull would say nothing
     const Node &large = side.still->nodes[0], &small = side.moving->nodes[0];
     if (side.still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
@@ -505,6 +513,8 @@ inline unsigned Solver::hullsMayTouch(unsigned mask, bool claim) {
     if (inside) return mask;
   }
   return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [&](int lane) {
+    overlaps_ |= 1u << lane;
+    if (query_->any && tm_at_[lane] >= watchFrom(pair) && proveVertexInside(pair, lane)) return;
     if (claim) claimOverlap(lane);
   });
 }
@@ -530,7 +540,9 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     if (!mask) return 0;
   }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
-    if (tm_at_[lane] >= watchFrom(pair)) claimOverlap(lane);
+    if (tm_at_[lane] < watchFrom(pair)) return;
+    if (query_->any && !decide_only_ && proveLeaves(pair, piece_a, piece_b, lane, witness_)) return;
+    claimOverlap(lane);
   });
 }
 
@@ -541,7 +553,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   if (decide_only_ && a == 0 && b == 0) {
     mask = nodesMayTouch(0, 0, mask);
-    if (mask) mask = hullsMayTouch(mask, false);
+    if (mask) mask = hullsMayTouch(mask, pair, false);
     if (!mask) return;
   }
   push({pair, a, b, mask});
@@ -729,7 +741,7 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
     const Entry e = entries_[i];
     if (parent_lane >= 0 && !(e.mask >> parent_lane & 1)) continue;
     traverse(e.pair, e.a, e.b, kAllLanes);
-    if (out_of_budget_) return Step::done;
+    if (finished()) return Step::done;
   }
   const int out_end = entries_.size();
   const bool last = last_;
@@ -740,6 +752,144 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
     entries_.truncate(out_end);
   }
   return Step::free;
+}
+
+/// Contact of two leaves at a lane's middle, where any contact is asked for.
+inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane, const double* guess) {
+  const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
+  const DifferenceBody body = differenceAt(a, b, lane);
+  LeafContact contact = {};
+  ++statistics_.contact_proofs;
+  const double* start = norm(guess) > 0 ? guess : body.pose.c;
+  if (!certainlyTouching(body, query_->margin, pose_error_, start, contact.point)) return false;
+  const PairParts bodies = parts(pair);
+  contact.pair = pair;
+  contact.body_a = bodies.a;
+  contact.body_b = bodies.b;
+  contact.piece_a = piece_a;
+  contact.piece_b = piece_b;
+  contact.certain = true;
+  contact.t = contact.t_upper = tm_at_[lane];
+  double size = norm(start);
+  for (int k = 0; k < 3; ++k) contact.normal[k] = size > 0 ? start[k] / size : (k == 2);
+  contacts_.push(contact);
+  t_upper_ = limit_ = tm_at_[lane];
+  updateLive();
+  return true;
+}
+
+/// Where any contact is asked for: a vertex of the one body's mesh that lies within the other, a single solid piece, at a
+/// lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
+inline bool Solver::proveVertexInside(int pair, int lane) {
+  for (int s = 0; s < 2; ++s) {
+    const Side& side = side_[s];
+    const TreeView &mesh = *side.moving, &solid = *side.still;
+    if (mesh.pieces[0].kind != PieceKind::vertices || !mesh.outer || mesh.outer->kind != PieceKind::hull) continue;
+    if (solid.num_pieces != 1 || solid.pieces[0].kind == PieceKind::vertices || unbounded(solid.pieces[0])) continue;
+    DifferenceBody body;
+    for (int i = 0; i < 9; ++i) body.pose.R[i] = side.m.R[0][i][lane];
+    for (int i = 0; i < 3; ++i) body.pose.c[i] = side.m.c[0][i][lane];
+    const Node& box = solid.nodes[0];
+    double center[3];
+    middleOf(box, center);
+    const double* x = mesh.hulls + mesh.outer->first_vertex;
+    const int n = mesh.outer->num_vertices;
+    double best = 1;
+    int vertex = -1;
+    for (int i = 0; i < n; i += kLanes) {  // lanes go over vertices
+      Lanes depth(0.0);
+      for (int k = 0; k < 3; ++k) {
+        const double reach = 2 / (static_cast<double>(box.hi[k]) - static_cast<double>(box.lo[k]));
+        const Lanes y = hullValues(x, n, i, body.pose.R + 3 * k) + Lanes(body.pose.c[k] - center[k]);
+        depth = max(depth, abs(y) * Lanes(reach));
+      }
+      const double least = minLane(depth);
+      if (least >= best) continue;
+      best = least;
+      vertex = i + __builtin_ctz(kAllLanes & ~greater(depth, Lanes(least)));
+    }
+    if (vertex < 0) continue;
+    Piece point;
+    point.kind = PieceKind::point;
+    for (int k = 0; k < 3; ++k) point.center[k] = x[k * n + vertex];
+    body.tree_a = &solid;
+    body.a = &solid.pieces[0];
+    body.tree_b = &mesh;
+    body.b = &point;
+    double guess[3], where[3];
+    for (int k = 0; k < 3; ++k) guess[k] = dot(body.pose.R + 3 * k, point.center) + body.pose.c[k] - center[k];
+    ++statistics_.contact_proofs;
+    // Seen from the other side a pose errs by twice as much (doc/NUMERICS.md, "Pads").
+    if (!certainlyTouching(body, query_->margin, (s ? 2.5 : 1) * pose_error_, guess, where)) continue;
+    LeafContact contact = {};
+    const PairParts bodies = parts(pair);
+    contact.pair = pair;
+    contact.body_a = bodies.a;
+    contact.body_b = bodies.b;
+    int piece = 0;  // a triangle with that vertex
+    for (int i = 0; i < mesh.num_pieces; ++i) {
+      const double* v = mesh.vertices + 3 * static_cast<std::ptrdiff_t>(mesh.pieces[i].first_vertex);
+      for (int j = 0; j < mesh.pieces[i].num_vertices; ++j, v += 3) {
+        if (v[0] == point.center[0] && v[1] == point.center[1] && v[2] == point.center[2]) piece = i;
+      }
+      if (piece == i && i) break;
+    }
+    (s ? contact.piece_a : contact.piece_b) = piece;
+    contact.certain = true;
+    contact.t = contact.t_upper = tm_at_[lane];
+    // Outwards from the solid, through the side of its box that is nearest.
+    double n_solid[3] = {0, 0, 0}, most = -1;
+    int axis = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double part = abs(guess[k]) / (static_cast<double>(box.hi[k]) - static_cast<double>(box.lo[k]));
+      if (part > most) {
+        most = part;
+        axis = k;
+      }
+    }
+    n_solid[axis] = guess[axis] < 0 ? -1 : 1;
+    for (int k = 0; k < 3; ++k) {
+      if (s == 0) {
+        contact.point[k] = where[k];
+        contact.normal[k] = n_solid[k];
+      } else {  // the solid is B
+        double p = side_[0].m.c[0][k][lane], m = 0;
+        for (int j = 0; j < 3; ++j) {
+          p += side_[0].m.R[0][3 * k + j][lane] * where[j];
+          m -= side_[0].m.R[0][3 * k + j][lane] * n_solid[j];
+        }
+        contact.point[k] = p;
+        contact.normal[k] = m;
+      }
+    }
+    contacts_.push(contact);
+    t_upper_ = limit_ = tm_at_[lane];
+    updateLive();
+    return true;
+  }
+  return false;
+}
+
+/// Where any contact is asked for: the poses in the middles of the lanes in which hulls overlap, pieces and all.
+inline bool Solver::proveAnywhere() {
+  if (overlapping_.size() == 0) return false;
+  const double middles[kLanes] = {0.0625, 0.1875, 0.3125, 0.4375, 0.5625, 0.6875, 0.8125, 0.9375};
+  evaluateAt(middles, 0);
+  for (int k = 0; k < kLanes; ++k) lane_start_[k] = lane_end_[k] = middles[k];
+  claimed_ = 2;
+  last_ = true;  // down to the leaves
+  updateLive();
+  const int roots = entries_.size();
+  for (int i = 0; i < overlapping_.size() && !finished(); ++i) {
+    const Entry e = overlapping_[i];
+    setupPair(e.pair);
+    traverse(e.pair, e.a, e.b, e.mask);
+    entries_.truncate(roots);
+  }
+  if (finished()) return true;
+  claimed_ = 2;
+  beginBatch(0, 1);
+  return false;
 }
 
 /// The pieces of one pair, in a lane of the first batch, in windows that begin with how long the motion takes for a small
@@ -772,7 +922,7 @@ inline void Solver::solveLane(int lane, int begin, int end) {
   const double lane_start = 0.125 * lane, stop = 0.125 * (lane + 1);
   candidates_.clear();
   const int roots = entries_.size();
-  for (int i = begin; i < end && !out_of_budget_;) {
+  for (int i = begin; i < end && !finished();) {
     // A run of entries of one pair.
     const int first = entries_.size(), pair_index = entries_[i].pair;
     bool leaves = true;
@@ -802,7 +952,7 @@ inline void Solver::solveLane(int lane, int begin, int end) {
     candidates_.push(f);
     outOfBudget();
   }
-  for (int done = 0; done < candidates_.size() && !out_of_budget_; ++done) {
+  for (int done = 0; done < candidates_.size() && !finished(); ++done) {
     int first = done;
     for (int i = done + 1; i < candidates_.size(); ++i) {
       if (candidates_[i].t_lower < candidates_[first].t_lower) first = i;
@@ -822,7 +972,7 @@ inline void Solver::solveLane(int lane, int begin, int end) {
     solvePieces(f, stop, f.first, f.first + f.count, lane);
   }
   entries_.truncate(roots);
-  if (!out_of_budget_) front_ = stop;
+  if (!finished()) front_ = stop;
 }
 
 /// A lane takes the present pair so far that little can be told of its pieces before the lane is split; of its hulls can.
@@ -833,7 +983,7 @@ inline bool Solver::movesFar() const {
 /// Goes down from entries_[begin, end) over the batch at hand, in the lanes of `mask`; what stays undecided is appended.
 inline void Solver::descend(int begin, int end, unsigned mask) {
   int present = -1;
-  for (int i = begin; i < end && !out_of_budget_; ++i) {
+  for (int i = begin; i < end && !finished(); ++i) {
     const Entry e = entries_[i];
     if (!(e.mask & mask)) continue;
     if (e.pair != present) setupPair(present = e.pair);
@@ -848,30 +998,37 @@ inline void Solver::descend(int begin, int end, unsigned mask) {
 /// All pairs on one batch over [0, 1]; then lane by lane.
 inline void Solver::solvePairs() {
   int roots = entries_.size();
-  for (int i = 0; i < roots && !out_of_budget_; ++i) {
+  overlapping_.clear();
+  for (int i = 0; i < roots && !finished(); ++i) {
     Entry& e = entries_[i];
     setupPair(e.pair);
+    overlaps_ = 0;
     e.mask = nodesMayTouch(0, 0, e.mask);
-    if (e.mask) e.mask = hullsMayTouch(e.mask, !query_->every_pair && movesFar());
+    if (e.mask) e.mask = hullsMayTouch(e.mask, e.pair, !query_->every_pair && movesFar());
+    if (overlaps_) overlapping_.push({e.pair, 0, 0, overlaps_});
     outOfBudget();
   }
+  if (finished()) return;
   int open = 0;
   for (int i = 0; i < roots; ++i) {
     if (entries_[i].mask) entries_[open++] = entries_[i];
   }
   entries_.truncate(roots = open);
+  if (query_->any && proveAnywhere()) return;
   const auto search = [&](int begin, int end) {
     t_upper_ = limit_ = 2;
     front_ = 0;
     int from = entries_.size();
     descend(begin, end, kAllLanes);
-    for (int lane = 0; lane < kLanes && 0.125 * lane < limit_ && !out_of_budget_; ++lane) {
+    for (int lane = 0; lane < kLanes && 0.125 * lane < limit_ && !finished(); ++lane) {
       solveLane(lane, from, entries_.size());
       const unsigned later = kAllLanes & ~((2u << lane) - 1);
       if (!later || limit_ <= 0.125 * (lane + 1)) continue;
       bool put_off = false;
       const int end_now = entries_.size();
-      for (int i = from; i < end_now; ++i) put_off = put_off || ((entries_[i].mask & kPutOff) && (entries_[i].mask & later));
+      for (int i = from; i < end_now; ++i) {
+        put_off = put_off || ((entries_[i].mask & kPutOff) && (entries_[i].mask >> (lane + 1) & 1));
+      }
       if (!put_off) continue;
       // What was claimed was no contact: the lanes that were put off are looked at after all, all at once.
       claimed_ = 2;
@@ -1114,7 +1271,8 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
     if (!advance(f, stop, false)) settle(f, stop);
     if (outOfBudget()) return Step::done;
     // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
-    if (f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts)) finals_.truncate(i + 1);
+    const bool enough = f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts);
+    if (enough || finished()) finals_.truncate(i + 1);
   }
   const bool narrow = width <= kNarrowestLane;
   for (int i = 0; i < finals_.size(); ++i) {
@@ -1181,7 +1339,8 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   const bool contact = t_lower < 2;
   // Where the budget ended among the initial contacts, nothing is known of when they are over.
   if (out_of_budget_) t_lower = query.ignore_initial ? 0 : min(front_, t_lower);
-  const bool certain = contact && t_upper_ - t_lower <= query.tolerance_time * (1 + 1e-9);
+  const bool certain = contact && (query.any ? t_upper_ < 2 : t_upper_ - t_lower <= query.tolerance_time * (1 + 1e-9));
+  if (query.any && t_upper_ < 2) t_lower = min(t_lower, front_);
   if (!query.every_pair) orderContacts(0, certain ? t_upper_ : t_lower + query.tolerance_time);
   answer.verdict = out_of_budget_ ? Verdict::undecided : contact ? Verdict::contact : Verdict::free;
   answer.certain = answer.verdict == Verdict::contact && certain;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "adapters/fcl/fcl_geometry.h"
 #include "narrowphase/elementary.h"
 
 namespace fcl_artic {
@@ -38,6 +39,7 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   query.check_scene = request.check_scene;
   query.check_self = request.check_self;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;
+  query.any = request.mode == ContactMode::any;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
   query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
@@ -73,6 +75,16 @@ Status statusOf(engine::Verdict verdict) {
     case engine::Verdict::contact: return Status::contact;
     default: return Status::undecided;
   }
+}
+
+std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece) {
+  const engine::Piece& p = shape.view().pieces[piece];
+#if FCL_HAVE_OCTOMAP
+  if (geometry && geometry->getNodeType() == fcl::GEOM_OCTREE) {
+    return ocTreeCellId(static_cast<const fcl::OcTreed&>(*geometry), Eigen::Vector3d::Map(p.center));
+  }
+#endif
+  return p.primitive;
 }
 
 void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
