@@ -25,19 +25,29 @@ const T& require(const T* pointer, const char* what) {
 template <class S>
 struct Body {
   const fcl::CollisionGeometry<S>* geometry;
-  std::shared_ptr<const ShapeTree> shape;
+  std::shared_ptr<const ShapeTree> shape;  ///< of an OcTree: null until readCells()
   BodyMotion motion;
 };
 
 template <class S>
+bool isOcTree(const fcl::CollisionGeometry<S>& geometry) {
+  return FCL_HAVE_OCTOMAP && geometry.getNodeType() == fcl::GEOM_OCTREE;
+}
+
+template <class S>
+std::shared_ptr<const ShapeTree> readShape(const fcl::CollisionGeometry<S>* geometry) {
+  return isOcTree(require(geometry, "geometry")) ? nullptr : cachedGeometry(*geometry);
+}
+
+template <class S>
 Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
-  return {geometry, cachedGeometry(require(geometry, "geometry")), readMotion(require(motion, "motion"))};
+  return {geometry, readShape(geometry), readMotion(require(motion, "motion"))};
 }
 
 template <class S>
 Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
              fcl::CCDMotionType type) {
-  return {geometry, cachedGeometry(require(geometry, "geometry")),
+  return {geometry, readShape(geometry),
           motionBetween(readTransform(begin, "its start"), readTransform(end, "its end"), type)};
 }
 
@@ -70,8 +80,46 @@ const fcl::CollisionGeometryd* reported(const fcl::CollisionGeometry<float>*) {
   return nullptr;
 }
 
+bool standsStill(const BodyMotion& motion) {
+  return std::all_of(motion.elements.begin(), motion.elements.end(), [](const MotionElement& element) {
+    return !element.bounded && element.degree() == 0;
+  });
+}
+
+/// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
+/// body can come to, as most of a map is far from any one motion.
 template <class S>
-void solve(const Body<S>& body1, const Body<S>& body2, const CertifiedRequest& request, CertifiedPairResult& result) {
+void readCells(Body<S>& tree, const Body<S>& other, double margin) {
+#if FCL_HAVE_OCTOMAP
+  const auto& octree = static_cast<const fcl::OcTree<S>&>(*tree.geometry);
+  Eigen::Vector3d lower, upper;
+  lower.setConstant(-INFINITY);
+  upper.setConstant(INFINITY);
+  const bool bounded = other.shape && other.shape->view().nodes[0].radius < engine::kUnbounded;
+  if (standsStill(tree.motion) && bounded && std::isfinite(margin)) {
+    const Eigen::Isometry3d M_0t = tree.motion.pose(0);
+    BodyMotion seen = other.motion;  // from the tree's frame
+    Eigen::Isometry3d& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
+    const double lengths = M_0t.translation().norm() + first.translation().norm();
+    first = M_0t.inverse() * first;
+    enclosePath(seen, other.shape->lower(), other.shape->upper(), lower, upper);
+    // What the path's own pads do not know of: the pose and the product above, and these sums.
+    const double size = (upper - lower).norm() + lower.norm();
+    const double pad = margin + 0x1p-40 * (lengths + size + margin);
+    lower.array() -= pad;
+    upper.array() += pad;
+  }
+  tree.shape = readOcTree(octree, lower, upper);
+#else
+  (void)tree, (void)other, (void)margin;
+#endif
+}
+
+template <class S>
+void solve(Body<S> body1, Body<S> body2, const CertifiedRequest& request, CertifiedPairResult& result) {
+  if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, request.margin);
+  if (!body1.shape) readCells(body1, body2, request.margin);
+  if (!body2.shape) readCells(body2, body1, request.margin);
   solvePair({*body1.shape, body1.motion, reported(body1.geometry)},
             {*body2.shape, body2.motion, reported(body2.geometry)}, request, result);
 }

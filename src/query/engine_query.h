@@ -8,6 +8,7 @@
 
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
+#include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
 #include "narrowphase/problem.h"
 
@@ -54,6 +55,11 @@ engine::Query makeQuery(const CertifiedRequest& request);
 
 Status statusOf(engine::Verdict verdict);
 QueryStatistics statisticsOf(const engine::Statistics& statistics);
+
+/// FCL's own id of a piece, as in Contact::b1: a mesh's triangle, an OcTree's cell (OcTree::getNodeByQueryCellId), -1 for
+/// a shape.
+/// @param geometry  that the tree was read from; null where FCL's double type is not at hand.
+std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece);
 
 /// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). The verdict stays
 /// the solver's.

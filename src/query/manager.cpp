@@ -319,8 +319,8 @@ CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, cons
   contact.body2 = reference(b);
   contact.o1 = a.geometry;
   contact.o2 = b.geometry;
-  contact.b1 = a.shape->view().pieces[leaf.piece_a].primitive;
-  contact.b2 = b.shape->view().pieces[leaf.piece_b].primitive;
+  contact.b1 = primitiveId(a.geometry, *a.shape, leaf.piece_a);
+  contact.b2 = primitiveId(b.geometry, *b.shape, leaf.piece_b);
   if (a.link < 0) {
     contact.feature = swapped(contact.feature);
     std::swap(contact.body1, contact.body2);

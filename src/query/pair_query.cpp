@@ -209,8 +209,8 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
     contact.normal = (M_01.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
     contact.o1 = body1.geometry;
     contact.o2 = body2.geometry;
-    contact.b1 = body1.shape.view().pieces[leaf.piece_a].primitive;
-    contact.b2 = body2.shape.view().pieces[leaf.piece_b].primitive;
+    contact.b1 = primitiveId(body1.geometry, body1.shape, leaf.piece_a);
+    contact.b2 = primitiveId(body2.geometry, body2.shape, leaf.piece_b);
     contact.t_lower = leaf.t_lower;
     contact.t_upper = leaf.t_upper;
     contact.certain = leaf.certain;
