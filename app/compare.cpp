@@ -244,7 +244,9 @@ std::string textOf(const SetReport& r) {
     const bool timed = s.p95_us > 0;
     out += timed ? fmt::format("{:>12.1f}{:>12.1f}\n", s.median_us, s.p95_us) : fmt::format("{:>12}{:>12}\n", "-", "-");
   }
-  if (r.added) out += fmt::format("  {} contacts were passed over by the samples, and shown by fcl_artic.\n", r.added);
+  if (r.added)
+    out += fmt::format("  In {} queries fcl_artic showed a contact that the samples had missed or found later.\n",
+                       r.added);
   return out;
 }
 

@@ -165,9 +165,10 @@ struct Distance {
 /// Bounds on the distance of the point `p` from A - B (cores).
 /// @param wanted  stop when they differ by at most this share of what the distance exceeds `skin` by
 /// @param enough  stop when the distance is known to be above this
+/// @param near    stop when it is known to be at most this
 template <class R>
 Distance<R> distance(const Placed<R>& A, const Placed<R>& B, const Vec<R>& p, double wanted, R skin,
-                     R enough = std::numeric_limits<R>::infinity()) {
+                     R enough = std::numeric_limits<R>::infinity(), R near = 0) {
   constexpr int kMaxIterations = 200;
   constexpr bool kLong = sizeof(R) > sizeof(double);
   const R tiny = kLong ? R(1e-17) : R(1e-14);
@@ -181,7 +182,7 @@ Distance<R> distance(const Placed<R>& A, const Placed<R>& B, const Vec<R>& p, do
     const Vec<R> w = A.support(-v) - B.support(v) - p;
     const R lower = v.dot(w) / length;
     if (lower > r.lower || i == 0) r.lower = std::max(lower, R(0)), r.direction = -v / length;
-    if (r.lower > enough || r.upper - r.lower <= std::max(R(wanted) * (r.upper - skin), tiny)) break;
+    if (r.lower > enough || r.upper <= near || r.upper - r.lower <= std::max(R(wanted) * (r.upper - skin), tiny)) break;
     for (int k = 0; k < s.size; ++k)
       if (s.w[k] == w) return r;  // nothing new in this direction
     s.w[s.size++] = w;
@@ -195,14 +196,22 @@ Distance<R> distance(const Placed<R>& A, const Placed<R>& B, const Vec<R>& p, do
 }
 
 /// Shows that the difference of two bodies without radii holds a ball of radius 0.9 depth about the origin: it has
-/// points within depth / 10 of the four corners of a regular tetrahedron of that inradius.
-bool deeperThan(const Placed<Real>& A, const Placed<Real>& B, Real depth) {
+/// points within depth / 10 of the four corners of a regular tetrahedron of inradius depth.
+bool holdsBall(const Placed<Real>& A, const Placed<Real>& B, Real depth) {
   const Real q = 3 * depth / std::sqrt(Real(3));
   for (const Vec<Real>& corner :
        {Vec<Real>(q, q, q), Vec<Real>(q, -q, -q), Vec<Real>(-q, q, -q), Vec<Real>(-q, -q, q)}) {
-    if (!(distance<Real>(A, B, corner, 0, 0).upper <= depth / 10)) return false;
+    if (!(distance<Real>(A, B, corner, 0, 0, depth / 10, depth / 10).upper <= depth / 10)) return false;
   }
   return true;
+}
+
+/// The largest balls first: between curved bodies the search closes in slowly, and a large one is soon shown.
+bool deeperThan(const Placed<Real>& A, const Placed<Real>& B, Real depth) {
+  for (Real ball = 1e-4; ball > depth; ball /= 10) {
+    if (holdsBall(A, B, ball)) return true;
+  }
+  return holdsBall(A, B, depth);
 }
 
 struct Leaf {
@@ -220,7 +229,7 @@ Leaf compare(const Body& a, int i, const Pose& M_a, const PoseOf<double>& near_a
   const auto fine = distance<Real>(A, B, Vec<Real>::Zero(), std::min(wanted, 1e-3), Real(a.radius) + Real(b.radius));
   const Real lower = fine.lower - Real(a.radius) - Real(b.radius), upper = fine.upper - Real(a.radius) - Real(b.radius);
   // With a radius, points of the cores nearer than that show the depth.
-  const bool clear = radii > 0 ? upper <= -Real(kClear) : upper <= Real(kClear) && deeperThan(A, B, kClear);
+  const bool clear = radii > 0 ? upper <= -Real(kClear) : !(lower > 0) && deeperThan(A, B, kClear);
   return {static_cast<double>(clear ? std::min(lower, Real(0)) : lower), static_cast<double>(upper), clear,
           fine.direction.cast<double>()};
 }
