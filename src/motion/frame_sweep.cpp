@@ -58,7 +58,7 @@ Carrier FrameSweep::carrier(LinkId link) {
   // Up from the base to the common ancestor, then down to the link.
   std::vector<LinkId> up_from_link{link};
   while (tree_->parentLink(up_from_link.back()) >= 0) up_from_link.push_back(tree_->parentLink(up_from_link.back()));
-  Carrier at;
+  Carrier at = world_;
   LinkId here = base_;
   if (base_ < 0) {
     here = up_from_link.back();  // roots stand at identity in the world
@@ -159,8 +159,15 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
   step.inverse = !down;
   const bool has_axis = element.kind == Kind::revolute || element.kind == Kind::prismatic;
   to = append(to, step, has_axis ? element.axis : Eigen::Vector3d(Eigen::Vector3d::UnitZ()));
+  origin_.push_back({from.step, -1, down});
   if (!down) moveBy(to, element.before.inverse(), element.before);
   return to;
+}
+
+void FrameSweep::enterTree(const KinematicTree& tree, const Carrier& world) {
+  tree_ = &tree;
+  base_ = -1;
+  world_ = world;
 }
 
 engine::SweepView FrameSweep::view() const {
@@ -177,6 +184,7 @@ engine::SweepView FrameSweep::view() const {
 void FrameSweep::clear() {
   steps_.clear();
   origin_.clear();
+  world_ = Carrier();
 }
 
 }  // namespace fcl_artic

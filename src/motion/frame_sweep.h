@@ -39,6 +39,10 @@ class FrameSweep {
   /// Adds the steps on the way to the link where they are not there yet.
   Carrier carrier(LinkId link);
 
+  /// Goes on into a tree that stands in the world: for carrier(), behind the elements of a body's motion.
+  /// @param world  where the world is carried.
+  void enterTree(const KinematicTree& tree, const Carrier& world);
+
   /// Crosses one element of a body's motion, outwards (down) or back towards the world.
   /// @param variable  of its first row of coefficients.
   /// @param source  of a bounded element; the view keeps the pointer.
@@ -57,10 +61,11 @@ class FrameSweep {
 
   const KinematicTree* tree_ = nullptr;
   LinkId base_ = -1;  ///< -1: the world
+  Carrier world_;     ///< of a sweep that comes to the tree from outside
   std::vector<engine::SweepStep> steps_;
   struct Origin {
     int parent;
-    JointId joint;
+    JointId joint;  ///< -1: an element of a body's motion
     bool down;
   };
   std::vector<Origin> origin_;  ///< what step i crosses, to share common beginnings

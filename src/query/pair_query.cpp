@@ -6,39 +6,13 @@
 
 #include "motion/frame_sweep.h"
 #include "query/engine_query.h"
+#include "query/motion_variables.h"
 
 namespace fcl_artic {
 namespace {
 
 using engine::Piece;
 using engine::PieceKind;
-
-int numRows(const MotionElement& element) {
-  switch (element.kind) {
-    case MotionElement::Kind::revolute:
-    case MotionElement::Kind::prismatic: return 1;
-    case MotionElement::Kind::slide:
-    case MotionElement::Kind::turn: return 3;
-    default: return 0;
-  }
-}
-
-void stateOf(const void* self, double t, double* out) {
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const BoundedMotion::State state = static_cast<const BoundedMotion*>(self)->state(t);
-  Eigen::Map<RowMajor>(out, 3, 3) = state.pose.linear();
-  Eigen::Vector3d::Map(out + 9) = state.pose.translation();
-  Eigen::Vector3d::Map(out + 12) = state.velocity;
-  Eigen::Vector3d::Map(out + 15) = state.acceleration;
-  Eigen::Vector3d::Map(out + 18) = state.angular_velocity;
-  Eigen::Vector3d::Map(out + 21) = state.angular_acceleration;
-}
-
-void boundsOf(const void* self, double begin, double end, double* out) {
-  const BoundedMotion::Bounds b = static_cast<const BoundedMotion*>(self)->bounds(begin, end);
-  const double all[6] = {b.speed, b.acceleration, b.jerk, b.angular_speed, b.angular_acceleration, b.angular_jerk};
-  std::copy(all, all + 6, out);
-}
 
 /// The way from body 1 to body 2: up the one's motion, down the other's.
 struct Path {
@@ -52,11 +26,9 @@ Path pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace
   int degree = 1, variables = 0;
   std::size_t bounded = 0;
   for (const BodyMotion* motion : {&motion1, &motion2}) {
-    for (const MotionElement& element : motion->elements) {
-      degree = std::max(degree, element.degree());
-      variables += numRows(element);
-      bounded += element.bounded != nullptr;
-    }
+    degree = std::max(degree, degreeOf(*motion));
+    variables += numVariables(*motion);
+    for (const MotionElement& element : motion->elements) bounded += element.bounded != nullptr;
   }
   workspace.coefficients.assign(static_cast<std::size_t>((degree + 1) * std::max(variables, 1)), 0);
   workspace.sources.clear();
@@ -67,17 +39,12 @@ Path pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace
   const auto cross = [&](const MotionElement& element, bool down) {
     const engine::BoundedSource* source = nullptr;
     if (element.bounded) {
-      workspace.sources.push_back({element.bounded, &stateOf, &boundsOf, element.bounded->hasDerivatives()});
+      workspace.sources.push_back(boundedSource(*element.bounded));
       source = &workspace.sources.back();
     }
-    const int rows = numRows(element);
-    for (int k = 0; k <= degree; ++k) {
-      for (int r = 0; r < rows; ++r) {
-        workspace.coefficients[static_cast<std::size_t>(k * variables + variable + r)] = element.coefficients(r, k);
-      }
-    }
+    writeCoefficients(element, variable, variables, degree, workspace.coefficients.data());
     at = workspace.sweep.cross(at, element, variable, source, down);
-    variable += rows;
+    variable += numVariables(element);
   };
   for (auto it = motion1.elements.rbegin(); it != motion1.elements.rend(); ++it) cross(*it, false);
   for (const MotionElement& element : motion2.elements) cross(element, true);
