@@ -109,32 +109,31 @@ inline void nearestOnTriangle(const double* a, const double* b, const double* c,
 /// Reduces the simplex to the face nearest to the origin and gives the nearest point; false when the origin is inside.
 inline bool reduceSimplex(Simplex& s, double* v) {
   const auto keep = [&](const int* index, const double* l, int n) {
-    Simplex t;
+    int kept = 0;  // indices ascend, so nothing is overwritten that is still needed
     for (int i = 0; i < n; ++i) {
-      if (l[i] > 0) {
-        t.v[t.n] = s.v[index[i]];
-        t.weight[t.n++] = l[i];
-      }
+      if (!(l[i] > 0)) continue;
+      if (kept != index[i]) s.v[kept] = s.v[index[i]];
+      s.weight[kept++] = l[i];
     }
+    s.n = kept;
     for (int k = 0; k < 3; ++k) {
       v[k] = 0;
-      for (int i = 0; i < t.n; ++i) v[k] += t.weight[i] * t.v[i].w[k];
+      for (int i = 0; i < s.n; ++i) v[k] += s.weight[i] * s.v[i].w[k];
     }
-    if (t.n == 3) {
+    if (s.n == 3) {
       // On a face the sum above is off along it by what rounding makes of the weights, and next to a tiny gap that would
       // turn the direction. The foot of the perpendicular has the face's normal whatever the gap.
       double ab[3], ac[3], m[3];
       for (int k = 0; k < 3; ++k) {
-        ab[k] = t.v[1].w[k] - t.v[0].w[k];
-        ac[k] = t.v[2].w[k] - t.v[0].w[k];
+        ab[k] = s.v[1].w[k] - s.v[0].w[k];
+        ac[k] = s.v[2].w[k] - s.v[0].w[k];
       }
       cross(ab, ac, m);
       const double mm = dot(m, m);
       if (mm > 0) {
-        for (int k = 0; k < 3; ++k) v[k] = dot(m, t.v[0].w) / mm * m[k];
+        for (int k = 0; k < 3; ++k) v[k] = dot(m, s.v[0].w) / mm * m[k];
       }
     }
-    s = t;
   };
   if (s.n == 1) {
     const int index[1] = {0};
@@ -159,7 +158,7 @@ inline bool reduceSimplex(Simplex& s, double* v) {
     keep(index, l, 3);
     return true;
   }
-  static const int kFaces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};
+  static const int kFaces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};  // indices ascend
   double best = 1e300, best_l[3] = {0, 0, 0};
   int best_face = -1;
   for (int f = 0; f < 4; ++f) {
@@ -260,12 +259,10 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
     }
     if (known) break;
     s.v[s.n++] = p;
-    const Simplex full = s;
     double next[3];
-    if (!reduceSimplex(s, next)) {
+    if (!reduceSimplex(s, next)) {  // it stays a tetrahedron then
       out.overlap = true;
       out.distance = 0;
-      s = full;
       break;
     }
     if (dot(next, next) >= vv * (1 - 1e-15)) break;

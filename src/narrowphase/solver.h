@@ -166,6 +166,8 @@ class Solver {
   double witness_[3];          ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
   std::int32_t witness_pair_ = -1;
+  std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
+  std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
   /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
   /// processor's own; what is pushed out is made again.
   static constexpr int kCached = 2048;
@@ -325,6 +327,9 @@ inline double Solver::watchFrom(int pair) const {
 
 /// Relative motion of a pair over this batch, both ways, with remainders and pads.
 inline void Solver::setupPair(int index) {
+  if (present_ == index && present_batch_ == batch_) return;
+  present_ = index;
+  present_batch_ = batch_;
   const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);
@@ -571,7 +576,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       if (!e.mask) continue;
     }
     if (outOfBudget()) break;
-    e.mask = nodesMayTouch(e.a, e.b, e.mask);
+    if (e.a != 0 || e.b != 0 || roots_batch_ != batch_) e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
     if (x.isLeaf() && y.isLeaf()) {
@@ -998,6 +1003,7 @@ inline void Solver::descend(int begin, int end, unsigned mask) {
 /// All pairs on one batch over [0, 1]; then lane by lane.
 inline void Solver::solvePairs() {
   int roots = entries_.size();
+  roots_batch_ = batch_;
   overlapping_.clear();
   for (int i = 0; i < roots && !finished(); ++i) {
     Entry& e = entries_[i];
@@ -1299,7 +1305,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   contacts_.clear();
   ignored_.clear();
   front_ = 0;
-  witness_pair_ = -1;
+  witness_pair_ = present_ = roots_batch_ = -1;
   t_upper_ = limit_ = claimed_ = 2;
   out_of_budget_ = decide_only_ = false;
   first_step_.resize(problem.num_sweeps);
