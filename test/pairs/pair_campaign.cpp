@@ -433,7 +433,7 @@ bool corrupt(Corruption corruption, const PairQuery& query, Answer& answer) {
       return true;
     case Corruption::drop_in:
       answer.drop_in.time_of_contact = answer.drop_in_time = std::min(1.0, 0.99 * answer.drop_in_time + 0.02);
-      return true;
+      return answer.drop_in.is_collide && answer.drop_in_time < 1;
     case Corruption::count:
       break;
   }
