@@ -85,7 +85,8 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
   body.support(n, lowest);
   const double low = dot(n, lowest.w);
   if (!(low + 2 * eps < radii)) return false;
-  double part = 0;  // of the way from the lowest to the highest point
+  double part = 0;                              // of the way from the lowest to the highest point
+  double reach = min(other.radius, max(0.0, low));  // of the other's ball, from there towards the boundary
   highest = lowest;
   if (piece.kind == PieceKind::plane) {
     double m[3];
@@ -93,11 +94,13 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
     body.support(m, highest);
     const double high = dot(n, highest.w);  // along n again, of the other's far end
     if (!(high > 2 * eps - radii)) return false;
-    if (low < 0 && high > 0) part = low / (low - high);
-    else if (low < 0) part = 1;
+    if (low < 0 && high > 0) {
+      part = low / (low - high);
+    } else if (low < 0) {  // all of the core is behind the plane
+      part = 1;
+      reach = -min(other.radius, -high);
+    }
   }
-  // The other piece's core comes this near to the boundary, or goes into it; its ball reaches out along the normal.
-  const double reach = part == 0 ? min(other.radius, max(0.0, low)) : 0;
   for (int k = 0; k < 3; ++k) {
     const double x = of_a ? lowest.b[k] : lowest.a[k], y = of_a ? highest.b[k] : highest.a[k];
     point[k] = x + part * (y - x) - (of_a ? reach : -reach) * n[k];

@@ -69,6 +69,46 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
   }
 }
 
+/// A direction n, fixed in the still body's frame, made ready for many node boxes: the certificate of certificate.h with the
+/// boxes as pieces. n.x over a moving box lies above the quadratic with Bernstein points g_k + u_k.m - |u_k|.h (center m, half
+/// sizes h), u_k = R_k^T n, g_k = n.c_k.
+struct NodeDirection {
+  bool ready = false;
+  double n[3];  ///< from the still to the moving body
+  Lanes u[3][3], g[3];
+  double slack;  ///< remainder, pad and margin, for points as far out as any of the moving body
+
+  FCL_ARTIC_INLINE void prepare(const Side& side, const double* direction, double pad_and_margin) {
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        u[k][j] = mulAdd(side.m.Rb[k][j], direction[0],
+                         mulAdd(side.m.Rb[k][3 + j], direction[1], side.m.Rb[k][6 + j] * Lanes(direction[2])));
+      }
+      g[k] = dot(side.m.cb[k], direction);
+      n[k] = direction[k];
+    }
+    slack = side.m.rem_c + side.m.rem_R * side.moving->extent + pad_and_margin;
+    ready = true;
+  }
+  FCL_ARTIC_INLINE unsigned keepsApart(const Node& still, const Node& moving) const {
+    double upper = slack, c[3], h[3];
+    for (int k = 0; k < 3; ++k) {
+      const double lo = still.lo[k], hi = still.hi[k];
+      upper += 0.5 * (n[k] * (lo + hi) + abs(n[k]) * (hi - lo));
+      c[k] = 0.5 * (static_cast<double>(moving.lo[k]) + static_cast<double>(moving.hi[k]));
+      h[k] = 0.5 * (static_cast<double>(moving.hi[k]) - static_cast<double>(moving.lo[k]));
+    }
+    unsigned apart = kAllLanes;
+    const Lanes top(upper);
+    for (int k = 0; k < 3; ++k) {
+      const Lanes center = mulAdd(u[k][0], c[0], mulAdd(u[k][1], c[1], mulAdd(u[k][2], c[2], g[k])));
+      const Lanes half = mulAdd(abs(u[k][0]), h[0], mulAdd(abs(u[k][1]), h[1], abs(u[k][2]) * Lanes(h[2])));
+      apart &= greater(center - half, top);
+    }
+    return apart;
+  }
+};
+
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
   std::int32_t pair, a, b;
@@ -165,6 +205,7 @@ class Solver {
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0;
   double witness_[3];          ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
+  NodeDirection direction_;    ///< the same, for nodes
   std::int32_t witness_pair_ = -1;
   std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
   std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
@@ -394,6 +435,10 @@ FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
 inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   ++statistics_.node_tests;
   const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
+  if (direction_.ready) {
+    mask &= ~direction_.keepsApart(A, B);
+    if (!mask) return 0;
+  }
   mask &= ~apart(pool_[sweptNode(0, b)], A);
   if (!mask) return 0;
   mask &= ~apart(pool_[sweptNode(1, a)], B);
@@ -561,6 +606,8 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (mask) mask = hullsMayTouch(mask, pair, false);
     if (!mask) return;
   }
+  direction_.ready = false;
+  if (have_witness_) direction_.prepare(side_[0], witness_, pad_ + query_->margin);
   push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   for (int lane = 0; lane < kLanes;) {
@@ -599,6 +646,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     }
   }
   for (Buffer<Entry>& stack : stack_) stack.clear();
+  direction_.ready = false;
 }
 
 /// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
