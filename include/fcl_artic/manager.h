@@ -52,6 +52,14 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument when it is not registered.
   void unregisterObject(fcl::CollisionObjectd* object);
 
+  /// Adds an obstacle that moves: its motion's time is the query's, t in [0, 1], whatever the robot does. Links are
+  /// checked against it as against any obstacle (CertifiedRequest::check_scene); obstacles are not checked against each
+  /// other. The geometry may be unbounded. Object, geometry and motion must outlive the manager's use of them; the motion is
+  /// read by registerObject() and update(), a BoundedMotion is asked in queries too.
+  /// @throws std::invalid_argument as above, and for a motion that fcl_artic::continuousCollide refuses.
+  void registerObject(fcl::ContinuousCollisionObjectd* object, const std::string& name = {});
+  void unregisterObject(fcl::ContinuousCollisionObjectd* object);
+
   /// Fixes a geometry to a link; the object's own transform is not used.
   /// @param offset  geometry frame in the link's frame.
   /// @throws std::invalid_argument as registerObject(), and for an unknown link or an offset that is not rigid.
@@ -69,19 +77,23 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
 
   /// Makes all changes effective; needed before the first query and after register, bind or allow.
   void setup();
-  /// Reads the transforms (and geometry, when it is another one) of the obstacles again.
+  /// Reads the transforms and motions (and geometry, when it is another one) of the obstacles again. Links, their pairs
+  /// and geometry that is the same stay as they are.
   void update();
   void update(fcl::CollisionObjectd* object);
   void update(const std::vector<fcl::CollisionObjectd*>& objects);
+  void update(fcl::ContinuousCollisionObjectd* object);
   /// Removes all obstacles and all bindings.
   void clear();
 
-  /// The obstacles.
+  /// The obstacles that stand still.
   void getObjects(std::vector<fcl::CollisionObjectd*>& objects) const;
+  /// Those that move.
+  void getObjects(std::vector<fcl::ContinuousCollisionObjectd*>& objects) const;
   std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> boundObjects() const;
   /// Pose of a bound geometry's frame in its link's frame.
   Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;
-  /// Number of obstacles.
+  /// Number of obstacles, moving ones included.
   std::size_t size() const;
   bool empty() const { return size() == 0; }
 

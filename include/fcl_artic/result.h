@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <fcl/narrowphase/collision_object.h>
 #include <fcl/narrowphase/contact.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
 
 #include "fcl_artic/kinematic_tree.h"
 
@@ -22,11 +23,12 @@ enum class Status {
 /// Features that meet, body 1's first. `volume`: at least one of the bodies is not a triangle there.
 enum class FeatureKind { vertexVertex, vertexEdge, edgeVertex, vertexFace, faceVertex, edgeEdge, edgeFace, faceEdge, faceFace, volume };
 
-/// A body of a query: a geometry bound to a link, or an obstacle.
+/// A body of a query: a geometry bound to a link, an object attached to one, or an obstacle.
 struct BodyRef {
   LinkId link = -1;                               ///< -1 for an obstacle
-  const fcl::CollisionObjectd* object = nullptr;  ///< as registered or bound
-  std::string name;                               ///< link name, or the obstacle's
+  const fcl::CollisionObjectd* object = nullptr;  ///< as registered or bound; null for an obstacle that moves
+  std::string name;                               ///< link name, or the obstacle's or attached object's
+  const fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< an obstacle with a motion of its own, as registered
 };
 
 /// One contact. As in FCL, `normal` points from body 1 to body 2.

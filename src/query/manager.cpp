@@ -11,30 +11,40 @@
 #include <unordered_set>
 
 #include "adapters/fcl/fcl_geometry.h"
+#include "adapters/fcl/fcl_motion.h"
 #include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
 #include "narrowphase/problem.h"
 #include "query/engine_query.h"
+#include "query/motion_variables.h"
 
 namespace fcl_artic {
 namespace {
 
 using engine::Placement;
 
+using Geometry = std::shared_ptr<const fcl::CollisionGeometryd>;
+using MovingObject = fcl::ContinuousCollisionObjectd;
+
 /// A geometry of the manager, obstacle or link.
 struct Item {
   fcl::CollisionObjectd* object = nullptr;
+  MovingObject* moving = nullptr;  ///< instead of it, of an obstacle that moves
   std::string name;
   LinkId link = -1;  ///< -1: obstacle
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< in the link's frame; of an obstacle: in the world
-  const fcl::CollisionGeometryd* geometry = nullptr;
+  Geometry geometry;
   std::shared_ptr<const ShapeTree> shape;
   std::array<double, 7> lss = {};  ///< of a link: line swept sphere in the geometry's frame
+  BodyMotion motion;               ///< of an obstacle that moves
+  Eigen::Vector3d path_lower, path_upper;  ///< its box in the world over all of the motion
+
+  Eigen::Isometry3d pose(double t) const { return moving ? motion.pose(t) : offset; }  ///< of an obstacle
 };
 
 /// Reads the object's geometry, where it is another one than was read before.
 void readShape(Item& item, const std::string& what) {
-  const fcl::CollisionGeometryd* geometry = item.object->collisionGeometry().get();
+  const Geometry geometry = item.object ? item.object->collisionGeometry() : item.moving->collisionGeometry();
   if (!geometry) throw std::invalid_argument(what + ": the object has no geometry");
   if (geometry == item.geometry) return;
   try {
@@ -74,55 +84,91 @@ FeatureKind swapped(FeatureKind kind) {
 
 struct ArticulatedCollisionManager::Impl {
   std::shared_ptr<const KinematicTree> tree;
-  std::vector<Item> obstacles, links;
-  std::unordered_set<const fcl::CollisionObjectd*> objects;  ///< of both
+  std::vector<Item> obstacles, links, moving;
+  std::unordered_set<const void*> objects;  ///< of all of these
   std::unordered_set<std::string> obstacle_names;
   AllowedCollisionMatrix allowed;
-  bool ready = false;
-  std::size_t named = 0;  ///< obstacles that were given a name so far
+  bool robot_ready = false;  ///< what buildRobot() makes is up to date
+  bool ready = false;        ///< all is
+  std::size_t named = 0;     ///< obstacles that were given a name so far
 
-  // Made by build(), read by queries.
-  std::vector<FrameSweep> sweeps;
+  // Made by buildRobot() and buildScene(), read by queries.
+  std::vector<FrameSweep> sweeps;  ///< of the links first, then one from each moving obstacle
   std::vector<engine::SweepView> sweep_views;
-  std::vector<engine::Body> bodies;  ///< links first, then obstacles
+  std::vector<engine::Body> bodies;  ///< links first, then moving obstacles, then the others
   std::vector<std::int32_t> movers, obstacle_bodies;
-  std::vector<std::uint8_t> scene_allowed;  ///< empty when no obstacle is named in `allowed`
-  std::vector<engine::LinkPair> link_pairs;
+  std::vector<std::uint8_t> scene_allowed;  ///< empty when all pairs of link and obstacle are checked
+  std::vector<engine::LinkPair> link_pairs;  ///< of two links first, then of moving obstacles and links
   std::vector<engine::Node> obstacle_tree;
+  std::size_t num_link_sweeps = 0, num_self_pairs = 0;
+  std::vector<engine::BoundedSource> sources;  ///< of moving obstacles' bounded motions
+  /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
+  Eigen::MatrixXd moving_coefficients;
 
   const Item& item(std::int32_t body) const {
-    const std::size_t i = static_cast<std::size_t>(body);
-    return i < links.size() ? links[i] : obstacles[i - links.size()];
+    std::size_t i = static_cast<std::size_t>(body);
+    if (i < links.size()) return links[i];
+    i -= links.size();
+    return i < moving.size() ? moving[i] : obstacles[i - moving.size()];
   }
+  void requireNew(const void* object, const std::string& what) const;
   Item makeItem(fcl::CollisionObjectd* object, const std::string& what) const;
+  std::string obstacleName(const std::string& name) const;
+  void addObstacle(std::vector<Item>& items, Item item);
   bool adjacent(LinkId a, LinkId b) const;
   bool linkAbove(LinkId above, LinkId below) const;
   void readObstacle(Item& item) const;
-  void build();
+  bool mayTouch(const Item& a, const Item& b) const;
+  void buildRobot();
+  void buildScene();
+  void buildMoving();
   engine::Problem problem() const;
+  void setVariables(const JointMotion& motion, std::vector<double>& memory, engine::Query& query) const;
   CertifiedContact report(void* workspace, const JointMotion& motion, const CertifiedRequest& request,
                           engine::LeafContact leaf) const;
   void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
     objects.erase(item->object);
+    objects.erase(item->moving);
     if (item->link < 0) obstacle_names.erase(item->name);
     items.erase(item);
   }
-  BodyRef reference(const Item& item) const { return {item.link, item.object, item.name}; }
+  BodyRef reference(const Item& item) const { return {item.link, item.object, item.name, item.moving}; }
 };
 
-Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, const std::string& what) const {
+void ArticulatedCollisionManager::Impl::requireNew(const void* object, const std::string& what) const {
   if (!object) throw std::invalid_argument(what + ": the object is null");
-  if (objects.count(object)) {
-    for (const std::vector<Item>* items : {&obstacles, &links}) {
-      for (const Item& i : *items) {
-        if (i.object == object) throw std::invalid_argument(what + ": the object is there already, as '" + i.name + "'");
+  if (!objects.count(object)) return;
+  for (const std::vector<Item>* items : {&obstacles, &links, &moving}) {
+    for (const Item& i : *items) {
+      if (i.object == object || i.moving == object) {
+        throw std::invalid_argument(what + ": the object is there already, as '" + i.name + "'");
       }
     }
   }
+}
+
+Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, const std::string& what) const {
+  requireNew(object, what);
   Item item;
   item.object = object;
   readShape(item, what);
   return item;
+}
+
+/// The name as given or chosen.
+std::string ArticulatedCollisionManager::Impl::obstacleName(const std::string& name) const {
+  const std::string shown = name.empty() ? "obstacle" + std::to_string(named) : name;
+  if (obstacle_names.count(shown)) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
+  return shown;
+}
+
+void ArticulatedCollisionManager::Impl::addObstacle(std::vector<Item>& items, Item item) {
+  readObstacle(item);
+  objects.insert(item.object ? static_cast<const void*>(item.object) : item.moving);
+  obstacle_names.insert(item.name);
+  items.push_back(std::move(item));
+  ++named;
+  ready = false;
 }
 
 /// Joined by one moving joint at most, over links without geometry only.
@@ -161,15 +207,37 @@ bool ArticulatedCollisionManager::Impl::linkAbove(LinkId above, LinkId below) co
 
 void ArticulatedCollisionManager::Impl::readObstacle(Item& item) const {
   const std::string what = "obstacle '" + item.name + "'";
-  const Eigen::Isometry3d M = requireRigid(item.object->getTransform(), what);
+  if (item.object) {
+    const Eigen::Isometry3d M = requireRigid(item.object->getTransform(), what);
+    readShape(item, what);
+    item.offset = M;
+    return;
+  }
   readShape(item, what);
-  item.offset = M;
+  const fcl::MotionBased* motion = item.moving->getMotion();
+  if (!motion) throw std::invalid_argument(what + ": it has no motion");
+  try {
+    item.motion = readMotion(*motion);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  const bool bounded = item.shape->view().nodes[0].radius < engine::kUnbounded;
+  const Eigen::Vector3d far = Eigen::Vector3d::Constant(engine::kUnbounded);
+  if (bounded) enclosePath(item.motion, item.shape->lower(), item.shape->upper(), item.path_lower, item.path_upper);
+  item.path_lower = bounded ? item.path_lower.cwiseMax(-far) : Eigen::Vector3d(-far);
+  item.path_upper = bounded ? item.path_upper.cwiseMin(far) : far;
 }
 
-void ArticulatedCollisionManager::Impl::build() {
+/// Nothing touches an empty tree (an OcTree without an occupied cell).
+bool ArticulatedCollisionManager::Impl::mayTouch(const Item& a, const Item& b) const {
+  return a.shape->view().num_pieces && b.shape->view().num_pieces && !allowed.allowed(a.name, b.name);
+}
+
+/// What depends on the links and what is allowed between them only.
+void ArticulatedCollisionManager::Impl::buildRobot() {
   sweeps.clear();
   sweeps.push_back(FrameSweep::fromWorld(*tree));
-  bodies.assign(links.size() + obstacles.size(), engine::Body());
+  bodies.assign(links.size(), engine::Body());
   std::vector<int> depth(links.size(), 0);
   std::vector<Eigen::Isometry3d> in_step(links.size());
   std::vector<Carrier> carriers(links.size());
@@ -203,53 +271,11 @@ void ArticulatedCollisionManager::Impl::build() {
     bodies[static_cast<std::size_t>(movers[m])].mover = static_cast<std::int32_t>(m);
   }
 
-  std::vector<BoxBounds> boxes(obstacles.size());
-  obstacle_bodies.resize(obstacles.size());
-  for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    const Item& item = obstacles[o];
-    engine::Body& body = bodies[links.size() + o];
-    body.tree = &item.shape->view();
-    body.placement = makePlacement(item.offset);
-    body.inverse = makePlacement(item.offset.inverse());
-    worldBox(*item.shape, item.offset, body.placement, body.lo, body.hi);
-    for (int k = 0; k < 3; ++k) {
-      boxes[o].lo[k] = body.lo[k];
-      boxes[o].hi[k] = body.hi[k];
-    }
-    obstacle_bodies[o] = static_cast<std::int32_t>(links.size() + o);
-  }
-  obstacle_tree = buildBoxTree(boxes);
-
-  scene_allowed.clear();
-  std::map<std::string, std::size_t> obstacle_named;
-  for (std::size_t o = 0; o < obstacles.size(); ++o) obstacle_named[obstacles[o].name] = o;
-  for (const auto& [first, second] : allowed.pairs()) {
-    for (const auto& [obstacle, link] : {std::tie(first, second), std::tie(second, first)}) {
-      const auto o = obstacle_named.find(obstacle);
-      if (o == obstacle_named.end()) continue;
-      scene_allowed.resize(movers.size() * obstacles.size(), 0);
-      for (std::size_t m = 0; m < movers.size(); ++m) {
-        if (item(movers[m]).name == link) scene_allowed[m * obstacles.size() + o->second] = 1;
-      }
-    }
-  }
-
-  // Nothing touches an empty tree (an OcTree without an occupied cell).
-  const auto empty = [](const Item& item) { return item.shape->view().num_pieces == 0; };
-  for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    for (std::size_t m = 0; m < movers.size(); ++m) {
-      if (!empty(obstacles[o]) && !empty(item(movers[m]))) continue;
-      scene_allowed.resize(movers.size() * obstacles.size(), 0);
-      scene_allowed[m * obstacles.size() + o] = 1;
-    }
-  }
-
   link_pairs.clear();
   std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
-      if (links[i].link == links[j].link || allowed.allowed(links[i].name, links[j].name)) continue;
-      if (empty(links[i]) || empty(links[j])) continue;
+      if (links[i].link == links[j].link || !mayTouch(links[i], links[j])) continue;
       if (adjacent(links[i].link, links[j].link)) continue;
       // The shorter path first: an ancestor is the base.
       std::size_t a = i, b = j;
@@ -277,9 +303,143 @@ void ArticulatedCollisionManager::Impl::build() {
       link_pairs.push_back(pair);
     }
   }
+  num_link_sweeps = sweeps.size();
+  num_self_pairs = link_pairs.size();
+  robot_ready = true;
+}
+
+/// Pairs of links and moving obstacles. The link is seen from the obstacle: up the obstacle's motion, down the tree.
+void ArticulatedCollisionManager::Impl::buildMoving() {
+  int degree = 1, variables = 0;
+  std::size_t bounded = 0;
+  for (const Item& item : moving) {
+    degree = std::max(degree, degreeOf(item.motion));
+    variables += numVariables(item.motion);
+    for (const MotionElement& element : item.motion.elements) bounded += element.bounded != nullptr;
+  }
+  moving_coefficients.setZero(variables, degree + 1);
+  sources.clear();
+  sources.reserve(bounded);  // steps point into it
+  int variable = 0;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const Item& item = moving[i];
+    const std::size_t index = links.size() + i;
+    engine::Body& body = bodies[index];
+    body.tree = &item.shape->view();
+    body.mover = static_cast<std::int32_t>(movers.size());
+    movers.push_back(static_cast<std::int32_t>(index));
+    for (int k = 0; k < 3; ++k) {  // stage 1 knows the box of the whole path
+      body.lo[k] = item.path_lower[k];
+      body.hi[k] = item.path_upper[k];
+    }
+    FrameSweep sweep;
+    Carrier at;
+    int last = variable += numVariables(item.motion);
+    const auto& elements = item.motion.elements;
+    for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+      const engine::BoundedSource* source = nullptr;
+      if (element->bounded) {
+        sources.push_back(boundedSource(*element->bounded));
+        source = &sources.back();
+      }
+      last -= numVariables(*element);
+      writeCoefficients(*element, last, variables, degree, moving_coefficients.data());
+      at = sweep.cross(at, *element, tree->dof() + last, source, false);
+    }
+    sweep.enterTree(*tree, at);
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      if (!mayTouch(links[l], item)) continue;
+      const Carrier carrier = sweep.carrier(links[l].link);
+      engine::LinkPair pair;
+      pair.a = static_cast<std::int32_t>(index);
+      pair.b = static_cast<std::int32_t>(l);
+      pair.sweep = static_cast<std::int32_t>(sweeps.size());
+      pair.step_b = carrier.step;
+      pair.inverse_a = makePlacement(item.motion.after.inverse());
+      pair.placement_b = makePlacement(carrier, links[l].offset);
+      link_pairs.push_back(pair);
+    }
+    sweeps.push_back(std::move(sweep));
+  }
+}
+
+/// What depends on the obstacles.
+void ArticulatedCollisionManager::Impl::buildScene() {
+  if (!robot_ready) buildRobot();
+  ready = false;
+  sweeps.erase(sweeps.begin() + static_cast<std::ptrdiff_t>(num_link_sweeps), sweeps.end());
+  link_pairs.resize(num_self_pairs);
+  movers.resize(links.size());
+  bodies.resize(links.size());
+  bodies.resize(links.size() + moving.size() + obstacles.size());
+  buildMoving();
+
+  const std::size_t first = links.size() + moving.size();
+  std::vector<BoxBounds> boxes(obstacles.size());
+  obstacle_bodies.resize(obstacles.size());
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const Item& item = obstacles[o];
+    engine::Body& body = bodies[first + o];
+    body.tree = &item.shape->view();
+    body.placement = makePlacement(item.offset);
+    body.inverse = makePlacement(item.offset.inverse());
+    worldBox(*item.shape, item.offset, body.placement, body.lo, body.hi);
+    for (int k = 0; k < 3; ++k) {
+      boxes[o].lo[k] = body.lo[k];
+      boxes[o].hi[k] = body.hi[k];
+    }
+    obstacle_bodies[o] = static_cast<std::int32_t>(first + o);
+  }
+  obstacle_tree = buildBoxTree(boxes);
+
+  scene_allowed.clear();
+  const auto allow = [&](std::size_t m, std::size_t o) {
+    scene_allowed.resize(movers.size() * obstacles.size(), 0);
+    scene_allowed[m * obstacles.size() + o] = 1;
+  };
+  std::map<std::string, std::size_t> obstacle_named;
+  if (!allowed.pairs().empty()) {
+    for (std::size_t o = 0; o < obstacles.size(); ++o) obstacle_named[obstacles[o].name] = o;
+  }
+  for (const auto& [one, other] : allowed.pairs()) {
+    for (const auto& [obstacle, link] : {std::tie(one, other), std::tie(other, one)}) {
+      const auto o = obstacle_named.find(obstacle);
+      if (o == obstacle_named.end()) continue;
+      for (std::size_t m = 0; m < links.size(); ++m) {
+        if (item(movers[m]).name == link) allow(m, o->second);
+      }
+    }
+  }
+  const auto empty = [](const Item& item) { return item.shape->view().num_pieces == 0; };
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    for (std::size_t m = 0; m < movers.size(); ++m) {
+      // Obstacles are no pairs of each other; nothing touches an empty tree (mayTouch).
+      if (m >= links.size() || empty(obstacles[o]) || empty(item(movers[m]))) allow(m, o);
+    }
+  }
+
   sweep_views.clear();
   for (const FrameSweep& sweep : sweeps) sweep_views.push_back(sweep.view());
   ready = true;
+}
+
+/// The motion's variables, then those of the moving obstacles.
+/// @param memory  for them, when there are both.
+void ArticulatedCollisionManager::Impl::setVariables(const JointMotion& motion, std::vector<double>& memory,
+                                                     engine::Query& query) const {
+  const Eigen::MatrixXd &own = motion.coefficients(), &others = moving_coefficients;
+  query.coefficients = own.data();
+  query.num_variables = static_cast<std::int32_t>(own.rows());
+  query.degree = static_cast<std::int32_t>(own.cols()) - 1;
+  if (others.rows() == 0) return;
+  const Eigen::Index columns = std::max(own.cols(), others.cols());
+  memory.assign(static_cast<std::size_t>((own.rows() + others.rows()) * columns), 0);
+  Eigen::Map<Eigen::MatrixXd> all(memory.data(), own.rows() + others.rows(), columns);
+  all.topLeftCorner(own.rows(), own.cols()) = own;
+  all.bottomLeftCorner(others.rows(), others.cols()) = others;
+  query.coefficients = memory.data();
+  query.num_variables = static_cast<std::int32_t>(all.rows());
+  query.degree = static_cast<std::int32_t>(columns) - 1;
 }
 
 /// What the engine sees of the set-up.
@@ -312,15 +472,15 @@ CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, cons
   }
   std::vector<Eigen::Isometry3d> M_0;
   tree->forwardKinematics(motion.configuration(leaf.t), M_0);
-  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.offset;
+  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.pose(leaf.t);
   contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
   contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
   contact.body1 = reference(a);
   contact.body2 = reference(b);
-  contact.o1 = a.geometry;
-  contact.o2 = b.geometry;
-  contact.b1 = primitiveId(a.geometry, *a.shape, leaf.piece_a);
-  contact.b2 = primitiveId(b.geometry, *b.shape, leaf.piece_b);
+  contact.o1 = a.geometry.get();
+  contact.o2 = b.geometry.get();
+  contact.b1 = primitiveId(a.geometry.get(), *a.shape, leaf.piece_a);
+  contact.b2 = primitiveId(b.geometry.get(), *b.shape, leaf.piece_b);
   if (a.link < 0) {
     contact.feature = swapped(contact.feature);
     std::swap(contact.body1, contact.body2);
@@ -347,18 +507,18 @@ const KinematicTree& ArticulatedCollisionManager::tree() const { return *impl_->
 std::shared_ptr<const KinematicTree> ArticulatedCollisionManager::sharedTree() const { return impl_->tree; }
 
 void ArticulatedCollisionManager::registerObject(fcl::CollisionObjectd* object, const std::string& name) {
-  const std::string shown = name.empty() ? "obstacle" + std::to_string(impl_->named) : name;
-  if (impl_->obstacle_names.count(shown)) {
-    throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
-  }
+  const std::string shown = impl_->obstacleName(name);
   Item item = impl_->makeItem(object, "obstacle '" + shown + "'");
   item.name = shown;
-  impl_->readObstacle(item);
-  impl_->objects.insert(object);
-  impl_->obstacle_names.insert(shown);
-  impl_->obstacles.push_back(std::move(item));
-  ++impl_->named;
-  impl_->ready = false;
+  impl_->addObstacle(impl_->obstacles, std::move(item));
+}
+
+void ArticulatedCollisionManager::registerObject(fcl::ContinuousCollisionObjectd* object, const std::string& name) {
+  Item item;
+  item.name = impl_->obstacleName(name);
+  impl_->requireNew(object, "obstacle '" + item.name + "'");
+  item.moving = object;
+  impl_->addObstacle(impl_->moving, std::move(item));
 }
 
 void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::CollisionObjectd*>& objects) {
@@ -382,6 +542,14 @@ void ArticulatedCollisionManager::unregisterObject(fcl::CollisionObjectd* object
   impl_->ready = false;
 }
 
+void ArticulatedCollisionManager::unregisterObject(fcl::ContinuousCollisionObjectd* object) {
+  auto& items = impl_->moving;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.moving == object; });
+  if (it == items.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
+  impl_->forget(items, it);
+  impl_->ready = false;
+}
+
 void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset) {
   if (link < 0 || link >= impl_->tree->numLinks()) {
     throw std::invalid_argument("bind: robot '" + impl_->tree->name() + "' has no link " + std::to_string(link));
@@ -394,7 +562,7 @@ void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* objec
   item.lss = item.shape->lineSweptSphere();
   impl_->objects.insert(object);
   impl_->links.push_back(std::move(item));
-  impl_->ready = false;
+  impl_->robot_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::bind(const std::string& link, fcl::CollisionObjectd* object,
@@ -410,24 +578,27 @@ void ArticulatedCollisionManager::unbind(fcl::CollisionObjectd* object) {
   const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
   if (it == items.end()) throw std::invalid_argument("unbind: the object is bound to no link");
   impl_->forget(items, it);
-  impl_->ready = false;
+  impl_->robot_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::setAllowedCollisions(AllowedCollisionMatrix matrix) {
   impl_->allowed = std::move(matrix);
-  impl_->ready = false;
+  impl_->robot_ready = impl_->ready = false;
 }
 const AllowedCollisionMatrix& ArticulatedCollisionManager::allowedCollisions() const { return impl_->allowed; }
 
 void ArticulatedCollisionManager::setup() {
-  if (!impl_->ready) impl_->build();
+  if (!impl_->ready) impl_->buildScene();
 }
 
 void ArticulatedCollisionManager::update() {
-  std::vector<Item> items = impl_->obstacles;  // all or nothing
-  for (Item& item : items) impl_->readObstacle(item);
-  impl_->obstacles = std::move(items);
-  impl_->build();
+  std::vector<Item> obstacles = impl_->obstacles, moving = impl_->moving;  // all or nothing
+  for (std::vector<Item>* items : {&obstacles, &moving}) {
+    for (Item& item : *items) impl_->readObstacle(item);
+  }
+  impl_->obstacles = std::move(obstacles);
+  impl_->moving = std::move(moving);
+  impl_->buildScene();
 }
 
 void ArticulatedCollisionManager::update(fcl::CollisionObjectd* object) {
@@ -442,21 +613,37 @@ void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd
     impl_->readObstacle(*it);
   }
   impl_->obstacles = std::move(items);
-  impl_->build();
+  impl_->buildScene();
+}
+
+void ArticulatedCollisionManager::update(fcl::ContinuousCollisionObjectd* object) {
+  auto& items = impl_->moving;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.moving == object; });
+  if (it == items.end()) throw std::invalid_argument("update: the object is not registered");
+  Item item = *it;
+  impl_->readObstacle(item);
+  *it = std::move(item);
+  impl_->buildScene();
 }
 
 void ArticulatedCollisionManager::clear() {
   impl_->obstacles.clear();
   impl_->links.clear();
+  impl_->moving.clear();
   impl_->objects.clear();
   impl_->obstacle_names.clear();
   impl_->named = 0;
-  impl_->ready = false;
+  impl_->robot_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::getObjects(std::vector<fcl::CollisionObjectd*>& objects) const {
   objects.clear();
   for (const Item& i : impl_->obstacles) objects.push_back(i.object);
+}
+
+void ArticulatedCollisionManager::getObjects(std::vector<fcl::ContinuousCollisionObjectd*>& objects) const {
+  objects.clear();
+  for (const Item& i : impl_->moving) objects.push_back(i.moving);
 }
 
 std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> ArticulatedCollisionManager::boundObjects() const {
@@ -472,7 +659,7 @@ Eigen::Isometry3d ArticulatedCollisionManager::boundOffset(const fcl::CollisionO
   throw std::invalid_argument("boundOffset: the object is bound to no link");
 }
 
-std::size_t ArticulatedCollisionManager::size() const { return impl_->obstacles.size(); }
+std::size_t ArticulatedCollisionManager::size() const { return impl_->obstacles.size() + impl_->moving.size(); }
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
@@ -485,15 +672,21 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
                                 m.tree->name() + "' has " + std::to_string(m.tree->dof()));
   }
   engine::Query query = makeQuery(request);
-  query.coefficients = motion.coefficients().data();
-  query.num_variables = static_cast<std::int32_t>(motion.size());
-  query.degree = static_cast<std::int32_t>(motion.coefficients().cols()) - 1;
 
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point t) { return std::chrono::duration<double, std::micro>(Clock::now() - t).count(); };
   const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
   const WorkspaceLoan workspace;
-  const engine::Problem problem = m.problem();
+  m.setVariables(motion, workspace->coefficients, query);
+  engine::Problem problem = m.problem();
+  // Pairs with moving obstacles are the scene's, though they stand with those of two links.
+  const auto self_pairs = static_cast<std::int32_t>(m.num_self_pairs);
+  if (!request.check_scene) problem.num_link_pairs = self_pairs;
+  if (!request.check_self) {
+    problem.link_pairs += self_pairs;
+    problem.num_link_pairs -= self_pairs;
+  }
+  query.check_self = problem.num_link_pairs > 0;
   engine::Answer answer;
   engine::engine().solve(workspace->engine(), problem, query, answer);
   const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();

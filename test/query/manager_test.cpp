@@ -478,7 +478,7 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
   manager.setup();
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(wall.get()); }).find("wall"),
             std::string::npos);
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(nullptr, "none"); }).find("null"),
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(static_cast<fcl::CollisionObjectd*>(nullptr), "none"); }).find("null"),
             std::string::npos);
   auto empty = at(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>());
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(empty.get(), "empty"); }).find("'empty'"),

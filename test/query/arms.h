@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Small robots and objects for tests with times worked out by hand.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include "fcl_artic/manager.h"
+
+namespace fcl_artic {
+namespace test {
+
+// Times are exact here but for rounding of a few ulp and the prefix root's 1e-12 of the last lane.
+constexpr double kRounding = 1e-11;
+
+inline Eigen::Isometry3d pose(const Eigen::Vector3d& x, double angle = 0,
+                              const Eigen::Vector3d& axis = Eigen::Vector3d::UnitZ()) {
+  return Eigen::Translation3d(x) * Eigen::AngleAxisd(angle, axis.normalized());
+}
+
+inline Joint makeJoint(const std::string& name, JointType type, const std::string& parent, const std::string& child,
+                       const Eigen::Vector3d& axis, const Eigen::Isometry3d& origin = Eigen::Isometry3d::Identity()) {
+  Joint joint;
+  joint.name = name;
+  joint.type = type;
+  joint.parent = parent;
+  joint.child = child;
+  joint.axis = axis;
+  joint.origin = origin;
+  return joint;
+}
+
+inline std::shared_ptr<fcl::CollisionObjectd> object(std::shared_ptr<fcl::CollisionGeometryd> geometry,
+                                                     const Eigen::Isometry3d& M = Eigen::Isometry3d::Identity()) {
+  return std::make_shared<fcl::CollisionObjectd>(std::move(geometry), M);
+}
+inline std::shared_ptr<fcl::CollisionObjectd> ball(double radius, const Eigen::Vector3d& x = Eigen::Vector3d::Zero()) {
+  return object(std::make_shared<fcl::Sphered>(radius), pose(x));
+}
+
+inline CertifiedResult ask(const ArticulatedCollisionManager& manager, const Eigen::VectorXd& q0,
+                           const Eigen::VectorXd& q1, const CertifiedRequest& request = {}) {
+  CertifiedResult result;
+  manager.continuousCollide(JointMotion::linear(manager.tree(), q0, q1), request, result);
+  return result;
+}
+
+/// A slider along x, whose link "cart" carries a ball of 0.1; variable: x.
+struct Cart {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("cart");
+  std::shared_ptr<fcl::CollisionObjectd> body = ball(0.1);
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+  Cart() {
+    tree->addLink("rail");
+    tree->addLink("cart");
+    tree->addJoint(makeJoint("slide", JointType::prismatic, "rail", "cart", Eigen::Vector3d::UnitX()));
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    manager->bind("cart", body.get());
+  }
+  CertifiedResult run(double from, double to, const CertifiedRequest& request = {}) const {
+    return ask(*manager, Eigen::VectorXd::Constant(1, from), Eigen::VectorXd::Constant(1, to), request);
+  }
+};
+
+}  // namespace test
+}  // namespace fcl_artic
