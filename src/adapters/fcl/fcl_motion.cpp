@@ -55,13 +55,49 @@ struct PeekSpline : fcl::SplineMotion<S> {
   static const fcl::Transform3<S>& current(const Motion& m) { return m.*(&PeekSpline::tf); }
 };
 
-void require(bool condition, const std::string& name, const std::string& what) {
-  if (!condition) throw std::invalid_argument(name + " " + what);
+/// Whose data are read. Spelled out only when something is wrong with them: that takes longer than reading them.
+struct Name {
+  const std::type_info& type;
+  const char* part = "";
+};
+std::string spelled(const Name& name) {
+  return "motion of type " + typeName(name.type) + name.part;
+}
+std::string spelled(std::string name) {
+  return name;
 }
 
-void requireLength(const Vector3d& v, const std::string& name, const std::string& what) {
-  require(v.allFinite(), name, "has a " + what + " that is not finite");
-  require(v.cwiseAbs().maxCoeff() <= kFarthest, name, "has a " + what + " of more than 1e9 m");
+template <class N>
+void require(bool condition, const N& name, const char* what) {
+  if (!condition) throw std::invalid_argument(spelled(name) + " " + what);
+}
+
+template <class N>
+void requireLength(const Vector3d& v, const N& name, const char* what) {
+  const double largest = v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+  if (largest <= kFarthest) return;
+  throw std::invalid_argument(spelled(name) + " has a " + what +
+                              (v.allFinite() ? " of more than 1e9 m" : " that is not finite"));
+}
+
+/// What readTransform() does.
+template <class S, class N>
+Isometry3d readRigid(const fcl::Transform3<S>& M, const N& name) {
+  const bool finite = (M.matrix().array() * S(0)).sum() == 0;
+  require(finite, name, "has a transform that is not finite");
+  const Matrix3d R = M.linear().template cast<double>();
+  const Matrix3d defect = orthonormalityDefect(R);
+  const double largest = defect.cwiseAbs().maxCoeff();
+  if (!(largest <= (std::is_same<S, float>::value ? 1e-4 : 1e-6) && R.determinant() > 0)) {
+    throw std::invalid_argument(spelled(name) + " has a transform whose rotation is not orthonormal (defect " +
+                                std::to_string(largest) + ")");
+  }
+  Isometry3d rigid;
+  rigid.linear() = orthonormal(R, defect);
+  rigid.translation() = M.translation().template cast<double>();
+  rigid.makeAffine();
+  require(rigid.translation().cwiseAbs().maxCoeff() <= kFarthest, name, "is more than 1e9 m away");
+  return rigid;
 }
 
 Isometry3d pureRotation(const Isometry3d& M) {
@@ -134,12 +170,12 @@ BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axi
 }
 
 template <class S>
-BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const std::string& name) {
+BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const Name& name) {
   const fcl::TranslationMotion<S> copy(motion);  // all its data are private
   copy.integrate(0);
   fcl::Transform3<S> M;
   copy.getCurrentTransform(M);
-  const Isometry3d begin = readTransform<S>(M, name);
+  const Isometry3d begin = readRigid<S>(M, name);
   const Vector3d velocity = copy.getVelocity().template cast<double>();
   requireLength(velocity, name, "displacement");
   return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
@@ -147,7 +183,7 @@ BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const std::s
 
 /// The axis of a rotation by an angle in [0, pi], as FCL has it.
 template <class S>
-Vector3d requireRotation(const fcl::Vector3<S>& axis, S angle, const std::string& name) {
+Vector3d requireRotation(const fcl::Vector3<S>& axis, S angle, const Name& name) {
   const Vector3d a = axis.template cast<double>();
   require(std::isfinite(angle) && a.allFinite(), name, "has a rotation that is not finite");
   require(angle >= 0 && angle < 3.1416 && (angle == 0 || std::abs(a.norm() - 1) < 1e-5), name,
@@ -156,12 +192,12 @@ Vector3d requireRotation(const fcl::Vector3<S>& axis, S angle, const std::string
 }
 
 template <class S>
-BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const std::string& name) {
-  const Isometry3d begin = readTransform<S>(PeekInterp<S>::begin(motion), name + " (begin)");
-  const Isometry3d end = readTransform<S>(PeekInterp<S>::end(motion), name + " (end)");
+BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
+  const Isometry3d begin = readRigid<S>(PeekInterp<S>::begin(motion), Name{name.type, " (begin)"});
+  const Isometry3d end = readRigid<S>(PeekInterp<S>::end(motion), Name{name.type, " (end)"});
   const Vector3d o = motion.getReferencePoint().template cast<double>();
   if (!(o.allFinite() && o.cwiseAbs().maxCoeff() <= kFarthest)) {
-    throw std::invalid_argument(name +
+    throw std::invalid_argument(spelled(name) +
                                 " has a reference point that is not finite or more than 1e9 m away: FCL's constructors "
                                 "without a reference point leave it uninitialised; use (R1, T1, R2, T2, O)");
   }
@@ -177,7 +213,7 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const std::string& nam
   const double size = begin.translation().norm() + end.translation().norm() + o.norm();
   if (!((reached.linear() - end.linear()).cwiseAbs().maxCoeff() <= close &&
         (reached.translation() - end.translation()).norm() <= close * size)) {
-    throw std::invalid_argument(name +
+    throw std::invalid_argument(spelled(name) +
                                 " does not reach its end pose: FCL's constructors () and (tf1, tf2, O) never set the "
                                 "velocities; use (R1, T1, R2, T2, O)");
   }
@@ -185,8 +221,8 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const std::string& nam
 }
 
 template <class S>
-BodyMotion readScrew(const fcl::ScrewMotion<S>& motion, const std::string& name) {
-  const Isometry3d begin = readTransform<S>(PeekScrew<S>::begin(motion), name + " (begin)");
+BodyMotion readScrew(const fcl::ScrewMotion<S>& motion, const Name& name) {
+  const Isometry3d begin = readRigid<S>(PeekScrew<S>::begin(motion), Name{name.type, " (begin)"});
   const double angle = motion.getAngularVelocity();
   if (angle == 0) {  // not unit: the displacement between the end poses
     const Vector3d velocity =
@@ -195,7 +231,7 @@ BodyMotion readScrew(const fcl::ScrewMotion<S>& motion, const std::string& name)
     return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
   }
   const Vector3d axis = requireRotation<S>(motion.getAxis(), motion.getAngularVelocity(), name);
-  const Isometry3d end = readTransform<S>(PeekScrew<S>::end(motion), name + " (end)");
+  const Isometry3d end = readRigid<S>(PeekScrew<S>::end(motion), Name{name.type, " (end)"});
   return screw(begin, end.translation() - begin.translation(), axis, angle);
 }
 
@@ -211,7 +247,7 @@ void setSpline(const fcl::Vector3<S> (&points)[4], MotionElement& element) {
 }
 
 template <class S>
-BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const std::string& name) {
+BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const Name& name) {
   using Peek = PeekSpline<S>;
   const auto& positions = Peek::positions(motion);
   const auto& rotations = Peek::rotations(motion);
@@ -240,12 +276,12 @@ BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const std::string& nam
 }
 
 /// Takes the author's word, after a look at whether it is one: three poses are rigid and within the bounds.
-BodyMotion readBounded(const BoundedMotion& motion, const std::string& name) {
+BodyMotion readBounded(const BoundedMotion& motion, const Name& name) {
   const BoundedMotion::Bounds bounds = motion.bounds(0, 1);
   const bool derivatives = motion.hasDerivatives();
   const auto requireBound = [&](double bound, const char* what) {
-    require(std::isfinite(bound) && bound >= 0, name,
-            std::string("has a bound of ") + what + " that is not finite or below 0");
+    if (std::isfinite(bound) && bound >= 0) return;
+    throw std::invalid_argument(spelled(name) + " has a bound of " + what + " that is not finite or below 0");
   };
   requireBound(bounds.speed, "speed");
   requireBound(bounds.angular_speed, "angular speed");
@@ -256,14 +292,15 @@ BodyMotion readBounded(const BoundedMotion& motion, const std::string& name) {
   Vector3d last = Vector3d::Zero();
   for (const double t : {0.0, 0.5, 1.0}) {
     const BoundedMotion::State state = motion.state(t);
-    const std::string at = name + " at t = " + std::to_string(t);
+    const std::string at = spelled(name) + " at t = " + std::to_string(t);
     const Matrix3d R = state.pose.linear();
     require(state.pose.matrix().allFinite(), at, "has a pose that is not finite");
     require((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-12 && R.determinant() > 0, at,
             "has a rotation that is not proper to 1e-12");
     requireLength(state.pose.translation(), at, "position");
     const auto requireWithin = [&](const Vector3d& v, double bound, const char* what) {
-      require(v.norm() <= bound * (1 + 1e-9) + 1e-12, at, std::string("exceeds its own bound of ") + what);
+      if (v.norm() <= bound * (1 + 1e-9) + 1e-12) return;
+      throw std::invalid_argument(at + " exceeds its own bound of " + what);
     };
     if (derivatives) {
       requireWithin(state.velocity, bounds.speed, "speed");
@@ -290,7 +327,7 @@ BodyMotion readBounded(const BoundedMotion& motion, const std::string& name) {
 template <class S>
 BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
   const std::type_info& type = typeid(motion);
-  const std::string name = "motion of type " + typeName(type);
+  const Name name{type};
   // By typeid, not by dynamic_cast: that would also take a class which overrides integrate().
   if (type == typeid(fcl::TranslationMotion<S>)) {
     return readTranslation(static_cast<const fcl::TranslationMotion<S>&>(motion), name);
@@ -302,7 +339,7 @@ BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
     if (type == typeid(FclLinkMotion)) return bodyMotion(static_cast<const FclLinkMotion&>(motion));
   }
   if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion)) return readBounded(*bounded, name);
-  throw std::invalid_argument(name +
+  throw std::invalid_argument(spelled(name) +
                               " can't be certified, as nothing bounds it between its poses: derive the class from "
                               "fcl_artic::BoundedMotion too (fcl_artic/bounded_motion.h)");
 }
@@ -331,20 +368,11 @@ BodyMotion motionBetween(const Isometry3d& begin_pose, const Isometry3d& end_pos
 }
 
 template <class S>
-Isometry3d readTransform(const fcl::Transform3<S>& M, const std::string& what) {
-  require(M.matrix().allFinite(), what, "has a transform that is not finite");
-  const Matrix3d R = M.linear().template cast<double>();
-  const double defect = (R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  require(defect <= (std::is_same<S, float>::value ? 1e-4 : 1e-6) && R.determinant() > 0, what,
-          "has a transform whose rotation is not orthonormal (defect " + std::to_string(defect) + ")");
-  Isometry3d rigid = Isometry3d::Identity();
-  rigid.linear() = orthonormal(R);
-  rigid.translation() = M.translation().template cast<double>();
-  require(rigid.translation().cwiseAbs().maxCoeff() <= kFarthest, what, "is more than 1e9 m away");
-  return rigid;
+Isometry3d readTransform(const fcl::Transform3<S>& M, const char* what) {
+  return readRigid<S>(M, what);
 }
 
-template Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const std::string& what);
-template Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const std::string& what);
+template Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const char* what);
+template Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const char* what);
 
 }  // namespace fcl_artic

@@ -48,9 +48,9 @@ BodyMotion motionBetween(const Eigen::Isometry3d& begin, const Eigen::Isometry3d
 /// @throws std::invalid_argument naming `what` when a value is not finite or beyond 1e9 m, or the rotation is off by
 ///   more than 1e-6 (float: 1e-4).
 template <class S>
-Eigen::Isometry3d readTransform(const fcl::Transform3<S>& M, const std::string& what);
-extern template Eigen::Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const std::string& what);
-extern template Eigen::Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const std::string& what);
+Eigen::Isometry3d readTransform(const fcl::Transform3<S>& M, const char* what);
+extern template Eigen::Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const char* what);
+extern template Eigen::Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const char* what);
 
 /// The chain of the link's joints.
 BodyMotion bodyMotion(const FclLinkMotion& motion);
