@@ -13,7 +13,7 @@
 
 namespace fcl_artic {
 
-/// Pairs of names (links or obstacles) that may touch: they are not checked.
+/// Pairs of names (links, obstacles, attached objects) that may touch: they are not checked.
 class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
  public:
   void allow(const std::string& a, const std::string& b) { pairs_.insert(key(a, b)); }
@@ -69,6 +69,22 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
   void unbind(fcl::CollisionObjectd* object);
 
+  /// Takes a registered obstacle up, as a gripper does: from the next setup() on the link carries it. It keeps its name, and
+  /// with it what is allowed of it; all other links but `touch_links` are checked against it, neighbours too, and so is the
+  /// rest of the scene. It is no obstacle meanwhile: getObjects() and size() leave it out, boundObjects() has it.
+  /// @param offset  geometry frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  links that it may touch; the link that carries it always may.
+  /// @throws std::invalid_argument: not an obstacle that stands still, unbounded, an unknown link, an offset that is not
+  ///   rigid.
+  void attach(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+              const std::vector<std::string>& touch_links = {});
+  void attach(const std::string& link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+              const std::vector<std::string>& touch_links = {});
+  /// Puts it down: an obstacle again, where the object's own transform says. (unregisterObject() removes it, attached or
+  /// not.)
+  /// @throws std::invalid_argument when it is not attached, or for its transform.
+  void detach(fcl::CollisionObjectd* object);
+
   /// Pairs that may touch, by link and obstacle name. Neighbours may always touch: links with one moving joint at most
   /// between them, and no other link with geometry. (Others that are rigidly attached are checked: allow them where they
   /// touch by construction.)
@@ -90,6 +106,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void getObjects(std::vector<fcl::CollisionObjectd*>& objects) const;
   /// Those that move.
   void getObjects(std::vector<fcl::ContinuousCollisionObjectd*>& objects) const;
+  /// Geometry that links carry, attached objects included.
   std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> boundObjects() const;
   /// Pose of a bound geometry's frame in its link's frame.
   Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 #include <unordered_set>
@@ -36,9 +37,12 @@ struct Item {
   Geometry geometry;
   std::shared_ptr<const ShapeTree> shape;
   std::array<double, 7> lss = {};  ///< of a link: line swept sphere in the geometry's frame
+  bool attached = false;           ///< an obstacle that the link carries
+  std::set<LinkId> touch_links;    ///< that it may touch then
   BodyMotion motion;               ///< of an obstacle that moves
   Eigen::Vector3d path_lower, path_upper;  ///< its box in the world over all of the motion
 
+  bool mayTouchLink(const Item& other) const { return !other.attached && touch_links.count(other.link); }
   Eigen::Isometry3d pose(double t) const { return moving ? motion.pose(t) : offset; }  ///< of an obstacle
 };
 
@@ -129,7 +133,7 @@ struct ArticulatedCollisionManager::Impl {
   void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
     objects.erase(item->object);
     objects.erase(item->moving);
-    if (item->link < 0) obstacle_names.erase(item->name);
+    if (item->link < 0 || item->attached) obstacle_names.erase(item->name);
     items.erase(item);
   }
   BodyRef reference(const Item& item) const { return {item.link, item.object, item.name, item.moving}; }
@@ -187,7 +191,7 @@ bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   int moving = 0;
   bool bare = true;  // no link with geometry strictly between
   const auto hasGeometry = [&](LinkId link) {
-    return std::any_of(links.begin(), links.end(), [&](const Item& i) { return i.link == link; });
+    return std::any_of(links.begin(), links.end(), [&](const Item& i) { return i.link == link && !i.attached; });
   };
   for (const auto* side : {&x, &y}) {
     for (std::size_t i = 0; i + 1 < side->size(); ++i) {
@@ -276,7 +280,8 @@ void ArticulatedCollisionManager::Impl::buildRobot() {
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
       if (links[i].link == links[j].link || !mayTouch(links[i], links[j])) continue;
-      if (adjacent(links[i].link, links[j].link)) continue;
+      if (links[i].mayTouchLink(links[j]) || links[j].mayTouchLink(links[i])) continue;
+      if (!links[i].attached && !links[j].attached && adjacent(links[i].link, links[j].link)) continue;
       // The shorter path first: an ancestor is the base.
       std::size_t a = i, b = j;
       if (linkAbove(links[j].link, links[i].link)) std::swap(a, b);
@@ -535,10 +540,17 @@ void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::Collisi
 }
 
 void ArticulatedCollisionManager::unregisterObject(fcl::CollisionObjectd* object) {
+  const auto is_it = [&](const Item& i) { return i.object == object && (i.link < 0 || i.attached); };
   auto& items = impl_->obstacles;
-  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
-  if (it == items.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
-  impl_->forget(items, it);
+  const auto it = std::find_if(items.begin(), items.end(), is_it);
+  if (it != items.end()) {
+    impl_->forget(items, it);
+  } else {
+    const auto attached = std::find_if(impl_->links.begin(), impl_->links.end(), is_it);
+    if (attached == impl_->links.end()) throw std::invalid_argument("unregisterObject: the object is not registered");
+    impl_->forget(impl_->links, attached);
+    impl_->robot_ready = false;
+  }
   impl_->ready = false;
 }
 
@@ -577,7 +589,58 @@ void ArticulatedCollisionManager::unbind(fcl::CollisionObjectd* object) {
   auto& items = impl_->links;
   const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return i.object == object; });
   if (it == items.end()) throw std::invalid_argument("unbind: the object is bound to no link");
+  if (it->attached) throw std::invalid_argument("unbind: '" + it->name + "' is attached; detach it");
   impl_->forget(items, it);
+  impl_->robot_ready = impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::attach(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+                                         const std::vector<std::string>& touch_links) {
+  const KinematicTree& tree = *impl_->tree;
+  if (link < 0 || link >= tree.numLinks()) {
+    throw std::invalid_argument("attach: robot '" + tree.name() + "' has no link " + std::to_string(link));
+  }
+  auto& items = impl_->obstacles;
+  const auto it = std::find_if(items.begin(), items.end(), [&](const Item& i) { return object && i.object == object; });
+  if (it == items.end()) throw std::invalid_argument("attach: the object is not registered as an obstacle");
+  const std::string what = "attach: '" + it->name + "'";
+  Item item = *it;
+  item.link = link;
+  item.attached = true;
+  item.offset = requireRigid(offset, what);
+  for (const std::string& name : touch_links) {
+    if (!tree.hasLink(name)) throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no link '" + name + "'");
+    item.touch_links.insert(tree.link(name));
+  }
+  try {
+    item.lss = item.shape->lineSweptSphere();
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  impl_->links.push_back(std::move(item));
+  items.erase(it);
+  impl_->robot_ready = impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::attach(const std::string& link, fcl::CollisionObjectd* object,
+                                         const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links) {
+  if (!impl_->tree->hasLink(link)) {
+    throw std::invalid_argument("attach: robot '" + impl_->tree->name() + "' has no link '" + link + "'");
+  }
+  attach(impl_->tree->link(link), object, offset, touch_links);
+}
+
+void ArticulatedCollisionManager::detach(fcl::CollisionObjectd* object) {
+  auto& links = impl_->links;
+  const auto it = std::find_if(links.begin(), links.end(), [&](const Item& i) { return i.object == object && i.attached; });
+  if (it == links.end()) throw std::invalid_argument("detach: the object is not attached");
+  Item item = *it;
+  item.link = -1;
+  item.attached = false;
+  item.touch_links.clear();
+  impl_->readObstacle(item);
+  impl_->obstacles.push_back(std::move(item));
+  links.erase(it);
   impl_->robot_ready = impl_->ready = false;
 }
 
