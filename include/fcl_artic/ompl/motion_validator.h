@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Component `ompl`: motions of OMPL planners, proven free instead of sampled. There is no resolution to choose.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ompl/base/MotionValidator.h>
+#include <ompl/base/SpaceInformation.h>
+#include <ompl/base/StateSpace.h>
+#include <ompl/base/StateValidityChecker.h>
+
+#include "fcl_artic/manager.h"
+
+namespace fcl_artic::planning {
+
+/// What planners ask for: first contact (where it is wanted at all) within 1/4096 of the motion, 0.01 mm.
+FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
+
+/// How the states of an OMPL space place the joints of a tree, and the motion that StateSpace::interpolate() describes.
+///
+/// The space's parts are taken in order and share out the named joints:
+///
+/// | space | joints | motion |
+/// | --- | --- | --- |
+/// | RealVectorStateSpace of n dimensions | n revolute, continuous or prismatic | straight |
+/// | SO2StateSpace | 1 revolute or continuous | the shorter way round, over π where that is it |
+/// | CompoundStateSpace | those of its parts | each part's |
+///
+/// Any other space is refused, and so is a class derived from these: its interpolate() may take another way.
+class FCL_ARTIC_EXPORT JointMapping {
+ public:
+  /// @param joints  names of the joints, in the order of the space's parts; none: all variables of the tree in its order.
+  /// @param others  dof() joint variables, those of unnamed joints stay at theirs; empty: they stay at 0.
+  /// @throws std::invalid_argument naming space or joint: space not supported, wrong number of joints, a joint that is
+  ///   unknown, fixed, a mimic or named twice, SO2 for a prismatic joint or for one that is mimicked so that a whole
+  ///   turn of it is not one of the mimic.
+  JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
+               const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
+
+  const KinematicTree& tree() const { return *tree_; }
+  /// Joint variables of a state. @param[out] q  dof() entries.
+  void configuration(const ::ompl::base::State* state, Eigen::VectorXd& q) const;
+  /// The motion from s1 to s2. @throws std::invalid_argument as JointMotion::linear().
+  JointMotion motion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const;
+
+ private:
+  /// One number of a state and what it drives.
+  struct Value {
+    std::vector<unsigned> path;  ///< through compound states to the part
+    unsigned index = 0;          ///< in a real vector
+    bool turns = false;          ///< an SO2 angle
+    int variable = -1;
+  };
+  void collect(const ::ompl::base::StateSpace& space, const std::string& whole, std::vector<unsigned>& path);
+  static double read(const Value& value, const ::ompl::base::State* state);
+
+  std::shared_ptr<const KinematicTree> tree_;
+  std::vector<Value> values_;
+  Eigen::VectorXd others_;
+};
+
+/// Says of a motion that it is valid only when it is proven free of contact, over all of its way. Thread-safe.
+///
+/// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and when
+/// a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. With
+/// CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate; by default a motion that starts in contact
+/// is invalid.
+class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionValidator {
+ public:
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param request  mode, max_contacts and progress are not used.
+  /// @throws std::invalid_argument when something is null, or when the mapping is not one of the manager's tree.
+  ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
+                            std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
+                            const CertifiedRequest& request = planningRequest());
+  /// The same for all variables of the manager's tree in its order.
+  ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
+                            std::shared_ptr<const ArticulatedCollisionManager> manager,
+                            const CertifiedRequest& request = planningRequest());
+
+  /// Any contact will do here: it need not be the first.
+  bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const override;
+
+  /// When false: the motion is proven free from s1 up to lastValid.second, and lastValid.first, unless null, is set to the
+  /// state there, which is proven free by itself (with room: twice the request's tolerance_distance), or is s1. It may be
+  /// s1 or s2. When true, lastValid is not touched.
+  bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
+                   std::pair<::ompl::base::State*, double>& lastValid) const override;
+
+  /// OMPL's counters, read and reset so that planners may run meanwhile. (Those of the base class give the same numbers,
+  /// but should be asked when no planner runs.)
+  unsigned int getValidMotionCount() const;
+  unsigned int getInvalidMotionCount() const;
+  unsigned int getCheckedMotionCount() const { return getValidMotionCount() + getInvalidMotionCount(); }
+  double getValidMotionFraction() const;
+  void resetMotionCounter();
+
+ private:
+  bool count(bool valid) const;
+  double lastProvenTime(const JointMotion& motion, const CertifiedResult& result) const;
+
+  std::shared_ptr<const ArticulatedCollisionManager> manager_;
+  JointMapping mapping_;
+  CertifiedRequest any_, first_, state_;
+};
+
+/// A state is valid when it is proven free of contact. Thread-safe. Bounds are not judged, as in the motion validator.
+class FCL_ARTIC_EXPORT CollisionStateValidityChecker : public ::ompl::base::StateValidityChecker {
+ public:
+  /// As ContinuousMotionValidator. ignore_initial_contact has no meaning for a state, and is not used.
+  CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
+                                std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
+                                const CertifiedRequest& request = planningRequest());
+  CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
+                                std::shared_ptr<const ArticulatedCollisionManager> manager,
+                                const CertifiedRequest& request = planningRequest());
+
+  using ::ompl::base::StateValidityChecker::isValid;
+  bool isValid(const ::ompl::base::State* state) const override;
+
+ private:
+  std::shared_ptr<const ArticulatedCollisionManager> manager_;
+  JointMapping mapping_;
+  CertifiedRequest request_;
+};
+
+}  // namespace fcl_artic::planning
