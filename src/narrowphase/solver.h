@@ -262,7 +262,7 @@ constexpr int kMostHullOverlaps = 2;
 constexpr int kFewLeaves = 6;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
 /// in it.
-constexpr double kFirstWindow = 0.1;
+constexpr double kFirstWindow = 0.4;
 /// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not looked at.
 constexpr double kLongMotion = 0.2;
 /// GJK stops when it knows the gap to this part: enough for a direction (SHAPES, section 3).
