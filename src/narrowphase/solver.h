@@ -395,7 +395,10 @@ inline void Solver::setupPair(int index) {
   amplitude_ = sqrt(maxLane(dot(v, v))) + b.rates.a * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
-  if (witness_pair_ != index) have_witness_ = false;
+  if (witness_pair_ != index) {
+    have_witness_ = false;
+    for (double& x : witness_) x = 0;
+  }
   witness_pair_ = index;
 }
 
