@@ -104,23 +104,27 @@ TEST_F(PlannerData, VerdictsAreTheManagersFromEightThreads) {
     hits += edges[i].hit;
   }
   ASSERT_GT(hits, 20);
-  std::atomic<int> different{0}, asked{0};
+  std::atomic<int> different{0}, asked{0}, late{0}, invalid_last{0};
   std::vector<std::thread> threads;
   for (unsigned n = 0; n < 8; ++n) {
     threads.emplace_back([&, n] {
       for (std::size_t k = 0; k < edges.size(); ++k) {
         const std::size_t i = (k + n * edges.size() / 8) % edges.size();
         const PlanningSetup& setup = setups.at(edges[i].problem);
-        const TestState s1(setup.space, edges[i].from), s2(setup.space, edges[i].to);
-        std::pair<ob::State*, double> last{nullptr, 2};
+        const TestState s1(setup.space, edges[i].from), s2(setup.space, edges[i].to), state(setup.space, edges[i].from);
+        std::pair<ob::State*, double> last{state, 2};
         const bool valid = n % 2 ? setup.si->checkMotion(s1, s2) : setup.si->checkMotion(s1, s2, last);
         different += valid != free[i];
+        late += !valid && n % 2 == 0 && last.second >= edges[i].seen_at;
+        invalid_last += !valid && last.second > 0 && !setup.si->isValid(state);
         ++asked;
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(different, 0);
+  EXPECT_EQ(late, 0) << "last valid times at or after a collision that sampling saw";
+  EXPECT_EQ(invalid_last, 0) << "last valid states that are not valid";
   EXPECT_EQ(asked, static_cast<int>(8 * edges.size()));
 }
 

@@ -85,9 +85,10 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// Any contact will do here: it need not be the first.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const override;
 
-  /// When false: the motion is proven free from s1 up to lastValid.second, and lastValid.first, unless null, is set to the
-  /// state there, which is proven free by itself (with room: twice the request's tolerance_distance), or is s1. It may be
-  /// s1 or s2. When true, lastValid is not touched.
+  /// When false: the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its first
+  /// contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The proof leaves room (twice
+  /// the request's tolerance_distance; none with ignore_initial_contact), so that the state is valid by itself and can be
+  /// left again; where there is no room at s1 the time is 0 and the state s1. When true, lastValid is not touched.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 
@@ -101,11 +102,10 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
 
  private:
   bool count(bool valid) const;
-  double lastProvenTime(const JointMotion& motion, const CertifiedResult& result) const;
 
   std::shared_ptr<const ArticulatedCollisionManager> manager_;
   JointMapping mapping_;
-  CertifiedRequest any_, first_, state_;
+  CertifiedRequest any_, first_;
 };
 
 /// A state is valid when it is proven free of contact. Thread-safe. Bounds are not judged, as in the motion validator.

@@ -41,7 +41,6 @@ CertifiedRequest asked(CertifiedRequest request, ContactMode mode) {
   return request;
 }
 
-/// One state, with room.
 CertifiedRequest askedOfState(CertifiedRequest request) {
   request = asked(request, ContactMode::any);
   request.ignore_initial_contact = false;
@@ -61,8 +60,9 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
                                                      JointMapping mapping, const CertifiedRequest& request)
     : ob::MotionValidator(required(si, manager)), manager_(std::move(manager)),
       mapping_(ofManager(std::move(mapping), manager_)), any_(asked(request, ContactMode::any)),
-      first_(asked(request, ContactMode::first)), state_(askedOfState(request)) {
-  state_.margin += 2 * request.tolerance_distance;
+      first_(asked(request, ContactMode::first)) {
+  // What touches at the start within the margin only must not be ignored.
+  if (!request.ignore_initial_contact) first_.margin += 2 * request.tolerance_distance;
 }
 
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
@@ -75,34 +75,23 @@ bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State
   return count(result.isFree());
 }
 
+/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion leaves,
+/// and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not.
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2,
                                             std::pair<ob::State*, double>& lastValid) const {
   const JointMotion motion = mapping_.motion(s1, s2);
   CertifiedResult& result = scratch();
-  manager_->continuousCollide(motion, first_, result);
+  manager_->continuousCollide(motion, any_, result);
   if (result.isFree()) return count(true);
-  lastValid.second = lastProvenTime(motion, result);
+  manager_->continuousCollide(motion, first_, result);
+  if (result.isFree()) return count(true);  // a budget ran out in the other order of work
+  lastValid.second = result.t_lower;
   if (lastValid.first && lastValid.second > 0) {
     si_->getStateSpace()->interpolate(s1, s2, lastValid.second, lastValid.first);  // may write to s1 or s2
   } else if (lastValid.first && lastValid.first != s1) {
     si_->copyState(lastValid.first, s1);
   }
   return count(false);
-}
-
-/// The motion is free before t_lower, where the gap may be next to nothing: planners would go on from a state that no motion
-/// leaves. So time goes back until the state there is proven free with room. A motion that is allowed to start in contact
-/// has no such state to look for.
-double ContinuousMotionValidator::lastProvenTime(const JointMotion& motion, const CertifiedResult& result) const {
-  double t = result.t_lower;
-  if (!result.ignored_initial_contacts.empty()) return t;
-  CertifiedResult at;
-  for (double back = first_.tolerance_time; t > 0; back *= 2) {
-    manager_->collide(motion.configuration(t), state_, at);
-    if (at.isFree()) return t;
-    t -= back;
-  }
-  return 0;
 }
 
 /// The base class counts in plain members and its getters can't be overridden: so its members are what is counted in, by
