@@ -20,6 +20,8 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/rotation.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -42,9 +44,9 @@ Matrix3d rotationBy(const Vector3d& w) {
   return Matrix3d::Identity() + a * W + b * W * W;
 }
 
-Vector3d valueAt(const Coefficients& q, double t) {
-  Vector3d value = q.col(kMaxDegree);
-  for (int k = kMaxDegree - 1; k >= 0; --k) value = value * t + q.col(k);
+Vector3d valueAt(const Coefficients& q, int degree, double t) {
+  Vector3d value = q.col(degree);
+  for (int k = degree - 1; k >= 0; --k) value = value * t + q.col(k);
   return value;
 }
 
@@ -155,28 +157,46 @@ int MotionElement::degree() const {
 }
 
 Isometry3d BodyMotion::pose(double t) const {
-  Isometry3d M = Isometry3d::Identity();
+  // Products with the identity are left out: they change nothing, and most constant transforms are it.
+  Matrix3d R = Matrix3d::Identity();
+  Vector3d p = Vector3d::Zero();
+  bool turned = false;
+  const auto slideBy = [&](const Vector3d& v) { p += turned ? Vector3d(R * v) : v; };
+  const auto turnBy = [&](const Matrix3d& Q) {
+    R = turned ? Matrix3d(R * Q) : Q;
+    turned = true;
+  };
+  const auto moveBy = [&](const Isometry3d& M) {
+    slideBy(M.translation());
+    if (!isIdentity(Matrix3d(M.linear()))) turnBy(M.linear());
+  };
   for (const MotionElement& element : elements) {
-    M = M * element.before;
+    moveBy(element.before);
+    const Vector3d q = element.bounded ? Vector3d::Zero() : valueAt(element.coefficients, element.degree(), t);
     switch (element.kind) {
       case MotionElement::Kind::revolute:
-        M.rotate(Eigen::AngleAxisd(valueAt(element.coefficients, t)[0], element.axis));
+        turnBy(Eigen::AngleAxisd(q[0], element.axis).toRotationMatrix());
         break;
       case MotionElement::Kind::prismatic:
-        M.translate(valueAt(element.coefficients, t)[0] * element.axis);
+        slideBy(q[0] * element.axis);
         break;
       case MotionElement::Kind::slide:
-        M.translate(valueAt(element.coefficients, t));
+        slideBy(q);
         break;
       case MotionElement::Kind::turn:
-        M.rotate(rotationBy(valueAt(element.coefficients, t)));
+        turnBy(rotationBy(q));
         break;
       case MotionElement::Kind::bounded:
-        M = M * element.bounded->state(t).pose;
+        moveBy(element.bounded->state(t).pose);
         break;
     }
   }
-  return M * after;
+  moveBy(after);
+  Isometry3d M;
+  M.linear() = R;
+  M.translation() = p;
+  M.makeAffine();
+  return M;
 }
 
 void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper, Vector3d& path_lower,

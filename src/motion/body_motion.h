@@ -3,11 +3,10 @@
 // The motion of one rigid body as plain data: what every kind of motion, FCL's included, is read into.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Geometry>
 
 #include "fcl_artic/bounded_motion.h"
+#include "motion/element_list.h"
 
 namespace fcl_artic {
 
@@ -35,7 +34,7 @@ struct MotionElement {
 
 /// M_0g(t) = before_1 E_1(t) before_2 E_2(t) ... E_m(t) after: from the geometry's frame to the world.
 struct BodyMotion {
-  std::vector<MotionElement> elements;  ///< from the world on; empty: stands still
+  ElementList<MotionElement, 2> elements;  ///< from the world on; empty: stands still
   Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
 
   /// Pose of the geometry's frame in the world at t in [0, 1], in doubles.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numerics/rotation.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -18,6 +20,15 @@ Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
   return R;
 }
 
+/// Goes to a step's frame, whose z is an axis that Q turns there.
+void standBehind(Carrier& carrier, int step, const Eigen::Matrix3d& Q) {
+  carrier.step = step;
+  carrier.offset.linear() = Q.transpose();
+  carrier.offset.translation().setZero();
+  carrier.length = 0;
+  carrier.ulps = kStoredUlps;
+}
+
 }  // namespace
 
 engine::Placement makePlacement(const Eigen::Isometry3d& M) {
@@ -28,7 +39,7 @@ engine::Placement makePlacement(const Eigen::Isometry3d& M) {
     p.t[i] = M.translation()[i];
   }
   p.length = M.translation().norm() * (1 + 1e-15);
-  p.identity = M.matrix() == Eigen::Matrix4d::Identity();
+  p.identity = isIdentity(M);
   return p;
 }
 
@@ -84,61 +95,54 @@ Carrier FrameSweep::carrier(LinkId link) {
 namespace {
 
 /// Multiplies a constant transform in; translations are summed: where they cancel, their rounding does not.
-void moveBy(Carrier& carrier, const Eigen::Isometry3d& M, const Eigen::Isometry3d& stored) {
-  carrier.offset = carrier.offset * M;
-  carrier.length += stored.translation().norm() * (1 + 1e-15);
+void moveBy(Carrier& carrier, const Eigen::Isometry3d& stored, bool down) {
   carrier.ulps += kTransformUlps;
+  if (isIdentity(stored)) return;
+  carrier.offset = carrier.offset * (down ? stored : stored.inverse());
+  carrier.length += stored.translation().norm() * (1 + 1e-15);
 }
 
 }  // namespace
 
-Carrier FrameSweep::append(const Carrier& from, engine::SweepStep step, const Eigen::Vector3d& axis) {
+engine::SweepStep& FrameSweep::append(Carrier& at, const Eigen::Vector3d& axis) {
+  const bool split = at.step >= 0 && steps_[static_cast<std::size_t>(at.step)].kind == engine::StepKind::revolute;
+  steps_.emplace_back();
+  engine::SweepStep& step = steps_.back();
   const Eigen::Matrix3d Q = frameWithZ(axis);
-  const Eigen::Isometry3d C = from.offset * Eigen::Isometry3d(Q);
-  step.parent = from.step;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) step.C[3 * i + j] = C.linear()(i, j);
-    step.p[i] = C.translation()[i];
-  }
-  step.length = from.length;
-  step.ulps = from.ulps + kTransformUlps;
-  const bool split = from.step >= 0 && steps_[static_cast<std::size_t>(from.step)].kind == engine::StepKind::revolute;
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  Eigen::Map<RowMajor>(step.C, 3, 3) = at.offset.linear() * Q;
+  Eigen::Vector3d::Map(step.p) = at.offset.translation();
+  step.parent = at.step;
+  step.length = at.length;
+  step.ulps = at.ulps + kTransformUlps;
   const double error = 0x1p-52 * step.ulps * step.length;
   step.axial = split ? std::abs(step.p[2]) + error : 0;
   step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) + error : step.length;
-  Carrier to;
-  to.step = static_cast<int>(steps_.size());
-  to.offset = Eigen::Isometry3d(Eigen::Matrix3d(Q.transpose()));
-  to.ulps = kStoredUlps;
-  steps_.push_back(step);
-  return to;
+  standBehind(at, static_cast<int>(steps_.size()) - 1, Q);
+  return step;
 }
 
 Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
   const Joint& joint = tree_->joint(id);
   Carrier to = from;
-  if (down) moveBy(to, joint.origin, joint.origin);
+  if (down) moveBy(to, joint.origin, down);
   if (joint.type != JointType::fixed) {
     const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
       return o.parent == from.step && o.joint == id && o.down == down;
     });
     if (known != origin_.end()) {
-      to = Carrier();
-      to.step = static_cast<int>(known - origin_.begin());
-      to.offset = Eigen::Isometry3d(Eigen::Matrix3d(frameWithZ(joint.axis).transpose()));
-      to.ulps = kStoredUlps;
+      standBehind(to, static_cast<int>(known - origin_.begin()), frameWithZ(joint.axis));
     } else {
       const double sign = down ? 1 : -1;
-      engine::SweepStep step;
+      engine::SweepStep& step = append(to, joint.axis);
       step.kind = joint.type == JointType::prismatic ? engine::StepKind::prismatic : engine::StepKind::revolute;
       step.variable = tree_->jointVariable(id);
       step.multiplier = sign * (joint.mimics ? joint.mimic.multiplier : 1);
       step.offset = sign * (joint.mimics ? joint.mimic.offset : 0);
-      to = append(to, step, joint.axis);
       origin_.push_back({from.step, id, down});
     }
   }
-  if (!down) moveBy(to, joint.origin.inverse(), joint.origin);
+  if (!down) moveBy(to, joint.origin, down);
   return to;
 }
 
@@ -146,8 +150,9 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
                           const engine::BoundedSource* source, bool down) {
   using Kind = MotionElement::Kind;
   Carrier to = from;
-  if (down) moveBy(to, element.before, element.before);
-  engine::SweepStep step;
+  if (down) moveBy(to, element.before, down);
+  const bool has_axis = element.kind == Kind::revolute || element.kind == Kind::prismatic;
+  engine::SweepStep& step = append(to, has_axis ? element.axis : Eigen::Vector3d(Eigen::Vector3d::UnitZ()));
   step.kind = element.kind == Kind::revolute    ? engine::StepKind::revolute
               : element.kind == Kind::prismatic ? engine::StepKind::prismatic
               : element.kind == Kind::slide     ? engine::StepKind::slide
@@ -157,10 +162,8 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
   step.multiplier = down ? 1 : -1;
   step.source = source;
   step.inverse = !down;
-  const bool has_axis = element.kind == Kind::revolute || element.kind == Kind::prismatic;
-  to = append(to, step, has_axis ? element.axis : Eigen::Vector3d(Eigen::Vector3d::UnitZ()));
   origin_.push_back({from.step, -1, down});
-  if (!down) moveBy(to, element.before.inverse(), element.before);
+  if (!down) moveBy(to, element.before, down);
   return to;
 }
 

@@ -56,8 +56,8 @@ class FrameSweep {
   explicit FrameSweep(const KinematicTree& tree, LinkId base) : tree_(&tree), base_(base) {}
   /// Crosses a joint: downwards (parent to child) or upwards.
   Carrier cross(const Carrier& from, JointId joint, bool down);
-  /// The step behind `from` with that factor; its axis becomes z.
-  Carrier append(const Carrier& from, engine::SweepStep factor, const Eigen::Vector3d& axis);
+  /// Adds a step behind `at` and goes there: its frame is turned so that the axis is z. What moves it is still to be set.
+  engine::SweepStep& append(Carrier& at, const Eigen::Vector3d& axis);
 
   const KinematicTree* tree_ = nullptr;
   LinkId base_ = -1;  ///< -1: the world

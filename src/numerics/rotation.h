@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace fcl_artic {
+
+inline bool isIdentity(const Eigen::Matrix3d& R) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      if (R(i, j) != (i == j ? 1 : 0)) return false;  // so it goes for NaN
+    }
+  }
+  return true;
+}
+inline bool isIdentity(const Eigen::Isometry3d& M) {
+  return M(0, 3) == 0 && M(1, 3) == 0 && M(2, 3) == 0 && isIdentity(Eigen::Matrix3d(M.linear()));
+}
 
 /// 1 - R^T R.
 inline Eigen::Matrix3d orthonormalityDefect(const Eigen::Matrix3d& R) {

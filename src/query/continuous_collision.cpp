@@ -116,7 +116,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin) {
 }
 
 template <class S>
-void solve(Body<S> body1, Body<S> body2, const CertifiedRequest& request, CertifiedPairResult& result) {
+void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedRequest& request, CertifiedPairResult& result) {
   if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, request.margin);
   if (!body1.shape) readCells(body1, body2, request.margin);
   if (!body2.shape) readCells(body2, body1, request.margin);
@@ -171,10 +171,10 @@ CertifiedRequest certified(const fcl::ContinuousCollisionRequest<S>& request) {
 }
 
 template <class S>
-S answer(const Body<S>& body1, const Body<S>& body2, const fcl::ContinuousCollisionRequest<S>& request,
+S answer(Body<S>&& body1, Body<S>&& body2, const fcl::ContinuousCollisionRequest<S>& request,
          fcl::ContinuousCollisionResult<S>& result) {
   CertifiedPairResult proven;
-  solve(body1, body2, certified(request), proven);
+  answer(std::move(body1), std::move(body2), certified(request), proven);
   result.is_collide = !proven.isFree();
   result.time_of_contact = result.is_collide ? roundedDown(proven.t_lower, S()) : S(1);
   const double t = static_cast<double>(result.time_of_contact);
@@ -223,7 +223,7 @@ Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBas
                          const fcl::CollisionGeometryd* o2, const fcl::MotionBased* motion2,
                          const CertifiedRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
-    solve(body<double>(1, o1, motion1), body<double>(2, o2, motion2), request, result);
+    answer(body<double>(1, o1, motion1), body<double>(2, o2, motion2), request, result);
     return result.status;
   });
 }
@@ -233,8 +233,8 @@ Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::Transform
                          const fcl::Transform3d& tf2_beg, const fcl::Transform3d& tf2_end,
                          fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
-    solve(body<double>(1, o1, tf1_beg, tf1_end, motion_type), body<double>(2, o2, tf2_beg, tf2_end, motion_type),
-          request, result);
+    answer(body<double>(1, o1, tf1_beg, tf1_end, motion_type), body<double>(2, o2, tf2_beg, tf2_end, motion_type),
+           request, result);
     return result.status;
   });
 }
@@ -243,7 +243,7 @@ Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d
                          const fcl::CollisionObjectd* o2, const fcl::Transform3d& tf2_end,
                          fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
-    solve(body<double>(1, o1, tf1_end, motion_type), body<double>(2, o2, tf2_end, motion_type), request, result);
+    answer(body<double>(1, o1, tf1_end, motion_type), body<double>(2, o2, tf2_end, motion_type), request, result);
     for (CertifiedContact& contact : result.contacts) {
       contact.body1.object = o1;
       contact.body2.object = o2;
@@ -255,7 +255,7 @@ Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d
 Status collide(const fcl::ContinuousCollisionObjectd* o1, const fcl::ContinuousCollisionObjectd* o2,
                const CertifiedRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
-    solve(body<double>(1, o1), body<double>(2, o2), request, result);
+    answer(body<double>(1, o1), body<double>(2, o2), request, result);
     return result.status;
   });
 }

@@ -23,6 +23,7 @@ class Workspace {
   Workspace& operator=(const Workspace&) = delete;
 
   void* engine() const { return engine_; }
+  engine::Body bodies[2];                      ///< of a pair query: their trees, all else as it is at first
   FrameSweep sweep;                            ///< of a pair query
   std::vector<double> coefficients;            ///< of its variables
   std::vector<engine::BoundedSource> sources;  ///< of its bounded motions

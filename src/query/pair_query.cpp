@@ -15,14 +15,10 @@ using engine::Piece;
 using engine::PieceKind;
 
 /// The way from body 1 to body 2: up the one's motion, down the other's.
-struct Path {
-  engine::SweepView sweep;
-  engine::Placement inverse_1, placement_2;
-  int step_2 = -1;
-};
-
 /// @param[out] query  gets the variables, kept in the workspace.
-Path pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace& workspace, engine::Query& query) {
+/// @param[out] pair  gets the placements.
+engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace& workspace,
+                              engine::Query& query, engine::LinkPair& pair) {
   int degree = 1, variables = 0;
   std::size_t bounded = 0;
   for (const BodyMotion* motion : {&motion1, &motion2}) {
@@ -52,12 +48,10 @@ Path pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace
   query.coefficients = workspace.coefficients.data();
   query.num_variables = variables;
   query.degree = degree;
-  Path path;
-  path.sweep = workspace.sweep.view();
-  path.inverse_1 = makePlacement(motion1.after.inverse());
-  path.placement_2 = makePlacement(at, motion2.after);
-  path.step_2 = at.step;
-  return path;
+  pair.inverse_a = makePlacement(motion1.after.inverse());
+  pair.placement_b = makePlacement(at, motion2.after);
+  pair.step_b = at.step;
+  return workspace.sweep.view();
 }
 
 const Piece* unboundedPiece(const ShapeTree& shape) {
@@ -72,6 +66,15 @@ bool onlyTranslates(const BodyMotion& motion) {
     if (element.kind == Kind::slide || element.kind == Kind::prismatic) return true;
     return element.kind != Kind::bounded && element.coefficients.rightCols<kMaxDegree>().isZero(0);
   });
+}
+
+/// Poses at t_lower and t_upper.
+void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPairResult& result) {
+  result.tf1_at_lower = motion1.pose(result.t_lower);
+  result.tf2_at_lower = motion2.pose(result.t_lower);
+  const bool same = result.t_lower == result.t_upper;  // so of free pairs
+  result.tf1_at_upper = same ? result.tf1_at_lower : motion1.pose(result.t_upper);
+  result.tf2_at_upper = same ? result.tf2_at_lower : motion2.pose(result.t_upper);
 }
 
 void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
@@ -107,10 +110,7 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   result.t_lower = result.status == Status::free ? 1 : 0;
   result.certain = result.status == Status::contact && (!parallel || alike);
   result.t_upper = result.certain ? 0 : 1;
-  result.tf1_at_lower = body1.motion.pose(result.t_lower);
-  result.tf2_at_lower = body2.motion.pose(result.t_lower);
-  result.tf1_at_upper = body1.motion.pose(result.t_upper);
-  result.tf2_at_upper = body2.motion.pose(result.t_upper);
+  setPoses(body1.motion, body2.motion, result);
   if (result.status == Status::free) return;
   CertifiedContact contact;
   contact.o1 = body1.geometry;
@@ -136,21 +136,17 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   query.check_self = true;
   query.every_pair = false;
   const WorkspaceLoan workspace;
-  const Path path = pathBetween(body1.motion, body2.motion, *workspace, query);
-
-  engine::Body bodies[2];
+  engine::Body (&bodies)[2] = workspace->bodies;
   bodies[0].tree = &body1.shape.view();
   bodies[1].tree = &body2.shape.view();
   engine::LinkPair pair;
   pair.a = 0;
   pair.b = 1;
-  pair.step_b = path.step_2;
-  pair.inverse_a = path.inverse_1;
-  pair.placement_b = path.placement_2;
+  const engine::SweepView sweep = pathBetween(body1.motion, body2.motion, *workspace, query, pair);
   engine::Problem problem;
   problem.bodies = bodies;
   problem.num_bodies = 2;
-  problem.sweeps = &path.sweep;
+  problem.sweeps = &sweep;
   problem.num_sweeps = 1;
   problem.link_pairs = &pair;
   problem.num_link_pairs = 1;
@@ -166,7 +162,8 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     engine::LeafContact leaf = answer.contacts[i];
-    CertifiedContact contact;
+    result.contacts.emplace_back();
+    CertifiedContact& contact = result.contacts.back();
     if (request.margin == 0) {
       refineContact(workspace->engine(), body1.shape.view(), body2.shape.view(), request.tolerance_time, leaf,
                     contact.feature);
@@ -185,12 +182,8 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
       result.t_upper = contact.t_upper;
       result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
     }
-    result.contacts.push_back(contact);
   }
-  result.tf1_at_lower = body1.motion.pose(result.t_lower);
-  result.tf2_at_lower = body2.motion.pose(result.t_lower);
-  result.tf1_at_upper = body1.motion.pose(result.t_upper);
-  result.tf2_at_upper = body2.motion.pose(result.t_upper);
+  setPoses(body1.motion, body2.motion, result);
 }
 
 }  // namespace

@@ -100,36 +100,33 @@ Isometry3d readRigid(const fcl::Transform3<S>& M, const N& name) {
   return rigid;
 }
 
-Isometry3d pureRotation(const Isometry3d& M) {
-  return Isometry3d(Matrix3d(M.linear()));
-}
-
-MotionElement slide(const Vector3d& from, const Vector3d& velocity) {
-  MotionElement element;
+MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d& velocity) {
+  MotionElement& element = motion.elements.emplace_back();
   element.kind = MotionElement::Kind::slide;
   element.coefficients.col(0) = from;
   element.coefficients.col(1) = velocity;
   return element;
 }
 
-MotionElement turnAbout(const Vector3d& axis, double angle) {
-  MotionElement element;
+void addTurn(BodyMotion& motion, const Vector3d& axis, double angle) {
+  MotionElement& element = motion.elements.emplace_back();
   element.kind = MotionElement::Kind::revolute;
   element.axis = axis;
   element.coefficients(0, 1) = angle;
-  return element;
 }
 
 /// The frame turns about `axis`, while its point o goes along a straight line from where it is at first.
 BodyMotion lineWithTurn(const Isometry3d& begin, const Vector3d& o, const Vector3d& velocity, const Vector3d& axis,
                         double angle) {
   BodyMotion motion;
+  motion.after = begin;
   if (angle == 0) {
-    motion.elements = {slide(begin.translation(), velocity)};
-    motion.after = pureRotation(begin);
+    addSlide(motion, begin.translation(), velocity);
+    motion.after.translation().setZero();
   } else {
-    motion.elements = {slide(begin * o, velocity), turnAbout(axis, angle)};
-    motion.after = pureRotation(begin) * Eigen::Translation3d(-o);
+    addSlide(motion, begin * o, velocity);
+    addTurn(motion, axis, angle);
+    motion.after.translation() = begin.linear() * -o;
   }
   return motion;
 }
@@ -152,19 +149,21 @@ BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axi
   const double half_cot = angle / 2 / std::tan(angle / 2);  // times angle / 2
   const Vector3d angle_w = -(0.5 * angle * across + half_cot * normal);
   BodyMotion motion;
+  motion.after = begin;
   if (angle <= kSmallAngle) {
     const Vector3d angle_b = half_cot * across - 0.5 * angle * normal;
-    MotionElement path = slide(begin.translation(), along + angle_b);
+    MotionElement& path = addSlide(motion, begin.translation(), along + angle_b);
     path.coefficients.col(2) = -angle / 2 * angle_w;
     path.coefficients.col(3) = -angle * angle / 6 * angle_b;
     path.coefficients.col(4) = angle * angle * angle / 24 * angle_w;
     path.coefficients.col(5) = angle * angle * angle * angle / 120 * angle_b;
-    motion.elements = {path, turnAbout(axis, angle)};
-    motion.after = pureRotation(begin);
+    addTurn(motion, axis, angle);
+    motion.after.translation().setZero();
   } else {
     const Vector3d w = angle_w / angle;
-    motion.elements = {slide(begin.translation() - w, along), turnAbout(axis, angle)};
-    motion.after = Eigen::Translation3d(w) * pureRotation(begin);
+    addSlide(motion, begin.translation() - w, along);
+    addTurn(motion, axis, angle);
+    motion.after.translation() = w;
   }
   return motion;
 }
