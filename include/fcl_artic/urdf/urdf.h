@@ -44,6 +44,19 @@ struct UrdfOptions {
 ///   or empty mesh, mesh without a triangle of positive area.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
+/// One of several robots: every name gets the prefix, such as "left_".
+struct PlacedRobot {
+  const Robot* robot = nullptr;
+  std::string prefix;
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();  ///< of its root links, in the world
+};
+
+/// Several robots as one, a forest: each stands on a link of its own, PREFIX + "mount". Their variables follow each other
+/// in the order of the parts. Allowed pairs are those of the parts; every link of one robot is checked against every link
+/// of the others, those of robots that touch where they stand too.
+/// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid.
+FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
+
 /// Reads the disabled pairs of an SRDF (`disable_collisions`), as MoveIt's assistant writes them.
 /// @throws std::runtime_error naming file and reason; an unknown link is an error.
 FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree);
@@ -73,10 +86,16 @@ struct Scene {
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
+struct SceneOptions {
+  /// OctoMap: unknown cells are obstacles too, within the box around all cells that are known (octomap's
+  /// getMetricMin() to getMetricMax()); else unknown space is free.
+  bool unknown_cells = false;
+};
+
 /// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
 /// URDF (.urdf: all links at q = 0 as obstacles); MoveIt scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes.
 /// @throws std::runtime_error naming file and reason.
-FCL_ARTIC_EXPORT Scene loadScene(const std::string& path);
+FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.
 /// @throws std::runtime_error as loadUrdf().

@@ -3,6 +3,7 @@
 #include <octomap/OcTree.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <locale>
@@ -146,17 +147,62 @@ class MoveItSceneReader {
   SceneBuilder& builder_;
 };
 
+/// Cells of an OctoMap as boxes: the occupied ones, and, where they are asked for, the unknown ones within the box of all
+/// that is known.
 template <class Tree>
-void addOccupiedCells(const Tree& tree, const std::string& path, SceneBuilder& builder) {
-  const std::string name = fs::path(path).stem().string();
-  std::map<double, detail::GeometryPtr> boxes;  // cells of one size share their box
-  for (auto cell = tree.begin_leafs(); cell != tree.end_leafs(); ++cell) {
-    if (!tree.isNodeOccupied(*cell)) continue;
-    auto& box = boxes[cell.getSize()];
-    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(cell.getSize()), "'" + path + "'");
-    builder.add(name, box, Eigen::Isometry3d(Eigen::Translation3d(cell.getX(), cell.getY(), cell.getZ())));
+class CellCollector {
+ public:
+  using Node = typename Tree::NodeType;
+  CellCollector(const Tree& tree, const std::string& path, bool unknown, SceneBuilder& builder)
+      : tree_(tree), path_(path), name_(fs::path(path).stem().string()), unknown_(unknown), builder_(builder) {
+    tree.getMetricMin(lower_[0], lower_[1], lower_[2]);
+    tree.getMetricMax(upper_[0], upper_[1], upper_[2]);
   }
-}
+
+  void collect() {
+    const double half = std::ldexp(tree_.getResolution(), static_cast<int>(tree_.getTreeDepth()) - 1);
+    if (tree_.getRoot()) visit(tree_.getRoot(), Eigen::Vector3d::Zero(), half);
+  }
+
+ private:
+  /// Children as octomap orders them. Centres and sizes are exact multiples of the resolution's power of two.
+  void visit(const Node* node, const Eigen::Vector3d& center, double half) {
+    if (node && !tree_.nodeHasChildren(node)) {
+      if (tree_.isNodeOccupied(node)) add(name_, center, half);
+      return;
+    }
+    if (!node) {
+      if (!unknown_) return;
+      bool outside = false, inside = true;
+      const double rounding = 1e-6 * tree_.getResolution();  // of the map's box
+      for (int k = 0; k < 3; ++k) {
+        outside = outside || center[k] - half >= upper_[k] - rounding || center[k] + half <= lower_[k] + rounding;
+        inside = inside && center[k] - half >= lower_[k] - rounding && center[k] + half <= upper_[k] + rounding;
+      }
+      if (outside) return;
+      if (inside || half < 0.75 * tree_.getResolution()) return add(name_ + "/unknown", center, half);
+    }
+    for (unsigned i = 0; i < 8; ++i) {
+      const Eigen::Vector3d out(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+      const bool known = node && tree_.nodeChildExists(node, i);
+      visit(known ? tree_.getNodeChild(node, i) : nullptr, center + 0.5 * half * out, 0.5 * half);
+    }
+  }
+
+  void add(const std::string& name, const Eigen::Vector3d& center, double half) {
+    auto& box = boxes_[half];
+    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(2 * half), "'" + path_ + "'");
+    builder_.add(name, box, Eigen::Isometry3d(Eigen::Translation3d(center)));
+  }
+
+  const Tree& tree_;
+  const std::string& path_;
+  const std::string name_;
+  const bool unknown_;
+  SceneBuilder& builder_;
+  Eigen::Vector3d lower_, upper_;
+  std::map<double, detail::GeometryPtr> boxes_;  ///< cells of one size share their box
+};
 
 struct OctoMapHeader {
   std::string id;
@@ -183,17 +229,17 @@ OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title) {
 
 template <class Tree>
 void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const std::string& path,
-              SceneBuilder& builder) {
+              bool unknown_cells, SceneBuilder& builder) {
   Tree tree(header.resolution);
   if (header.size > 0) binary ? tree.readBinaryData(in) : tree.readData(in);
   if (tree.size() != header.size) {
     fail("'" + path + "'",
          "holds " + std::to_string(tree.size()) + " nodes, its head says " + std::to_string(header.size));
   }
-  addOccupiedCells(tree, path, builder);
+  CellCollector<Tree>(tree, path, unknown_cells, builder).collect();
 }
 
-void readOctoMap(const std::string& path, bool binary, SceneBuilder& builder) {
+void readOctoMap(const std::string& path, bool binary, bool unknown_cells, SceneBuilder& builder) {
   const std::string where = "'" + path + "'";
   std::istringstream in(detail::readFile(path), std::ios::binary);
   // OctoMap's readers go on past the end of a file that is cut short; an exception stops them.
@@ -204,16 +250,16 @@ void readOctoMap(const std::string& path, bool binary, SceneBuilder& builder) {
       fail(where, std::string("is not an OctoMap file of the kind ") + (binary ? ".bt" : ".ot"));
     }
     if (header.id == "OcTree") {
-      readTree<octomap::OcTree>(in, header, binary, path, builder);
+      readTree<octomap::OcTree>(in, header, binary, path, unknown_cells, builder);
     } else if (header.id == "ColorOcTree" && !binary) {
-      readTree<octomap::ColorOcTree>(in, header, binary, path, builder);
+      readTree<octomap::ColorOcTree>(in, header, binary, path, unknown_cells, builder);
     } else {
       fail(where, "holds a tree of type '" + header.id + "', which is not read");
     }
   } catch (const std::ios::failure&) {
     fail(where, "is not an OctoMap file or is cut short");
   }
-  if (builder.scene.obstacles.empty()) builder.scene.notes.push_back(where + ": no cell is occupied");
+  if (builder.scene.obstacles.empty()) builder.scene.notes.push_back(where + ": no cell is an obstacle");
 }
 
 void readRobot(const std::string& path, SceneBuilder& builder) {
@@ -234,7 +280,7 @@ void Scene::addTo(ArticulatedCollisionManager& manager) const {
   for (const Obstacle& obstacle : obstacles) manager.registerObject(obstacle.object.get(), obstacle.name);
 }
 
-Scene loadScene(const std::string& path) {
+Scene loadScene(const std::string& path, const SceneOptions& options) {
   std::string ending = fs::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
   SceneBuilder builder;
@@ -243,7 +289,7 @@ Scene loadScene(const std::string& path) {
   } else if (ending == ".scene") {
     MoveItSceneReader(path, builder).read();
   } else if (ending == ".bt" || ending == ".ot") {
-    readOctoMap(path, ending == ".bt", builder);
+    readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
   } else {
     builder.add(fs::path(path).stem().string(), loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes),
                 Eigen::Isometry3d::Identity());
