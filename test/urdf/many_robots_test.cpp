@@ -111,6 +111,33 @@ TEST_F(ManyRobotsTest, AllowedPairsGetThePrefixAndBadInputIsNamed) {
   EXPECT_THROW(combineRobots({{&one, "a/", bent}}), std::invalid_argument);
 }
 
+// 2 x - 6 = 0, turned by a quarter about z: y = 3. The slider's ball of 0.1 goes along y from 1 to 4.
+TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
+  const Scene scene = loadScene(write("plane.scene", "s\n* wall\n1\nplane\n2 0 0 -6\n0 0 0\n"
+                                                     "0 0 0.70710678118654757 0.70710678118654757\n0 0 0 0\n.\n"));
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  auto tree = std::make_shared<KinematicTree>("slider");
+  tree->addLink("rail");
+  tree->addLink("cart");
+  Joint joint;
+  joint.name = "slide";
+  joint.type = JointType::prismatic;
+  joint.parent = "rail";
+  joint.child = "cart";
+  joint.axis = Eigen::Vector3d::UnitY();
+  tree->addJoint(joint);
+  ArticulatedCollisionManager manager(tree);
+  fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.1));
+  manager.bind("cart", &ball);
+  scene.addTo(manager);
+  manager.setup();
+  EXPECT_TRUE(touchesAt(ask(manager, {1}, {4}), 1.9 / 3));
+  EXPECT_TRUE(ask(manager, {1}, {2.8}).isFree());
+  EXPECT_NE(messageOf([&] {
+              loadScene(write("bad.scene", "s\n* wall\n1\nplane\n0 0 0 1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n"));
+            }).find("normal is zero"), std::string::npos);
+}
+
 /// A node of a full OctoMap tree: its log-odds as a float, and which children follow.
 std::string node(float log_odds, unsigned char children) {
   std::string bytes(reinterpret_cast<const char*>(&log_odds), sizeof log_odds);

@@ -105,7 +105,7 @@ TEST_F(SceneTest, MoveItErrorsNameFileObjectAndReason) {
   expectContains(error("* a\n1\nbox\n1 nan 1\n" + pose + ".\n"), "object 'a': its box's size");
   expectContains(error("* a\n1\nbox\n1 0 1\n" + pose + ".\n"), "object 'a': box size 0");
   expectContains(error("* a\n1\nsphere\n-1\n" + pose + ".\n"), "object 'a': sphere radius -1");
-  expectContains(error("* a\n1\nplane\n0 0 1 0\n" + pose + ".\n"), "object 'a': has a shape 'plane'");
+  expectContains(error("* a\n1\noctree\n0 0 1 0\n" + pose + ".\n"), "object 'a': has a shape 'octree'");
   expectContains(error("* a\n1\nbox\n1 1 1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"), "object 'a': has a zero quaternion");
   expectContains(error("* a\n-1\n.\n"), "object 'a': its number of shapes");
   expectContains(error("* a\n1\nmesh\n3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 3\n" + pose + ".\n"), "vertex 3 of 3");

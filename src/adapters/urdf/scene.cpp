@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcl/geometry/shape/plane.h>
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
@@ -105,6 +106,13 @@ class MoveItSceneReader {
       const double radius = length(), height = length();
       return kind == "cone" ? detail::makeCone(radius, height, part) : detail::makeCylinder(radius, height, part);
     }
+    if (kind == "plane") {  // a x + b y + c z + d = 0, as shape_msgs/Plane says; FCL's has its offset on the other side
+      Eigen::Vector3d n;
+      for (double& x : n) x = number(part, "plane");
+      const double d = number(part, "plane");
+      if (!(n.norm() > 1e-6)) fail(part, "has a plane whose normal is zero");
+      return std::make_shared<fcl::Planed>(n / n.norm(), -d / n.norm());
+    }
     if (kind == "mesh") {
       const auto num_vertices = count(part, "number of vertices"), num_triangles = count(part, "number of triangles");
       std::vector<Eigen::Vector3d> vertices;  // grow as they are read: a wrong count must not take all memory
@@ -119,7 +127,7 @@ class MoveItSceneReader {
       }
       return detail::makeMesh(vertices, triangles, part, &builder_.scene.notes);
     }
-    fail(part, "has a shape '" + kind + "'; box, sphere, cylinder, cone and mesh are read");
+    fail(part, "has a shape '" + kind + "'; box, sphere, cylinder, cone, plane and mesh are read");
   }
 
   Eigen::Isometry3d pose(const std::string& part) {
