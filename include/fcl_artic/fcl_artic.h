@@ -11,3 +11,4 @@
 #include "fcl_artic/pair_result.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
+#include "fcl_artic/trajectory.h"

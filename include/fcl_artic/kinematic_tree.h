@@ -17,9 +17,16 @@ using LinkId = int;
 using JointId = int;
 
 /// `continuous` is a revolute joint without limits: the factory JointMotion::shortest() may wrap it.
-enum class JointType { fixed, revolute, continuous, prismatic };
+/// Joints of more than one variable, with the order that URDF's users and MoveIt know:
+/// - `planar`: x, y, theta: a translation in the plane across the axis, then a rotation about the axis. x and y are
+///   those of the joint's frame, turned the shortest way so that z becomes the axis.
+/// - `spherical`: a quaternion x, y, z, w: rotates the child in the joint's frame.
+/// - `floating`: a position x, y, z, then a quaternion x, y, z, w.
+/// A quaternion is accepted when its length is 1 within 1e-3, and is normalised.
+enum class JointType { fixed, revolute, continuous, prismatic, planar, spherical, floating };
 
-/// q_this = multiplier * q_master + offset, as in URDF. The master may not be a mimic joint itself.
+/// q_this = multiplier * q_master + offset, as in URDF. The master may not be a mimic joint itself; both have one
+/// variable.
 struct Mimic {
   std::string master;  ///< name of the joint that is followed
   double multiplier = 1;
@@ -34,9 +41,10 @@ struct Joint {
   std::string child;   ///< child link
   /// Pose of the joint's frame in the parent link's frame at q = 0.
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
-  /// Axis in the joint's frame; normalised by addJoint(). Unused when fixed.
+  /// Axis in the joint's frame, of a planar joint the plane's normal; normalised by addJoint(). Unused when fixed,
+  /// spherical or floating.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  double lower = 0, upper = 0;  ///< limits, rad or m; lower > upper or both 0: none
+  double lower = 0, upper = 0;  ///< limits, rad or m, of a joint with one variable; lower > upper or both 0: none
   bool mimics = false;
   Mimic mimic;
 };
@@ -58,16 +66,26 @@ class FCL_ARTIC_EXPORT KinematicTree {
   const std::string& name() const { return name_; }
   int numLinks() const { return static_cast<int>(link_names_.size()); }
   int numJoints() const { return static_cast<int>(joints_.size()); }
-  /// Number of joint variables: joints that are neither fixed nor mimic, in the order of addJoint().
+  /// Number of joint variables, the entries of a configuration: those of all joints that are neither fixed nor mimic, in
+  /// the order of addJoint(). (A quaternion has four.)
   int dof() const { return static_cast<int>(variables_.size()); }
 
   const std::string& linkName(LinkId link) const { return link_names_.at(static_cast<std::size_t>(link)); }
   const Joint& joint(JointId joint) const { return joints_.at(static_cast<std::size_t>(joint)); }
   /// Joint that variable v drives (mimic joints follow it).
   JointId variableJoint(int v) const { return variables_.at(static_cast<std::size_t>(v)); }
-  const std::string& variableName(int v) const { return joint(variableJoint(v)).name; }
-  /// Variable that drives the joint, -1 when fixed; for a mimic joint that of its master.
+  /// Name of the joint, or with MoveIt's endings "JOINT/x", "/y", "/theta" (planar), "/trans_x" to "/trans_z" and "/rot_x"
+  /// to "/rot_w" (floating; spherical: the latter).
+  const std::string& variableName(int v) const { return variable_names_.at(static_cast<std::size_t>(v)); }
+  /// True for an angle (rad), false for a length (m) or a part of a quaternion.
+  bool isAngle(int v) const;
+  /// First variable that drives the joint, -1 when fixed; for a mimic joint that of its master.
   int jointVariable(JointId j) const { return joint_variable_.at(static_cast<std::size_t>(j)); }
+  /// Number of variables that drive the joint: 0 to 7.
+  int numVariables(JointId j) const { return numVariables(joint(j).type); }
+  static int numVariables(JointType type);
+  /// First variable of the joint's quaternion, -1 when it has none.
+  int quaternionVariable(JointId j) const;
   /// Joint whose child the link is, -1 for a root.
   JointId parentJoint(LinkId link) const { return parent_joint_.at(static_cast<std::size_t>(link)); }
   /// Parent link, -1 for a root.
@@ -81,16 +99,22 @@ class FCL_ARTIC_EXPORT KinematicTree {
   JointId jointId(std::string_view name) const;
   bool hasLink(std::string_view name) const { return findLink(name) >= 0; }
 
+  /// All variables 0, quaternions at no rotation: every joint at its origin.
+  Eigen::VectorXd neutralConfiguration() const;
   /// Value of the joint (rad or m) for the variables q; mimic applied; 0 when fixed.
+  /// @throws std::invalid_argument for a joint of more than one variable; see jointPose().
   double jointValue(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q) const;
+  /// Pose of the child in the joint's frame for the variables q; mimic applied.
+  Eigen::Isometry3d jointPose(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q) const;
 
   /// Pose of every link in the world, roots at identity.
   /// @param q  dof() joint variables, rad or m.
   /// @param[out] M_0  link to world, numLinks() entries.
-  /// @throws std::invalid_argument when q has another size or is not finite.
+  /// @throws std::invalid_argument as requireConfiguration().
   void forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& M_0) const;
 
-  /// Refuses a configuration of the wrong size or with a value that is not finite, naming `what` and the joint.
+  /// Refuses a configuration of the wrong size, with a value that is not finite, or with a quaternion whose length is not
+  /// 1 within 1e-3, naming `what` and the joint.
   /// @throws std::invalid_argument
   void requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const;
   /// One line for each variable that is beyond its limits (they are accepted).
@@ -104,7 +128,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<Joint> joints_;
   std::vector<int> joint_parent_, joint_child_, joint_variable_;
   std::vector<JointId> variables_;
-  friend class FrameSweep;
+  std::vector<std::string> variable_names_;
 };
 
 }  // namespace fcl_artic

@@ -10,6 +10,7 @@
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
+#include "fcl_artic/trajectory.h"
 
 namespace fcl_artic {
 
@@ -128,10 +129,22 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void continuousCollide(const std::vector<JointMotion>& motions, const CertifiedRequest& request,
                          std::vector<CertifiedResult>& results, int threads = 0) const;
 
+  /// The same for a whole trajectory, in its time: t_lower, t_upper, those of the contacts, tolerance_time and progress
+  /// are in the unit of its times, and free means all of it. With ignore_initial_contact pairs that touch at its beginning
+  /// may separate; they are watched from the moment they have (in steps of 1/512 of a piece at most) and not ignored
+  /// again. A pair that separates for less time than that may be taken as never apart. The motions of obstacles that move
+  /// take as long as the trajectory.
+  /// @throws as for a motion, and for obstacles that move when the trajectory has several pieces.
+  void continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
+                         CertifiedResult& result) const;
+
   /// The same for one configuration that stands still.
   void collide(const Eigen::VectorXd& q, const CertifiedRequest& request, CertifiedResult& result) const;
 
  private:
+  /// @param[out] never_apart  of each ignored initial contact: it has not separated by t = 1; null: not asked for.
+  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result,
+                     std::vector<bool>* never_apart) const;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -3,6 +3,11 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include "kinematics/rotation_vector.h"
+#include "narrowphase/problem.h"
+#include "numerics/rotation.h"
 
 namespace fcl_artic {
 namespace {
@@ -11,32 +16,85 @@ namespace {
 constexpr double kLargestJointValue = 1e5;
 constexpr double kTwoPi = 6.283185307179586;
 
+Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int v) {
+  return Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized();
+}
+
+/// Refuses values beyond 1e5, of mimic joints too: their multiplier may be large.
+/// @param sizes  of each variable, sums of absolute numbers.
+void requireSizes(const KinematicTree& tree, const Eigen::VectorXd& sizes, const std::string& what) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    for (int i = 0; i < tree.numVariables(j); ++i) {
+      const double own = sizes[tree.jointVariable(j) + i];
+      const double value = joint.mimics ? std::abs(joint.mimic.multiplier) * own + std::abs(joint.mimic.offset) : own;
+      if (value <= kLargestJointValue) continue;
+      throw std::invalid_argument(what + ": the value " + std::to_string(value) + " of joint '" + joint.name +
+                                  "' is beyond 1e5");
+    }
+  }
+}
+
 void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::string& what) {
   tree.requireConfiguration(q, what);
-  for (JointId j = 0; j < tree.numJoints(); ++j) {  // mimic joints too: their multiplier may be large
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    if (tree.numVariables(j) != 1) continue;
     const double value = tree.jointValue(j, q);
     if (!(std::abs(value) <= kLargestJointValue)) {
       throw std::invalid_argument(what + ": the value " + std::to_string(value) + " of joint '" + tree.joint(j).name +
                                   "' is beyond 1e5");
     }
   }
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (std::abs(q[v]) <= kLargestJointValue) continue;
+    throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + tree.variableName(v) +
+                                "' is beyond 1e5");
+  }
+}
+
+bool turnsForever(const KinematicTree& tree, int v) {
+  const JointType type = tree.joint(tree.variableJoint(v)).type;
+  return type == JointType::continuous || (type == JointType::planar && tree.isAngle(v));
 }
 
 }  // namespace
 
+JointMotion::JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients)
+    : variables_(std::move(coefficients)) {
+  if (variables_.cols() == 1) variables_.conservativeResizeLike(Eigen::MatrixXd::Zero(variables_.rows(), 2));
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const int v = tree.quaternionVariable(j);
+    if (v < 0) continue;
+    const Eigen::Quaterniond start = quaternionAt(variables_.col(0), v);
+    const Eigen::Matrix3d R = orthonormal(start.toRotationMatrix());
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) orientations_.push_back(R(i, k));
+    }
+    starts_.push_back({v, {start.x(), start.y(), start.z(), start.w()}});
+    variables_.block<4, 1>(v, 0).setZero();
+  }
+}
+
 JointMotion JointMotion::linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
   requireEnd(tree, q0, "q0");
   requireEnd(tree, q1, "q1");
-  return {q0, q1 - q0};
+  Eigen::MatrixXd coefficients(q0.size(), 2);
+  coefficients << q0, q1 - q0;
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const int v = tree.quaternionVariable(j);
+    if (v < 0) continue;
+    const Eigen::Vector3d w = rotationVectorOf(quaternionAt(q1, v) * quaternionAt(q0, v).conjugate());
+    coefficients.block<4, 1>(v, 1) << w, 0;
+  }
+  return {tree, std::move(coefficients)};
 }
 
 JointMotion JointMotion::shortest(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
   JointMotion motion = linear(tree, q0, q1);
   Eigen::Array<bool, Eigen::Dynamic, 1> wrapped(tree.dof());
   for (int v = 0; v < tree.dof(); ++v) {
-    const bool continuous = tree.joint(tree.variableJoint(v)).type == JointType::continuous;
-    double& dq = motion.coefficients_(v, 1);
-    wrapped[v] = continuous && std::abs(dq) > kTwoPi / 2;
+    double& dq = motion.variables_(v, 1);
+    wrapped[v] = turnsForever(tree, v) && std::abs(dq) > kTwoPi / 2;
     if (wrapped[v]) dq = std::remainder(dq, kTwoPi);
   }
   for (JointId j = 0; j < tree.numJoints(); ++j) {
@@ -50,6 +108,45 @@ JointMotion JointMotion::shortest(const KinematicTree& tree, const Eigen::Vector
                                 "' would end in another pose than that of q1");
   }
   return motion;
+}
+
+JointMotion JointMotion::polynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients) {
+  const auto refuse = [&](const std::string& reason) { throw std::invalid_argument("coefficients " + reason); };
+  if (coefficients.cols() < 1 || coefficients.cols() > engine::kMaxDegree + 1) {
+    refuse("have " + std::to_string(coefficients.cols()) + " columns, not 1 to 6: degrees go up to 5");
+  }
+  if (coefficients.rows() != tree.dof()) {
+    refuse("have " + std::to_string(coefficients.rows()) + " rows, robot '" + tree.name() + "' has " +
+           std::to_string(tree.dof()) + " joint values");
+  }
+  tree.requireConfiguration(coefficients.col(0), "coefficients of t^0");
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (!coefficients.row(v).allFinite()) refuse("of joint '" + tree.variableName(v) + "' are not finite");
+  }
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const int v = tree.quaternionVariable(j);
+    if (v < 0 || coefficients.row(v + 3).tail(coefficients.cols() - 1).isZero(0)) continue;
+    refuse("of '" + tree.variableName(v + 3) + "' are not 0 from t^1 on: a quaternion turns by a rotation vector");
+  }
+  requireSizes(tree, coefficients.cwiseAbs().rowwise().sum(), "coefficients");
+  return {tree, coefficients};
+}
+
+Eigen::VectorXd JointMotion::configuration(double t) const {
+  Eigen::VectorXd q = variables_.col(degree());
+  for (Eigen::Index k = degree() - 1; k >= 0; --k) q = q * t + variables_.col(k);
+  for (const Start& start : starts_) {
+    const Eigen::Quaterniond R0(Eigen::Vector4d::Map(start.quaternion));
+    const Eigen::Vector3d w = q.segment<3>(start.row);
+    q.segment<4>(start.row) = (quaternionOf(w) * R0).coeffs();
+  }
+  return q;
+}
+
+Eigen::MatrixXd JointMotion::coefficients() const {
+  Eigen::MatrixXd out = variables_;
+  for (const Start& start : starts_) out.block<4, 1>(start.row, 0) = Eigen::Vector4d::Map(start.quaternion);
+  return out;
 }
 
 }  // namespace fcl_artic

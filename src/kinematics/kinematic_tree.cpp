@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "kinematics/joint_factors.h"
 #include "numerics/rotation.h"
 
 namespace fcl_artic {
@@ -21,11 +22,35 @@ bool isRotation(const Eigen::Matrix3d& R) {
   return error <= kOrthonormal && R.determinant() > 0;  // false for NaN
 }
 
+/// How far from 1 the length of a quaternion may be: numbers typed or printed with three digits.
+constexpr double kQuaternionLength = 1e-3;
+
 bool hasLimits(const Joint& joint) {
-  return joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
+  return KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
+}
+
+std::vector<const char*> variableEndings(JointType type) {
+  switch (type) {
+    case JointType::fixed: return {};
+    case JointType::planar: return {"/x", "/y", "/theta"};
+    case JointType::spherical: return {"/rot_x", "/rot_y", "/rot_z", "/rot_w"};
+    case JointType::floating:
+      return {"/trans_x", "/trans_y", "/trans_z", "/rot_x", "/rot_y", "/rot_z", "/rot_w"};
+    default: return {""};
+  }
 }
 
 }  // namespace
+
+int KinematicTree::numVariables(JointType type) {
+  switch (type) {
+    case JointType::fixed: return 0;
+    case JointType::planar: return 3;
+    case JointType::spherical: return 4;
+    case JointType::floating: return 7;
+    default: return 1;
+  }
+}
 
 int KinematicTree::findLink(std::string_view name) const {
   const auto it = std::find(link_names_.begin(), link_names_.end(), name);
@@ -66,12 +91,14 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   }
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kFarthest) refuse("has an origin more than 1e9 m away");
   const bool moves = joint.type != JointType::fixed;
-  if (moves && (!joint.axis.allFinite() || joint.axis.isZero(0))) refuse("has an axis that is zero or not finite");
+  const bool has_axis = moves && joint.type != JointType::spherical && joint.type != JointType::floating;
+  if (has_axis && (!joint.axis.allFinite() || joint.axis.isZero(0))) refuse("has an axis that is zero or not finite");
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) refuse("has a limit that is not a number");
 
   int variable = moves ? dof() : -1;
   if (joint.mimics) {
     if (!moves) refuse("is fixed and cannot mimic");
+    if (numVariables(joint.type) > 1) refuse("has more than one variable and cannot mimic");
     if (!std::isfinite(joint.mimic.multiplier) || !std::isfinite(joint.mimic.offset)) {
       refuse("mimics with a multiplier or offset that is not finite");
     }
@@ -80,18 +107,45 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     if (joints_[master].mimics) refuse("mimics joint '" + joint.mimic.master + "', which is a mimic joint itself");
     variable = joint_variable_[master];
     if (variable < 0) refuse("mimics joint '" + joint.mimic.master + "', which is fixed");
+    if (numVariables(master) > 1) refuse("mimics joint '" + joint.mimic.master + "', which has more than one variable");
   }
 
   const JointId id = numJoints();
   joints_.push_back(joint);
   joints_.back().origin.linear() = orthonormal(joint.origin.linear());
-  if (moves) joints_.back().axis.stableNormalize();
+  if (has_axis) joints_.back().axis.stableNormalize();
   joint_parent_.push_back(parent);
   joint_child_.push_back(child);
   joint_variable_.push_back(variable);
-  if (moves && !joint.mimics) variables_.push_back(id);
+  if (!joint.mimics) {
+    variables_.insert(variables_.end(), static_cast<std::size_t>(numVariables(joint.type)), id);
+    for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
+  }
   parent_joint_[child] = id;
   return id;
+}
+
+bool KinematicTree::isAngle(int v) const {
+  const JointId j = variableJoint(v);
+  switch (joints_[j].type) {
+    case JointType::revolute:
+    case JointType::continuous: return true;
+    case JointType::planar: return v == joint_variable_[j] + 2;
+    default: return false;
+  }
+}
+
+int KinematicTree::quaternionVariable(JointId j) const {
+  const JointType type = joint(j).type;
+  return type == JointType::spherical ? jointVariable(j) : type == JointType::floating ? jointVariable(j) + 3 : -1;
+}
+
+Eigen::VectorXd KinematicTree::neutralConfiguration() const {
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(dof());
+  for (JointId j = 0; j < numJoints(); ++j) {
+    if (const int v = quaternionVariable(j); v >= 0) q[v + 3] = 1;
+  }
+  return q;
 }
 
 LinkId KinematicTree::parentLink(LinkId link) const {
@@ -134,6 +188,9 @@ double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::Vector
   const int variable = jointVariable(j);
   if (variable < 0) return 0;
   const Joint& joint = joints_[j];
+  if (numVariables(j) > 1) {
+    throw std::invalid_argument("robot '" + name_ + "': joint '" + joint.name + "' has no single value");
+  }
   return joint.mimics ? joint.mimic.multiplier * q[variable] + joint.mimic.offset : q[variable];
 }
 
@@ -144,20 +201,37 @@ void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q
   for (const LinkId link : topologicalOrder()) {
     const JointId j = parent_joint_[link];
     if (j < 0) continue;
-    const Joint& joint = joints_[j];
-    M_0[link] = M_0[joint_parent_[j]] * joint.origin;
-    switch (joint.type) {
-      case JointType::fixed:
-        break;
-      case JointType::prismatic:
-        M_0[link].translate(jointValue(j, q) * joint.axis);
-        break;
-      case JointType::revolute:
-      case JointType::continuous:
-        M_0[link].rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis));
-        break;
-    }
+    M_0[link] = M_0[joint_parent_[j]] * joints_[j].origin * jointPose(j, q);
   }
+}
+
+Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  const Joint& joint = this->joint(j);
+  const int v = jointVariable(j);
+  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
+  switch (joint.type) {
+    case JointType::fixed:
+      break;
+    case JointType::prismatic:
+      M.translate(jointValue(j, q) * joint.axis);
+      break;
+    case JointType::revolute:
+    case JointType::continuous:
+      M.rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis));
+      break;
+    case JointType::planar:
+      M.translate(planeFrame(joint.axis).leftCols<2>() * q.segment<2>(v));
+      M.rotate(Eigen::AngleAxisd(q[v + 2], joint.axis));
+      break;
+    case JointType::floating:
+      M.translate(Eigen::Vector3d(q.segment<3>(v)));
+      M.rotate(Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v + 3))).normalized());
+      break;
+    case JointType::spherical:
+      M.rotate(Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized());
+      break;
+  }
+  return M;
 }
 
 void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {
@@ -170,6 +244,14 @@ void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>
       throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + variableName(v) +
                                   "' is not finite");
     }
+  }
+  for (JointId j = 0; j < numJoints(); ++j) {
+    const int v = quaternionVariable(j);
+    if (v < 0) continue;
+    const double length = q.segment<4>(v).norm();
+    if (std::abs(length - 1) <= kQuaternionLength) continue;
+    throw std::invalid_argument(what + ": the quaternion of joint '" + joints_[j].name + "' has the length " +
+                                std::to_string(length) + " instead of 1");
   }
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/joint_factors.h"
 #include "numerics/rotation.h"
 
 namespace fcl_artic {
@@ -18,6 +19,16 @@ Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
   R.col(1) = axis.cross(x);
   R.col(2) = axis;
   return R;
+}
+
+engine::StepKind stepKind(JointFactor::Kind kind) {
+  switch (kind) {
+    case JointFactor::Kind::revolute: return engine::StepKind::revolute;
+    case JointFactor::Kind::prismatic: return engine::StepKind::prismatic;
+    case JointFactor::Kind::slide: return engine::StepKind::slide;
+    case JointFactor::Kind::turn: return engine::StepKind::turn;
+  }
+  return engine::StepKind::revolute;
 }
 
 /// Goes to a step's frame, whose z is an axis that Q turns there.
@@ -126,20 +137,26 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
   const Joint& joint = tree_->joint(id);
   Carrier to = from;
   if (down) moveBy(to, joint.origin, down);
-  if (joint.type != JointType::fixed) {
+  const std::vector<JointFactor> factors = factorsOf(joint);
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const std::size_t f = down ? i : factors.size() - 1 - i;
+    const JointFactor& factor = factors[f];
+    const int parent = to.step;
     const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
-      return o.parent == from.step && o.joint == id && o.down == down;
+      return o.parent == parent && o.joint == id && o.factor == f && o.down == down;
     });
     if (known != origin_.end()) {
-      standBehind(to, static_cast<int>(known - origin_.begin()), frameWithZ(joint.axis));
+      standBehind(to, static_cast<int>(known - origin_.begin()), frameWithZ(factor.axis));
     } else {
       const double sign = down ? 1 : -1;
-      engine::SweepStep& step = append(to, joint.axis);
-      step.kind = joint.type == JointType::prismatic ? engine::StepKind::prismatic : engine::StepKind::revolute;
-      step.variable = tree_->jointVariable(id);
+      engine::SweepStep& step = append(to, factor.axis);
+      step.kind = stepKind(factor.kind);
+      step.variable = tree_->jointVariable(id) + factor.variable;
       step.multiplier = sign * (joint.mimics ? joint.mimic.multiplier : 1);
       step.offset = sign * (joint.mimics ? joint.mimic.offset : 0);
-      origin_.push_back({from.step, id, down});
+      step.inverse = !down;
+      if (step.kind == engine::StepKind::turn) step.orientation = quaternionNumber(*tree_, id);
+      origin_.push_back({parent, id, f, down});
     }
   }
   if (!down) moveBy(to, joint.origin, down);
@@ -147,7 +164,7 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
 }
 
 Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int variable,
-                          const engine::BoundedSource* source, bool down) {
+                          const engine::BoundedSource* source, bool down, int orientation) {
   using Kind = MotionElement::Kind;
   Carrier to = from;
   if (down) moveBy(to, element.before, down);
@@ -162,7 +179,8 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
   step.multiplier = down ? 1 : -1;
   step.source = source;
   step.inverse = !down;
-  origin_.push_back({from.step, -1, down});
+  step.orientation = orientation;
+  origin_.push_back({from.step, -1, 0, down});
   if (!down) moveBy(to, element.before, down);
   return to;
 }

@@ -46,8 +46,9 @@ class FrameSweep {
   /// Crosses one element of a body's motion, outwards (down) or back towards the world.
   /// @param variable  of its first row of coefficients.
   /// @param source  of a bounded element; the view keeps the pointer.
+  /// @param orientation  of a turn: number of the rotation behind it, among those of the query; -1: none.
   Carrier cross(const Carrier& from, const MotionElement& element, int variable, const engine::BoundedSource* source,
-                bool down);
+                bool down, int orientation = -1);
 
   engine::SweepView view() const;
   void clear();
@@ -66,6 +67,7 @@ class FrameSweep {
   struct Origin {
     int parent;
     JointId joint;  ///< -1: an element of a body's motion
+    std::size_t factor;
     bool down;
   };
   std::vector<Origin> origin_;  ///< what step i crosses, to share common beginnings

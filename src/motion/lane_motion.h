@@ -56,6 +56,7 @@ struct StepBounds {
   double length;              ///< |o(t)| and all numbers it is made of, summed
   double ulps;                ///< error of the rotation in kUlp, of the origin in kUlp * length
   double rounding_rate;       ///< what the rounding of derivatives scales with: a + sqrt(b), of absolute terms
+  const double* orientation;  ///< a turn's R0, null: none
 };
 
 /// Upper bounds over the intervals of what a step's variables do.
@@ -105,6 +106,7 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
     StepBounds& b = out[i];
     const StepBounds* p = step.parent >= 0 ? &out[step.parent] : nullptr;
     VariableBounds v = {};
+    b.orientation = step.orientation >= 0 ? query.orientations + 9 * step.orientation : nullptr;
     if (step.kind == StepKind::bounded) {
       b.degree = 0;
     } else {
@@ -160,6 +162,7 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
         b.rates_parent = b.rates;
         b.rounding_rate += v.terms[1] > 0 ? v.terms[0] + sqrt(v.terms[1]) : v.terms[0];
         b.ulps += kTurnUlps + (6 * b.degree + 16) * v.size;
+        if (b.orientation) b.ulps += kStepUlps;  // one more stored rotation and product
         break;
       case StepKind::prismatic:
       case StepKind::slide:
@@ -316,6 +319,19 @@ inline void boundedFactor(const SweepStep& step, const Lanes& tm, double d, Fact
   }
 }
 
+/// The frame with the axes x, y, z is turned by the constant rotation R in its own axes: (x y z) <- (x y z) R, or R^T.
+inline void turnAxes(const double* R, bool transposed, Lanes* x, Lanes* y, Lanes* z) {
+  const int row = transposed ? 1 : 3, column = transposed ? 3 : 1;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes a = x[k], b = y[k], c = z[k];
+    Lanes* axes[3] = {x, y, z};
+    for (int j = 0; j < 3; ++j) {
+      const double* r = R + j * column;
+      axes[j][k] = mulAdd(a, r[0], mulAdd(b, r[row], c * Lanes(r[2 * row])));
+    }
+  }
+}
+
 /// o = R x for a matrix given by its columns.
 FCL_ARTIC_INLINE void combine(const Lanes* x, const Lanes* y, const Lanes* z, const Lanes* u, Lanes* o) {
   for (int k = 0; k < 3; ++k) o[k] = mulAdd(x[k], u[0], mulAdd(y[k], u[1], z[k] * u[2]));
@@ -412,11 +428,16 @@ inline void evaluateSweep(const SweepView& sweep, const StepBounds* bounds, cons
           VariableLanes q[3];
           for (int j = 0; j < 3; ++j) q[j] = evaluateVariable(bounds[i], j, tm, d);
           turnFactor(q, factor);
+          if (bounds[i].orientation && step.inverse) turnAxes(bounds[i].orientation, true, x, y, z);
         }
+        Lanes J[3][3];
         for (int j = 0; j < 3; ++j) {
           const Lanes column[3] = {factor.J[j], factor.J[3 + j], factor.J[6 + j]};
-          combine(x, y, z, column, t);
-          for (int k = 0; k < 3; ++k) f.R[3 * k + j] = t[k];
+          combine(x, y, z, column, J[j]);
+        }
+        if (bounds[i].orientation && !step.inverse) turnAxes(bounds[i].orientation, false, J[0], J[1], J[2]);
+        for (int j = 0; j < 3; ++j) {
+          for (int k = 0; k < 3; ++k) f.R[3 * k + j] = J[j][k];
         }
         combine(x, y, z, factor.w, t);
         if (g) {

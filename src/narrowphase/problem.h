@@ -71,7 +71,7 @@ enum class StepKind : std::int32_t {
   revolute,   ///< a turn about z by q
   prismatic,  ///< a slide along z by q
   slide,      ///< a translation by the vector q
-  turn,       ///< exp([q]), q a rotation vector
+  turn,       ///< exp([q]) R0, q a rotation vector, R0 a rotation that the query gives (none: 1)
   bounded,    ///< BoundedSource, or its inverse
 };
 
@@ -97,8 +97,9 @@ struct SweepStep {
   double length = 0, ulps = 0;  ///< of C and p, as in Placement
   std::int32_t variable = -1;   ///< revolute, prismatic: the variable; slide, turn: the first of three
   double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset; slide, turn: offset 0
+  std::int32_t orientation = -1;  ///< turn: number of its R0 among Query::orientations; -1: none
   const BoundedSource* source = nullptr;  ///< bounded
-  bool inverse = false;                   ///< bounded: J is the inverse of the source's pose
+  bool inverse = false;  ///< bounded: J is the inverse of the source's pose; turn: of exp([-q]) R0, that is R0^T exp([q])
 };
 
 /// Steps from one base frame, parents first.
@@ -154,6 +155,7 @@ struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
   std::int32_t num_variables = 0, degree = 1;
+  const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
   double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   bool any = false;  ///< stop at the first contact that is proven, wherever on the way it is

@@ -432,10 +432,11 @@ void ArticulatedCollisionManager::Impl::buildScene() {
 /// @param memory  for them, when there are both.
 void ArticulatedCollisionManager::Impl::setVariables(const JointMotion& motion, std::vector<double>& memory,
                                                      engine::Query& query) const {
-  const Eigen::MatrixXd &own = motion.coefficients(), &others = moving_coefficients;
+  const Eigen::MatrixXd &own = motion.variables(), &others = moving_coefficients;
   query.coefficients = own.data();
   query.num_variables = static_cast<std::int32_t>(own.rows());
   query.degree = static_cast<std::int32_t>(own.cols()) - 1;
+  query.orientations = motion.orientations().data();
   if (others.rows() == 0) return;
   const Eigen::Index columns = std::max(own.cols(), others.cols());
   memory.assign(static_cast<std::size_t>((own.rows() + others.rows()) * columns), 0);
@@ -726,6 +727,11 @@ std::size_t ArticulatedCollisionManager::size() const { return impl_->obstacles.
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
+  collideMotion(motion, request, result, nullptr);
+}
+
+void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
+                                                CertifiedResult& result, std::vector<bool>* never_apart) const {
   const Impl& m = *impl_;
   if (!m.ready) {
     throw std::logic_error("ArticulatedCollisionManager: call setup() after changing objects, links or allowed pairs");
@@ -772,6 +778,10 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
     result.ignored_initial_contacts.emplace_back(m.reference(m.item(answer.ignored[i].body_a)),
                                                  m.reference(m.item(answer.ignored[i].body_b)));
+  }
+  if (never_apart) {
+    never_apart->clear();
+    for (std::int32_t i = 0; i < answer.num_ignored; ++i) never_apart->push_back(answer.ignored[i].watch_from > 1);
   }
   result.statistics = statisticsOf(answer.statistics);
   if (request.measure_times) {

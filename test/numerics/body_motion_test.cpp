@@ -88,10 +88,12 @@ Real polynomial(const MotionElement& element, int row, const Real& t) {
 struct Body {
   BodyMotion motion;
   std::vector<Sway> sways;  ///< one for a bounded element, which has no BoundedMotion then
+  std::vector<Eigen::Isometry3d> behind;  ///< a constant rotation behind each element, for some of the turns
 
   RealRigid pose(const Real& t) const {
     RealRigid M;
-    for (const MotionElement& element : motion.elements) {
+    for (std::size_t i = 0; i < motion.elements.size(); ++i) {
+      const MotionElement& element = motion.elements[i];
       M = M * properly(element.before);
       const Real3 q = {polynomial(element, 0, t), polynomial(element, 1, t), polynomial(element, 2, t)};
       const Real3 axis = unit(exactly(element.axis));
@@ -115,6 +117,7 @@ struct Body {
           break;
       }
       M = M * E;
+      if (i < behind.size() && !behind[i].isApprox(Eigen::Isometry3d::Identity(), 0)) M = M * properly(behind[i]);
     }
     return M * properly(motion.after);
   }
@@ -132,9 +135,10 @@ struct BodyCase {
   Body body[2];
   double extent_a, extent_b;
   int degree = 1;
+  bool with_orientation = false;
   FrameSweep sweep;
   std::vector<engine::BoundedSource> sources;
-  std::vector<double> coefficients;
+  std::vector<double> coefficients, orientations;
   PairInput in;
 
   BodyCase(Random& random, int rounding) {
@@ -182,6 +186,8 @@ struct BodyCase {
         e.coefficients.col(0) += angle * random.direction() - q;
       }
       b.motion.elements.push_back(e);
+      b.behind.push_back(Eigen::Isometry3d::Identity());
+      if (e.kind == Kind::turn && random.chance(0.6)) b.behind.back().linear() = random.rotation();
     }
   }
 
@@ -200,7 +206,8 @@ struct BodyCase {
     coefficients.assign(static_cast<std::size_t>((degree + 1) * std::max(variables, 1)), 0);
     Carrier at;
     int variable = 0;
-    const auto crossElement = [&](const Body& b, const MotionElement& e, bool down) {
+    const auto crossElement = [&](const Body& b, std::size_t i, bool down) {
+      const MotionElement& e = b.motion.elements[i];
       const engine::BoundedSource* source = nullptr;
       if (e.kind == Kind::bounded) {
         sources.push_back({&b.sways.front(), &Sway::state, &Sway::bounds, b.sways.front().derivatives});
@@ -211,13 +218,17 @@ struct BodyCase {
           coefficients[static_cast<std::size_t>(k * variables + variable + r)] = e.coefficients(r, k);
         }
       }
-      at = sweep.cross(at, e, variable, source, down);
+      int orientation = -1;
+      if (i < b.behind.size() && !b.behind[i].isApprox(Eigen::Isometry3d::Identity(), 0)) {
+        orientation = static_cast<int>(orientations.size() / 9);
+        for (int r = 0; r < 9; ++r) orientations.push_back(b.behind[i].linear()(r / 3, r % 3));
+        with_orientation = true;
+      }
+      at = sweep.cross(at, e, variable, source, down, orientation);
       variable += 3;
     };
-    for (auto e = body[0].motion.elements.rbegin(); e != body[0].motion.elements.rend(); ++e) {
-      crossElement(body[0], *e, false);
-    }
-    for (const MotionElement& e : body[1].motion.elements) crossElement(body[1], e, true);
+    for (std::size_t i = body[0].motion.elements.size(); i-- > 0;) crossElement(body[0], i, false);
+    for (std::size_t i = 0; i < body[1].motion.elements.size(); ++i) crossElement(body[1], i, true);
     in.sweep = sweep.view();
     in.step_b = at.step;
     in.inverse_a = makePlacement(body[0].motion.after.inverse());
@@ -225,6 +236,7 @@ struct BodyCase {
     in.query.coefficients = coefficients.data();
     in.query.num_variables = variables;
     in.query.degree = degree;
+    in.query.orientations = orientations.data();
   }
 };
 
@@ -238,7 +250,7 @@ TEST(BodyMotionBounds, ExactPointsLieInTheQuadratic) {
   const std::vector<const Subject*> tested = subjects();
   const int cases = scaled(45000) / 16;
   struct {
-    int checks = 0, no_remainder = 0, small_pad = 0;
+    int checks = 0, no_remainder = 0, small_pad = 0, turned = 0;
     double remainder = 0, pad = 0;
   } tally[2];  // of motions with derivatives; of some without
   for (int i = 0; i < cases; ++i) {
@@ -264,6 +276,7 @@ TEST(BodyMotionBounds, ExactPointsLieInTheQuadratic) {
                                       << " d " << c.in.d << " steps " << c.in.sweep.num_steps << " degree " << c.degree
                                       << " first order " << c.in.sweep.first_order;
         ++counts.checks;
+        counts.turned += c.with_orientation;
         counts.no_remainder += error > m.pad;
         counts.small_pad += error > rem + 1e-4 * m.pad;
         if (rem > 1e3 * m.pad) counts.remainder = std::max(counts.remainder, error / rem);
@@ -279,6 +292,7 @@ TEST(BodyMotionBounds, ExactPointsLieInTheQuadratic) {
     EXPECT_GT(t.checks, cases) << "too few cases of the kind";
     EXPECT_GT(t.remainder, 0.5) << "no motion comes near its bound: the test tells little";
     EXPECT_GT(t.no_remainder, 0);
+    EXPECT_GT(t.turned, t.checks / 50) << "too few turns from an orientation";
   }
   EXPECT_GT(tally[0].small_pad, 0);
 }

@@ -71,6 +71,20 @@ TEST_F(UrdfTest, ReadsTreeInTheOrderOfTheFile) {
   EXPECT_EQ(tree.joint(tree.jointId("follow")).axis, Eigen::Vector3d(0, 0, 1));
 }
 
+TEST_F(UrdfTest, ReadsFloatingAndPlanarJoints) {
+  const Robot r = load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/>" +
+                       joint("free", "floating", "a", "b") +
+                       joint("base", "planar", "b", "c", "<axis xyz='0 0 1'/>") + joint("wall", "planar", "c", "d", ""));
+  const KinematicTree& tree = *r.tree;
+  ASSERT_EQ(tree.dof(), 13);
+  EXPECT_EQ(tree.joint(tree.jointId("free")).type, JointType::floating);
+  EXPECT_EQ(tree.variableName(6), "free/rot_w");
+  EXPECT_EQ(tree.variableName(9), "base/theta");
+  EXPECT_EQ(tree.joint(tree.jointId("wall")).axis, Eigen::Vector3d(1, 0, 0));
+  ASSERT_EQ(r.notes.size(), 2u) << "no geometry, and the axis that some tools ignore";
+  EXPECT_NE(r.notes[0].find("joint 'wall' is planar across its axis"), std::string::npos) << r.notes[0];
+}
+
 TEST_F(UrdfTest, ReadsShapesWithOffsetsSeveralForALink) {
   const Robot r =
       load(linkWith(collision("<box size='1 2 3'/>", "<origin xyz='0 0 4' rpy='0 0 0'/>") +
@@ -188,8 +202,10 @@ TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
       {"NaN limit", ab + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='1' effort='1' velocity='1'/>"),
        "j"},
       {"bad type", ab + joint("j", "screw", "a", "b"), "screw"},
-      {"floating", ab + joint("j", "floating", "a", "b"), "joint 'j' is of type floating"},
-      {"planar", ab + joint("j", "planar", "a", "b"), "joint 'j' is of type planar"},
+      {"floating mimics", abc + joint("k", "continuous", "b", "c") + joint("j", "floating", "a", "b", "<mimic joint='k'/>"),
+       "joint 'j' has more than one variable and cannot mimic"},
+      {"mimics planar", abc + joint("k", "planar", "a", "b") + joint("j", "continuous", "b", "c", "<mimic joint='k'/>"),
+       "joint 'j' mimics joint 'k', which has more than one variable"},
       {"zero axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 0 0'/>"), "joint 'j' has an axis"},
       {"short axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 1'/>"), "axis"},
       {"bad origin", ab + joint("j", "fixed", "a", "b", "<origin xyz='0 0 far'/>"), "j"},

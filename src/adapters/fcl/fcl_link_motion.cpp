@@ -46,6 +46,7 @@
 #include <fcl/math/motion/triangle_motion_bound_visitor.h>
 
 #include "adapters/fcl/fcl_motion.h"
+#include "kinematics/joint_factors.h"
 
 namespace fcl_artic {
 namespace {
@@ -97,17 +98,45 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
                                 "' is not rigid");
   }
 
+  if (motion.degree() > 1) {
+    throw std::invalid_argument("FclLinkMotion: the motion has degree " + std::to_string(motion.degree()) +
+                                ", FCL's bounds are made for joints at constant speed");
+  }
+
   std::vector<JointId> path;  // from the link up to its root
   for (LinkId l = link; tree.parentJoint(l) >= 0; l = tree.parentLink(l)) path.push_back(tree.parentJoint(l));
   Isometry3d fixed = Isometry3d::Identity();
   for (auto j = path.rbegin(); j != path.rend(); ++j) {
     const Joint& joint = tree.joint(*j);
     fixed = fixed * joint.origin;
-    if (joint.type == JointType::fixed) continue;
-    const double multiplier = joint.mimics ? joint.mimic.multiplier : 1;
-    chain_.push_back({fixed, joint.axis, joint.type == JointType::prismatic, tree.jointValue(*j, motion.q0()),
-                      multiplier * motion.dq()[tree.jointVariable(*j)]});
-    fixed.setIdentity();
+    const auto addStep = [&](const Vector3d& axis, bool prismatic, double value, double rate) {
+      chain_.push_back({fixed, axis, prismatic, value, rate});
+      fixed.setIdentity();
+    };
+    for (const JointFactor& factor : factorsOf(joint)) {
+      const int v = tree.jointVariable(*j) + factor.variable;
+      const auto q = motion.variables().row(v);
+      switch (factor.kind) {
+        case JointFactor::Kind::revolute:
+        case JointFactor::Kind::prismatic: {
+          const double m = joint.mimics ? joint.mimic.multiplier : 1, offset = joint.mimics ? joint.mimic.offset : 0;
+          addStep(factor.axis, factor.kind == JointFactor::Kind::prismatic, m * q[0] + offset, m * q[1]);
+          break;
+        }
+        case JointFactor::Kind::slide:
+          for (int k = 0; k < 3; ++k) {
+            addStep(Vector3d::Unit(k), true, motion.variables()(v + k, 0), motion.variables()(v + k, 1));
+          }
+          break;
+        case JointFactor::Kind::turn: {  // about one axis, behind it the orientation at the start
+          const Vector3d w = motion.variables().block<3, 1>(v, 1);
+          if (const double angle = w.norm(); angle > 0) addStep(w / angle, false, 0, angle);
+          using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+          fixed.linear() = fixed.linear() * RowMajor::Map(&motion.orientations()[9 * quaternionNumber(tree, *j)]);
+          break;
+        }
+      }
+    }
   }
   tail_ = fixed * offset;
 

@@ -138,13 +138,15 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
       out.type = JointType::prismatic;
       break;
     case urdf::Joint::FLOATING:
-      fail(where, "joint '" + in.name + "' is of type floating, which is not supported");
+      out.type = JointType::floating;
+      break;
     case urdf::Joint::PLANAR:
-      fail(where, "joint '" + in.name + "' is of type planar, which is not supported");
+      out.type = JointType::planar;
+      break;
     default:
       fail(where, "joint '" + in.name + "' is of an unknown type");
   }
-  if (in.limits && out.type != JointType::continuous) {
+  if (in.limits && KinematicTree::numVariables(out.type) == 1 && out.type != JointType::continuous) {
     out.lower = in.limits->lower;
     out.upper = in.limits->upper;
   }
@@ -174,6 +176,9 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
     std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
+      if (joint.type == JointType::planar && !joint.axis.normalized().isApprox(Eigen::Vector3d::UnitZ())) {
+        notes.push_back("joint '" + name + "' is planar across its axis, which is not z; some tools ignore the axis");
+      }
       if (joint.mimics) {
         mimics.push_back(joint);
       } else {
