@@ -117,6 +117,26 @@ TEST(ContinuousMotionValidatorTest, MarginMovesTheContact) {
   EXPECT_GT(t, 0.5 - 3 * kTolerance);
 }
 
+TEST(ContinuousMotionValidatorTest, LastValidStateLeavesRoomWhereTheMotionGrazes) {
+  // A ball of 0.1 m on a slide of 8 m passes the like at 3 m and overlaps it by no more than `deep`: the gap hardly changes
+  // about the contact.
+  for (const double deep : {1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7}) {
+    auto tree = std::make_shared<KinematicTree>("slide");
+    tree->addLink("rail");
+    tree->addLink("ball");
+    tree->addJoint(makeJoint("slide", JointType::prismatic, "rail", "ball", Eigen::Vector3d::UnitX(), -10, 10));
+    World world(tree);
+    const auto ball = std::make_shared<fcl::Sphered>(0.1);
+    const double y = 0.2 - deep;
+    world.bind("ball", ball).obstacle(ball, at(3, y));
+    const Planning planning(std::move(world), reals(1));
+    const double t = lastValid(planning, {0}, {8});  // looks at the state too
+    // Contact with the margin that the proof leaves, 2e-5 m; and that much room at the state, up to roundings.
+    EXPECT_GT(t, (3 - std::sqrt(0.20002 * 0.20002 - y * y)) / 8 - 2 * kTolerance);
+    EXPECT_GT(std::hypot(3 - 8 * t, y) - 0.2, 2e-5 - 1e-12);
+  }
+}
+
 TEST(ContinuousMotionValidatorTest, StartInContact) {
   Planning strict(slideWorld(), reals(1));
   EXPECT_EQ(lastValid(strict, {2.5}, {-1}), 0);
