@@ -26,7 +26,8 @@ namespace {
 template <class F>
 void parallelFor(std::size_t n, int threads, const F& f) {
 #ifdef FCL_ARTIC_TBB
-  tbb::task_arena arena(std::min(threads, tbb::info::default_concurrency()));  // for more it prints a warning
+  if (threads >= tbb::info::default_concurrency()) return tbb::parallel_for(std::size_t{0}, n, f);  // oneTBB's own arena
+  tbb::task_arena arena(threads);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, f); });
 #else
   constexpr std::size_t kChunk = 16;  // queries of microseconds: the counter is not to be fought for
