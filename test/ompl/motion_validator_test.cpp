@@ -10,6 +10,7 @@
 #include <ompl/base/spaces/SO2StateSpace.h>
 
 #include "fcl_artic/ompl/motion_validator.h"
+#include "fcl_artic/ompl/planning_setup.h"
 #include "slide.h"
 
 namespace fcl_artic::planning {
@@ -231,6 +232,34 @@ TEST(ContinuousMotionValidatorTest, CompoundOfSlideAndTurn) {
   // At the slide's 4 and turning over pi, away from pi/2.
   EXPECT_EQ(lastValid(planning, {4, 2.5}, {4, -2.5}), 2);
   EXPECT_NEAR(lastValid(planning, {4, 2.5}, {4, 0}), (2.5 - kPi / 2 - 2 * std::asin(0.1)) / 2.5, 3 * kTolerance);
+}
+
+TEST(ContinuousMotionValidatorTest, FloatingBodyTurnsIntoAPost) {
+  // A ball of 0.1 m, 1 m along x from the body's frame, which turns by 3 rad about z and moves up by 0.5 m; a ball of the same
+  // size waits on its way, at 2 rad and 1/3 m. Seen from it, both are a way of 1/3 apart: balls meet where
+  // (2 sin(1.5 s))^2 + (0.5 s)^2 = 0.04, s = 2/3 - t.
+  auto tree = std::make_shared<KinematicTree>("drone");
+  tree->addLink("world");
+  tree->addLink("body");
+  tree->addJoint(makeJoint("fly", JointType::floating, "world", "body", Eigen::Vector3d::UnitX()));
+  World world(tree);
+  const auto ball = std::make_shared<fcl::Sphered>(0.1);
+  world.bind("body", ball, at(1, 0)).obstacle(ball, at(std::cos(2), std::sin(2), 1.0 / 3));
+  SetupOptions options;
+  EXPECT_THROW(setUpPlanning(world.manager(), {}), std::invalid_argument) << "no bounds";
+  options.position_lower.setConstant(-2);
+  options.position_upper.setConstant(2);
+  const PlanningSetup setup = setUpPlanning(world.manager(), {}, options);
+  ASSERT_EQ(setup.space->getType(), ob::STATE_SPACE_SE3);
+  const TestState s1(setup.space, {0, 0, 0, 0, 0, 0, 1}), s2(setup.space, {0, 0, 0.5, 0, 0, std::sin(1.5), std::cos(1.5)});
+  const TestState low(setup.space, {0, 0, -0.5, 0, 0, std::sin(1.5), std::cos(1.5)});
+  double s = 0.2 / std::hypot(3, 0.5);
+  for (int i = 0; i < 50; ++i) s = std::sqrt(0.04 - 0.25 * s * s) / 2 < 1 ? std::asin(std::sqrt(0.04 - 0.25 * s * s) / 2) / 1.5 : s;
+  std::pair<ob::State*, double> last{nullptr, 2};
+  EXPECT_FALSE(setup.si->checkMotion(s1, s2, last));
+  EXPECT_LT(last.second, 2.0 / 3 - s);
+  EXPECT_GT(last.second, 2.0 / 3 - s - 2 * kTolerance);
+  EXPECT_TRUE(setup.si->checkMotion(s1, low));
 }
 
 TEST(ContinuousMotionValidatorTest, StatesAreCheckedByTheSameManager) {

@@ -28,16 +28,23 @@ FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
 /// | --- | --- | --- |
 /// | RealVectorStateSpace of n dimensions | n revolute, continuous or prismatic | straight |
 /// | SO2StateSpace | 1 revolute or continuous | the shorter way round, over π where that is it |
+/// | SE2StateSpace | 1 planar | position straight, angle the shorter way round |
+/// | SO3StateSpace | 1 spherical | the shortest rotation at constant speed |
+/// | SE3StateSpace | 1 floating | position straight, shortest rotation |
 /// | CompoundStateSpace | those of its parts | each part's |
+///
+/// A RealVectorStateSpace or SO2StateSpace may drive single variables of a planar or floating joint too, by their names
+/// (KinematicTree::variableName()). Where two orientations differ by less than 1e-4 rad, SO3StateSpace::interpolate() stays at
+/// the first one until the end; the motion here turns on its way, and does reach the second.
 ///
 /// Any other space is refused, and so is a class derived from these: its interpolate() may take another way.
 class FCL_ARTIC_EXPORT JointMapping {
  public:
   /// @param joints  names of the joints, in the order of the space's parts; none: all variables of the tree in its order.
-  /// @param others  dof() joint variables, those of unnamed joints stay at theirs; empty: they stay at 0.
+  /// @param others  dof() joint variables, those of unnamed joints stay at theirs; empty: at the neutral configuration.
   /// @throws std::invalid_argument naming space or joint: space not supported, wrong number of joints, a joint that is
-  ///   unknown, fixed, a mimic or named twice, SO2 for a prismatic joint or for one that is mimicked so that a whole
-  ///   turn of it is not one of the mimic.
+  ///   unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a quaternion, SO2 for
+  ///   a joint that is mimicked so that a whole turn of it is not one of the mimic.
   JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
                const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
 
@@ -48,18 +55,31 @@ class FCL_ARTIC_EXPORT JointMapping {
   JointMotion motion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const;
 
  private:
+  enum class Kind { real, angle, quaternion };
   /// One number of a state and what it drives.
   struct Value {
     std::vector<unsigned> path;  ///< through compound states to the part
-    unsigned index = 0;          ///< in a real vector
-    bool turns = false;          ///< an SO2 angle
-    int variable = -1;
+    unsigned index;              ///< in a real vector or quaternion
+    Kind kind;
+    bool turns;    ///< takes the shorter way round
+    int variable;  ///< of the tree; in a Part: counted from its first
   };
-  void collect(const ::ompl::base::StateSpace& space, const std::string& whole, std::vector<unsigned>& path);
+  /// What takes one name.
+  struct Part {
+    JointType joint;   ///< that it drives as a whole; `fixed`: it drives one variable
+    std::string what;  ///< says so
+    std::vector<Value> values;
+  };
+  static void collect(const ::ompl::base::StateSpace& space, const std::string& whole, std::vector<unsigned>& path,
+                      std::vector<Part>& parts);
+  int requireVariable(const std::string& name, const std::string& where) const;
+  int requireJoint(const std::string& name, const Part& part) const;
+  JointMotion atHalfTurn(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const;
   static double read(const Value& value, const ::ompl::base::State* state);
 
   std::shared_ptr<const KinematicTree> tree_;
   std::vector<Value> values_;
+  std::vector<int> quaternions_;  ///< first variables of those that states drive
   Eigen::VectorXd others_;
 };
 

@@ -18,8 +18,10 @@ namespace fcl_artic::planning {
 
 struct SetupOptions {
   UrdfOptions urdf;
-  /// Values of joints outside the group, by name; the others are at 0, or at the limit that is nearest to 0.
+  /// Values of joint variables outside the group, by name; the others are at 0, or at the limit that is nearest to 0.
   std::map<std::string, double> fixed;
+  /// Bounds of positions of planar (x, y) and floating joints that are planned for, m; needed for these only.
+  Eigen::Vector3d position_lower = Eigen::Vector3d::Zero(), position_upper = Eigen::Vector3d::Zero();
   CertifiedRequest request = planningRequest();
 };
 
@@ -27,14 +29,15 @@ struct SetupOptions {
 struct PlanningSetup {
   /// Set up, with continuous motion validator and state validity checker.
   ::ompl::base::SpaceInformationPtr si;
-  /// A RealVectorStateSpace within the joints' limits; joints without limits that turn are SO2StateSpaces, and the space
-  /// is then a compound of parts in the order of `joints`.
+  /// A RealVectorStateSpace within the joints' limits; joints without limits that turn are SO2StateSpaces, planar joints
+  /// SE2, spherical SO3 and floating ones SE3, and the space is then a compound of parts in the order of `joints`.
   ::ompl::base::StateSpacePtr space;
   std::vector<std::string> joints;  ///< planned for, in the order of a state's values
   std::shared_ptr<const ArticulatedCollisionManager> manager;
   std::vector<std::string> notes;   ///< of the loaders
 
-  /// Writes joint values into a state. @param values  in the order of `joints`.
+  /// Writes joint values into a state. @param values  in the order of `joints`, those of a planar joint x, y, theta, of a
+  ///   floating one x, y, z and the quaternion's x, y, z, w.
   /// @throws std::invalid_argument for another number of values.
   FCL_ARTIC_EXPORT void setState(::ompl::base::State* state, const std::vector<double>& values) const;
   FCL_ARTIC_EXPORT std::vector<double> values(const ::ompl::base::State* state) const;
@@ -49,13 +52,13 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std:
                                              const std::string& group, const SetupOptions& options = {});
 
 /// Sets up planning for some joints of a manager that is set up already.
-/// @param joints  names; none: all variables of the tree.
+/// @param joints  names; none: all joints of the tree that move.
 /// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned for,
-///   or prismatic without limits.
+///   prismatic without limits, or planar or floating without bounds in the options.
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 
-/// The joint variables that a group of an SRDF moves, in the tree's order: its chains, joints, links (their parent joints)
+/// The joints that a group of an SRDF moves, in the tree's order: its chains, joints, links (their parent joints)
 /// and subgroups, without fixed, mimic and passive joints.
 /// @throws std::runtime_error naming file and reason: unreadable, no such group, unknown link, joint or subgroup, a
 ///   subgroup within itself, a chain whose ends are not connected, a group that moves nothing.

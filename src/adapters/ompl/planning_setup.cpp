@@ -7,7 +7,10 @@
 #include <stdexcept>
 
 #include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/base/spaces/SE2StateSpace.h>
+#include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
+#include <ompl/base/spaces/SO3StateSpace.h>
 
 namespace fcl_artic::planning {
 namespace {
@@ -15,7 +18,7 @@ namespace {
 namespace ob = ::ompl::base;
 
 bool limited(const Joint& joint) {
-  return joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
+  return KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
 }
 
 int requireVariable(const KinematicTree& tree, const std::string& name, const std::string& what) {
@@ -26,14 +29,50 @@ int requireVariable(const KinematicTree& tree, const std::string& name, const st
                               "' with a value of its own (it is unknown, fixed or a mimic)");
 }
 
+/// A joint that can be planned for.
+const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    if (joint.name == name && !joint.mimics && joint.type != JointType::fixed) return joint;
+  }
+  throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint '" + name +
+                              "' that can be planned for (it is unknown, fixed or a mimic)");
+}
+
+/// The space of a joint that is no number within limits.
+ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& options) {
+  const auto bounds = [&](unsigned dimensions) {
+    ob::RealVectorBounds b(dimensions);
+    for (unsigned i = 0; i < dimensions; ++i) {
+      b.low[i] = options.position_lower[i];
+      b.high[i] = options.position_upper[i];
+      if (b.low[i] < b.high[i]) continue;
+      throw std::invalid_argument("setUpPlanning: joint '" + joint.name + "' needs options.position_lower and position_upper");
+    }
+    return b;
+  };
+  if (joint.type == JointType::planar) {
+    const auto space = std::make_shared<ob::SE2StateSpace>();
+    space->setBounds(bounds(2));
+    return space;
+  }
+  if (joint.type == JointType::floating) {
+    const auto space = std::make_shared<ob::SE3StateSpace>();
+    space->setBounds(bounds(3));
+    return space;
+  }
+  if (joint.type == JointType::spherical) return std::make_shared<ob::SO3StateSpace>();
+  return std::make_shared<ob::SO2StateSpace>();
+}
+
 /// A space for each run of joints of one kind.
-ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::string>& joints) {
+ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::string>& joints, const SetupOptions& options) {
   if (joints.empty()) throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint that moves");
   std::set<std::string> named;
   std::vector<ob::StateSpacePtr> parts;
   std::shared_ptr<ob::RealVectorStateSpace> reals;
   for (const std::string& name : joints) {
-    const Joint& joint = tree.joint(tree.variableJoint(requireVariable(tree, name, "setUpPlanning")));
+    const Joint& joint = requireJoint(tree, name);
     if (!named.insert(name).second) throw std::invalid_argument("setUpPlanning: joint '" + name + "' is named twice");
     if (limited(joint)) {
       if (!reals) parts.push_back(reals = std::make_shared<ob::RealVectorStateSpace>());
@@ -44,7 +83,7 @@ ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::st
       throw std::invalid_argument("the prismatic joint '" + name + "' has no limits to plan within");
     }
     reals.reset();
-    parts.push_back(std::make_shared<ob::SO2StateSpace>());
+    parts.push_back(wholeJointSpace(joint, options));
     parts.back()->setName(name);
   }
   if (parts.size() == 1) return parts.front();
@@ -54,14 +93,14 @@ ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::st
 
 Eigen::VectorXd makeOthers(const KinematicTree& tree, const std::vector<std::string>& joints,
                            const std::map<std::string, double>& fixed) {
-  Eigen::VectorXd others(tree.dof());
+  Eigen::VectorXd others = tree.neutralConfiguration();
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
-    others[v] = limited(joint) ? std::clamp(0.0, joint.lower, joint.upper) : 0;
+    if (limited(joint)) others[v] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (const auto& [name, value] : fixed) {
     const int variable = requireVariable(tree, name, "options.fixed");
-    if (std::find(joints.begin(), joints.end(), name) != joints.end()) {
+    if (std::find(joints.begin(), joints.end(), tree.joint(tree.variableJoint(variable)).name) != joints.end()) {
       throw std::invalid_argument("options.fixed: joint '" + name + "' is to be planned for");
     }
     others[variable] = value;
@@ -95,9 +134,9 @@ struct World {
 }  // namespace
 
 void PlanningSetup::setState(ob::State* state, const std::vector<double>& values) const {
-  if (values.size() != joints.size()) {
-    throw std::invalid_argument("setState: " + std::to_string(values.size()) + " values for " +
-                                std::to_string(joints.size()) + " joints");
+  if (const std::size_t wanted = this->values(state).size(); values.size() != wanted) {
+    throw std::invalid_argument("setState: " + std::to_string(values.size()) + " values for a state of " +
+                                std::to_string(wanted));
   }
   std::size_t next = 0;
   forEachPart(*space, state, [&](const ob::StateSpace& part, ob::State* values_of_part) {
@@ -125,9 +164,11 @@ PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> m
   setup.manager = std::move(manager);
   setup.joints = joints;
   if (joints.empty()) {
-    for (int v = 0; v < tree.dof(); ++v) setup.joints.push_back(tree.variableName(v));
+    for (int v = 0; v < tree.dof(); v += tree.numVariables(tree.variableJoint(v))) {
+      setup.joints.push_back(tree.joint(tree.variableJoint(v)).name);
+    }
   }
-  setup.space = makeSpace(tree, setup.joints);
+  setup.space = makeSpace(tree, setup.joints, options);
   const Eigen::VectorXd others = makeOthers(tree, setup.joints, options.fixed);
   const JointMapping mapping(*setup.space, setup.manager->sharedTree(), setup.joints, others);
   setup.si = std::make_shared<ob::SpaceInformation>(setup.space);

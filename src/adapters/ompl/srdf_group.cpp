@@ -35,9 +35,9 @@ class GroupReader {
     }
     add(*element, group);
     std::vector<std::string> names;
-    for (int v = 0; v < tree_.dof(); ++v) {
-      const JointId j = tree_.variableJoint(v);
-      if (joints_.count(j) && !passive_.count(j)) names.push_back(tree_.variableName(v));
+    for (const JointId j : joints_) {
+      const Joint& joint = tree_.joint(j);
+      if (joint.type != JointType::fixed && !joint.mimics && !passive_.count(j)) names.push_back(joint.name);
     }
     if (names.empty()) fail("group '" + group + "' moves no joint");
     return names;
