@@ -20,6 +20,7 @@
 #include "progress.h"
 #include "render/picture.h"
 #include "report.h"
+#include "waypoints.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice
 constexpr std::size_t kAllContacts = 1000000;
 
 struct Options {
-  std::string robot, srdf, auto_srdf, image;
+  std::string robot, srdf, auto_srdf, image, trajectory, interpolation = "linear";
   std::vector<std::string> scenes, packages, from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
@@ -125,9 +126,27 @@ int run(const Options& options) {
   if (!options.image.empty()) render::requirePictures();
   const Robot robot = loadRobot(options);
   const KinematicTree& tree = *robot.tree;
-  const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
-  const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
-  const JointMotion motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+  // One of the two.
+  std::optional<JointMotion> motion;
+  std::optional<JointTrajectory> trajectory;
+  std::vector<std::string> limit_notes;
+  const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
+    for (const std::string& note : tree.limitNotes(q)) limit_notes.push_back(where + ": " + note);
+  };
+  if (options.trajectory.empty()) {
+    const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
+    const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
+    motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+    noteLimits(motion->configuration(0), "--from");
+    noteLimits(motion->configuration(1), "--to");
+  } else {
+    const Waypoints waypoints = readWaypoints(tree, options.trajectory);
+    const auto interpolation = options.interpolation == "cubic" ? Interpolation::cubic : Interpolation::linear;
+    trajectory = interpolate(tree, waypoints, interpolation, options.shortest);
+    for (std::size_t k = 0; k < waypoints.times.size(); ++k) {
+      noteLimits(waypoints.configurations[k], fmt::format("waypoint at t = {:g}", waypoints.times[k]));
+    }
+  }
   const Scene scene = loadScenes(options.scenes, tree);
 
   ArticulatedCollisionManager manager(robot.tree);
@@ -145,14 +164,21 @@ int run(const Options& options) {
   {
     ProgressBar bar;
     request.progress = [&bar](double t_lower) { bar.show(t_lower); };
-    manager.continuousCollide(motion, request, result);
+    if (trajectory) {
+      const double begin = trajectory->beginTime(), length = trajectory->endTime() - begin;
+      request.progress = [&bar, begin, length](double t_lower) { bar.show((t_lower - begin) / length); };
+      manager.continuousCollide(*trajectory, request, result);
+    } else {
+      manager.continuousCollide(*motion, request, result);
+    }
   }
 
   std::vector<std::string> notes = robot.notes;
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  for (const std::string& note : tree.limitNotes(motion.configuration(0))) notes.push_back("--from: " + note);
-  for (const std::string& note : tree.limitNotes(motion.configuration(1))) notes.push_back("--to: " + note);
-  const Report report{tree, motion, request, result, notes};
+  notes.insert(notes.end(), limit_notes.begin(), limit_notes.end());
+  const auto configuration = [&](double t) { return trajectory ? trajectory->configuration(t) : motion->configuration(t); };
+  const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
+  const Report report{tree, request, result, notes, configuration, begin, end};
 
   if (!options.image.empty()) {
     const auto size = *numberPair(options.size, 'x');
@@ -161,7 +187,10 @@ int run(const Options& options) {
     picture.height = static_cast<int>(size[1]);
     picture.title = titleLine(report);
     if (!options.camera.empty()) picture.camera = numberPair(options.camera, ',');
-    render::writePicture(options.image, robot, scene.obstacles, motion, result, picture);
+    CertifiedResult drawn = result;  // in the time of a picture
+    drawn.t_lower = (result.t_lower - begin) / (end - begin);
+    const auto path = [&](double t) { return configuration(begin + t * (end - begin)); };
+    render::writePicture(options.image, robot, scene.obstacles, path, drawn, picture);
   }
   if (options.json) {
     fmt::print("{}\n", jsonReport(report).dump(2));
@@ -178,10 +207,11 @@ void addCheck(CLI::App& program, int& exit_status) {
   Options& o = *options;
   CertifiedRequest& request = o.request;
   CLI::App* check = program.add_subcommand(
-      "check", "Does anything touch while every joint goes straight from one configuration to another?");
+      "check", "Does anything touch while every joint goes straight from one configuration to another, or along a trajectory?");
   check->footer(
       "A configuration is a list of all joint values (\"0, 1.57, -90deg\") or name=value pairs, joints that are not\n"
       "named at 0; rad or m, angles also as 90deg.\n"
+      "A trajectory is a CSV file: its first line names the columns, 'time' and joints; times in the answer are the file's.\n"
       "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget).");
 
   check->add_option("--robot", o.robot, "Robot (URDF)")->required()->group("Robot and scene")->type_name("FILE");
@@ -195,8 +225,12 @@ void addCheck(CLI::App& program, int& exit_status) {
   check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");
 
-  check->add_option("--from", o.from, "Configuration at t = 0")->required()->group("Motion")->type_name("Q");
-  check->add_option("--to", o.to, "Configuration at t = 1")->required()->group("Motion")->type_name("Q");
+  CLI::Option* from = check->add_option("--from", o.from, "Configuration at t = 0")->group("Motion")->type_name("Q");
+  CLI::Option* to = check->add_option("--to", o.to, "Configuration at t = 1")->group("Motion")->type_name("Q");
+  CLI::Option* trajectory = check->add_option("--trajectory", o.trajectory, "Waypoints (CSV) instead of --from and --to")
+                                ->excludes(from)->excludes(to)->group("Motion")->type_name("FILE");
+  check->add_option("--interpolation", o.interpolation, "Between waypoints: linear, or cubic (smooth, from rest to rest)")
+      ->check(CLI::IsMember({"linear", "cubic"}))->needs(trajectory)->group("Motion")->capture_default_str();
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   const auto number = [&](const std::string& name, double& value, const std::string& help) {
@@ -226,7 +260,10 @@ void addCheck(CLI::App& program, int& exit_status) {
                                           "without it a view that shows the contact is chosen")
       ->check(requireCamera)->needs(image)->group("Output")->type_name("AZ,EL");
 
-  check->callback([options, &exit_status] {
+  check->callback([options, from, to, trajectory, &exit_status] {
+    for (const CLI::Option* end : {from, to}) {
+      if (end->count() == 0 && trajectory->count() == 0) throw CLI::RequiredError(end->get_name());
+    }
     try {
       exit_status = run(*options);
     } catch (const std::exception& error) {

@@ -35,7 +35,7 @@ std::string variableNames(const KinematicTree& tree) {
 }
 
 double parseValue(const KinematicTree& tree, int variable, std::string_view text, const std::string& option) {
-  const Joint& joint = tree.joint(tree.variableJoint(variable));
+  const std::string& name = tree.variableName(variable);
   const std::string whole(text);
   const bool degrees = text.size() > 3 && text.substr(text.size() - 3) == "deg";
   if (degrees) text.remove_suffix(3);
@@ -45,14 +45,18 @@ double parseValue(const KinematicTree& tree, int variable, std::string_view text
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
     throw std::invalid_argument(
         fmt::format("{}: '{}' for joint '{}' is not a finite number (rad or m, or an angle as 90deg)", option, whole,
-                    joint.name));
+                    name));
   }
-  if (degrees && joint.type == JointType::prismatic) {
+  if (degrees && !tree.isAngle(variable)) {
+    const bool prismatic = tree.joint(tree.variableJoint(variable)).type == JointType::prismatic;
     throw std::invalid_argument(
-        fmt::format("{}: '{}' for joint '{}': the joint is prismatic, its value is in m", option, whole, joint.name));
+        prismatic ? fmt::format("{}: '{}' for joint '{}': the joint is prismatic, its value is in m", option, whole, name)
+                  : fmt::format("{}: '{}' for '{}', which is no angle", option, whole, name));
   }
   return degrees ? value * kRadiansPerDegree : value;
 }
+
+}  // namespace
 
 int variableOf(const KinematicTree& tree, const std::string& name, const std::string& option) {
   for (int v = 0; v < tree.dof(); ++v) {
@@ -61,6 +65,10 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     const Joint& joint = tree.joint(j);
     if (joint.name != name) continue;
+    if (tree.numVariables(j) > 1) {
+      throw std::invalid_argument(fmt::format("{}: joint '{}' has {} values, from '{}' on", option, name,
+                                              tree.numVariables(j), tree.variableName(tree.jointVariable(j))));
+    }
     throw std::invalid_argument(
         joint.mimics ? fmt::format("{}: joint '{}' follows joint '{}' and takes no value", option, name,
                                    joint.mimic.master)
@@ -69,8 +77,6 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
   throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}", option, tree.name(),
                                           name, variableNames(tree)));
 }
-
-}  // namespace
 
 Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<std::string>& words,
                                    const std::string& option) {
@@ -81,7 +87,7 @@ Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<
                                             tokens.size() == 1 ? "" : "s", tree.name(), tree.dof(),
                                             tree.dof() == 1 ? "" : "s", variableNames(tree)));
   }
-  Eigen::VectorXd q = Eigen::VectorXd::Zero(tree.dof());
+  Eigen::VectorXd q = tree.neutralConfiguration();
   std::set<int> seen;
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const std::string& token = tokens[i];

@@ -42,10 +42,12 @@ std::string bodyText(const BodyRef& body, std::intptr_t primitive) {
 std::string jointsText(const KinematicTree& tree, const Eigen::VectorXd& q) {
   std::string text;
   for (int v = 0; v < tree.dof(); ++v) {
-    const bool prismatic = tree.joint(tree.variableJoint(v)).type == JointType::prismatic;
+    const int quaternion = tree.quaternionVariable(tree.variableJoint(v));
+    const bool length = !tree.isAngle(v) && (quaternion < 0 || v < quaternion);
     text += v ? ", " : "";
-    text += prismatic ? fmt::format("{} = {:.6g} m", tree.variableName(v), q[v])
-                      : fmt::format("{} = {:.6g} rad ({:.2f} deg)", tree.variableName(v), q[v], q[v] * kDegreesPerRadian);
+    text += fmt::format("{} = {:.6g}", tree.variableName(v), q[v]);
+    if (length) text += " m";
+    if (tree.isAngle(v)) text += fmt::format(" rad ({:.2f} deg)", q[v] * kDegreesPerRadian);
   }
   return text;
 }
@@ -95,7 +97,9 @@ std::string headline(const Report& r) {
     case Status::contact: {
       const std::string what =
           r.request.margin > 0 ? fmt::format("first approach within {:g} m", r.request.margin) : "first contact";
-      if (result.t_upper <= 0) return fmt::format("CONTACT: at the start, t = 0{}.", result.certain ? ", proven" : "");
+      if (result.t_upper <= r.begin) {
+        return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
+      }
       return result.certain
                  ? fmt::format("CONTACT: {} at t = {:.6g}, proven; free before.", what, result.t_lower)
                  : fmt::format("CONTACT (not certain): at t = {:.6g} a pair is nearer than can be decided within the "
@@ -187,10 +191,10 @@ std::string textReport(const Report& r) {
   }
   if (result.status != Status::free) {
     text += entry("joints", fmt::format("at t = {:.12g}: {}", result.t_lower,
-                                        jointsText(r.tree, r.motion.configuration(result.t_lower))));
+                                        jointsText(r.tree, r.configuration(result.t_lower))));
   }
   for (const auto& [a, b] : result.ignored_initial_contacts) {
-    text += entry("ignored", fmt::format("'{}' and '{}' touch at t = 0 and may separate", a.name, b.name));
+    text += entry("ignored", fmt::format("'{}' and '{}' touch at t = {:g} and may separate", a.name, b.name, r.begin));
   }
   for (const std::string& note : r.notes) text += entry("note", note);
   return text + entry("work", statisticsText(result.statistics));
@@ -206,10 +210,12 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"t_lower", result.t_lower},
           {"t_upper", result.t_upper},
           {"certain", result.certain},
+          {"t_begin", r.begin},
+          {"t_end", r.end},
           {"robot", r.tree.name()},
-          {"q_from", valuesJson(r.tree, r.motion.configuration(0))},
-          {"q_to", valuesJson(r.tree, r.motion.configuration(1))},
-          {"q_at_t_lower", valuesJson(r.tree, r.motion.configuration(result.t_lower))},
+          {"q_from", valuesJson(r.tree, r.configuration(r.begin))},
+          {"q_to", valuesJson(r.tree, r.configuration(r.end))},
+          {"q_at_t_lower", valuesJson(r.tree, r.configuration(result.t_lower))},
           {"contacts", contacts},
           {"poses", posesJson(r)},
           {"ignored_initial_contacts", ignored},

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "fcl_artic/joint_motion.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
@@ -16,10 +16,11 @@ namespace fcl_artic::app {
 /// A query and its answer, as they are reported.
 struct Report {
   const KinematicTree& tree;
-  const JointMotion& motion;
   const CertifiedRequest& request;
   const CertifiedResult& result;
   const std::vector<std::string>& notes;  ///< one line each
+  std::function<Eigen::VectorXd(double t)> configuration;
+  double begin = 0, end = 1;  ///< of the motion
 };
 
 /// The answer for a reader.

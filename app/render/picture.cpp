@@ -148,7 +148,7 @@ Body annotation(const Triangles& triangles, unsigned hex, float glow) {
 /// Puts the parts of a picture together.
 class Composer {
  public:
-  Composer(const Robot& robot, const std::vector<Scene::Obstacle>& obstacles, const JointMotion& motion,
+  Composer(const Robot& robot, const std::vector<Scene::Obstacle>& obstacles, const JointPath& motion,
            const CertifiedResult& result)
       : tree_(*robot.tree), motion_(motion), result_(result) {
     for (const LinkGeometry& g : robot.geometry) {
@@ -259,7 +259,7 @@ class Composer {
 
   Poses posesAt(double t) const {
     Poses M_0;
-    tree_.forwardKinematics(motion_.configuration(t), M_0);
+    tree_.forwardKinematics(motion_(t), M_0);
     return M_0;
   }
   static Isometry3d poseOf(const LinkPart& part, const Poses& M_0) {
@@ -388,7 +388,7 @@ class Composer {
   }
 
   const KinematicTree& tree_;
-  const JointMotion& motion_;
+  const JointPath& motion_;
   const CertifiedResult& result_;
   Surfaces surfaces_;
   std::vector<LinkPart> parts_;
@@ -407,7 +407,7 @@ class Composer {
 void requirePictures() {}
 
 void writePicture(const std::string& path, const Robot& robot, const std::vector<Scene::Obstacle>& obstacles,
-                  const JointMotion& motion, const CertifiedResult& result, const PictureOptions& options) {
+                  const JointPath& motion, const CertifiedResult& result, const PictureOptions& options) {
   const Composer composer(robot, obstacles, motion, result);
   Renderer renderer;
   const double aspect = static_cast<double>(options.width) / options.height;

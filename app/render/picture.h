@@ -2,15 +2,18 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "fcl_artic/joint_motion.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic::render {
+
+/// Joint values at t in [0, 1].
+using JointPath = std::function<Eigen::VectorXd(double t)>;
 
 struct PictureOptions {
   int width = 1600, height = 1000;                ///< pixels
@@ -23,8 +26,9 @@ void requirePictures();
 
 /// Draws an answer, off screen, as PNG: the robot at t_lower, the obstacles, the sweep as translucent poses (paler
 /// after the contact), and the first contact with its normal. The bodies that touch are highlighted.
+/// @param result  with t_lower in [0, 1], as the path.
 /// @throws std::runtime_error naming the file when it can't be written, or the reason when nothing can be drawn.
 void writePicture(const std::string& path, const Robot& robot, const std::vector<Scene::Obstacle>& obstacles,
-                  const JointMotion& motion, const CertifiedResult& result, const PictureOptions& options);
+                  const JointPath& motion, const CertifiedResult& result, const PictureOptions& options);
 
 }  // namespace fcl_artic::render

@@ -10,7 +10,7 @@ void requirePictures() {
   throw std::runtime_error("--image: this program was built without OSMesa and libpng and can't draw pictures");
 }
 
-void writePicture(const std::string&, const Robot&, const std::vector<Scene::Obstacle>&, const JointMotion&,
+void writePicture(const std::string&, const Robot&, const std::vector<Scene::Obstacle>&, const JointPath&,
                   const CertifiedResult&, const PictureOptions&) {
   requirePictures();
 }

@@ -141,6 +141,27 @@ TEST_F(SrdfTest, RestIsWithinTheLimits) {
   EXPECT_EQ(reasons(generateAllowedCollisions(robot, 200)).count({"block", "slider"}), 0u);
 }
 
+TEST_F(SrdfTest, SamplesSayNothingAcrossPlanarAndFloatingJoints) {
+  // Two of a kind float apart, each with a far tip on a spherical joint's stem, which never comes near its foot.
+  std::string xml = "<robot name='two'><link name='world'/>";
+  for (const std::string name : {"a", "b"}) {
+    const auto link = [&](const std::string& part) {
+      return "<link name='" + name + part + "'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>";
+    };
+    xml += link("foot") + link("stem") + link("tip");
+    xml += "<joint name='" + name + "1' type='" + (name == "a" ? "floating" : "planar") + "'><parent link='world'/><child link='" + name +
+           "foot'/><origin xyz='" + (name == "a" ? "3" : "0") + " 0 0'/><axis xyz='0 0 1'/></joint>";
+    xml += "<joint name='" + name + "2' type='continuous'><parent link='" + name + "foot'/><child link='" + name +
+           "stem'/><origin xyz='1 0 0'/></joint>";
+    xml += "<joint name='" + name + "3' type='continuous'><parent link='" + name + "stem'/><child link='" + name +
+           "tip'/><origin xyz='1 0 0'/></joint>";
+  }
+  const auto by_name = reasons(generateAllowedCollisions(loadUrdf(write("two.urdf", xml + "</robot>")), 50));
+  EXPECT_EQ(by_name.at({"afoot", "atip"}), "Never");
+  EXPECT_EQ(by_name.at({"bfoot", "btip"}), "Never");
+  for (const auto& [pair, reason] : by_name) EXPECT_EQ(pair.first[0], pair.second[0]) << pair.first << " " << pair.second;
+}
+
 TEST_F(SrdfTest, RefusesBadArguments) {
   const Robot robot = loadUrdf(write("mill.urdf", kRobot));
   expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(robot, 0); }), "samples is 0");

@@ -57,8 +57,14 @@ std::set<LinkPair> adjacentPairs(const KinematicTree& tree, const std::vector<bo
   return pairs;
 }
 
-/// Range that configurations are drawn from; a prismatic joint without limits stays at 0.
-std::pair<double, double> samplingRange(const Joint& joint) {
+/// Range that variable v is drawn from; lengths without limits stay at 0, quaternions are normalised afterwards.
+std::pair<double, double> samplingRange(const KinematicTree& tree, int v) {
+  const Joint& joint = tree.joint(tree.variableJoint(v));
+  if (KinematicTree::numVariables(joint.type) > 1) {
+    const int quaternion = tree.quaternionVariable(tree.variableJoint(v));
+    if (quaternion >= 0 && v >= quaternion) return {-1, 1};
+    return tree.isAngle(v) ? std::make_pair(-kPi, kPi) : std::make_pair(0.0, 0.0);
+  }
   const bool limited = joint.type != JointType::continuous && joint.lower <= joint.upper &&
                        !(joint.lower == 0 && joint.upper == 0) && std::isfinite(joint.lower) &&
                        std::isfinite(joint.upper);
@@ -143,15 +149,38 @@ std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int sampl
     allowed.push_back({tree.linkName(pair.first), tree.linkName(pair.second), reason});
   };
   const std::set<LinkPair> adjacent = adjacentPairs(tree, has_geometry);
-  for (const LinkPair& pair : adjacent) allow(pair, "Adjacent");
+  // Planar and floating joints slide without bounds: neighbourhood and samples say nothing of links on both sides of one.
+  std::vector<LinkId> part(static_cast<std::size_t>(tree.numLinks()));
+  for (const LinkId link : tree.topologicalOrder()) {
+    const JointId j = tree.parentJoint(link);
+    const JointType type = j < 0 ? JointType::floating : tree.joint(j).type;
+    const bool slides = type == JointType::floating || type == JointType::planar;
+    part[static_cast<std::size_t>(link)] = slides ? link : part[static_cast<std::size_t>(tree.parentLink(link))];
+  }
+
+  const auto together = [&](const LinkPair& pair) {
+    return part[static_cast<std::size_t>(pair.first)] == part[static_cast<std::size_t>(pair.second)];
+  };
+  for (const LinkPair& pair : adjacent) {
+    if (together(pair)) allow(pair, "Adjacent");
+  }
 
   std::vector<std::pair<double, double>> ranges;
   Eigen::VectorXd q(tree.dof());
   for (int v = 0; v < tree.dof(); ++v) {
-    const auto [lower, upper] = ranges.emplace_back(samplingRange(tree.joint(tree.variableJoint(v))));
+    const auto [lower, upper] = ranges.emplace_back(samplingRange(tree, v));
     // Where 0 is beyond the limits, contacts at 0 would excuse pairs that never pass there.
     q[v] = lower <= 0 && upper >= 0 ? 0 : (lower + upper) / 2;
   }
+  const auto normaliseQuaternions = [&] {
+    for (JointId j = 0; j < tree.numJoints(); ++j) {
+      const int v = tree.quaternionVariable(j);
+      if (v < 0) continue;
+      const double length = q.segment<4>(v).norm();
+      q.segment<4>(v) = length > 0.1 ? Eigen::Vector4d(q.segment<4>(v) / length) : Eigen::Vector4d(0, 0, 0, 1);
+    }
+  };
+  normaliseQuaternions();
 
   struct Candidate {
     LinkPair pair;
@@ -163,6 +192,7 @@ std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int sampl
   for (LinkId a = 0; a < tree.numLinks(); ++a) {
     for (LinkId b = a + 1; b < tree.numLinks(); ++b) {
       if (!has_geometry[a] || !has_geometry[b] || adjacent.count({a, b})) continue;
+      if (!together({a, b})) continue;
       if (collider.touch({a, b})) {
         allow({a, b}, "Default");
       } else {
@@ -178,6 +208,7 @@ std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int sampl
       const double u = std::ldexp(static_cast<double>(random() >> 11), -53);
       q[v] = ranges[v].first + u * (ranges[v].second - ranges[v].first);
     }
+    normaliseQuaternions();
     collider.setConfiguration(q);
     for (Candidate& candidate : candidates) {
       const bool touches = collider.touch(candidate.pair);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fcl_artic/trajectory.h"
+
+namespace fcl_artic::app {
+
+enum class Interpolation { linear, cubic };
+
+/// Waypoints of a file: comma separated values, of which the first line names the columns: `time` (or `t`) and variables
+/// of the robot, in any order; those that are not named stay at 0 (a quaternion at no rotation). Empty lines and lines that
+/// begin with # are passed over.
+struct Waypoints {
+  std::vector<double> times;
+  std::vector<Eigen::VectorXd> configurations;
+};
+
+/// @throws std::invalid_argument naming file, line and column.
+Waypoints readWaypoints(const KinematicTree& tree, const std::string& path);
+
+/// `cubic` passes each inner waypoint at the speed of the parabola through it and its neighbours, and starts and ends at
+/// rest.
+/// @param shortest  joints that turn forever take the shorter way from waypoint to waypoint.
+JointTrajectory interpolate(const KinematicTree& tree, const Waypoints& waypoints, Interpolation interpolation,
+                            bool shortest);
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// fcl_artic check --trajectory: times, columns, refusals.
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+// As in program_test.cpp.
+const double kContactAngle = M_PI / 3 - std::asin(0.15 / 0.6);
+
+class TrajectoryProgramTest : public ProgramTest {
+ protected:
+  Outcome check(const std::string& csv, const std::string& more = "") const {
+    return run("check " + armAndBall() + " --trajectory " + write("way.csv", csv) + " " + more);
+  }
+};
+
+TEST_F(TrajectoryProgramTest, ContactIsInTheTimeOfTheFile) {
+  // Second column order, blanks, comments; 0.5 rad/s from t = 3 on, where the hinge is at 0.25.
+  const std::string csv = "# a way\nrail, time ,hinge\r\n0,1,0\n\n0,3,0.25\n0.5,5,1.25\n";
+  const double wanted = 3 + (kContactAngle - 0.25) / 0.5;
+  const Outcome run = check(csv, "--json");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const Json answer = Json::parse(run.out);
+  EXPECT_EQ(answer.at("t_begin"), 1);
+  EXPECT_EQ(answer.at("t_end"), 5);
+  EXPECT_LE(answer.at("t_lower"), wanted + 1e-9);
+  EXPECT_GE(answer.at("t_upper"), wanted - 1e-9);
+  EXPECT_LE(answer.at("t_upper").get<double>() - answer.at("t_lower").get<double>(), 1.1e-6);
+  EXPECT_NEAR(answer.at("q_at_t_lower").at("hinge"), kContactAngle, 1e-5);
+  EXPECT_EQ(answer.at("q_to").at("rail"), 0.5);
+  EXPECT_NEAR(answer.at("contacts").at(0).at("t_lower"), wanted, 1e-5);
+
+  const Outcome text = check(csv);
+  EXPECT_EQ(text.status, 1);
+  EXPECT_EQ(text.out.rfind("CONTACT: first contact at t = 4.08903", 0), 0u) << text.out;
+  EXPECT_NEAR(wanted, 4.08903, 1e-5);
+  EXPECT_EQ(check("t,hinge\n0,0\n1,0.5\n").status, 0);
+}
+
+/// From rest to rest between two waypoints: q = 1.5 (3 s^2 - 2 s^3), half way at half the time.
+TEST_F(TrajectoryProgramTest, CubicStartsAndEndsAtRest) {
+  const Outcome run = check("t,hinge\n10,0\n14," + std::to_string(2 * kContactAngle) + "\n", "--interpolation cubic --json");
+  ASSERT_EQ(run.status, 1) << run.err;
+  EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 12, 1e-5);  // std::to_string has six digits
+}
+
+TEST_F(TrajectoryProgramTest, RefusesWithLineAndColumn) {
+  const auto refused = [&](const std::string& csv, const std::string& reason) {
+    const Outcome run = check(csv);
+    EXPECT_EQ(run.status, 2) << csv;
+    EXPECT_NE(run.err.find(reason), std::string::npos) << run.err;
+    EXPECT_EQ(run.out, "");
+  };
+  refused("hinge\n0\n1\n", "line 1: no column 'time'");
+  refused("time,elbow\n0,0\n1,1\n", "line 1: robot 'arm' has no joint 'elbow'; its joints are: hinge, rail");
+  refused("time,hinge,hinge\n0,0,0\n1,1,1\n", "line 1: column 'hinge' is there twice");
+  refused("time,hinge\n0,0\n1,x\n", "line 3, column 'hinge': 'x' is not a finite number");
+  refused("time,hinge\n0,0\n1,nan\n", "line 3, column 'hinge': 'nan'");
+  refused("time,hinge\n0,0\n1,\n", "line 3, column 'hinge': ''");
+  refused("time,hinge\n0,0\n1,1,1\n", "line 3 has 3 columns, the first line names 2");
+  refused("time,hinge\n0,0\n0,1\n", "line 3, column 'time': 0 is not later than the time before, 0");
+  refused("time,hinge\n0,0\n", "has 1 waypoint, a trajectory needs two");
+  refused("", "has 0 waypoints");
+  EXPECT_EQ(run("check " + armAndBall() + " --trajectory /nowhere.csv").status, 2);
+  EXPECT_EQ(run("check " + armAndBall() + " --from 0,0").status, 2);
+  EXPECT_EQ(run("check " + armAndBall()).status, 2);
+  EXPECT_EQ(check("t,hinge\n0,0\n1,0.5\n", "--from 0,0").status, 2);
+  EXPECT_EQ(check("t,hinge\n0,0\n1,0.5\n", "--interpolation wild").status, 2);
+}
+
+TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
+  const std::string robot = write("free.urdf", R"(<robot name="free"><link name="world"/><link name="body">
+  <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <joint name="base" type="floating"><parent link="world"/><child link="body"/></joint></robot>)");
+  // To the ball at (0.3, 0.52, 0) along y: they are 0.2 apart at y = 0.3196.
+  const Outcome run = this->run("check --json --robot " + robot + " --scene " + ball() + " --trajectory " +
+                                write("fly.csv", "t,base/trans_x,base/trans_y,base/rot_z,base/rot_w\n0,0.3,0,0,1\n1,0.3,1,1,0\n"));
+  ASSERT_EQ(run.status, 1) << run.err;
+  EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 0.519615242270663 - 0.2, 1e-5);
+  const Outcome flat = this->run("check --robot " + robot + " --from base/rot_x=1 --to base/rot_x=1");
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_NE(flat.err.find("quaternion of joint 'base'"), std::string::npos) << flat.err;
+  EXPECT_NE(this->run("check --robot " + robot + " --from base=1 --to base=1").err.find("joint 'base' has 7 values"),
+            std::string::npos);
+}
+
+}  // namespace
