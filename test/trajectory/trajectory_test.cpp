@@ -176,6 +176,26 @@ TEST(Trajectory, WhatIsIgnoredAtAWaypointIsOnlyWhatWasBefore) {
   EXPECT_TRUE(free.isFree());
 }
 
+/// The pair that was ignored has separated, comes back nearly, and the same kind of jump brings it into contact.
+TEST(Trajectory, WhatHasSeparatedIsNotIgnoredAgain) {
+  Scene scene;
+  scene.add("slide", JointType::prismatic, "base", "cart", Vector3d::UnitX());
+  scene.bind("cart", std::make_shared<fcl::Boxd>(0.25, 0.25, 0.25));
+  scene.obstacle("wall", std::make_shared<fcl::Boxd>(1, 1, 1), translation({1, 0, 0}));  // at 0.375
+  CertifiedRequest request;
+  request.ignore_initial_contact = true;
+  request.tolerance_distance = 1e-12;
+  const double near = 4e-10;
+  MatrixXd loop(1, 3), away(1, 2);
+  loop << 0.4, -0.4, 0.375 - near;  // 0.293 on the way, 0.375 - near in the end
+  away << 0.375 + near, -0.5;
+  const CertifiedResult r = scene.run(JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {loop, away}), request);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_EQ(r.t_lower, 1);
+  away(0, 0) = 0.375 - near;
+  EXPECT_TRUE(scene.run(JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {loop, away}), request).isFree());
+}
+
 TEST(Trajectory, BudgetIsForAllPieces) {
   Slider slider;  // nearly touches a ball whose box it meets
   slider.obstacle("ball", std::make_shared<fcl::Sphered>(0.1), translation({0.53, 0.15, 0}));
