@@ -158,6 +158,7 @@ class Solver {
   bool advance(Final& f, double stop, bool patient);
   bool settle(Final& f, double stop);
   bool prove(Final& f);
+  void lookBack(Final& f);
   void describe(Final& f, LeafContact& contact);
   void orderContacts(int begin, double bracket);
   void traverse(int pair, int a, int b, unsigned mask);
@@ -1232,8 +1233,31 @@ inline bool Solver::prove(Final& f) {
   return false;
 }
 
+/// A pair that was never seen apart, as it touches where its window begins: looks back, ever farther, to where it was.
+inline void Solver::lookBack(Final& f) {
+  double tm[kLanes], step = query_->tolerance_time;
+  for (double& t : tm) {
+    t = max(0.0, f.t_lower - step);
+    step *= 4;
+  }
+  evaluateAt(tm, 0);
+  setupPair(f.entry.pair);
+  const Piece *a, *b;
+  piecesOf(f, a, b);
+  for (int k = 0; k < kLanes && !f.have_normal; ++k) {
+    const DifferenceBody body = differenceAt(*a, *b, k);
+    GjkResult g;
+    gjk(body, body.pose.c, 1e-7, a->radius + b->radius + query_->margin, 64, g);
+    ++statistics_.gjk;
+    if (g.overlap) continue;
+    for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
+    f.have_normal = true;
+  }
+}
+
 /// Point and normal of a pair that is stuck.
 inline void Solver::describe(Final& f, LeafContact& contact) {
+  if (!f.have_normal && f.t_lower > 0) lookBack(f);
   const double tm[kLanes] = {f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower};
   evaluateAt(tm, 0);
   setupPair(f.entry.pair);
