@@ -169,7 +169,7 @@ class Solver {
   void claimOverlap(int lane);
   unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
   bool proveVertexInside(int pair, int lane);
-  bool proveLeaves(int pair, int piece_a, int piece_b, int lane, const double* guess);
+  bool proveLeaves(int pair, int piece_a, int piece_b, int lane);
   bool proveAnywhere();
   bool finished() const { return out_of_budget_ || (query_->any && limit_ < 2); }
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
@@ -225,12 +225,12 @@ class Solver {
   Buffer<Entry> overlapping_;  ///< pairs whose hulls overlap in the middles of lanes of the first batch
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
   Buffer<Ignored> ignored_;
-  /// A leaf pair that is followed by itself.
+  /// What is followed by itself: a leaf pair, the hulls around a pair of bodies, or parts of these.
   struct Final {
     Entry entry;
-    bool hulls;        ///< of the hulls around the bodies, not of two leaves
-    bool pieces;       ///< of neither: of the entries only
-    std::int32_t first, count;  ///< of the hulls: the entries below them
+    bool hulls;        ///< the hulls, not a leaf pair
+    bool pieces;       ///< neither: the entries only
+    std::int32_t first, count;  ///< of a lane of the first batch: its entries
     double t_lower;    ///< free before
     double normal[3];  ///< GJK's witness at t_lower
     double gap;        ///< along it
@@ -396,10 +396,7 @@ inline void Solver::setupPair(int index) {
   amplitude_ = sqrt(maxLane(dot(v, v))) + b.rates.a * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
-  if (witness_pair_ != index) {
-    have_witness_ = false;
-    for (double& x : witness_) x = 0;
-  }
+  if (witness_pair_ != index) have_witness_ = false;
   witness_pair_ = index;
 }
 
@@ -595,7 +592,7 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
     if (tm_at_[lane] < watchFrom(pair)) return;
-    if (query_->any && !decide_only_ && proveLeaves(pair, piece_a, piece_b, lane, witness_)) return;
+    if (query_->any && !decide_only_ && proveLeaves(pair, piece_a, piece_b, lane)) return;
     claimOverlap(lane);
   });
 }
@@ -812,12 +809,12 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
 }
 
 /// Contact of two leaves at a lane's middle, where any contact is asked for.
-inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane, const double* guess) {
+inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane) {
   const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
   const DifferenceBody body = differenceAt(a, b, lane);
   LeafContact contact = {};
   ++statistics_.contact_proofs;
-  const double* start = norm(guess) > 0 ? guess : body.pose.c;
+  const double* start = have_witness_ ? witness_ : body.pose.c;
   if (!certainlyTouching(body, query_->margin, pose_error_, start, contact.point)) return false;
   const PairParts bodies = parts(pair);
   contact.pair = pair;
@@ -963,7 +960,7 @@ inline void Solver::solvePieces(const Final& f, double stop, int begin, int end,
   have_witness_ = f.have_normal;
   const double size = kFirstWindow * min(side_[0].still->nodes[0].radius, side_[0].moving->nodes[0].radius);
   stop = min(stop, limit_);
-  double span = f.speed * (stop - f.t_lower) > size ? size / f.speed : stop - f.t_lower;
+  double span = f.speed * (stop - f.t_lower) > size ? max(size / f.speed, kNarrowestLane) : stop - f.t_lower;
   const int roots = entries_.size();
   for (double t = f.t_lower; t < min(stop, limit_); span *= 8) {
     const double next = t + 1.5 * span < min(stop, limit_) ? t + span : min(stop, limit_);

@@ -166,18 +166,8 @@ class Earliest {
   using Clock = std::chrono::steady_clock;
 
   void add(const QueryStatistics& s) {
-    QueryStatistics& sum = result_.statistics;
-    ++sum.pairs_after_culling;
-    sum.batches += s.batches;
-    sum.motion_evaluations += s.motion_evaluations;
-    sum.node_tests += s.node_tests;
-    sum.leaf_tests += s.leaf_tests;
-    sum.certificates += s.certificates;
-    sum.gjk += s.gjk;
-    sum.contact_proofs += s.contact_proofs;
-    sum.culling_us += s.culling_us;
-    sum.narrowphase_us += s.narrowphase_us;
-    sum.report_us += s.report_us;
+    ++result_.statistics.pairs_after_culling;
+    addWork(s, result_.statistics);
   }
 
   CertifiedRequest request_;

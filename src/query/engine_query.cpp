@@ -69,6 +69,19 @@ QueryStatistics statisticsOf(const engine::Statistics& s) {
   return out;
 }
 
+void addWork(const QueryStatistics& s, QueryStatistics& sum) {
+  sum.batches += s.batches;
+  sum.motion_evaluations += s.motion_evaluations;
+  sum.node_tests += s.node_tests;
+  sum.leaf_tests += s.leaf_tests;
+  sum.certificates += s.certificates;
+  sum.gjk += s.gjk;
+  sum.contact_proofs += s.contact_proofs;
+  sum.culling_us += s.culling_us;
+  sum.narrowphase_us += s.narrowphase_us;
+  sum.report_us += s.report_us;
+}
+
 Status statusOf(engine::Verdict verdict) {
   switch (verdict) {
     case engine::Verdict::free: return Status::free;

@@ -45,16 +45,7 @@ struct Clock {
 void add(QueryStatistics& sum, const QueryStatistics& s) {
   sum.pairs += s.pairs;
   sum.pairs_after_culling += s.pairs_after_culling;
-  sum.batches += s.batches;
-  sum.motion_evaluations += s.motion_evaluations;
-  sum.node_tests += s.node_tests;
-  sum.leaf_tests += s.leaf_tests;
-  sum.certificates += s.certificates;
-  sum.gjk += s.gjk;
-  sum.contact_proofs += s.contact_proofs;
-  sum.culling_us += s.culling_us;
-  sum.narrowphase_us += s.narrowphase_us;
-  sum.report_us += s.report_us;
+  addWork(s, sum);
   sum.total_us += s.total_us;
 }
 
