@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Intervals of real numbers, rounded outward. Every operation and function of this file must run under RoundUpward
+// (rounding.h); then its result holds all real results for arguments in the operands: a proof, in floating point.
+//
+// The pair (-lo, hi) is kept instead of (lo, hi): both are bounds from above, so that one direction of rounding serves
+// both, and a sum of intervals is one instruction. Ends lie in [-2^1024, 2^1024) as (-lo, hi) see it: an overflow gives
+// an infinite end, which is true, and no operation makes NaN (doc/INTERVALS.md).
+#pragma once
+
+#include "interval/rounding.h"
+
+namespace fcl_artic {
+
+class Interval {
+ public:
+  Interval() = default;  ///< not set
+  /// One number. NaN becomes the whole line.
+  FCL_ARTIC_INLINE Interval(double x) : Interval(x, x) {}  // NOLINT: exact
+  /// [lower, upper], lower <= upper. A NaN is no bound: it becomes an infinite end.
+  FCL_ARTIC_INLINE Interval(double lower, double upper) : v_(known(_mm_set_pd(upper, -lower))) {}
+  static FCL_ARTIC_INLINE Interval entire() { return raw(infinities()); }
+  /// From (-lower, upper), not NaN.
+  static FCL_ARTIC_INLINE Interval raw(__m128d v) {
+    Interval o;
+    o.v_ = v;
+    return o;
+  }
+
+  FCL_ARTIC_INLINE double lower() const { return -_mm_cvtsd_f64(v_); }
+  FCL_ARTIC_INLINE double upper() const { return _mm_cvtsd_f64(_mm_unpackhi_pd(v_, v_)); }
+  FCL_ARTIC_INLINE __m128d raw() const { return v_; }
+
+  /// Upper bound of the width.
+  FCL_ARTIC_INLINE double width() const { return _mm_cvtsd_f64(directed::add(v_, swapped())); }
+  /// A number in the interval near its middle; ends finite.
+  FCL_ARTIC_INLINE double middle() const {
+    const double m = 0.5 * lower() + 0.5 * upper();
+    return m < lower() ? lower() : m > upper() ? upper() : m;
+  }
+  /// Largest |x|.
+  FCL_ARTIC_INLINE double magnitude() const { return _mm_cvtsd_f64(_mm_max_sd(v_, swapped())); }
+  /// Smallest |x|.
+  FCL_ARTIC_INLINE double mignitude() const {
+    const double least = -_mm_cvtsd_f64(_mm_min_sd(v_, swapped()));
+    return least > 0 ? least : 0;
+  }
+
+  FCL_ARTIC_INLINE bool contains(double x) const { return lower() <= x && x <= upper(); }
+  FCL_ARTIC_INLINE bool contains(Interval x) const { return lower() <= x.lower() && x.upper() <= upper(); }
+  FCL_ARTIC_INLINE bool containsZero() const { return lower() <= 0 && upper() >= 0; }
+  FCL_ARTIC_INLINE bool certainlyPositive() const { return lower() > 0; }
+  FCL_ARTIC_INLINE bool certainlyNegative() const { return upper() < 0; }
+  /// No number; only intersection() makes such.
+  FCL_ARTIC_INLINE bool isEmpty() const { return !(lower() <= upper()); }
+  FCL_ARTIC_INLINE bool isFinite() const { return magnitude() <= kLargest; }
+
+  /// Highest finite number.
+  static constexpr double kLargest = 1.7976931348623157e308;
+
+ private:
+  static FCL_ARTIC_INLINE __m128d infinities() { return _mm_set1_pd(__builtin_inf()); }
+  /// MINPD gives its second operand where the first one is NaN.
+  static FCL_ARTIC_INLINE __m128d known(__m128d v) { return _mm_min_pd(v, infinities()); }
+  FCL_ARTIC_INLINE __m128d swapped() const { return _mm_shuffle_pd(v_, v_, 1); }
+  static FCL_ARTIC_INLINE __m128d negated(__m128d v) { return _mm_xor_pd(v, _mm_set1_pd(-0.0)); }
+  __m128d v_;
+
+  friend Interval operator+(Interval a, Interval b);
+  friend Interval operator-(Interval a, Interval b);
+  friend Interval operator-(Interval a);
+  friend Interval operator*(Interval a, Interval b);
+  friend Interval operator*(Interval a, double b);
+  friend Interval operator/(Interval a, Interval b);
+  friend Interval square(Interval a);
+  friend Interval sqrt(Interval a);
+  friend Interval abs(Interval a);
+  friend Interval max(Interval a, Interval b);
+};
+
+FCL_ARTIC_INLINE Interval operator+(Interval a, Interval b) { return Interval::raw(directed::add(a.v_, b.v_)); }
+FCL_ARTIC_INLINE Interval operator-(Interval a, Interval b) { return Interval::raw(directed::add(a.v_, b.swapped())); }
+FCL_ARTIC_INLINE Interval operator-(Interval a) { return Interval::raw(a.swapped()); }
+
+/// The ends of a product are among the four products of ends. MAXPD gives its second operand where the first one is NaN:
+/// a product 0 * inf, which stands for 0 * (some number), is dropped, and another one covers it; if it is the first one
+/// there is, known() makes it an infinite end.
+FCL_ARTIC_INLINE Interval operator*(Interval a, Interval b) {
+  const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
+  const __m128d p = directed::mul(n, c), q = directed::mul(Interval::negated(n), b.v_), r = directed::mul(h, b.v_),
+                s = directed::mul(Interval::negated(h), c);
+  return Interval::raw(Interval::known(_mm_max_pd(p, _mm_max_pd(q, _mm_max_pd(s, r)))));
+}
+FCL_ARTIC_INLINE Interval operator*(Interval a, double b) {
+  const __m128d k = _mm_set1_pd(b);
+  return Interval::raw(
+      Interval::known(_mm_max_pd(directed::mul(a.swapped(), Interval::negated(k)), directed::mul(a.v_, k))));
+}
+FCL_ARTIC_INLINE Interval operator*(double a, Interval b) { return b * a; }
+
+/// The whole line where b contains 0.
+FCL_ARTIC_INLINE Interval operator/(Interval a, Interval b) {
+  if (b.containsZero()) return Interval::entire();
+  const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
+  const __m128d p = directed::div(n, c), q = directed::div(Interval::negated(n), b.v_), r = directed::div(h, b.v_),
+                s = directed::div(Interval::negated(h), c);
+  // inf/inf may stand for any number of its sign, so NaN must not be dropped.
+  const __m128d unknown = _mm_or_pd(_mm_cmpunord_pd(p, q), _mm_cmpunord_pd(r, s));
+  const __m128d most = _mm_max_pd(_mm_max_pd(p, q), _mm_max_pd(r, s));
+  return Interval::raw(Interval::known(_mm_or_pd(most, unknown)));
+}
+
+/// Tighter than a * a where a straddles 0.
+FCL_ARTIC_INLINE Interval square(Interval a) {
+  const Interval b = abs(a);
+  const __m128d h = b.v_;
+  return Interval::raw(directed::mul(h, _mm_xor_pd(h, _mm_set_pd(0.0, -0.0))));
+}
+
+/// Of the part of a that is not negative.
+FCL_ARTIC_INLINE Interval sqrt(Interval a) {
+  const __m128d x = _mm_max_pd(_mm_set_pd(a.upper(), a.lower()), _mm_setzero_pd());
+  const __m128d root = directed::sqrt(x);
+  // From above, so lower end's root is too high by less than one step, unless its square is not above it.
+  const __m128d squared = directed::mul(root, root);
+  const __m128d below = directed::add(Interval::negated(root), _mm_set1_pd(0x1p-1022));
+  const __m128d exact = _mm_cmple_pd(squared, x);
+  const __m128d lower = _mm_or_pd(_mm_and_pd(exact, Interval::negated(root)), _mm_andnot_pd(exact, below));
+  return Interval::raw(_mm_move_sd(root, lower));
+}
+
+FCL_ARTIC_INLINE Interval abs(Interval a) {
+  // -min|x| = min(0, max(lo's, hi's negative)) = min(0, max(lo, -hi) negated), max|x| = max(-lo, hi)
+  const __m128d s = a.swapped();
+  const __m128d least = _mm_min_pd(_mm_min_pd(a.v_, s), _mm_setzero_pd()), most = _mm_max_pd(a.v_, s);
+  return Interval::raw(_mm_move_sd(most, least));
+}
+
+/// { max(x, y) }
+FCL_ARTIC_INLINE Interval max(Interval a, Interval b) {
+  const __m128d most = _mm_max_pd(a.v_, b.v_), least = _mm_min_pd(a.v_, b.v_);
+  return Interval::raw(_mm_move_sd(most, least));
+}
+FCL_ARTIC_INLINE Interval min(Interval a, Interval b) { return -max(-a, -b); }
+
+/// The smallest interval that holds both.
+FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) { return Interval::raw(_mm_max_pd(a.raw(), b.raw())); }
+/// What both hold; may be empty. No operation takes an empty interval.
+FCL_ARTIC_INLINE Interval intersection(Interval a, Interval b) { return Interval::raw(_mm_min_pd(a.raw(), b.raw())); }
+
+FCL_ARTIC_INLINE bool certainlyLess(Interval a, Interval b) { return a.upper() < b.lower(); }
+FCL_ARTIC_INLINE bool certainlyDisjoint(Interval a, Interval b) { return certainlyLess(a, b) || certainlyLess(b, a); }
+
+FCL_ARTIC_INLINE Interval& operator+=(Interval& a, Interval b) { return a = a + b; }
+FCL_ARTIC_INLINE Interval& operator-=(Interval& a, Interval b) { return a = a - b; }
+FCL_ARTIC_INLINE Interval& operator*=(Interval& a, Interval b) { return a = a * b; }
+
+}  // namespace fcl_artic

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Directed rounding that a compiler can't undo. C++ knows no rounding mode: compilers fold, share and move floating-point
+// operations across a change of mode, -frounding-math or not (doc/INTERVALS.md, "Compiler hazards"). So every operation
+// that relies on the mode is an instruction of its own here, which the compiler doesn't look into, and which reads
+// `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of changes and operations.
+#pragma once
+
+#if !defined(__x86_64__)
+#error "directed rounding is written for x86-64; other processors take interval/batch_portable.cpp"
+#endif
+#ifdef __FAST_MATH__
+#error "fcl_artic proves bounds in floating point: it cannot be compiled with -ffast-math"
+#endif
+
+#include <immintrin.h>
+
+namespace fcl_artic {
+
+#define FCL_ARTIC_INLINE inline __attribute__((always_inline))
+
+/// Stands for the processor's rounding mode where the compiler orders operations. Never read or written in fact.
+__attribute__((visibility("hidden"))) inline char rounding_mode = 0;
+
+/// Rounds upward while it lives: all operations of Interval are enclosures then, in whatever mode the caller computes.
+/// Subnormals are kept and exceptions masked, too, for callers that flush the ones or trap the others. The caller's mode,
+/// flags included, is put back at the end. May be nested; an inner one costs 2 ns, an outer one 6 ns.
+class RoundUpward {
+ public:
+  RoundUpward() : before_(_mm_getcsr()) {
+    if ((before_ & ~kFlags) != kUpward) set(kUpward);
+  }
+  ~RoundUpward() {
+    if ((before_ & ~kFlags) != kUpward) set(before_);
+  }
+  RoundUpward(const RoundUpward&) = delete;
+  RoundUpward& operator=(const RoundUpward&) = delete;
+
+  static bool isOn() { return (_mm_getcsr() & ~kFlags) == kUpward; }
+
+ private:
+  /// All exceptions masked, rounding control "up", no flushing; the sticky exception flags don't matter.
+  static constexpr unsigned kUpward = 0x1f80 | _MM_ROUND_UP, kFlags = 0x3f;
+  static FCL_ARTIC_INLINE void set(unsigned control) {
+    asm volatile("ldmxcsr %1" : "+m"(rounding_mode) : "m"(control) : "memory");
+  }
+  unsigned before_;
+};
+
+/// Two doubles at once, in the present rounding mode.
+namespace directed {
+#ifdef __AVX__
+#define FCL_ARTIC_DIRECTED(name)                                                                        \
+  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                                                 \
+    __m128d o;                                                                                          \
+    asm("v" #name "pd %2, %1, %0" : "=x"(o) : "x"(a), "x"(b), "m"(rounding_mode));                      \
+    return o;                                                                                           \
+  }
+#else
+#define FCL_ARTIC_DIRECTED(name)                                              \
+  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                       \
+    asm(#name "pd %1, %0" : "+x"(a) : "x"(b), "m"(rounding_mode));            \
+    return a;                                                                 \
+  }
+#endif
+FCL_ARTIC_DIRECTED(add)
+FCL_ARTIC_DIRECTED(mul)
+FCL_ARTIC_DIRECTED(div)
+#undef FCL_ARTIC_DIRECTED
+FCL_ARTIC_INLINE __m128d sqrt(__m128d a) {
+  __m128d o;
+#ifdef __AVX__
+  asm("vsqrtpd %1, %0" : "=x"(o) : "x"(a), "m"(rounding_mode));
+#else
+  asm("sqrtpd %1, %0" : "=x"(o) : "x"(a), "m"(rounding_mode));
+#endif
+  return o;
+}
+}  // namespace directed
+
+/// True if a probe of every operation under RoundUpward rounds upward: not so on a machine, an emulator or under a tool
+/// that ignores rounding modes (valgrind does). Costs a microsecond; the result may be kept.
+bool roundingModesWork();
+
+}  // namespace fcl_artic
