@@ -92,7 +92,18 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   const AllowedCollisionMatrix& allowedCollisions() const;
 
-  /// Makes all changes effective; needed before the first query and after register, bind or allow.
+  /// A margin of the body's own, in m, in place of CertifiedRequest::margin, for all pairs that it belongs to. Of two bodies
+  /// that both have one the larger counts.
+  /// @param body  a link (all of its geometry), an obstacle or an attached object, by name. The margin belongs to the name: it
+  ///   waits for an obstacle that is unregistered to come back.
+  /// @throws std::invalid_argument: no such name, margin negative or not finite.
+  void setMargin(const std::string& body, double margin);
+  /// The same for one pair, whatever the margins of its bodies and of the request: 0 where a gripper has to get near.
+  void setMargin(const std::string& a, const std::string& b, double margin);
+  /// Forgets all margins of bodies and pairs.
+  void resetMargins();
+
+  /// Makes all changes effective; needed before the first query and after register, bind, allow or setMargin.
   void setup();
   /// Reads the transforms and motions (and geometry, when it is another one) of the obstacles again. Links, their pairs
   /// and geometry that is the same stay as they are.

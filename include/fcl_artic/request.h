@@ -20,7 +20,8 @@ struct CertifiedRequest {
   double tolerance_time = 1e-6;
   /// A pair counts as touching (with certain = false) only when its gap is below this, in m.
   double tolerance_distance = 1e-6;
-  /// Bodies nearer than this, in m, count as touching.
+  /// Bodies nearer than this, in m, count as touching (pairs with a margin of their own go by that:
+  /// ArticulatedCollisionManager::setMargin).
   double margin = 0;
   bool check_scene = true;  ///< links against obstacles
   bool check_self = true;   ///< links against links

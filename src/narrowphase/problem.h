@@ -137,8 +137,9 @@ struct LinkPair {
 struct Problem {
   const Body* bodies = nullptr;
   std::int32_t num_bodies = 0;
-  const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first
+  const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first, then moving obstacles
   std::int32_t num_movers = 0;
+  std::int32_t num_scene_movers = 0;  ///< the first so many are checked against the obstacles that stand still
   const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
   std::int32_t num_sweeps = 0;
   /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
@@ -149,7 +150,18 @@ struct Problem {
   const std::int32_t* obstacles = nullptr;  ///< body of obstacle o
   std::int32_t num_obstacles = 0;
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
+  /// Margins of single pairs, m, per scene pair and per link pair; below 0: the query's. Null: none has its own.
+  const double *scene_margins = nullptr, *link_margins = nullptr;
+  double largest_margin = 0;  ///< the largest of these
 };
+
+/// Margin of a pair: its own, else the query's. (static: each instruction set has it for itself.)
+static inline double marginOf(const Problem& problem, double query_margin, std::int32_t pair) {
+  const std::int32_t link_pair = pair - problem.num_scene_pairs;
+  const double* own = link_pair < 0 ? problem.scene_margins : problem.link_margins;
+  const double margin = own ? own[link_pair < 0 ? pair : link_pair] : -1;
+  return margin >= 0 ? margin : query_margin;
+}
 
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).

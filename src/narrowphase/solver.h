@@ -203,7 +203,7 @@ class Solver {
 
   // The present pair.
   Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B
-  double pad_ = 0, pose_error_ = 0, amplitude_ = 0;
+  double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
   double witness_[3];          ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
   NodeDirection direction_;    ///< the same, for nodes
@@ -372,6 +372,7 @@ inline void Solver::setupPair(int index) {
   if (present_ == index && present_batch_ == batch_) return;
   present_ = index;
   present_batch_ = batch_;
+  margin_ = engine::marginOf(*problem_, query_->margin, index);
   const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);
@@ -380,7 +381,7 @@ inline void Solver::setupPair(int index) {
   RigidLanes& m = side_[0].m;
   const PairPads pads = relateBodies(pair.step_b >= 0 ? frame + pair.step_b : nullptr, b,
                                      problem_->sweeps[pair.sweep].first_order, *pair.inverse_a, *pair.placement_b,
-                                     A.tree->extent + B.tree->extent, query_->margin, d_, m, side_[1].m);
+                                     A.tree->extent + B.tree->extent, margin_, d_, m, side_[1].m);
   pad_ = pads.pad;
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
@@ -422,7 +423,7 @@ inline int Solver::sweptNode(int side, int index) {
   cached.epoch = pair_epoch_;
   cached.node = index;
   cached.slot = pool_.size();
-  sweepNode(side_[side].m, side_[side].moving->nodes[index], pad_ + query_->margin, pool_.grow());
+  sweepNode(side_[side].m, side_[side].moving->nodes[index], pad_ + margin_, pool_.grow());
   return cached.slot;
 }
 
@@ -467,7 +468,7 @@ inline unsigned Solver::apartFromUnbounded(int a, int b) {
     box.reach = sqrt(far2) * (1 + 8 * kUlp);
     double sign = 0;
     ++statistics_.certificates;
-    separated |= certainlySeparated(side, still, box, still.size, query_->margin, pad_, sign);
+    separated |= certainlySeparated(side, still, box, still.size, margin_, pad_, sign);
   }
   return separated;
 }
@@ -495,7 +496,6 @@ inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int l
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
 inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap) {
-  const double margin = query_->margin;
   double guess[3], sign = 0;
   bool have_guess = false;
   unsigned untried = mask;
@@ -512,7 +512,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
       for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
     }
     GjkResult g;
-    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin, 48, g);
+    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g);
     ++statistics_.gjk;
     for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
     have_guess = true;
@@ -524,12 +524,12 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
     have_witness_ = true;
     ++statistics_.certificates;
-    unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin, pad_, sign);
+    unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin_, pad_, sign);
     if (mask & ~separated) {
       double n[3];
       body.opposite(g.n, n);
       ++statistics_.certificates;
-      separated |= certainlySeparated(side_[1], b, a, n, margin, pad_, sign);
+      separated |= certainlySeparated(side_[1], b, a, n, margin_, pad_, sign);
     }
     mask &= ~separated;
     untried &= mask;
@@ -577,17 +577,17 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   double sign = 0;
   if (hasDirection(a)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[0], a, b, a.size, query_->margin, pad_, sign);
+    mask &= ~certainlySeparated(side_[0], a, b, a.size, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (hasDirection(b)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[1], b, a, b.size, query_->margin, pad_, sign);
+    mask &= ~certainlySeparated(side_[1], b, a, b.size, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (have_witness_) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[0], a, b, witness_, query_->margin, pad_, sign);
+    mask &= ~certainlySeparated(side_[0], a, b, witness_, margin_, pad_, sign);
     if (!mask) return 0;
   }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
@@ -608,7 +608,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (!mask) return;
   }
   direction_.ready = false;
-  if (have_witness_) direction_.prepare(side_[0], witness_, pad_ + query_->margin);
+  if (have_witness_) direction_.prepare(side_[0], witness_, pad_ + margin_);
   push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   for (int lane = 0; lane < kLanes;) {
@@ -653,16 +653,17 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
 /// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
 inline void Solver::sweptLss(int mover, SweptBox& box) {
   const Body& body = problem_->bodies[problem_->movers[mover]];
+  const double margin = max(query_->margin, problem_->largest_margin);  // whatever the partner
   if (body.step < 0) {
     for (int k = 0; k < 3; ++k) {
-      box.lo[k] = narrowDown(Lanes(body.lo[k] - query_->margin));
-      box.hi[k] = narrowUp(Lanes(body.hi[k] + query_->margin));
+      box.lo[k] = narrowDown(Lanes(body.lo[k] - margin));
+      box.hi[k] = narrowUp(Lanes(body.hi[k] + margin));
     }
     return;
   }
   const FrameLanes& f = frames(0)[body.step];
   const StepBounds& b = bounds_[first_step_[0] + body.step];
-  const double radius = (body.lss[6] + query_->margin) * (1 + 4 * kUlp);
+  const double radius = (body.lss[6] + margin) * (1 + 4 * kUlp);
   const bool first_order = problem_->sweeps[0].first_order;
   Lanes lo[2][3], hi[2][3];
   for (int end = 0; end < 2; ++end) sweepBall(f, b, first_order, body.lss + 3 * end, radius, d_, lo[end], hi[end]);
@@ -679,7 +680,7 @@ inline void Solver::cull() {
   for (int m = 0; m < problem_->num_movers; ++m) sweptLss(m, mover_box_[m]);
   if (query_->check_scene && problem_->obstacle_tree) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
-    for (int m = 0; m < problem_->num_movers; ++m) {
+    for (int m = 0; m < problem_->num_scene_movers; ++m) {
       const SweptBox& box = mover_box_[m];
       Buffer<Entry>& stack = stack_[0];
       stack.push({0, 0, 0, 0});
@@ -815,7 +816,7 @@ inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane) {
   LeafContact contact = {};
   ++statistics_.contact_proofs;
   const double* start = have_witness_ ? witness_ : body.pose.c;
-  if (!certainlyTouching(body, query_->margin, pose_error_, start, contact.point)) return false;
+  if (!certainlyTouching(body, margin_, pose_error_, start, contact.point)) return false;
   const PairParts bodies = parts(pair);
   contact.pair = pair;
   contact.body_a = bodies.a;
@@ -874,7 +875,7 @@ inline bool Solver::proveVertexInside(int pair, int lane) {
     for (int k = 0; k < 3; ++k) guess[k] = dot(body.pose.R + 3 * k, point.center) + body.pose.c[k] - center[k];
     ++statistics_.contact_proofs;
     // Seen from the other side a pose errs by twice as much (doc/NUMERICS.md, "Pads").
-    if (!certainlyTouching(body, query_->margin, (s ? 2.5 : 1) * pose_error_, guess, where)) continue;
+    if (!certainlyTouching(body, margin_, (s ? 2.5 : 1) * pose_error_, guess, where)) continue;
     LeafContact contact = {};
     const PairParts bodies = parts(pair);
     contact.pair = pair;
@@ -1137,7 +1138,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
     const Piece *piece_a, *piece_b;
     piecesOf(f, piece_a, piece_b);
     const Piece &a = *piece_a, &b = *piece_b;
-    const double radii = a.radius + b.radius + query_->margin;
+    const double radii = a.radius + b.radius + margin_;
     // A witness at some time of the present lanes; false: the gap is gone there, or so it seems.
     const auto look = [&](int lane, double tau) {
       const DifferenceBody body = differenceAt(a, b, lane, tau);
@@ -1156,8 +1157,8 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
     double n[3];
     here.opposite(f.normal, n);
     Lanes G[2][3];
-    gapBound(side_[0], a, b, f.normal, query_->margin, pad_, G[0]);
-    gapBound(side_[1], b, a, n, query_->margin, pad_, G[1]);
+    gapBound(side_[0], a, b, f.normal, margin_, pad_, G[0]);
+    gapBound(side_[1], b, a, n, margin_, pad_, G[1]);
     unsigned separated = 0;
     for (const Lanes* g : G) separated |= greater(min(min(g[0], g[1]), g[2]), Lanes(0.0));
     if (separated == kAllLanes) {
@@ -1219,7 +1220,7 @@ inline bool Solver::prove(Final& f) {
     const int k = (head + i) % kLanes;
     const DifferenceBody body = differenceAt(a, b, k);
     ++statistics_.contact_proofs;
-    if (certainlyTouching(body, query_->margin, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point)) {
+    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point)) {
       f.certain = true;
       f.t_upper = tm[k];
       t_upper_ = min(t_upper_, tm[k]);
@@ -1244,7 +1245,7 @@ inline void Solver::lookBack(Final& f) {
   for (int k = 0; k < kLanes && !f.have_normal; ++k) {
     const DifferenceBody body = differenceAt(*a, *b, k);
     GjkResult g;
-    gjk(body, body.pose.c, 1e-7, a->radius + b->radius + query_->margin, 64, g);
+    gjk(body, body.pose.c, 1e-7, a->radius + b->radius + margin_, 64, g);
     ++statistics_.gjk;
     if (g.overlap) continue;
     for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];

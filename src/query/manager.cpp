@@ -72,6 +72,11 @@ void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placemen
   }
 }
 
+void requireMargin(double margin, const std::string& what) {
+  if (std::isfinite(margin) && margin >= 0) return;
+  throw std::invalid_argument(what + " is " + std::to_string(margin) + ", not a number >= 0");
+}
+
 FeatureKind swapped(FeatureKind kind) {
   switch (kind) {
     case FeatureKind::vertexEdge: return FeatureKind::edgeVertex;
@@ -92,6 +97,8 @@ struct ArticulatedCollisionManager::Impl {
   std::unordered_set<const void*> objects;  ///< of all of these
   std::unordered_set<std::string> obstacle_names;
   AllowedCollisionMatrix allowed;
+  std::map<std::string, double> body_margins;  ///< by name
+  std::map<std::pair<std::string, std::string>, double> pair_margins;  ///< by names, the lesser one first
   bool robot_ready = false;  ///< what buildRobot() makes is up to date
   bool ready = false;        ///< all is
   std::size_t named = 0;     ///< obstacles that were given a name so far
@@ -104,6 +111,8 @@ struct ArticulatedCollisionManager::Impl {
   std::vector<std::uint8_t> scene_allowed;  ///< empty when all pairs of link and obstacle are checked
   std::vector<engine::LinkPair> link_pairs;  ///< of two links first, then of moving obstacles and links
   std::vector<engine::Node> obstacle_tree;
+  std::vector<double> scene_margins, link_margins;  ///< of pairs, -1: not their own; empty: none has its own
+  double largest_margin = 0;
   std::size_t num_link_sweeps = 0, num_self_pairs = 0;
   std::vector<engine::BoundedSource> sources;  ///< of moving obstacles' bounded motions
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -126,10 +135,12 @@ struct ArticulatedCollisionManager::Impl {
   void buildRobot();
   void buildScene();
   void buildMoving();
+  void buildMargins();
+  void requireBody(const std::string& name) const;
   engine::Problem problem() const;
   void setVariables(const JointMotion& motion, std::vector<double>& memory, engine::Query& query) const;
-  CertifiedContact report(void* workspace, const JointMotion& motion, const CertifiedRequest& request,
-                          engine::LeafContact leaf) const;
+  CertifiedContact report(void* workspace, const engine::Problem& problem, const JointMotion& motion,
+                          const CertifiedRequest& request, engine::LeafContact leaf) const;
   void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
     objects.erase(item->object);
     objects.erase(item->moving);
@@ -399,7 +410,7 @@ void ArticulatedCollisionManager::Impl::buildScene() {
 
   scene_allowed.clear();
   const auto allow = [&](std::size_t m, std::size_t o) {
-    scene_allowed.resize(movers.size() * obstacles.size(), 0);
+    scene_allowed.resize(links.size() * obstacles.size(), 0);
     scene_allowed[m * obstacles.size() + o] = 1;
   };
   std::map<std::string, std::size_t> obstacle_named;
@@ -415,17 +426,62 @@ void ArticulatedCollisionManager::Impl::buildScene() {
       }
     }
   }
+  buildMargins();
   const auto empty = [](const Item& item) { return item.shape->view().num_pieces == 0; };
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    for (std::size_t m = 0; m < movers.size(); ++m) {
-      // Obstacles are no pairs of each other; nothing touches an empty tree (mayTouch).
-      if (m >= links.size() || empty(obstacles[o]) || empty(item(movers[m]))) allow(m, o);
+    for (std::size_t m = 0; m < links.size(); ++m) {
+      if (empty(obstacles[o]) || empty(item(movers[m]))) allow(m, o);  // nothing touches an empty tree (mayTouch)
     }
   }
 
   sweep_views.clear();
   for (const FrameSweep& sweep : sweeps) sweep_views.push_back(sweep.view());
   ready = true;
+}
+
+/// Margins of pairs: their own, else the larger one of those that their bodies have.
+void ArticulatedCollisionManager::Impl::buildMargins() {
+  scene_margins.clear();
+  link_margins.clear();
+  largest_margin = 0;
+  if (body_margins.empty() && pair_margins.empty()) return;
+  std::vector<double> of_body(bodies.size(), -1);
+  std::map<std::string, std::vector<std::int32_t>> bodies_named;
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(bodies.size()); ++i) {
+    const auto margin = body_margins.find(item(i).name);
+    if (margin != body_margins.end()) of_body[static_cast<std::size_t>(i)] = margin->second;
+    bodies_named[item(i).name].push_back(i);
+  }
+  const auto larger = [&](std::int32_t a, std::int32_t b) {
+    return std::max(of_body[static_cast<std::size_t>(a)], of_body[static_cast<std::size_t>(b)]);
+  };
+  for (std::size_t m = 0; m < links.size(); ++m) {
+    for (const std::int32_t obstacle : obstacle_bodies) scene_margins.push_back(larger(movers[m], obstacle));
+  }
+  for (const engine::LinkPair& pair : link_pairs) link_margins.push_back(larger(pair.a, pair.b));
+
+  const auto first_obstacle = static_cast<std::int32_t>(links.size() + moving.size());
+  std::map<std::pair<std::int32_t, std::int32_t>, double> own;  // of two that move, the lesser one first
+  for (const auto& [names, margin] : pair_margins) {
+    for (const std::int32_t a : bodies_named[names.first]) {
+      for (const std::int32_t b : bodies_named[names.second]) {
+        const auto [link, other] = std::minmax(a, b);
+        if (other < first_obstacle) {
+          own[{link, other}] = margin;
+        } else if (link < static_cast<std::int32_t>(links.size())) {
+          const auto m = static_cast<std::size_t>(bodies[static_cast<std::size_t>(link)].mover);
+          scene_margins[m * obstacles.size() + static_cast<std::size_t>(other - first_obstacle)] = margin;
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < link_pairs.size(); ++i) {
+    const auto margin = own.find(std::minmax(link_pairs[i].a, link_pairs[i].b));
+    if (margin != own.end()) link_margins[i] = margin->second;
+  }
+  for (const std::vector<double>* margins : {&scene_margins, &link_margins}) {
+    for (const double margin : *margins) largest_margin = std::max(largest_margin, margin);
+  }
 }
 
 /// The motion's variables, then those of the moving obstacles.
@@ -455,25 +511,29 @@ engine::Problem ArticulatedCollisionManager::Impl::problem() const {
   p.num_bodies = static_cast<std::int32_t>(bodies.size());
   p.movers = movers.data();
   p.num_movers = static_cast<std::int32_t>(movers.size());
+  p.num_scene_movers = static_cast<std::int32_t>(links.size());
   p.sweeps = sweep_views.data();
   p.num_sweeps = static_cast<std::int32_t>(sweep_views.size());
   p.link_pairs = link_pairs.data();
   p.num_link_pairs = static_cast<std::int32_t>(link_pairs.size());
-  p.num_scene_pairs = static_cast<std::int32_t>(movers.size() * obstacles.size());
+  p.num_scene_pairs = static_cast<std::int32_t>(links.size() * obstacles.size());
   p.scene_allowed = scene_allowed.empty() ? nullptr : scene_allowed.data();
   p.obstacles = obstacle_bodies.data();
   p.num_obstacles = static_cast<std::int32_t>(obstacles.size());
   p.obstacle_tree = obstacle_tree.empty() ? nullptr : obstacle_tree.data();
+  p.scene_margins = scene_margins.empty() ? nullptr : scene_margins.data();
+  p.link_margins = link_margins.empty() ? nullptr : link_margins.data();
+  p.largest_margin = largest_margin;
   return p;
 }
 
 /// A contact as users see it: features named, in world axes, links before obstacles.
-CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, const JointMotion& motion,
-                                                           const CertifiedRequest& request,
+CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, const engine::Problem& problem,
+                                                           const JointMotion& motion, const CertifiedRequest& request,
                                                            engine::LeafContact leaf) const {
   const Item &a = item(leaf.body_a), &b = item(leaf.body_b);
   CertifiedContact contact;
-  if (request.margin == 0) {
+  if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
     refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
   }
   std::vector<Eigen::Isometry3d> M_0;
@@ -651,6 +711,32 @@ void ArticulatedCollisionManager::setAllowedCollisions(AllowedCollisionMatrix ma
 }
 const AllowedCollisionMatrix& ArticulatedCollisionManager::allowedCollisions() const { return impl_->allowed; }
 
+void ArticulatedCollisionManager::Impl::requireBody(const std::string& name) const {
+  if (tree->hasLink(name) || obstacle_names.count(name)) return;
+  throw std::invalid_argument("setMargin: '" + name + "' is no link of robot '" + tree->name() + "' and no obstacle");
+}
+
+void ArticulatedCollisionManager::setMargin(const std::string& body, double margin) {
+  impl_->requireBody(body);
+  requireMargin(margin, "setMargin: the margin of '" + body + "'");
+  impl_->body_margins[body] = margin;
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::setMargin(const std::string& a, const std::string& b, double margin) {
+  impl_->requireBody(a);
+  impl_->requireBody(b);
+  requireMargin(margin, "setMargin: the margin of '" + a + "' and '" + b + "'");
+  impl_->pair_margins[std::minmax(a, b)] = margin;
+  impl_->ready = false;
+}
+
+void ArticulatedCollisionManager::resetMargins() {
+  impl_->body_margins.clear();
+  impl_->pair_margins.clear();
+  impl_->ready = false;
+}
+
 void ArticulatedCollisionManager::setup() {
   if (!impl_->ready) impl_->buildScene();
 }
@@ -734,7 +820,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
                                                 CertifiedResult& result, std::vector<bool>* never_apart) const {
   const Impl& m = *impl_;
   if (!m.ready) {
-    throw std::logic_error("ArticulatedCollisionManager: call setup() after changing objects, links or allowed pairs");
+    throw std::logic_error(
+        "ArticulatedCollisionManager: call setup() after changing objects, links, margins or allowed pairs");
   }
   if (motion.size() != m.tree->dof()) {
     throw std::invalid_argument("the motion has " + std::to_string(motion.size()) + " joint values, robot '" +
@@ -753,6 +840,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   if (!request.check_scene) problem.num_link_pairs = self_pairs;
   if (!request.check_self) {
     problem.link_pairs += self_pairs;
+    if (problem.link_margins) problem.link_margins += self_pairs;
     problem.num_link_pairs -= self_pairs;
   }
   query.check_self = problem.num_link_pairs > 0;
@@ -766,7 +854,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.certain = answer.certain;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(m.report(workspace->engine(), motion, request, answer.contacts[i]));
+    result.contacts.push_back(m.report(workspace->engine(), problem, motion, request, answer.contacts[i]));
     const CertifiedContact& contact = result.contacts.back();
     if (contact.certain && contact.t_upper < result.t_upper) {
       result.t_upper = contact.t_upper;
