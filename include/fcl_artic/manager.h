@@ -145,7 +145,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// may separate; they are watched from the moment they have (in steps of 1/512 of a piece at most) and not ignored
   /// again. A pair that separates for less time than that may be taken as never apart. The motions of obstacles that move
   /// take as long as the trajectory.
-  /// @throws as for a motion, and for obstacles that move when the trajectory has several pieces.
+  /// @throws as for a motion.
   void continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                          CertifiedResult& result) const;
 
@@ -153,10 +153,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void collide(const Eigen::VectorXd& q, const CertifiedRequest& request, CertifiedResult& result) const;
 
  private:
-  /// @param[out] never_apart  of each ignored initial contact: it has not separated by t = 1; null: not asked for.
-  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result,
-                     std::vector<bool>* never_apart) const;
   struct Impl;
+  struct Aspects;
+  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const Aspects& aspects,
+                     CertifiedResult& result) const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -185,6 +185,12 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
   return to;
 }
 
+void FrameSweep::allowError(double angle, double length) {
+  // The engine takes a step's origin to be off by 2^-52 ulps * length.
+  steps_.back().ulps += angle;
+  steps_.back().length += length;
+}
+
 void FrameSweep::enterTree(const KinematicTree& tree, const Carrier& world) {
   tree_ = &tree;
   base_ = -1;

@@ -50,6 +50,9 @@ class FrameSweep {
   Carrier cross(const Carrier& from, const MotionElement& element, int variable, const engine::BoundedSource* source,
                 bool down, int orientation = -1);
 
+  /// The motion of the step crossed last is off by so much: an angle in 2^-52 rad, a length in 2^-52 m.
+  void allowError(double angle, double length);
+
   engine::SweepView view() const;
   void clear();
 

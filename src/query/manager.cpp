@@ -16,6 +16,7 @@
 #include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
 #include "narrowphase/problem.h"
+#include "query/aspects.h"
 #include "query/engine_query.h"
 #include "query/motion_variables.h"
 
@@ -138,9 +139,10 @@ struct ArticulatedCollisionManager::Impl {
   void buildMargins();
   void requireBody(const std::string& name) const;
   engine::Problem problem() const;
-  void setVariables(const JointMotion& motion, std::vector<double>& memory, engine::Query& query) const;
+  void setVariables(const JointMotion& motion, const TimePart& time, std::vector<double>& memory,
+                    engine::Query& query) const;
   CertifiedContact report(void* workspace, const engine::Problem& problem, const JointMotion& motion,
-                          const CertifiedRequest& request, engine::LeafContact leaf) const;
+                          const CertifiedRequest& request, const TimePart& time, engine::LeafContact leaf) const;
   void forget(std::vector<Item>& items, std::vector<Item>::iterator item) {
     objects.erase(item->object);
     objects.erase(item->moving);
@@ -361,6 +363,8 @@ void ArticulatedCollisionManager::Impl::buildMoving() {
       last -= numVariables(*element);
       writeCoefficients(*element, last, variables, degree, moving_coefficients.data());
       at = sweep.cross(at, *element, tree->dof() + last, source, false);
+      const PartError error = partError(*element);
+      sweep.allowError(error.angle, error.length);
     }
     sweep.enterTree(*tree, at);
     for (std::size_t l = 0; l < links.size(); ++l) {
@@ -485,10 +489,13 @@ void ArticulatedCollisionManager::Impl::buildMargins() {
 }
 
 /// The motion's variables, then those of the moving obstacles.
+/// @param time  of the obstacles' motions.
 /// @param memory  for them, when there are both.
-void ArticulatedCollisionManager::Impl::setVariables(const JointMotion& motion, std::vector<double>& memory,
-                                                     engine::Query& query) const {
-  const Eigen::MatrixXd &own = motion.variables(), &others = moving_coefficients;
+void ArticulatedCollisionManager::Impl::setVariables(const JointMotion& motion, const TimePart& time,
+                                                     std::vector<double>& memory, engine::Query& query) const {
+  const Eigen::MatrixXd& own = motion.variables();
+  const Eigen::MatrixXd part = time.whole() ? Eigen::MatrixXd() : partOf(moving_coefficients, time);
+  const Eigen::MatrixXd& others = time.whole() ? moving_coefficients : part;
   query.coefficients = own.data();
   query.num_variables = static_cast<std::int32_t>(own.rows());
   query.degree = static_cast<std::int32_t>(own.cols()) - 1;
@@ -530,7 +537,7 @@ engine::Problem ArticulatedCollisionManager::Impl::problem() const {
 /// A contact as users see it: features named, in world axes, links before obstacles.
 CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, const engine::Problem& problem,
                                                            const JointMotion& motion, const CertifiedRequest& request,
-                                                           engine::LeafContact leaf) const {
+                                                           const TimePart& time, engine::LeafContact leaf) const {
   const Item &a = item(leaf.body_a), &b = item(leaf.body_b);
   CertifiedContact contact;
   if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
@@ -538,7 +545,7 @@ CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, cons
   }
   std::vector<Eigen::Isometry3d> M_0;
   tree->forwardKinematics(motion.configuration(leaf.t), M_0);
-  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.pose(leaf.t);
+  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.pose(time.at(leaf.t));
   contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
   contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
   contact.body1 = reference(a);
@@ -813,11 +820,11 @@ std::size_t ArticulatedCollisionManager::size() const { return impl_->obstacles.
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
-  collideMotion(motion, request, result, nullptr);
+  collideMotion(motion, request, Aspects(), result);
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
-                                                CertifiedResult& result, std::vector<bool>* never_apart) const {
+                                                const Aspects& aspects, CertifiedResult& result) const {
   const Impl& m = *impl_;
   if (!m.ready) {
     throw std::logic_error(
@@ -833,8 +840,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const auto since = [](Clock::time_point t) { return std::chrono::duration<double, std::micro>(Clock::now() - t).count(); };
   const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
   const WorkspaceLoan workspace;
-  m.setVariables(motion, workspace->coefficients, query);
+  m.setVariables(motion, aspects.time, workspace->coefficients, query);
   engine::Problem problem = m.problem();
+  const BoundedParts parts(aspects.time, problem);
   // Pairs with moving obstacles are the scene's, though they stand with those of two links.
   const auto self_pairs = static_cast<std::int32_t>(m.num_self_pairs);
   if (!request.check_scene) problem.num_link_pairs = self_pairs;
@@ -854,7 +862,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.certain = answer.certain;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(m.report(workspace->engine(), problem, motion, request, answer.contacts[i]));
+    result.contacts.push_back(m.report(workspace->engine(), problem, motion, request, aspects.time, answer.contacts[i]));
     const CertifiedContact& contact = result.contacts.back();
     if (contact.certain && contact.t_upper < result.t_upper) {
       result.t_upper = contact.t_upper;
@@ -867,9 +875,11 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     result.ignored_initial_contacts.emplace_back(m.reference(m.item(answer.ignored[i].body_a)),
                                                  m.reference(m.item(answer.ignored[i].body_b)));
   }
-  if (never_apart) {
-    never_apart->clear();
-    for (std::int32_t i = 0; i < answer.num_ignored; ++i) never_apart->push_back(answer.ignored[i].watch_from > 1);
+  if (aspects.never_apart) {
+    aspects.never_apart->clear();
+    for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+      aspects.never_apart->push_back(answer.ignored[i].watch_from > 1);
+    }
   }
   result.statistics = statisticsOf(answer.statistics);
   if (request.measure_times) {

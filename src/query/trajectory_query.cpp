@@ -6,6 +6,9 @@
 // 4 ulp of the larger |T|: the difference, the product and the sum round by half an ulp each of numbers up to twice that.
 // Ends are moved outward by as much, but not out of the piece.
 //
+// Obstacles that move. Their motions' [0, 1] is the trajectory's time; piece k gets the part [s_k, s_k+1] of it, with
+// s_k = (T_k - T_0) / (T_n - T_0) as rounded: the same number ends one piece and begins the next.
+//
 // Initial contacts that may separate. Pairs that touch at the very beginning are ignored; those that did not separate
 // within a piece (by the measure of one query: free over 1/512 of the piece) are ignored at the beginning of the next one
 // too, all others are watched: a query ignores whatever touches at its t = 0, so that what it ignores beyond the pairs
@@ -14,12 +17,12 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
+#include "query/aspects.h"
 #include "query/engine_query.h"
 
 namespace fcl_artic {
@@ -41,6 +44,15 @@ struct Clock {
   double lower(double s) const { return s <= 0 ? begin : s >= 1 ? end : std::min(end, std::max(begin, at(s) - error())); }
   double upper(double s) const { return s <= 0 ? begin : s >= 1 ? end : std::min(end, std::max(begin, at(s) + error())); }
 };
+
+/// Part of the whole trajectory's time that a piece takes.
+TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
+  const double begin = trajectory.beginTime(), duration = trajectory.endTime() - begin;
+  const auto at = [&](std::size_t k) {
+    return k == trajectory.numPieces() ? 1 : std::min(1.0, (trajectory.times()[k] - begin) / duration);
+  };
+  return {at(piece), at(piece + 1)};
+}
 
 void add(QueryStatistics& sum, const QueryStatistics& s) {
   sum.pairs += s.pairs;
@@ -90,12 +102,6 @@ void addContacts(const CertifiedResult& all, const std::set<Bodies>& wrongly, co
 void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
-  std::vector<fcl::ContinuousCollisionObjectd*> moving;
-  getObjects(moving);
-  if (!moving.empty() && trajectory.numPieces() > 1) {
-    throw std::invalid_argument("continuousCollide: obstacles that move are checked against trajectories of one piece "
-                                "only, this one has " + std::to_string(trajectory.numPieces()));
-  }
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();
@@ -120,7 +126,10 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
       own.work_budget = request.work_budget - used;
     }
     std::vector<bool> never_apart;
-    collideMotion(trajectory.piece(k), own, part, &never_apart);
+    Aspects aspects;
+    aspects.time = partOfTime(trajectory, k);
+    aspects.never_apart = &never_apart;
+    collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
 
@@ -140,7 +149,8 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
       again.mode = ContactMode::firstOfEveryPair;
       again.max_contacts = 1u << 20;
       CertifiedResult all;
-      collideMotion(trajectory.piece(k), again, all, nullptr);
+      aspects.never_apart = nullptr;
+      collideMotion(trajectory.piece(k), again, aspects, all);
       add(sum.statistics, all.statistics);
       addContacts(all, wrongly, request, own.tolerance_time, part);
     }
