@@ -658,23 +658,34 @@ inline PairPads relateBodies(const FrameLanes* frame, const StepBounds& b, bool 
           kUlp * (ulps + kPoseUlps) * sizes + kLeastLength};
 }
 
-/// Box of a ball that is fixed in a step's frame, over the intervals.
+/// Centre of a ball that is fixed in a step's frame, over the intervals: c[0] + tau c[1] + tau^2 c[2].
 /// @param radius  with the error of p in it.
-inline void sweepBall(const FrameLanes& f, const StepBounds& b, bool first_order, const double* p, double radius, double d,
-                      Lanes* lo, Lanes* hi) {
+/// @return a radius about this centre that holds the ball.
+inline double sweepCenter(const FrameLanes& f, const StepBounds& b, bool first_order, const double* p, double radius,
+                          double d, Lanes (*c)[3]) {
   const double reach = __builtin_sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) * (1 + 1e-15);
   const double sizes = b.length + b.D1 * d + reach + radius;
   const Remainder remainder = remainderOf(b.rates, b.D1, b.D3, first_order, b.ulps, d);
-  const Lanes slack(radius + remainder.c + remainder.R * reach +
-                    roundingPart(b.ulps, b.rounding_rate * d) * sizes + kLeastLength);
   Lanes x[3], x1[3], u[3], e[3];
   for (int k = 0; k < 3; ++k) x[k] = dot(f.R + 3 * k, p);
   cross(f.w, x, x1);
   cross(f.w, x1, u);
   cross(f.al, x, e);
   for (int k = 0; k < 3; ++k) {
-    const Lanes c0 = f.o[k] + x[k], c1 = f.v[k] + x1[k], c2 = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
-    const Lanes sum = c0 + c2, middle = c0 - c2, reach1 = abs(c1);
+    c[0][k] = f.o[k] + x[k];
+    c[1][k] = f.v[k] + x1[k];
+    c[2][k] = f.a[k] + Lanes(0.5) * (u[k] + e[k]);
+  }
+  return radius + remainder.c + remainder.R * reach + roundingPart(b.ulps, b.rounding_rate * d) * sizes + kLeastLength;
+}
+
+/// Box of such a ball.
+inline void sweepBall(const FrameLanes& f, const StepBounds& b, bool first_order, const double* p, double radius, double d,
+                      Lanes* lo, Lanes* hi) {
+  Lanes c[3][3];
+  const Lanes slack(sweepCenter(f, b, first_order, p, radius, d, c));
+  for (int k = 0; k < 3; ++k) {
+    const Lanes sum = c[0][k] + c[2][k], middle = c[0][k] - c[2][k], reach1 = abs(c[1][k]);
     lo[k] = min(sum - reach1, middle) - slack;
     hi[k] = max(sum + reach1, middle) + slack;
   }

@@ -163,6 +163,19 @@ static inline double marginOf(const Problem& problem, double query_margin, std::
   return margin >= 0 ? margin : query_margin;
 }
 
+/// A link's line swept sphere over one of the eight parts [k/8, (k+1)/8] of the motion: within the hull of these points, in
+/// the world, grown by a ball.
+struct SweptLink {
+  double points[6][3];
+  double radius;
+};
+/// A pair of a link and a still obstacle that stage 1 left.
+struct CullCandidate {
+  std::int32_t pair, mover, obstacle;  ///< mover: among Problem::movers; obstacle: a body
+  std::uint32_t lanes;                 ///< parts of the motion in which their bounds meet
+  double margin;                       ///< of the pair
+};
+
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
@@ -175,6 +188,11 @@ struct Query {
   std::uint64_t work_budget = 0;
   void (*progress)(void* context, double t_lower) = nullptr;
   void* progress_context = nullptr;
+  /// A stage between stage 1 and the first batch: may clear lanes in which a pair is proven free, nothing else. The pairs of
+  /// a mover lie together; links[8 * mover + k] is set for movers that have pairs.
+  void (*refine)(void* context, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
+                 std::int32_t num_pairs) = nullptr;
+  void* refine_context = nullptr;
 };
 
 struct Statistics {

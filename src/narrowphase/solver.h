@@ -2,7 +2,8 @@
 //
 // The solver: first contact over all pairs, eight time intervals at once.
 //
-//   solve            stage 1 (cull), then all pairs left on one batch, [0, 1] in eight lanes: boxes and hulls of whole bodies
+//   solve            stage 1 (cull), the query's own stage (refine), then all pairs left on one batch, [0, 1] in eight lanes:
+//                    boxes and hulls of whole bodies
 //   solveLane        lane by lane from the earliest, the pairs that may touch in it: hulls followed to where they meet
 //                    (advance), then the pieces below from there on, the pair that meets first before the others
 //   solveInterval    one pair: eight equal parts of an interval; dual traversal; then, lane by lane from the earliest, the
@@ -144,6 +145,8 @@ class Solver {
   // Stages.
   void cull();
   void sweptLss(int mover, SweptBox& box);
+  void sweptSegments(int mover, engine::SweptLink* parts);
+  void refine();
   void collectInitialContacts(int begin, int end);
   double firstFreeTime(double start, double width, int begin, int end);
   void solvePairs();
@@ -221,6 +224,8 @@ class Solver {
   std::int32_t pair_epoch_ = 0;
 
   Buffer<SweptBox> mover_box_;
+  Buffer<engine::SweptLink> swept_links_;
+  Buffer<engine::CullCandidate> candidate_pairs_;
   Buffer<Entry> entries_;
   Buffer<Entry> overlapping_;  ///< pairs whose hulls overlap in the middles of lanes of the first batch
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
@@ -715,6 +720,60 @@ inline void Solver::cull() {
     }
   }
   statistics_.pairs_after_culling += static_cast<std::uint64_t>(entries_.size());
+}
+
+/// A body's line swept sphere in each lane of [0, 1]: both ends' Bernstein points, and the larger of their radii.
+inline void Solver::sweptSegments(int mover, engine::SweptLink* parts) {
+  const Body& body = problem_->bodies[problem_->movers[mover]];
+  const double radius = body.lss[6];
+  double slack = radius;
+  for (int end = 0; end < 2; ++end) {
+    const double* p = body.lss + 3 * end;
+    Lanes c[3][3];
+    if (body.step < 0) {
+      for (int k = 0; k < 3; ++k) {
+        c[0][k] = Lanes(p[k]);
+        c[1][k] = c[2][k] = Lanes(0.0);
+      }
+    } else {
+      const StepBounds& b = bounds_[first_step_[0] + body.step];
+      slack = max(slack, sweepCenter(frames(0)[body.step], b, problem_->sweeps[0].first_order, p, radius, d_, c));
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (int k = 0; k < 3; ++k) {
+        const double c0 = c[0][k][lane], c1 = c[1][k][lane], c2 = c[2][k][lane];
+        parts[lane].points[end][k] = c0 - c1 + c2;
+        parts[lane].points[2 + end][k] = c0 + c1 + c2;
+        parts[lane].points[4 + end][k] = c0 - c2;
+      }
+    }
+  }
+  for (int lane = 0; lane < kLanes; ++lane) parts[lane].radius = slack * (1 + 4 * kUlp);
+}
+
+/// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out. (Pairs that are
+/// not its business come behind them.)
+inline void Solver::refine() {
+  candidate_pairs_.clear();
+  swept_links_.resize(kLanes * problem_->num_movers);
+  int previous = -1;
+  for (int i = 0; i < entries_.size() && entries_[i].pair < problem_->num_scene_pairs; ++i) {
+    const Entry& e = entries_[i];
+    const int mover = e.pair / problem_->num_obstacles;
+    if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
+    candidate_pairs_.push({e.pair, mover, problem_->obstacles[e.pair % problem_->num_obstacles], e.mask,
+                           engine::marginOf(*problem_, query_->margin, e.pair)});
+  }
+  const int asked = candidate_pairs_.size();
+  if (!asked) return;
+  query_->refine(query_->refine_context, *problem_, swept_links_.data(), candidate_pairs_.data(), asked);
+  int kept = 0;
+  for (int i = 0; i < entries_.size(); ++i) {
+    Entry e = entries_[i];
+    if (i < asked) e.mask &= candidate_pairs_[i].lanes;
+    if (e.mask) entries_[kept++] = e;
+  }
+  entries_.truncate(kept);
 }
 
 /// Time from which a pair in contact at t = 0 is watched: the start of its first free lane, on lanes down to 1/512.
@@ -1401,8 +1460,9 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
 
   const double time0 = now();
   cull();
+  statistics_.culling_us = now() - time0;
+  if (query.refine) refine();
   const double time1 = now();
-  statistics_.culling_us = time1 - time0;
   if (query.ignore_initial) {
     collectInitialContacts(0, entries_.size());
     beginBatch(0, 1);

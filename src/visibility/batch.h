@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a visibility executor is given and what it answers (doc/VISIBILITY.md): plain data, the same for all of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fcl_artic/visibility.h"
+
+namespace fcl_artic {
+namespace visibility {
+
+/// A convex solid: the hull of `count` points (xyz in Batch::points, from point `first` on) grown by a ball. A triangle is
+/// one, and so is a link's line swept sphere over one part of its motion.
+struct Volume {
+  std::int32_t first = 0, count = 0;
+  double radius = 0;  ///< m
+};
+
+/// A box in the world; its views along x, y and z are one tile each.
+struct Window {
+  double lo[3], hi[3];
+};
+
+/// How footprints and depth bounds are grown. All but the defaults is wrong: tests show that they notice.
+struct Growth {
+  bool footprint = true, depth = true;
+  double eta = 1.0 / 64;  ///< beyond the pixel's half width, in pixels: for snapping and rounding
+};
+
+/// Swept volumes and the objects that may touch them, by windows.
+struct Batch {
+  struct Swept {
+    Volume volume;
+    std::int32_t window;
+  };
+  struct Object {
+    Volume volume;
+    std::int32_t window, group;
+  };
+
+  int resolution = 32;  ///< pixels along a tile's side
+  VisibilityRule rule = VisibilityRule::intervals;
+  /// Only whether a group survives is asked: all of its objects may be reported once one of them survives.
+  bool groups_only = false;
+  Growth growth;
+  std::vector<double> points;
+  /// A point that a swept volume of a window and an object of this window share lies in the window, or the window is wrong.
+  std::vector<Window> windows;
+  std::vector<Swept> swept;
+  std::vector<Object> objects;  ///< those of a group lie together and share a window; groups are numbered from 0
+  std::int32_t num_groups = 0;
+
+  void clear() {
+    points.clear();
+    windows.clear();
+    swept.clear();
+    objects.clear();
+    num_groups = 0;
+  }
+};
+
+constexpr int kViews = 3;
+constexpr int kLargestResolution = 128;
+
+/// Tells which objects may overlap the swept volumes of their windows.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  /// @param[out] may  one entry per object: 0 is a proof that it overlaps none of the swept volumes of its window.
+  /// @throws std::runtime_error where the executor fails: nothing is known then.
+  virtual void run(const Batch& batch, std::vector<std::uint8_t>& may) = 0;
+};
+
+}  // namespace visibility
+}  // namespace fcl_artic

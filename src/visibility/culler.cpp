@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "visibility/culler.h"
+
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "visibility/adversary.h"
+#include "visibility/cpu_executor.h"
+
+namespace fcl_artic {
+
+struct VisibilityCuller::Impl {
+  VisibilityOptions options;
+  std::string name = "cpu";
+  visibility::ExecutorFactory factory;  ///< empty: cpu
+  std::mutex mutex;
+  std::string reason;  ///< for the fallback; factory is not asked any more
+  std::vector<std::unique_ptr<visibility::Slot>> idle;
+
+  bool useFactory() {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return factory && reason.empty();
+  }
+  void fallBack(const std::string& why) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (reason.empty()) reason = why.empty() ? "unknown" : why;
+    idle.clear();
+  }
+};
+
+namespace visibility {
+namespace {
+
+/// Pairs of the self-test: of each kind a hundred or two, which shows a broken executor, not a missing snapping margin. That
+/// one is set by its argument.
+constexpr std::uint64_t kSelfTestPairs = 1024;
+
+void requireSoundness(Executor& executor, Slot& slot, const VisibilityOptions& options) {
+  slot.batch = Batch();
+  slot.batch.resolution = options.resolution;
+  slot.batch.rule = options.rule;
+  const std::uint64_t wrong = countWrongCulls(executor, slot.batch, 1, 0, kSelfTestPairs);
+  if (wrong) {
+    throw std::runtime_error("self-test: " + std::to_string(wrong) + " of " + std::to_string(kSelfTestPairs) +
+                             " touching pairs were culled");
+  }
+  if (!countWrongCulls(executor, slot.batch, 1, 0, 256, 8)) throw std::runtime_error("self-test: it culls nothing");
+}
+
+}  // namespace
+
+ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler) : culler_(*culler.impl_) {
+  {
+    const std::lock_guard<std::mutex> lock(culler_.mutex);
+    if (!culler_.idle.empty()) {
+      slot_ = std::move(culler_.idle.back());
+      culler_.idle.pop_back();
+      return;
+    }
+  }
+  slot_ = std::make_unique<Slot>();
+  if (culler_.useFactory()) {
+    try {
+      slot_->executor = culler_.factory();
+      slot_->name = culler_.name.c_str();
+      requireSoundness(*slot_->executor, *slot_, culler_.options);
+      return;
+    } catch (const std::exception& e) {
+      culler_.fallBack(culler_.name + ": " + e.what());
+    }
+  }
+  slot_->executor = std::make_unique<CpuExecutor>();
+  slot_->name = "cpu";
+}
+
+ExecutorLoan::~ExecutorLoan() {
+  const std::lock_guard<std::mutex> lock(culler_.mutex);
+  const bool fallen = culler_.factory && !culler_.reason.empty();
+  if (slot_ && !(fallen && slot_->name == culler_.name.c_str())) culler_.idle.push_back(std::move(slot_));
+}
+
+void ExecutorLoan::giveUp(const std::string& reason) {
+  const char* cpu = "cpu";
+  culler_.fallBack(std::string(slot_->name) + ": " + reason);
+  slot_->executor = std::make_unique<CpuExecutor>();
+  slot_->name = cpu;
+}
+
+}  // namespace visibility
+
+VisibilityCuller::VisibilityCuller(const VisibilityOptions& options) : VisibilityCuller(options, "cpu", nullptr) {}
+
+VisibilityCuller::VisibilityCuller(const VisibilityOptions& options, const std::string& executor,
+                                   visibility::ExecutorFactory factory)
+    : impl_(std::make_unique<Impl>()) {
+  if (options.resolution < 4 || options.resolution > visibility::kLargestResolution) {
+    throw std::invalid_argument("VisibilityOptions.resolution is " + std::to_string(options.resolution) + ", not in [4, " +
+                                std::to_string(visibility::kLargestResolution) + "]");
+  }
+  impl_->options = options;
+  impl_->name = executor;
+  impl_->factory = std::move(factory);
+}
+
+VisibilityCuller::~VisibilityCuller() = default;
+
+const VisibilityOptions& VisibilityCuller::options() const { return impl_->options; }
+
+std::string VisibilityCuller::executor() const { return visibility::ExecutorLoan(*this)->name; }
+
+std::string VisibilityCuller::fallbackReason() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  return impl_->reason;
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A convex volume as one tile sees it: the pixels that it may cover, and how deep it may lie in each (doc/VISIBILITY.md,
+// "The rule"). Everything is computed in double and rounded outward.
+//
+// Symbols: view along axis k; pixel (i, j) is the square [i, i+1] x [j, j+1] of the tile, its centre at +1/2;
+//   (X, Y) a point in pixels, Z its depth, 0 to 1 over the window; eta: see Growth.
+#pragma once
+
+#include <vector>
+
+#include "fcl_artic/export.h"
+#include "visibility/batch.h"
+
+namespace fcl_artic {
+namespace visibility {
+
+/// a X + b Y <= c, with (a, b) of length 1 or so.
+struct Side {
+  double a, b, c;
+};
+
+/// In the pixel with the centre (x, y) the volume's depth lies in [a x + b y + lower, a x + b y + upper], evaluated in float.
+struct DepthBounds {
+  float a, b, lower, upper;
+};
+
+/// The convex region that holds the centre of every pixel whose square the volume meets, by eta inside.
+struct Footprint {
+  static constexpr int kMostSides = 20, kMostBounds = 7;
+  int x0, x1, y0, y1;  ///< pixels, ends included; at least one
+  double lo[2], hi[2];  ///< the same box, not rounded to pixels
+  int num_sides, num_bounds;
+  Side sides[kMostSides];
+  DepthBounds bounds[kMostBounds];  ///< the first one has a = b = 0
+};
+
+/// Makes footprints. One serves one thread.
+class FCL_ARTIC_EXPORT Projector {
+ public:
+  enum class Outcome {
+    misses,    ///< it covers no pixel of the tile
+    covers,    ///< it may: the footprint says which
+    unusable,  ///< a number is not finite, or the window has no volume: nothing is known
+  };
+  /// @param view  axis along which is looked, 0 to 2.
+  Outcome project(const Batch& batch, const Volume& volume, const Window& window, int view, Footprint& footprint);
+
+ private:
+  void addSide(double a, double b, Footprint& f) const;
+  void addBounds(double a, double b, Footprint& f) const;
+  void addSlopes(Footprint& f) const;
+
+  std::vector<double> x_, y_, z_;
+  double radius_[3];  ///< of the ball, in the units of X, Y, Z
+  double sums_[3];    ///< of |X|, |Y|, |Z|: rounding scales with them
+  double half_, depth_half_;
+  int resolution_, count_;
+};
+
+/// The footprint as a convex polygon within its tile, counter-clockwise.
+/// @param[out] polygon  x, y of each corner.
+/// @return number of corners; 0 when nothing of it is left.
+FCL_ARTIC_EXPORT int clipToTile(const Footprint& footprint, int resolution, double (*polygon)[2]);
+constexpr int kMostCorners = Footprint::kMostSides + 8;
+
+}  // namespace visibility
+}  // namespace fcl_artic
