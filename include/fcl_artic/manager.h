@@ -11,6 +11,7 @@
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/trajectory.h"
+#include "fcl_artic/visibility.h"
 
 namespace fcl_artic {
 
@@ -102,6 +103,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setMargin(const std::string& a, const std::string& b, double margin);
   /// Forgets all margins of bodies and pairs.
   void resetMargins();
+
+  /// Who does stage 2 (CertifiedRequest::visibility) from now on; null: the executor cpu again, as at first. What `automatic`
+  /// has measured is forgotten.
+  void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
   /// Makes all changes effective; needed before the first query and after register, bind, allow or setMargin.
   void setup();

@@ -14,6 +14,14 @@ enum class ContactMode {
   firstOfEveryPair,  ///< the first contact of every pair of bodies that touches
 };
 
+/// Stage 2, culling by visibility (doc/VISIBILITY.md): in queries of an ArticulatedCollisionManager, of links against
+/// obstacles that stand still. No answer depends on it.
+enum class VisibilityMode {
+  off,
+  on,
+  automatic,  ///< where it pays, as measured on the manager's own queries; off with a work budget
+};
+
 /// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest {
   /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1.
@@ -35,6 +43,7 @@ struct CertifiedRequest {
   bool ignore_initial_contact = false;
   /// Measure the time of each stage too (counts are always there).
   bool measure_times = false;
+  VisibilityMode visibility = VisibilityMode::off;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far.
   std::function<void(double t_lower)> progress;
 };

@@ -68,6 +68,13 @@ struct QueryStatistics {
   std::uint64_t certificates = 0;       ///< directions checked, eight intervals each
   std::uint64_t gjk = 0;                ///< witness searches
   std::uint64_t contact_proofs = 0;     ///< poses for which a proof of contact was tried
+  std::uint64_t visibility_pairs = 0;   ///< pairs that stage 2 looked at (CertifiedRequest::visibility)
+  std::uint64_t visibility_culled = 0;  ///< of these, proven free
+  std::uint64_t visibility_pieces = 0;  ///< pieces of obstacles that were drawn for it
+  std::uint64_t visibility_trials = 0;  ///< 1: `automatic` answered the query both ways to compare
+  double visibility_us = 0;             ///< always measured, trials included
+  std::string visibility_executor;      ///< that did it: "cpu", "osmesa" or "egl"; empty: nothing was to be done
+  std::string visibility_fallback;      ///< why it is "cpu" where another one was wanted
   double culling_us = 0, narrowphase_us = 0, report_us = 0, total_us = 0;
 };
 

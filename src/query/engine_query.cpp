@@ -77,6 +77,13 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.certificates += s.certificates;
   sum.gjk += s.gjk;
   sum.contact_proofs += s.contact_proofs;
+  sum.visibility_pairs += s.visibility_pairs;
+  sum.visibility_culled += s.visibility_culled;
+  sum.visibility_pieces += s.visibility_pieces;
+  sum.visibility_trials += s.visibility_trials;
+  sum.visibility_us += s.visibility_us;
+  if (!s.visibility_executor.empty()) sum.visibility_executor = s.visibility_executor;
+  if (!s.visibility_fallback.empty()) sum.visibility_fallback = s.visibility_fallback;
   sum.culling_us += s.culling_us;
   sum.narrowphase_us += s.narrowphase_us;
   sum.report_us += s.report_us;

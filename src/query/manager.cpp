@@ -19,6 +19,7 @@
 #include "query/aspects.h"
 #include "query/engine_query.h"
 #include "query/motion_variables.h"
+#include "visibility/solve.h"
 
 namespace fcl_artic {
 namespace {
@@ -27,6 +28,9 @@ using engine::Placement;
 
 using Geometry = std::shared_ptr<const fcl::CollisionGeometryd>;
 using MovingObject = fcl::ContinuousCollisionObjectd;
+
+/// What `automatic` expects its first trial to take: a query of the executor cpu, a new context of another one.
+constexpr double kFirstTrialCpuUs = 1e3, kFirstTrialUs = 2e5;
 
 /// A geometry of the manager, obstacle or link.
 struct Item {
@@ -116,6 +120,9 @@ struct ArticulatedCollisionManager::Impl {
   double largest_margin = 0;
   std::size_t num_link_sweeps = 0, num_self_pairs = 0;
   std::vector<engine::BoundedSource> sources;  ///< of moving obstacles' bounded motions
+  std::shared_ptr<const VisibilityCuller> visibility = std::make_shared<VisibilityCuller>();
+  std::unique_ptr<visibility::Choice> choice = std::make_unique<visibility::Choice>(kFirstTrialCpuUs);  ///< measured times
+
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
   Eigen::MatrixXd moving_coefficients;
 
@@ -744,6 +751,12 @@ void ArticulatedCollisionManager::resetMargins() {
   impl_->ready = false;
 }
 
+void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
+  const bool cpu = !culler;
+  impl_->visibility = cpu ? std::make_shared<VisibilityCuller>() : std::move(culler);
+  impl_->choice = std::make_unique<visibility::Choice>(cpu ? kFirstTrialCpuUs : kFirstTrialUs);
+}
+
 void ArticulatedCollisionManager::setup() {
   if (!impl_->ready) impl_->buildScene();
 }
@@ -853,7 +866,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   query.check_self = problem.num_link_pairs > 0;
   engine::Answer answer;
-  engine::engine().solve(workspace->engine(), problem, query, answer);
+  visibility::Report stage;
+  visibility::solve(*m.visibility, *m.choice, request.visibility, workspace->engine(), problem, query, answer, stage);
   const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();
 
   result.status = statusOf(answer.verdict);
@@ -882,6 +896,13 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     }
   }
   result.statistics = statisticsOf(answer.statistics);
+  result.statistics.visibility_pairs = stage.pairs;
+  result.statistics.visibility_culled = stage.culled;
+  result.statistics.visibility_pieces = stage.pieces;
+  result.statistics.visibility_trials = stage.trials;
+  result.statistics.visibility_us = stage.elapsed_us;
+  result.statistics.visibility_executor = stage.executor;
+  result.statistics.visibility_fallback = stage.fallback;
   if (request.measure_times) {
     result.statistics.report_us = since(solved);
     result.statistics.total_us = since(begin);

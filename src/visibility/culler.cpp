@@ -63,7 +63,7 @@ ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler) : culler_(*culler.imp
   if (culler_.useFactory()) {
     try {
       slot_->executor = culler_.factory();
-      slot_->name = culler_.name.c_str();
+      slot_->name = culler_.name;
       requireSoundness(*slot_->executor, *slot_, culler_.options);
       return;
     } catch (const std::exception& e) {
@@ -77,14 +77,13 @@ ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler) : culler_(*culler.imp
 ExecutorLoan::~ExecutorLoan() {
   const std::lock_guard<std::mutex> lock(culler_.mutex);
   const bool fallen = culler_.factory && !culler_.reason.empty();
-  if (slot_ && !(fallen && slot_->name == culler_.name.c_str())) culler_.idle.push_back(std::move(slot_));
+  if (slot_ && !(fallen && slot_->name == culler_.name)) culler_.idle.push_back(std::move(slot_));
 }
 
 void ExecutorLoan::giveUp(const std::string& reason) {
-  const char* cpu = "cpu";
-  culler_.fallBack(std::string(slot_->name) + ": " + reason);
+  culler_.fallBack(slot_->name + ": " + reason);
   slot_->executor = std::make_unique<CpuExecutor>();
-  slot_->name = cpu;
+  slot_->name = "cpu";
 }
 
 }  // namespace visibility

@@ -15,7 +15,7 @@ namespace visibility {
 /// An executor and the memory of a query that uses it. Nothing in it reaches the next answer.
 struct Slot {
   std::unique_ptr<Executor> executor;
-  const char* name = "cpu";
+  std::string name = "cpu";
   Batch batch;
   std::vector<std::uint8_t> may;
 };

@@ -23,7 +23,7 @@ class Stage {
   // What it did.
   std::uint64_t pairs = 0, culled = 0, pieces = 0;
   double elapsed_us = 0;
-  const char* executor = "";  ///< empty: nothing was asked of one
+  std::string executor;  ///< empty: nothing was asked of one
   std::string failure;        ///< it gave up in the midst of its work
 
  private:

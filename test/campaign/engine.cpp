@@ -62,26 +62,27 @@ fcl_artic::JointMotion motionOf(const Scene& scene, const fcl_artic::KinematicTr
   return scene.shortest ? fcl_artic::JointMotion::shortest(tree, q0, q1) : fcl_artic::JointMotion::linear(tree, q0, q1);
 }
 
-Answer ask(const Scene& scene) {
-  Answer answer;
-  const auto tree = treeOf(scene);
-  fcl_artic::ArticulatedCollisionManager manager(tree);
+Question prepare(const Scene& scene) {
+  Question question;
+  question.tree = treeOf(scene);
+  question.manager = std::make_unique<fcl_artic::ArticulatedCollisionManager>(question.tree);
+  fcl_artic::ArticulatedCollisionManager& manager = *question.manager;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
     const Eigen::Isometry3d X = isometry(b.pose);
-    answer.objects.push_back(std::make_unique<fcl::CollisionObjectd>(b.geometry->fclGeometry(),
-                                                                     b.link < 0 ? X : Eigen::Isometry3d::Identity()));
+    question.objects.push_back(std::make_unique<fcl::CollisionObjectd>(b.geometry->fclGeometry(),
+                                                                       b.link < 0 ? X : Eigen::Isometry3d::Identity()));
     if (b.link < 0)
-      manager.registerObject(answer.objects.back().get(), scene.nameOf(static_cast<int>(i)));
+      manager.registerObject(question.objects.back().get(), scene.nameOf(static_cast<int>(i)));
     else
-      manager.bind(b.link, answer.objects.back().get(), X);
+      manager.bind(b.link, question.objects.back().get(), X);
   }
   fcl_artic::AllowedCollisionMatrix allowed;
   for (const auto& [a, b] : scene.allowed) allowed.allow(scene.nameOf(a), scene.nameOf(b));
   manager.setAllowedCollisions(allowed);
   manager.setup();
 
-  fcl_artic::CertifiedRequest request;
+  fcl_artic::CertifiedRequest& request = question.request;
   request.tolerance_time = scene.tolerance_time;
   request.tolerance_distance = scene.tolerance_distance;
   request.margin = scene.margin;
@@ -89,10 +90,17 @@ Answer ask(const Scene& scene) {
   request.check_self = scene.check_self;
   request.mode = scene.every_pair ? fcl_artic::ContactMode::firstOfEveryPair : fcl_artic::ContactMode::first;
   request.max_contacts = scene.every_pair ? 10000 : static_cast<std::size_t>(scene.max_contacts);
-  const fcl_artic::JointMotion motion = motionOf(scene, *tree);
+  return question;
+}
+
+Answer ask(const Scene& scene) {
+  Question question = prepare(scene);
+  const fcl_artic::JointMotion motion = motionOf(scene, *question.tree);
+  Answer answer;
   const auto start = std::chrono::steady_clock::now();
-  manager.continuousCollide(motion, request, answer.result);
+  question.manager->continuousCollide(motion, question.request, answer.result);
   answer.elapsed_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+  answer.objects = std::move(question.objects);
   return answer;
 }
 

@@ -20,6 +20,15 @@ struct Answer {
   int bodyOf(const fcl::CollisionObjectd* object) const;
 };
 
+/// A scene put to the library, ready to be asked.
+struct Question {
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;  ///< one for each body of the scene
+  std::shared_ptr<const fcl_artic::KinematicTree> tree;
+  std::unique_ptr<fcl_artic::ArticulatedCollisionManager> manager;
+  fcl_artic::CertifiedRequest request;
+};
+Question prepare(const Scene& scene);
+
 /// Asks the library through its public interface. The only place of the campaign that links to it.
 Answer ask(const Scene& scene);
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "fcl_artic/request.h"
+#include "fcl_artic/result.h"
+#include "narrowphase/problem.h"
+#include "visibility/choice.h"
+#include "visibility/culler.h"
+
+namespace fcl_artic {
+namespace visibility {
+
+/// What stage 2 did in a query.
+struct Report {
+  std::uint64_t pairs = 0, culled = 0, pieces = 0, trials = 0;
+  double elapsed_us = 0;
+  std::string executor;
+  std::string fallback;
+};
+
+/// engine::Engine::solve, with stage 2 or without, as `mode` says. With a work budget `automatic` is off: what fits into it
+/// would depend on the clock.
+/// @param query  must outlive the use of the workspace (engine::Engine::pairMotion).
+void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, void* workspace,
+           const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report);
+
+}  // namespace visibility
+}  // namespace fcl_artic
