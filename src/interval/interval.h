@@ -78,13 +78,19 @@ class Interval {
   friend Interval max(Interval a, Interval b);
 };
 
-FCL_ARTIC_INLINE Interval operator+(Interval a, Interval b) { return Interval::raw(directed::add(a.v_, b.v_)); }
-FCL_ARTIC_INLINE Interval operator-(Interval a, Interval b) { return Interval::raw(directed::add(a.v_, b.swapped())); }
-FCL_ARTIC_INLINE Interval operator-(Interval a) { return Interval::raw(a.swapped()); }
+FCL_ARTIC_INLINE Interval operator+(Interval a, Interval b) {
+  return Interval::raw(directed::add(a.v_, b.v_));
+}
+FCL_ARTIC_INLINE Interval operator-(Interval a, Interval b) {
+  return Interval::raw(directed::add(a.v_, b.swapped()));
+}
+FCL_ARTIC_INLINE Interval operator-(Interval a) {
+  return Interval::raw(a.swapped());
+}
 
-/// The ends of a product are among the four products of ends. MAXPD gives its second operand where the first one is NaN:
-/// a product 0 * inf, which stands for 0 * (some number), is dropped, and another one covers it; if it is the first one
-/// there is, known() makes it an infinite end.
+/// The ends of a product are among the four products of ends. MAXPD gives its second operand where the first one is
+/// NaN: a product 0 * inf, which stands for 0 * (some number), is dropped, and another one covers it; if it is the
+/// first one there is, known() makes it an infinite end.
 FCL_ARTIC_INLINE Interval operator*(Interval a, Interval b) {
   const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
   const __m128d p = directed::mul(n, c), q = directed::mul(Interval::negated(n), b.v_), r = directed::mul(h, b.v_),
@@ -96,7 +102,9 @@ FCL_ARTIC_INLINE Interval operator*(Interval a, double b) {
   return Interval::raw(
       Interval::known(_mm_max_pd(directed::mul(a.swapped(), Interval::negated(k)), directed::mul(a.v_, k))));
 }
-FCL_ARTIC_INLINE Interval operator*(double a, Interval b) { return b * a; }
+FCL_ARTIC_INLINE Interval operator*(double a, Interval b) {
+  return b * a;
+}
 
 /// The whole line where b contains 0.
 FCL_ARTIC_INLINE Interval operator/(Interval a, Interval b) {
@@ -141,18 +149,34 @@ FCL_ARTIC_INLINE Interval max(Interval a, Interval b) {
   const __m128d most = _mm_max_pd(a.v_, b.v_), least = _mm_min_pd(a.v_, b.v_);
   return Interval::raw(_mm_move_sd(most, least));
 }
-FCL_ARTIC_INLINE Interval min(Interval a, Interval b) { return -max(-a, -b); }
+FCL_ARTIC_INLINE Interval min(Interval a, Interval b) {
+  return -max(-a, -b);
+}
 
 /// The smallest interval that holds both.
-FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) { return Interval::raw(_mm_max_pd(a.raw(), b.raw())); }
+FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) {
+  return Interval::raw(_mm_max_pd(a.raw(), b.raw()));
+}
 /// What both hold; may be empty. No operation takes an empty interval.
-FCL_ARTIC_INLINE Interval intersection(Interval a, Interval b) { return Interval::raw(_mm_min_pd(a.raw(), b.raw())); }
+FCL_ARTIC_INLINE Interval intersection(Interval a, Interval b) {
+  return Interval::raw(_mm_min_pd(a.raw(), b.raw()));
+}
 
-FCL_ARTIC_INLINE bool certainlyLess(Interval a, Interval b) { return a.upper() < b.lower(); }
-FCL_ARTIC_INLINE bool certainlyDisjoint(Interval a, Interval b) { return certainlyLess(a, b) || certainlyLess(b, a); }
+FCL_ARTIC_INLINE bool certainlyLess(Interval a, Interval b) {
+  return a.upper() < b.lower();
+}
+FCL_ARTIC_INLINE bool certainlyDisjoint(Interval a, Interval b) {
+  return certainlyLess(a, b) || certainlyLess(b, a);
+}
 
-FCL_ARTIC_INLINE Interval& operator+=(Interval& a, Interval b) { return a = a + b; }
-FCL_ARTIC_INLINE Interval& operator-=(Interval& a, Interval b) { return a = a - b; }
-FCL_ARTIC_INLINE Interval& operator*=(Interval& a, Interval b) { return a = a * b; }
+FCL_ARTIC_INLINE Interval& operator+=(Interval& a, Interval b) {
+  return a = a + b;
+}
+FCL_ARTIC_INLINE Interval& operator-=(Interval& a, Interval b) {
+  return a = a - b;
+}
+FCL_ARTIC_INLINE Interval& operator*=(Interval& a, Interval b) {
+  return a = a * b;
+}
 
 }  // namespace fcl_artic

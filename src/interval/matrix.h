@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Interval matrices: 3x3, and 4x4 with the last row (0 0 0 1), kept as rotation and origin. Where they hold a motion over
-// a time interval, R holds the rotation and t the origin at every time of it; R is no rotation itself.
+// Interval matrices: 3x3, and 4x4 with the last row (0 0 0 1), kept as rotation and origin. Where they hold a motion
+// over a time interval, R holds the rotation and t the origin at every time of it; R is no rotation itself.
 #pragma once
 
 #include "interval/vector.h"
@@ -54,9 +54,9 @@ FCL_ARTIC_INLINE Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) {
   }
   return o;
 }
-/// Times a constant in doubles, row-major.
+/// a times a constant in doubles, row-major.
 template <typename T>
-FCL_ARTIC_INLINE Mat3<T> operator*(const Mat3<T>& a, const double (&b)[9]) {
+FCL_ARTIC_INLINE Mat3<T> timesConstant(const Mat3<T>& a, const double* b) {
   Mat3<T> o;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) o(i, j) = (a(i, 0) * b[j] + a(i, 1) * b[3 + j]) + a(i, 2) * b[6 + j];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Directed rounding that a compiler can't undo. C++ knows no rounding mode: compilers fold, share and move floating-point
-// operations across a change of mode, -frounding-math or not (doc/INTERVALS.md, "Compiler hazards"). So every operation
-// that relies on the mode is an instruction of its own here, which the compiler doesn't look into, and which reads
-// `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of changes and operations.
+// Directed rounding that a compiler can't undo. C++ knows no rounding mode: compilers fold, share and move
+// floating-point operations across a change of mode, -frounding-math or not (doc/INTERVALS.md, "Compiler hazards"). So
+// every operation that relies on the mode is an instruction of its own here, which the compiler doesn't look into, and
+// which reads `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of changes
+// and operations.
 #pragma once
 
 #if !defined(__x86_64__)
@@ -22,45 +23,63 @@ namespace fcl_artic {
 /// Stands for the processor's rounding mode where the compiler orders operations. Never read or written in fact.
 __attribute__((visibility("hidden"))) inline char rounding_mode = 0;
 
-/// Rounds upward while it lives: all operations of Interval are enclosures then, in whatever mode the caller computes.
-/// Subnormals are kept and exceptions masked, too, for callers that flush the ones or trap the others. The caller's mode,
-/// flags included, is put back at the end. May be nested; an inner one costs 2 ns, an outer one 6 ns.
-class RoundUpward {
+/// Sets the processor's floating-point control while it lives; the caller's is put back at the end, sticky flags
+/// included.
+class RoundingScope {
  public:
-  RoundUpward() : before_(_mm_getcsr()) {
-    if ((before_ & ~kFlags) != kUpward) set(kUpward);
-  }
-  ~RoundUpward() {
-    if ((before_ & ~kFlags) != kUpward) set(before_);
-  }
-  RoundUpward(const RoundUpward&) = delete;
-  RoundUpward& operator=(const RoundUpward&) = delete;
+  RoundingScope(const RoundingScope&) = delete;
+  RoundingScope& operator=(const RoundingScope&) = delete;
 
-  static bool isOn() { return (_mm_getcsr() & ~kFlags) == kUpward; }
+ protected:
+  explicit RoundingScope(unsigned control) : before_(_mm_getcsr()), changes_((before_ & ~kFlags) != control) {
+    if (changes_) set(control);
+  }
+  ~RoundingScope() {
+    if (changes_) set(before_);
+  }
+  static constexpr unsigned kFlags = 0x3f;
+  /// Exceptions masked, subnormals kept, rounding to nearest.
+  static constexpr unsigned kDefault = 0x1f80;
 
  private:
-  /// All exceptions masked, rounding control "up", no flushing; the sticky exception flags don't matter.
-  static constexpr unsigned kUpward = 0x1f80 | _MM_ROUND_UP, kFlags = 0x3f;
   static FCL_ARTIC_INLINE void set(unsigned control) {
     asm volatile("ldmxcsr %1" : "+m"(rounding_mode) : "m"(control) : "memory");
   }
   unsigned before_;
+  bool changes_;
+};
+
+/// Rounds upward while it lives: all operations of Interval are enclosures then, in whatever mode the caller computes,
+/// flushes subnormals or traps exceptions. May be nested; an inner one costs 2 ns, an outer one 6 ns.
+class RoundUpward : public RoundingScope {
+ public:
+  RoundUpward() : RoundingScope(kUpward) {}
+  static bool isOn() { return (_mm_getcsr() & ~kFlags) == kUpward; }
+
+ private:
+  static constexpr unsigned kUpward = kDefault | _MM_ROUND_UP;
+};
+
+/// The usual mode, for code of others that is called meanwhile.
+class RoundToNearest : public RoundingScope {
+ public:
+  RoundToNearest() : RoundingScope(kDefault) {}
 };
 
 /// Two doubles at once, in the present rounding mode.
 namespace directed {
 #ifdef __AVX__
-#define FCL_ARTIC_DIRECTED(name)                                                                        \
-  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                                                 \
-    __m128d o;                                                                                          \
-    asm("v" #name "pd %2, %1, %0" : "=x"(o) : "x"(a), "x"(b), "m"(rounding_mode));                      \
-    return o;                                                                                           \
+#define FCL_ARTIC_DIRECTED(name)                                                   \
+  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                            \
+    __m128d o;                                                                     \
+    asm("v" #name "pd %2, %1, %0" : "=x"(o) : "x"(a), "x"(b), "m"(rounding_mode)); \
+    return o;                                                                      \
   }
 #else
-#define FCL_ARTIC_DIRECTED(name)                                              \
-  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                       \
-    asm(#name "pd %1, %0" : "+x"(a) : "x"(b), "m"(rounding_mode));            \
-    return a;                                                                 \
+#define FCL_ARTIC_DIRECTED(name)                                   \
+  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {            \
+    asm(#name "pd %1, %0" : "+x"(a) : "x"(b), "m"(rounding_mode)); \
+    return a;                                                      \
   }
 #endif
 FCL_ARTIC_DIRECTED(add)

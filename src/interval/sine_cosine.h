@@ -55,8 +55,8 @@ inline __attribute__((always_inline)) void encloseSineCosine(Interval x, Interva
   if (!(x.magnitude() <= kLargestAngle)) return;
   const __m128d ends = _mm_set_pd(x.upper(), x.lower());
 
-  // Extrema are at k pi/2: those with k between the ends' quotients by pi/2, which are computed to 1e-9: three roundings
-  // of numbers below 6.4e5. One k too many costs no more than 1e-17.
+  // Extrema are at k pi/2: those with k between the ends' quotients by pi/2, which are computed to 1e-9: three
+  // roundings of numbers below 6.4e5. One k too many costs no more than 1e-17.
   const __m128d scaled = _mm_mul_pd(ends, _mm_set1_pd(0.63661977236758134308));
   const double from = _mm_cvtsd_f64(scaled) - 1e-9, to = _mm_cvtsd_f64(_mm_unpackhi_pd(scaled, scaled)) + 1e-9;
   int first = static_cast<int>(from), last = static_cast<int>(to);

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "interval/sine_cosine.h"
 #include "interval/matrix.h"
+#include "interval/sine_cosine.h"
 
 namespace fcl_artic {
 namespace {

@@ -42,14 +42,6 @@ Eigen::Matrix3d Random::rotation() {
   return Eigen::AngleAxisd(in(-3.2, 3.2), direction()).toRotationMatrix();
 }
 
-std::vector<const Subject*> subjects() {
-  std::vector<const Subject*> all;
-  for (const Subject* s : {&kSubjectSse2, &kSubjectAvx2, &kSubjectAvx512}) {
-    if (engine::engineNamed(s->name)) all.push_back(s);
-  }
-  return all;
-}
-
 namespace {
 
 Eigen::Isometry3d isometry(const Eigen::Matrix3d& R, const Eigen::Vector3d& t) {

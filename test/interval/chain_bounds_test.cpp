@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Exact poses and velocities of random robots and bodies against the bounds over time intervals, and how wide those
+// are.
+#include <cmath>
+#include <cstdio>
+
+#include <gtest/gtest.h>
+
+#include "interval/chain_bounds.h"
+#include "numerics/body_cases.h"
+#include "operands.h"
+
+namespace fcl_artic {
+namespace numerics_test {
+namespace {
+
+constexpr Enclosure kEnclosures[] = {Enclosure::intervalChain, Enclosure::meanValue, Enclosure::taylor};
+
+/// Entries 0..8: the rotation, by rows; 9..11: the origin.
+Real entry(const RealRigid& M, int i) {
+  return i < 9 ? M.R[static_cast<std::size_t>(i % 3)][static_cast<std::size_t>(i / 3)]
+               : M.t[static_cast<std::size_t>(i - 9)];
+}
+const Interval& entry(const IntervalTransform& M, int i) {
+  return i < 9 ? M.R.m[i] : M.t[i - 9];
+}
+
+struct Tally {
+  long checks = 0, broken = 0;
+};
+
+/// B's frame in A's by interval products, with derivatives: constant transforms move nothing of their own.
+FrameBounds relate(const IntervalTransform& front, const FrameBounds& f, const IntervalTransform& behind) {
+  const RoundUpward upward;
+  const auto derivative = [&](const IntervalTransform& rate) -> IntervalTransform {
+    return {front.R * (rate.R * behind.R), front.R * (rate.R * behind.t + rate.t)};
+  };
+  return {front * f.pose * behind, derivative(f.rate), derivative(f.second)};
+}
+
+/// The exact pose and its derivatives by differences, whose error 1e-20 is far above what 256 bits make of it, against
+/// all enclosures over one interval.
+template <typename Case>
+void check(const Case& c, double begin, double end, Random& random, int mode, Tally* tally) {
+  std::vector<FrameBounds> frames(static_cast<std::size_t>(c.in.sweep.num_steps));
+  const double tau = random.below(4) == 0 ? -1 : random.below(4) == 0 ? 1 : random.in(-1, 1);
+  Real t = Real(0.5) * (Real(1 - tau) * Real(begin) + Real(1 + tau) * Real(end));
+  const Real h = 1e-24;
+  const RealRigid now = c.relative(t), before = c.relative(t - h), after = c.relative(t + h);
+  for (const Enclosure enclosure : kEnclosures) {
+    FrameBounds bounds;
+    {
+      const ScopedRounding scope(mode);
+      ChainBounds chain;
+      chain.reset(c.in.sweep, c.in.query);
+      chain.enclose(begin, end, enclosure, Derivatives::second, frames.data());
+      const IntervalTransform one = IntervalTransform::identity(),
+                              nothing = {timesConstant(one.R, std::array<double, 9>{}.data()), one.t};
+      const FrameBounds still = {one, nothing, nothing};
+      bounds = relate(enclose(c.in.inverse_a), c.in.step_b < 0 ? still : frames[static_cast<std::size_t>(c.in.step_b)],
+                      enclose(c.in.placement_b));
+    }
+    for (int i = 0; i < 12; ++i) {
+      const Real rate = (entry(after, i) - entry(before, i)) / (Real(2.0) * h);
+      const Real second = ((entry(after, i) - entry(now, i)) + (entry(before, i) - entry(now, i))) / (h * h);
+      const bool good[3] = {holds(entry(bounds.pose, i), entry(now, i)), holds(entry(bounds.rate, i), rate, 1e-20),
+                            holds(entry(bounds.second, i), second, 1e-20)};
+      for (int order = 0; order < 3; ++order) {
+        ++tally[order].checks;
+        tally[order].broken += !good[order];
+        ASSERT_TRUE(good[order]) << "order " << order << " entry " << i << " enclosure " << static_cast<int>(enclosure)
+                                 << " [" << begin << ", " << end << "] mode " << mode;
+      }
+    }
+  }
+}
+
+template <typename Case>
+void campaign(const char* name, int checks) {
+  Random random(seedOf(name));
+  Tally tally[3];
+  const int cases = scaled(checks) / (8 * 36);
+  for (int i = 0; i < cases && !testing::Test::HasFatalFailure(); ++i) {
+    const int mode = kRoundingModes[i % 4];
+    const Case c(random, mode);
+    for (int k = 0; k < 8; ++k) {
+      double begin = c.in.tm[k] - c.in.d, end = c.in.tm[k] + c.in.d;
+      if (k == 1) end = begin;
+      check(c, begin, end, random, mode, tally);
+    }
+  }
+  std::printf("%ld poses', %ld first and %ld second derivatives' entries, %ld broken\n", tally[0].checks,
+              tally[1].checks, tally[2].checks, tally[0].broken + tally[1].broken + tally[2].broken);
+  EXPECT_GE(tally[0].checks, 36 * 8 * cases / 3);
+}
+
+TEST(ChainBounds, HoldExactPosesOfRobots) {
+  campaign<PairCase>("ChainBounds robots", 100000);
+}
+TEST(ChainBounds, HoldExactPosesOfBodies) {
+  campaign<BodyCase>("ChainBounds bodies", 100000);
+}
+
+}  // namespace
+}  // namespace numerics_test
+}  // namespace fcl_artic

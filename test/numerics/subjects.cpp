@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "subject.h"
+
+namespace fcl_artic {
+namespace numerics_test {
+
+std::vector<const Subject*> subjects() {
+  std::vector<const Subject*> all;
+  for (const Subject* s : {&kSubjectSse2, &kSubjectAvx2, &kSubjectAvx512}) {
+    if (engine::engineNamed(s->name)) all.push_back(s);
+  }
+  return all;
+}
+
+}  // namespace numerics_test
+}  // namespace fcl_artic
