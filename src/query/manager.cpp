@@ -856,6 +856,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   m.setVariables(motion, aspects.time, workspace->coefficients, query);
   engine::Problem problem = m.problem();
   const BoundedParts parts(aspects.time, problem);
+  if (!aspects.own_margins) {
+    problem.scene_margins = problem.link_margins = nullptr;
+    problem.largest_margin = 0;
+  }
   // Pairs with moving obstacles are the scene's, though they stand with those of two links.
   const auto self_pairs = static_cast<std::int32_t>(m.num_self_pairs);
   if (!request.check_scene) problem.num_link_pairs = self_pairs;

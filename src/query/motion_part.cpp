@@ -24,8 +24,8 @@ PartError partError(const MotionElement& element) {
     const BoundedMotion::Bounds bounds = element.bounded->bounds(0, 1);
     return {2 * bounds.angular_speed, 2 * bounds.speed};
   }
-  // A coefficient of the part is off by 4 * degree + 2 times the terms it is summed from, at most; those of all of them sum to
-  // the whole's, as begin + width <= 1.
+  // A coefficient of the part is off by 4 * degree + 2 times the terms it is summed from, at most; those of all of them
+  // sum to the whole's, as begin + width <= 1.
   const double error = (4 * kMaxDegree + 4) * element.coefficients.cwiseAbs().sum();
   const bool turns = element.kind == Kind::revolute || element.kind == Kind::turn;
   return {turns ? error : 0, turns ? 0 : error};

@@ -44,7 +44,8 @@ class BoundedPart : public BoundedMotion {
   TimePart part_;
 };
 
-/// A problem whose bounded motions are asked for a part of their time: while this object lives, the problem's sweeps are its.
+/// A problem whose bounded motions are asked for a part of their time: while this object lives, the problem's sweeps
+/// are its.
 class BoundedParts {
  public:
   BoundedParts(const TimePart& part, engine::Problem& problem);

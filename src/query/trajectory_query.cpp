@@ -101,6 +101,11 @@ void addContacts(const CertifiedResult& all, const std::set<Bodies>& wrongly, co
 
 void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
+  collideTrajectory(trajectory, request, true, result);
+}
+
+void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
+                                                    bool own_margins, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
   CertifiedResult sum;
@@ -128,6 +133,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
     std::vector<bool> never_apart;
     Aspects aspects;
     aspects.time = partOfTime(trajectory, k);
+    aspects.own_margins = own_margins;
     aspects.never_apart = &never_apart;
     collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);

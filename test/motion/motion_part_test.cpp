@@ -16,7 +16,8 @@ TEST(MotionPart, ErrorIsBounded) {
   for (int n = 0; n < 20000; ++n) {
     MotionElement element;
     element.kind = MotionElement::Kind::revolute;
-    for (int k = 0; k <= n % (kMaxDegree + 1); ++k) element.coefficients(0, k) = uniform(-1, 1) * std::pow(10, uniform(-3, 3));
+    for (int k = 0; k <= n % (kMaxDegree + 1); ++k)
+      element.coefficients(0, k) = uniform(-1, 1) * std::pow(10, uniform(-3, 3));
     TimePart part = {uniform(0, 1), 1};
     if (n % 2) part.end = uniform(part.begin, 1);
     const Eigen::MatrixXd c = partOf(element.coefficients.row(0), part);

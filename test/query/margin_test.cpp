@@ -38,8 +38,12 @@ CertifiedRequest withMargin(double margin) {
 }
 
 /// Time at which the cart, from 0 to 2, comes within `margin` of the wall at x = 2; of the post.
-double wallTime(double margin) { return (1.9 - margin) / 2; }
-double postTime(double margin) { return (1 - std::sqrt((0.2 + margin) * (0.2 + margin) - 0.25)) / 2; }
+double wallTime(double margin) {
+  return (1.9 - margin) / 2;
+}
+double postTime(double margin) {
+  return (1 - std::sqrt((0.2 + margin) * (0.2 + margin) - 0.25)) / 2;
+}
 
 }  // namespace
 
@@ -111,8 +115,8 @@ TEST(Margin, OfTwoLinks) {
   manager.bind("hook", weight.get(), pose({1, 0, 0}));
   manager.registerObject(post.get(), "post");
   manager.setup();
-  // The hook comes from 1 to 0.3 of the cart, which drives from 0 to 3: 1 - 0.7 t = 0.2 + margin; at the end the cart is 0.3
-  // from the post.
+  // The hook comes from 1 to 0.3 of the cart, which drives from 0 to 3: 1 - 0.7 t = 0.2 + margin; at the end the cart
+  // is 0.3 from the post.
   const auto run = [&](const CertifiedRequest& request) {
     return ask(manager, Vector3d(0, 0, 0), Vector3d(3, 0, 0.7), request);
   };
@@ -193,8 +197,8 @@ TEST(Margin, FeaturesAreNamedWhereThePairHasNone) {
   EXPECT_EQ(near.contacts.at(0).feature, FeatureKind::vertexFace);
 }
 
-// Balls of a turning arm among balls, with and without margins of their own: the first time at which any comes as near as it
-// may not, sampled in closed form.
+// Balls of a turning arm among balls, with and without margins of their own: the first time at which any comes as near
+// as it may not, sampled in closed form.
 TEST(Margin, RandomPairsAgainstDenseSampling) {
   std::mt19937_64 random(7);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };

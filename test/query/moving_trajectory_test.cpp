@@ -62,8 +62,9 @@ JointTrajectory drive(const Cart& cart, const std::vector<double>& times, const 
 
 }  // namespace
 
-// The ball of 0.2 comes from x = 2 to 0 in 10 s to 20 s: at 2 - (T - 10) / 5. The cart's ball of 0.1 stands at 0 until 12 s,
-// drives to 0.5 by 13 s, and on at 0.1 a second. In the third piece: 2 - (T - 10) / 5 - 0.5 - (T - 13) / 10 = 0.3.
+// The ball of 0.2 comes from x = 2 to 0 in 10 s to 20 s: at 2 - (T - 10) / 5. The cart's ball of 0.1 stands at 0 until
+// 12 s, drives to 0.5 by 13 s, and on at 0.1 a second. In the third piece: 2 - (T - 10) / 5 - 0.5 - (T - 13) / 10 =
+// 0.3.
 TEST(MovingTrajectory, PiecesOfDifferentLength) {
   Cart cart;
   const auto motion = std::make_shared<fcl::TranslationMotiond>(pose({2, 0, 0}), pose({0, 0, 0}));
@@ -120,7 +121,9 @@ TEST(MovingTrajectory, InitialContactMaySeparateAndComesBack) {
 TEST(MovingTrajectory, CutIntoPiecesItIsTheSame) {
   std::mt19937_64 random(3);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
-  const auto vector = [&](double size) { return Vector3d(uniform(-size, size), uniform(-size, size), uniform(-size, size)); };
+  const auto vector = [&](double size) {
+    return Vector3d(uniform(-size, size), uniform(-size, size), uniform(-size, size));
+  };
   int hits = 0, free = 0;
   for (int n = 0; n < 200; ++n) {
     auto tree = std::make_shared<KinematicTree>("arm");
@@ -130,11 +133,12 @@ TEST(MovingTrajectory, CutIntoPiecesItIsTheSame) {
     ArticulatedCollisionManager manager(tree);
     const auto hand = ball(0.25);
     manager.bind("lower", hand.get(), pose({0.5, 0, 0}));
-    const Eigen::Isometry3d from = pose(vector(1), uniform(-3, 3), vector(1)), to = pose(vector(1), uniform(-3, 3), vector(1));
+    const Eigen::Isometry3d from = pose(vector(1), uniform(-3, 3), vector(1)),
+                            to = pose(vector(1), uniform(-3, 3), vector(1));
     std::shared_ptr<fcl::MotionBased> motion;
     if (n % 3 == 0) {
-      motion = std::make_shared<fcl::SplineMotion<double>>(vector(1), vector(1), vector(1), vector(1), vector(2), vector(2),
-                                                           vector(2), vector(2));
+      motion = std::make_shared<fcl::SplineMotion<double>>(vector(1), vector(1), vector(1), vector(1), vector(2),
+                                                           vector(2), vector(2), vector(2));
     } else if (n % 3 == 1) {
       motion = std::make_shared<fcl::InterpMotion<double>>(from.linear(), from.translation(), to.linear(),
                                                            to.translation(), vector(0.5));

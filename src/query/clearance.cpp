@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The clearance of a motion by queries with margins. One that is free proves that nothing comes nearer than its margin;
+// a pose proven in contact shows a pair and a time with no more than that between them. The margin goes down by kStep
+// until a query is free, then halves the bracket (by ratio: the tolerance is relative).
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "fcl_artic/clearance.h"
+#include "fcl_artic/manager.h"
+#include "query/aspects.h"
+#include "query/engine_query.h"
+
+namespace fcl_artic {
+namespace {
+
+/// While nothing is proven free.
+constexpr double kStep = 4;
+/// A query may leave open what is nearer to its margin than this part of the tolerance. (The margin is at least half
+/// the tolerance below `upper`, so that as much more is below it too.)
+constexpr double kOpen = 1.0 / 8;
+
+void require(bool good, const char* name, double value, const char* what) {
+  if (!good)
+    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(value) + ", not " + what);
+}
+
+class Search {
+ public:
+  using Ask = std::function<void(const CertifiedRequest& request, CertifiedResult& result)>;
+  /// @param duration  of the motion, in the unit that its times are in.
+  Search(const ClearanceRequest& request, double duration, Ask ask)
+      : request_(request), duration_(duration), ask_(std::move(ask)) {
+    require(request.tolerance_relative >= 0 && request.tolerance_relative < 1, "tolerance_relative",
+            request.tolerance_relative, "a number from 0 to below 1");
+    require(std::isfinite(request.tolerance_distance) && request.tolerance_distance > 0, "tolerance_distance",
+            request.tolerance_distance, "a positive number");
+    require(std::isfinite(request.most) && request.most > 0, "most", request.most, "a positive number");
+  }
+
+  Clearance run() {
+    found_.within_tolerance = query(0) == Found::contact;
+    double margin = request_.most;
+    while (!found_.within_tolerance && decide(margin)) {
+      found_.within_tolerance = found_.lower >= request_.most || found_.upper - found_.lower <= tolerance(found_.upper);
+      margin = found_.lower > 0 ? std::sqrt(found_.lower * found_.upper) : found_.upper / kStep;
+    }
+    return found_;
+  }
+
+ private:
+  enum class Found { free, contact, open };
+
+  double tolerance(double distance) const {
+    return std::max(request_.tolerance_relative * distance, request_.tolerance_distance);
+  }
+
+  /// Asks whether anything comes so near; where that stays open, whether it comes a little less near.
+  bool decide(double margin) {
+    return query(margin) != Found::open || query(margin + kOpen * tolerance(margin)) != Found::open;
+  }
+
+  Found query(double margin) {
+    if (spent_) return Found::open;
+    CertifiedRequest request;
+    request.margin = margin;
+    request.tolerance_time *= duration_;
+    request.mode = ContactMode::any;
+    request.check_scene = request_.check_scene;
+    request.check_self = request_.check_self;
+    request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
+    if (request_.work_budget) {
+      const std::uint64_t used = found_.statistics.node_tests + found_.statistics.leaf_tests;
+      spent_ = used >= request_.work_budget;
+      if (spent_) return Found::open;
+      request.work_budget = request_.work_budget - used;
+    }
+    ask_(request, result_);
+    found_.statistics.pairs = result_.statistics.pairs;
+    found_.statistics.pairs_after_culling += result_.statistics.pairs_after_culling;
+    addWork(result_.statistics, found_.statistics);
+    spent_ = result_.status == Status::undecided;
+    if (result_.isFree()) {
+      found_.lower = std::max(found_.lower, margin);
+      return Found::free;
+    }
+    const auto proven = std::find_if(result_.contacts.begin(), result_.contacts.end(),
+                                     [](const CertifiedContact& contact) { return contact.certain; });
+    if (spent_ || proven == result_.contacts.end()) return Found::open;
+    found_.upper = margin;
+    found_.time = proven->t_upper;
+    found_.body1 = proven->body1;
+    found_.body2 = proven->body2;
+    return Found::contact;
+  }
+
+  ClearanceRequest request_;
+  double duration_;
+  Ask ask_;
+  CertifiedResult result_;
+  Clearance found_;
+  bool spent_ = false;
+};
+
+}  // namespace
+
+Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, const ClearanceRequest& request) const {
+  Aspects aspects;
+  aspects.own_margins = false;
+  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
+    collideMotion(motion, asked, aspects, result);
+  };
+  return Search(request, 1, ask).run();
+}
+
+Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajectory,
+                                                 const ClearanceRequest& request) const {
+  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
+    collideTrajectory(trajectory, asked, false, result);
+  };
+  return Search(request, trajectory.endTime() - trajectory.beginTime(), ask).run();
+}
+
+}  // namespace fcl_artic
