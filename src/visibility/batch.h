@@ -26,7 +26,9 @@ struct Window {
 /// How footprints and depth bounds are grown. All but the defaults is wrong: tests show that they notice.
 struct Growth {
   bool footprint = true, depth = true;
-  double eta = 1.0 / 64;  ///< beyond the pixel's half width, in pixels: for snapping and rounding
+  /// Beyond the pixel's half width, in pixels: for snapping and rounding. Below 0: what the executor needs.
+  double eta = -1;
+  Growth orOwn(double needed) const { return {footprint, depth, eta < 0 ? needed : eta}; }
 };
 
 /// Swept volumes and the objects that may touch them, by windows.

@@ -9,6 +9,8 @@ namespace visibility {
 namespace {
 
 constexpr float kNothing = 3e38f;
+/// Growth::eta of this executor: nothing is snapped, and rounding is far less.
+constexpr double kEta = 1.0 / 64;
 /// A side flatter than this decides no column of a row: as if it were not there (or the row as a whole is beyond it).
 constexpr double kFlat = 1e-6;
 
@@ -147,6 +149,7 @@ bool CpuExecutor::groupMayOverlap(const Batch& batch, std::size_t begin, std::si
 }
 
 void CpuExecutor::run(const Batch& batch, std::vector<std::uint8_t>& may) {
+  projector_.setGrowth(batch.growth.orOwn(kEta));
   drawSwept(batch);
   may.assign(batch.objects.size(), 1);
   std::size_t end = 0;

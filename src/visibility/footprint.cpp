@@ -134,8 +134,6 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
   }
   if (!usable) return Outcome::unusable;
 
-  half_ = batch.growth.footprint ? 0.5 + batch.growth.eta : 0;
-  depth_half_ = batch.growth.depth ? 0.5 + batch.growth.eta : 0;
   for (int k = 0; k < 2; ++k) {
     const double grow = half_ + radius_[k] + kDouble * (sums_[k] + radius_[k] + 1);
     f.lo[k] = lo[k] - grow;

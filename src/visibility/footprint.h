@@ -43,6 +43,11 @@ class FCL_ARTIC_EXPORT Projector {
     covers,    ///< it may: the footprint says which
     unusable,  ///< a number is not finite, or the window has no volume: nothing is known
   };
+  /// For the footprints to come; eta is not below 0.
+  void setGrowth(const Growth& growth) {
+    half_ = growth.footprint ? 0.5 + growth.eta : 0;
+    depth_half_ = growth.depth ? 0.5 + growth.eta : 0;
+  }
   /// @param view  axis along which is looked, 0 to 2.
   Outcome project(const Batch& batch, const Volume& volume, const Window& window, int view, Footprint& footprint);
 
@@ -54,7 +59,7 @@ class FCL_ARTIC_EXPORT Projector {
   std::vector<double> x_, y_, z_;
   double radius_[3];  ///< of the ball, in the units of X, Y, Z
   double sums_[3];    ///< of |X|, |Y|, |Z|: rounding scales with them
-  double half_, depth_half_;
+  double half_ = 1, depth_half_ = 1;
   int resolution_, count_;
 };
 

@@ -46,7 +46,7 @@ TEST_P(CpuRule, WeakenedRulesAreSeen) {
   } rules[] = {{"no dilation", false, false, 0.5}, {"depth only", false, true, 0.5}, {"footprint only", true, false, 0.01}};
   for (const auto& rule : rules) {
     Batch b = batch();
-    b.growth = {rule.footprint, rule.depth, 1.0 / 64};
+    b.growth = {rule.footprint, rule.depth, -1};
     const std::uint64_t n = 3000, wrong = countWrongCulls(executor_, b, 1, 0, n);
     std::cout << rule.name << ": " << wrong << " of " << n << " culled wrongly\n";
     EXPECT_GT(static_cast<double>(wrong), rule.least * static_cast<double>(n)) << rule.name;
