@@ -130,7 +130,7 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
       hi[k] = std::max(hi[k], x);
       sums_[k] += std::abs(x);  // not a number, where one of them isn't
     }
-    usable = window.hi[axis] > window.lo[axis] && scale < kLargest && sums_[k] < kLargest && radius_[k] < kLargest;
+    usable = scale > 1 / kLargest && scale < kLargest && sums_[k] < kLargest && radius_[k] < kLargest;
   }
   if (!usable) return Outcome::unusable;
 
