@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#define FCL_ARTIC_ISA avx512
+#define FCL_ARTIC_ISA_BITS 512
+#define FCL_ARTIC_ISA_ARITHMETIC kArithmeticAvx512
+#define FCL_ARTIC_ARITHMETIC_DIRECTED true
+#define FCL_ARTIC_ARITHMETIC_LOWER(x) (-(x).lower())
+#include "interval/interval_lanes.h"
+
+#include "arithmetic.inl"
