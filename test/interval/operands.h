@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interval/interval.h"
+#include "interval/matrix.h"
 #include "numerics/cases.h"
 
 namespace fcl_artic {
@@ -25,16 +25,18 @@ inline double sign(Random& random) {
 
 /// A finite number of the size that goes with the shape.
 inline double number(Random& random, Shape shape) {
+  const double s = sign(random);  // one draw after the other: the same numbers from every compiler
   switch (shape) {
     case Shape::tiny:  // subnormals and what their products underflow to
-      return sign(random) * (random.chance(0.5) ? random.below(1000) * 0x1p-1074 : random.size(1e-200, 1e-140));
+      if (random.chance(0.5)) return s * random.below(1000) * 0x1p-1074;
+      return s * random.size(1e-200, 1e-140);
     case Shape::huge:
     case Shape::unbounded:
-      return sign(random) * (random.chance(0.3) ? Interval::kLargest : random.size(1e140, 1e308));
+      return s * (random.chance(0.3) ? Interval::kLargest : random.size(1e140, 1e308));
     case Shape::zero:
       return random.chance(0.5) ? 0.0 : random.in(-2, 2);
     default:
-      return random.chance(0.2) ? random.below(9) - 4 : sign(random) * random.size(1e-3, 1e3);
+      return random.chance(0.2) ? random.below(9) - 4 : s * random.size(1e-3, 1e3);
   }
 }
 
@@ -69,6 +71,44 @@ inline Interval operand(Random& random, Shape shape) {
          : kind == 1 ? Interval(-infinity, y)
          : kind == 2 ? Interval(y, infinity)
                      : Interval(y);
+}
+
+/// A number of the interval, an end now and then; infinite ends stand for large numbers.
+inline double member(Random& random, const Interval& x) {
+  const double lower = std::max(x.lower(), -Interval::kLargest), upper = std::min(x.upper(), Interval::kLargest);
+  const int kind = random.below(4);
+  if (kind == 0) return lower;
+  if (kind == 1) return upper;
+  const double s = kind == 2 ? random.unit() : random.size(1e-300, 1), y = (1 - s) * lower + s * upper;
+  return std::min(std::max(y, lower), upper);
+}
+
+inline IntervalTransform randomTransform(Random& random, Shape shape) {
+  IntervalTransform M;
+  for (Interval& x : M.R.m) x = operand(random, shape);
+  for (Interval& x : M.t.v) x = operand(random, shape);
+  return M;
+}
+
+/// One of the matrices in an interval matrix, exactly.
+struct RealFrame {
+  Real R[3][3];
+  Real3 t;
+  Real3 operator*(const Real3& p) const {
+    Real3 x = t;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) x[i] += R[i][j] * p[j];
+    }
+    return x;
+  }
+};
+inline RealFrame memberOf(Random& random, const IntervalTransform& M) {
+  RealFrame o;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) o.R[i][j] = member(random, M.R(i, j));
+    o.t[static_cast<std::size_t>(i)] = member(random, M.t[i]);
+  }
+  return o;
 }
 
 /// True if the value, off by no more than `error`, is in the interval.

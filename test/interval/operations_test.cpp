@@ -165,16 +165,6 @@ TEST(Operations, GiveTheNarrowestEnclosure) {
   EXPECT_GT(wider, 0);
 }
 
-/// A number of the interval, an end now and then; infinite ends stand for large numbers.
-double member(Random& random, const Interval& x) {
-  const double lower = std::max(x.lower(), -Interval::kLargest), upper = std::min(x.upper(), Interval::kLargest);
-  const int kind = random.below(4);
-  if (kind == 0) return lower;
-  if (kind == 1) return upper;
-  const double s = kind == 2 ? random.unit() : random.size(1e-300, 1), y = (1 - s) * lower + s * upper;
-  return std::min(std::max(y, lower), upper);
-}
-
 TEST(Operations, HoldTheResultsOfUnboundedOperands) {
   Random random(seedOf("Unbounded"));
   Rounder round;
@@ -265,14 +255,17 @@ TEST(Operations, AnswerQuestions) {
 /// Angles with ends at and next to multiples of pi/2, widths from nothing to some turns, sizes up to beyond the range.
 Interval angles(Random& random) {
   const double quarter = 1.5707963267948966;
+  const auto near = [&](double k) { return k * quarter * (1 + (random.below(9) - 4) * 0x1p-53); };
   const auto end = [&](double scale) {
     switch (random.below(4)) {
       case 0:
-        return sign(random) * random.size(1e-300, 1) * scale;
+        scale *= sign(random);
+        return scale * random.size(1e-300, 1);
       case 1:
         return random.in(-7, 7);
       case 2:
-        return std::floor(random.in(-scale, scale)) * quarter * (1 + (random.below(9) - 4) * 0x1p-53);
+        scale = std::floor(random.in(-scale, scale));
+        return near(scale);
       default:
         return random.in(-scale, scale);
     }
@@ -285,8 +278,10 @@ Interval angles(Random& random) {
       return Interval(from, std::nextafter(from, HUGE_VAL));
     case 2:
       return Interval(from, from + random.size(1e-16, 10));
-    case 3:
-      return Interval(from, from + random.below(6) * quarter * (1 + (random.below(9) - 4) * 0x1p-53));
+    case 3: {
+      const int quarters = random.below(6);
+      return Interval(from, from + near(quarters));
+    }
     default: {
       const double to = end(8);
       return Interval(std::min(from, to), std::max(from, to));
