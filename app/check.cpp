@@ -35,7 +35,8 @@ struct Options {
   CertifiedRequest request;
   std::optional<std::size_t> max_contacts;
   bool every_pair = false, no_self = false, no_scene = false;
-  bool shortest = false, json = false;
+  bool shortest = false, json = false, clearance = false;
+  ClearanceRequest clearance_request;
 };
 
 /// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
@@ -173,12 +174,21 @@ int run(const Options& options) {
     }
   }
 
+  std::optional<Clearance> clearance;
+  if (options.clearance) {
+    ClearanceRequest asked = options.clearance_request;
+    asked.check_self = request.check_self;
+    asked.check_scene = request.check_scene;
+    asked.work_budget = request.work_budget;
+    clearance = trajectory ? manager.clearance(*trajectory, asked) : manager.clearance(*motion, asked);
+  }
+
   std::vector<std::string> notes = robot.notes;
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   notes.insert(notes.end(), limit_notes.begin(), limit_notes.end());
   const auto configuration = [&](double t) { return trajectory ? trajectory->configuration(t) : motion->configuration(t); };
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
-  const Report report{tree, request, result, notes, configuration, begin, end};
+  const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
 
   if (!options.image.empty()) {
     const auto size = *numberPair(options.size, 'x');
@@ -237,6 +247,10 @@ void addCheck(CLI::App& program, int& exit_status) {
     return check->add_option(name, value, help)->check(CLI::NonNegativeNumber)->group("Query")->capture_default_str();
   };
   number("--margin", request.margin, "Nearer than this counts as touching, in m");
+  CLI::Option* clearance =
+      check->add_flag("--clearance", o.clearance, "Also the smallest distance over the whole motion, proven")->group("Query");
+  check->add_option("--clearance-most", o.clearance_request.most, "Distances beyond this are of no interest, in m")
+      ->check(CLI::PositiveNumber)->needs(clearance)->group("Query")->capture_default_str();
   number("--tolerance-time", request.tolerance_time, "Wanted width of the bracket of the contact time");
   number("--tolerance-distance", request.tolerance_distance,
          "A gap below this, in m, may be taken for a contact that is not certain");

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bench.h"
 #include "check.h"
 #include "compare.h"
 #include "exit_status.h"
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   int exit_status = kExitError;
+  addBench(program, exit_status);
   addCheck(program, exit_status);
   addCompare(program, exit_status);
   addGenerate(program, exit_status);

@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -113,6 +114,17 @@ std::string headline(const Report& r) {
   return {};
 }
 
+std::string clearanceText(const Clearance& c) {
+  const bool any = std::isfinite(c.upper);
+  std::string text = fmt::format("proven: no checked pair comes nearer than {:.6g} m", c.lower);
+  if (c.upper == 0) text = "none";
+  if (any) {
+    text += fmt::format("; {} and {} are within {:.6g} m at t = {:.12g}", bodyText(c.body1, -1), bodyText(c.body2, -1),
+                        c.upper, c.time);
+  }
+  return text + (c.within_tolerance ? "" : " (the search ended early)");
+}
+
 std::string statisticsText(const QueryStatistics& s) {
   return fmt::format(
       "{} pairs, {} left by the swept bounds; {} node tests, {} leaf tests, {} certificates, {} witness searches, {} "
@@ -133,6 +145,16 @@ Json bodyJson(const BodyRef& body, std::intptr_t primitive) {
   Json out{{"name", body.name}, {"kind", body.link >= 0 ? "link" : "obstacle"}};
   out["triangle"] = primitive >= 0 ? Json(primitive) : Json();
   return out;
+}
+
+Json clearanceJson(const Clearance& c) {
+  const bool any = std::isfinite(c.upper);
+  return {{"lower", c.lower},
+          {"upper", any ? Json(c.upper) : Json()},
+          {"t", any ? Json(c.time) : Json()},
+          {"body1", any ? bodyJson(c.body1, -1) : Json()},
+          {"body2", any ? bodyJson(c.body2, -1) : Json()},
+          {"within_tolerance", c.within_tolerance}};
 }
 
 Json contactJson(const CertifiedContact& c) {
@@ -189,6 +211,7 @@ std::string textReport(const Report& r) {
     if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
     text += contactText(result.contacts[i]);
   }
+  if (r.clearance) text += entry("clearance", clearanceText(*r.clearance));
   if (result.status != Status::free) {
     text += entry("joints", fmt::format("at t = {:.12g}: {}", result.t_lower,
                                         jointsText(r.tree, r.configuration(result.t_lower))));
@@ -218,6 +241,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"q_at_t_lower", valuesJson(r.tree, r.configuration(result.t_lower))},
           {"contacts", contacts},
           {"poses", posesJson(r)},
+          {"clearance", r.clearance ? clearanceJson(*r.clearance) : Json()},
           {"ignored_initial_contacts", ignored},
           {"request",
            {{"tolerance_time", r.request.tolerance_time},

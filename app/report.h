@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fcl_artic/clearance.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
@@ -21,6 +22,7 @@ struct Report {
   const std::vector<std::string>& notes;  ///< one line each
   std::function<Eigen::VectorXd(double t)> configuration;
   double begin = 0, end = 1;  ///< of the motion
+  const Clearance* clearance = nullptr;  ///< null: not asked for
 };
 
 /// The answer for a reader.

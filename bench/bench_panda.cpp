@@ -6,110 +6,53 @@
 //
 // Exit status 1 when a collision is missed or reported late.
 
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <stdexcept>
 
-#include <fcl/geometry/shape/box.h>
-#include <fcl/geometry/shape/cylinder.h>
-#include <fcl/geometry/shape/sphere.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "fcl_artic/urdf/urdf.h"
 #include "options.h"
+#include "planning/problems.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::bench;
-using nlohmann::json;
+using namespace fcl_artic::planning_data;
 
 namespace {
 
 constexpr Answer kFree = 2;
 
-json readJson(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error("cannot read " + path.string());
-  return json::parse(in);
-}
-
-std::shared_ptr<fcl::CollisionGeometryd> toGeometry(const json& obstacle) {
-  const std::string type = obstacle.at("type");
-  if (type == "box") {
-    const std::array<double, 3> size = obstacle.at("size");
-    return std::make_shared<fcl::Boxd>(size[0], size[1], size[2]);
-  }
-  if (type == "cylinder") return std::make_shared<fcl::Cylinderd>(obstacle.at("radius"), obstacle.at("length"));
-  if (type == "sphere") return std::make_shared<fcl::Sphered>(obstacle.at("radius"));
-  throw std::runtime_error("unknown obstacle type '" + type + "'");
-}
-
-fcl::Transform3d toPose(const json& obstacle) {
-  const std::array<double, 3> p = obstacle.at("position");
-  const std::array<double, 4> q = obstacle.at("quaternion_xyzw");
-  fcl::Transform3d M = fcl::Transform3d::Identity();
-  M.translation() << p[0], p[1], p[2];
-  M.linear() = Eigen::Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
-  return M;
-}
-
-/// One problem's scene, ready for queries.
-struct World {
-  std::vector<std::unique_ptr<fcl::CollisionObjectd>> obstacles;
-  std::unique_ptr<ArticulatedCollisionManager> manager;
-};
-
-struct Edge {
-  const World* world;
+/// A motion in the scene of its problem.
+struct Asked {
+  std::shared_ptr<const ArticulatedCollisionManager> manager;
   JointMotion motion;
   double seen_at;  ///< first sample in collision, an upper bound of the first contact; kFree when none was seen
   std::string name;
 };
 
-/// The problems of one environment: start and goal joints by name, the rest locked.
-class Environment {
+/// The problems of one environment, set up.
+class Worlds {
  public:
-  Environment(const Robot& robot, const json& problems) : tree_(*robot.tree), locked_(Eigen::VectorXd::Zero(tree_.dof())) {
-    for (const std::string name : problems.at("joints")) variables_.push_back(variable(name));
-    for (const auto& [name, value] : problems.at("locked_joints").items()) {
-      const JointId joint = tree_.jointId(name);
-      if (!tree_.joint(joint).mimics) locked_[tree_.jointVariable(joint)] = value;
-    }
-    for (const json& problem : problems.at("problems")) {
-      World& world = worlds_[problem.at("index")];
-      world.manager = std::make_unique<ArticulatedCollisionManager>(robot.tree);
-      robot.addTo(*world.manager);
-      for (const json& obstacle : problem.at("obstacles")) {
-        world.obstacles.push_back(std::make_unique<fcl::CollisionObjectd>(toGeometry(obstacle), toPose(obstacle)));
-        world.manager->registerObject(world.obstacles.back().get(), obstacle.at("name"));
-      }
-      world.manager->setup();
-    }
+  Worlds(const Robot& robot, const std::filesystem::path& problems)
+      : tree_(*robot.tree), environment_(readEnvironment(problems, *robot.tree)) {
+    for (const Problem& problem : environment_.problems) managers_[problem.index] = makeManager(robot, problem.scene);
   }
 
-  Edge edge(const json& given, double seen_at, const std::string& name) const {
-    return {&worlds_.at(given.at("problem")),
-            JointMotion::linear(tree_, configuration(given.at("from")), configuration(given.at("to"))), seen_at, name};
+  Asked ask(const Edge& edge, const std::string& name) const {
+    return {managers_.at(edge.problem),
+            JointMotion::linear(tree_, environment_.configuration(tree_, edge.from),
+                                environment_.configuration(tree_, edge.to)),
+            edge.seen_at, name};
   }
 
  private:
-  int variable(const std::string& joint) const { return tree_.jointVariable(tree_.jointId(joint)); }
-  Eigen::VectorXd configuration(const std::vector<double>& values) const {
-    if (values.size() != variables_.size()) throw std::runtime_error("an edge with a wrong number of joint values");
-    Eigen::VectorXd q = locked_;
-    for (std::size_t i = 0; i < values.size(); ++i) q[variables_[i]] = values[i];
-    return q;
-  }
-
   const KinematicTree& tree_;
-  Eigen::VectorXd locked_;
-  std::vector<int> variables_;
-  std::map<int, World> worlds_;
+  Environment environment_;
+  std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers_;
 };
 
 /// Verdicts beside the labels.
@@ -126,31 +69,28 @@ int main(int argc, char** argv) try {
   app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
       ->check(CLI::PositiveNumber)->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
-  const char* data_variable = std::getenv("FCL_ARTIC_DATA");
-  if (!data_variable || !std::filesystem::exists(std::filesystem::path(data_variable) / "edges")) {
+  const std::filesystem::path data = sharedData();
+  if (data.empty()) {
     std::cout << "bench_panda skipped: FCL_ARTIC_DATA does not name a folder with robots/, problems/ and edges/\n";
     return 0;
   }
-  const std::filesystem::path data = data_variable;
-
-  Robot robot = loadUrdf((data / "robots/panda/panda.urdf").string());
-  robot.allowed = loadSrdf((data / "robots/panda/panda.srdf").string(), *robot.tree);
+  const Robot robot = readRobot(data, "panda");
 
   CertifiedRequest request;
   request.tolerance_time = 0x1p-12;
   request.tolerance_distance = 1e-5;
   CertifiedResult result;
   // First contact: its lower bound. Any contact: where one is proven.
-  const auto ask = [&](const Edge& edge, ContactMode mode) -> Answer {
+  const auto ask = [&](const Asked& edge, ContactMode mode) -> Answer {
     request.mode = mode;
-    edge.world->manager->continuousCollide(edge.motion, request, result);
+    edge.manager->continuousCollide(edge.motion, request, result);
     if (result.status == Status::undecided) throw std::runtime_error("a query without a budget ended undecided");
     return result.status == Status::contact ? (mode == ContactMode::any ? result.t_upper : result.t_lower) : kFree;
   };
 
   std::map<std::string, Agreement> agreements;                       // by method
   std::map<std::pair<std::string, std::string>, Measured> all;       // by method and set
-  const auto addMode = [&](const std::string& environment, const std::string& set, const std::vector<Edge>& edges,
+  const auto addMode = [&](const std::string& environment, const std::string& set, const std::vector<Asked>& edges,
                            ContactMode mode, const char* method) {
     report.add("panda " + environment, set, method, [&, set, mode, method] {
       Measured measured = measure(edges.size(), passes, [&](std::size_t i) { return ask(edges[i], mode); });
@@ -180,37 +120,29 @@ int main(int argc, char** argv) try {
       return measured;
     });
   };
-  const auto add = [&](const std::string& environment, const std::string& set, const std::vector<Edge>& edges) {
+  const auto add = [&](const std::string& environment, const std::string& set, const std::vector<Asked>& edges) {
     addMode(environment, set, edges, ContactMode::first, "fcl_artic, first contact");
     addMode(environment, set, edges, ContactMode::any, "fcl_artic, any contact");
   };
 
-  std::deque<Environment> environments;
-  std::deque<std::vector<Edge>> kept;
-  std::map<std::string, const Environment*> by_name;
-  for (const char* name : {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick",
-                           "table_under_pick", "thin"}) {
-    const Environment& environment =
-        environments.emplace_back(robot, readJson(data / "problems/panda" / (std::string(name) + ".json")));
-    by_name[name] = &environment;
+  std::map<std::string, Worlds> worlds;
+  std::deque<std::vector<Asked>> kept;
+  for (const std::string name : {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick",
+                                 "table_under_pick", "thin"}) {
+    const Worlds& here = worlds.try_emplace(name, robot, data / "problems/panda" / (name + ".json")).first->second;
     auto& free = kept.emplace_back();
     auto& hit = kept.emplace_back();
     int number = 0;
-    const json trace = readJson(data / "edges" / fmt::format("panda_trace.{}.json", name));
-    for (const json& given : trace.at("edges")) {
-      const bool seen = given.at("dense") == "hit";
-      (seen ? hit : free).push_back(environment.edge(given, seen ? given.at("first_hit").get<double>() : kFree,
-                                                    fmt::format("{} edge {}", name, number++)));
+    for (const Edge& edge : readTrace(data / "edges" / fmt::format("panda_trace.{}.json", name))) {
+      (edge.hit ? hit : free).push_back(here.ask(edge, fmt::format("{} edge {}", name, number++)));
     }
     add(name, "free", free);
     add(name, "hit", hit);
   }
   auto& missed_by_sampling = kept.emplace_back();
   int number = 0;
-  const json trace = readJson(data / "edges/panda_missed.json");
-  for (const json& given : trace.at("edges")) {
-    missed_by_sampling.push_back(by_name.at(given.at("environment"))->edge(
-        given, given.at("hit_at"), fmt::format("missed edge {}", number++)));
+  for (const Edge& edge : readMissed(data / "edges/panda_missed.json")) {
+    missed_by_sampling.push_back(worlds.at(edge.environment).ask(edge, fmt::format("missed edge {}", number++)));
   }
   add("missed by 1 %", "hit", missed_by_sampling);
 

@@ -17,23 +17,18 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/ScopedState.h>
-#include <ompl/geometric/SimpleSetup.h>
-#include <ompl/geometric/planners/rrt/RRTConnect.h>
-#include <ompl/util/RandomNumbers.h>
+#include <ompl/util/Console.h>
 
 #include "fcl_artic/ompl/planning_setup.h"
 #include "options.h"
-#include "planning/fcl_state_check.h"
-#include "planning/problems.h"
+#include "planning/plans.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::bench;
 using namespace fcl_artic::planning_data;
 using fcl_artic::planning::PlanningSetup;
 namespace ob = ompl::base;
-namespace og = ompl::geometric;
 
 namespace {
 
@@ -41,36 +36,13 @@ constexpr Answer kFree = 2;
 constexpr const char* kEnvironments[] = {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box",
                                          "cage", "table_pick", "table_under_pick", "thin"};
 
-/// FCL behind OMPL's interface. One thread at a time.
-class FclValidity : public ob::StateValidityChecker {
- public:
-  FclValidity(const ob::SpaceInformationPtr& si, const PlanningSetup& ours, const Robot& robot, const Environment& environment,
-              const Scene& scene)
-      : StateValidityChecker(si), ours_(ours), tree_(*robot.tree), environment_(environment), check_(robot, scene) {}
-  bool isValid(const ob::State* state) const override {
-    return !check_.collides(environment_.configuration(tree_, ours_.values(state)));
-  }
-
- private:
-  const PlanningSetup& ours_;
-  const KinematicTree& tree_;
-  const Environment& environment_;
-  mutable FclStateCheck check_;
-};
-
 /// One problem, set up for us and for FCL over the same space.
 struct World {
   PlanningSetup ours;
-  ob::SpaceInformationPtr fcl;
+  ob::SpaceInformationPtr fcl;  ///< OMPL's own motion validator at its default resolution
 
-  World(const Robot& robot, const Environment& environment, const Problem& problem) {
-    planning::SetupOptions options;
-    options.fixed = environment.locked;
-    ours = planning::setUpPlanning(makeManager(robot, problem.scene), environment.joints, options);
-    fcl = std::make_shared<ob::SpaceInformation>(ours.space);
-    fcl->setStateValidityChecker(std::make_shared<FclValidity>(fcl, ours, robot, environment, problem.scene));
-    fcl->setup();  // OMPL's own motion validator at its default resolution
-  }
+  World(const Robot& robot, const Environment& environment, const Problem& problem)
+      : ours(setUp(robot, environment, problem)), fcl(discreteOverFcl(robot, environment, problem, 0.01)) {}
 };
 
 /// A motion, ready for every way of asking.
@@ -254,22 +226,6 @@ void addRandom(Bench& bench, const std::string& name, const Robot& robot, const 
   bench.add(name, "random hit", std::move(hit));
 }
 
-/// Plans one problem. @return whether it was solved; `close` looks at each state in steps of 1/100 of OMPL's default.
-bool plan(const ob::SpaceInformationPtr& si, const PlanningSetup& setup, const Problem& problem, unsigned seed,
-          og::PathGeometric* simplified) {
-  ompl::RNG::setSeed(seed);
-  og::SimpleSetup simple(si);
-  ob::ScopedState<> start(setup.space), goal(setup.space);
-  setup.setState(start.get(), problem.start);
-  setup.setState(goal.get(), problem.goal);
-  simple.setStartAndGoalStates(start, goal);
-  simple.setPlanner(std::make_shared<og::RRTConnect>(si));
-  if (simple.solve(20.0) != ob::PlannerStatus::EXACT_SOLUTION) return false;
-  simple.simplifySolution(20.0);
-  *simplified = simple.getSolutionPath();
-  return true;
-}
-
 /// Times plans with simplification; counts those that FCL sees collide at 1/100 of OMPL's default step.
 void addPlans(Report& report, const std::string& scene, const Environment& environment, const std::map<int, World>& worlds) {
   for (const bool ours : {true, false}) {
@@ -277,28 +233,20 @@ void addPlans(Report& report, const std::string& scene, const Environment& envir
     report.add(scene, "plan and simplify", method, [&report, &environment, &worlds, scene, method, ours] {
       std::vector<const World*> all;
       for (const Problem& problem : environment.problems) all.push_back(&worlds.at(problem.index));
-      std::vector<std::shared_ptr<og::PathGeometric>> paths(all.size());
+      std::vector<Plans> plans(all.size());
       Measured measured = measure(all.size(), 1, [&](std::size_t i) {
-        const ob::SpaceInformationPtr& si = ours ? all[i]->ours.si : all[i]->fcl;
-        paths[i] = std::make_shared<og::PathGeometric>(si);
-        return plan(si, all[i]->ours, environment.problems[i], 1, paths[i].get()) ? 1.0 : kFree;
+        const Problem& problem = environment.problems[i];
+        plans[i] = plan(ours ? all[i]->ours.si : all[i]->fcl, all[i]->ours, problem.start, problem.goal, 1, 20.0);
+        return plans[i].solved ? 1.0 : kFree;
       });
       int solved = 0, colliding = 0;
       for (std::size_t i = 0; i < all.size(); ++i) {
-        if (measured.answers[i] == kFree) continue;
-        ++solved;
-        bool hit = false;
-        const ob::SpaceInformation& si = *all[i]->fcl;
-        ob::ScopedState<> between(all[i]->ours.space);
-        for (std::size_t k = 0; k + 1 < paths[i]->getStateCount() && !hit; ++k) {
-          const ob::State *a = paths[i]->getState(static_cast<unsigned>(k)), *b = paths[i]->getState(static_cast<unsigned>(k + 1));
-          const int steps = 1 + static_cast<int>(si.distance(a, b) / (1e-4 * si.getMaximumExtent()));
-          for (int step = 0; step <= steps && !hit; ++step) {
-            si.getStateSpace()->interpolate(a, b, static_cast<double>(step) / steps, between.get());
-            hit = !si.isValid(between.get());
-          }
-        }
-        colliding += hit;
+        solved += plans[i].solved;
+        ob::ScopedState<> state(all[i]->ours.space);
+        colliding += firstSample(all[i]->ours, plans[i].simplified, [&](const std::vector<double>& q) {
+                       all[i]->ours.setState(state.get(), q);
+                       return !all[i]->fcl->isValid(state.get());
+                     }) >= 0;
       }
       report.note(fmt::format("{}, {}: {} of {} solved, {} simplified plans collide when sampled 100 times finer", scene,
                               method, solved, all.size(), colliding));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planning/problems.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <fstream>
@@ -120,6 +121,23 @@ std::vector<Edge> readMissed(const std::filesystem::path& path) {
     given.at("hit_at").get_to(edge.seen_at);
   }
   return edges;
+}
+
+std::filesystem::path problemsPath(const std::filesystem::path& data, const std::string& robot,
+                                   const std::string& environment) {
+  return data / "problems" / (robot == "ur5_coarse" ? "ur5" : robot) / (environment + ".json");
+}
+
+std::vector<std::string> environmentsOf(const std::filesystem::path& data, const std::string& robot) {
+  const std::filesystem::path folder = problemsPath(data, robot, "").parent_path();
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& file : std::filesystem::directory_iterator(folder, error)) {
+    if (file.path().extension() == ".json") names.push_back(file.path().stem().string());
+  }
+  if (names.empty()) throw std::runtime_error("'" + folder.string() + "' has no problems");
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 Robot readRobot(const std::filesystem::path& data, const std::string& name) {

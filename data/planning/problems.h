@@ -45,6 +45,12 @@ Environment readEnvironment(const std::filesystem::path& path, const KinematicTr
 std::vector<Edge> readTrace(const std::filesystem::path& path);
 std::vector<Edge> readMissed(const std::filesystem::path& path);
 
+/// Where a robot's problems of an environment are. (A robot may share another one's: ur5_coarse those of ur5.)
+std::filesystem::path problemsPath(const std::filesystem::path& data, const std::string& robot,
+                                   const std::string& environment);
+/// The environments that a robot has problems of, by name. @throws std::runtime_error when it has none.
+std::vector<std::string> environmentsOf(const std::filesystem::path& data, const std::string& robot);
+
 /// Robot NAME with its SRDF, from the folder of shared data.
 Robot readRobot(const std::filesystem::path& data, const std::string& name);
 

@@ -77,6 +77,28 @@ TEST_F(ProgramTest, MarginComesEarlier) {
   EXPECT_NEAR(answer.at("t_lower"), wanted, 2e-5);
 }
 
+// At 40 degrees the ball's centre is 0.6 sin(20 deg) - 0.05 from the arm's face.
+TEST_F(ProgramTest, ClearanceOfAFreeMotion) {
+  const Outcome run = this->run("check --json --clearance " + armAndBall() + " --from 0,0 --to 40deg,0");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json clearance = Json::parse(run.out).at("clearance");
+  const double wanted = 0.6 * std::sin(M_PI / 9) - 0.05 - 0.1;
+  EXPECT_LE(clearance.at("lower"), wanted + 1e-9);
+  EXPECT_GE(clearance.at("upper"), wanted - 1e-9);
+  EXPECT_LE(clearance.at("upper").get<double>() - clearance.at("lower").get<double>(), 1e-3);
+  EXPECT_NEAR(clearance.at("t"), 1, 2e-2);
+  EXPECT_EQ(clearance.at("body2").at("name"), "ball");
+  EXPECT_EQ(clearance.at("within_tolerance"), true);
+
+  const Outcome far = this->run("check --json --clearance --clearance-most 0.01 " + armAndBall() + " --from 0,0 --to 40deg,0");
+  EXPECT_EQ(Json::parse(far.out).at("clearance").at("lower"), 0.01);
+  EXPECT_TRUE(Json::parse(far.out).at("clearance").at("upper").is_null());
+  const Outcome text = this->run("check --clearance " + armAndBall() + " --from 0,0 --to 90deg,0");
+  EXPECT_EQ(text.status, 1);
+  EXPECT_NE(text.out.find("clearance none; link 'arm' and obstacle 'ball'"), std::string::npos) << text.out;
+  EXPECT_EQ(this->run("check --clearance-most 1 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
+}
+
 TEST_F(ProgramTest, ExhaustedBudgetIsThree) {
   const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --budget 1");
   EXPECT_EQ(run.status, 3) << run.out << run.err;

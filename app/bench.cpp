@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bench.h"
+
+#include <memory>
+
+#include "planning_bench.h"
+
+namespace fcl_artic::app {
+
+void addBench(CLI::App& program, int& exit_status) {
+  CLI::App* bench = program.add_subcommand("bench", "Benchmarks on one's own machine");
+  bench->require_subcommand(1);
+  auto options = std::make_shared<PlanningBenchOptions>();
+  PlanningBenchOptions& o = *options;
+  CLI::App* planning = bench->add_subcommand(
+      "planning",
+      "RRTConnect with OMPL's discrete validator over FCL, at its default and ten times finer, and with ours");
+  planning->footer(
+      "The data is a folder with robots/ROBOT/ROBOT.urdf and .srdf and problems/ROBOT/ENVIRONMENT.json "
+      "(MotionBenchMaker's\n"
+      "problems in the format planning-problems/1). Every plan is looked at by FCL in steps 100 times finer than "
+      "OMPL's\n"
+      "default, and its motions are checked with proof.\n"
+      "Exit status: 0 no plan made with fcl_artic collides, 1 one does, 2 error.");
+  planning->add_option("--data", o.data, "Folder with robots/ and problems/")
+      ->envname("FCL_ARTIC_DATA")
+      ->required()
+      ->type_name("FOLDER");
+  planning->add_option("--robot", o.robot, "panda, ur5 or ur5_coarse")->capture_default_str()->type_name("NAME");
+  planning->add_option("--environment", o.environments, "Only these; may be repeated")->type_name("NAME...");
+  planning->add_option("--problems", o.problems, "Problems of each environment, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  planning->add_option("--seeds", o.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  planning->add_option("--time-limit", o.seconds, "Seconds for a plan, and for its simplification")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  planning
+      ->add_option("--out", o.out,
+                   "Folder to write planning.txt, .csv and .svg to, and planning.png: a plan that sampling\n"
+                   "accepted, at the moment of contact")
+      ->type_name("FOLDER");
+  planning->callback([options, &exit_status] { exit_status = benchPlanning(*options); });
+}
+
+}  // namespace fcl_artic::app
