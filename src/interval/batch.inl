@@ -37,31 +37,29 @@ FCL_ARTIC_INLINE Ends part(const double* column, int i, int n) {
   for (int k = 0; k < kWidth; ++k) rest[k] = column[i + k < n ? i + k : n - 1];
   return load(rest);
 }
-FCL_ARTIC_INLINE void write(Intervals a, Interval* out, int i, int n) {
+/// Intervals i.. of n that lie `stride` apart.
+FCL_ARTIC_INLINE void write(Intervals a, Interval* out, int stride, int i, int n) {
   if (i + kWidth <= n) {
-    a.write(out + i);
+    a.write(out + i * stride, stride);
     return;
   }
   Interval all[kWidth];
   a.write(all);
-  for (int k = 0; i + k < n; ++k) out[i + k] = all[k];
+  for (int k = 0; i + k < n; ++k) out[(i + k) * stride] = all[k];
 }
 
 void boundPoints(const IntervalTransform& M, const double* xyz, int n, IntervalVec3* out) {
   const Scope scope;
   const Transform T(M);
   for (int i = 0; i < n; i += kWidth) {
-    alignas(64) double column[3][kWidth];
-    for (int k = 0; k < kWidth; ++k) {
-      const double* p = xyz + 3 * (i + k < n ? i + k : n - 1);
-      for (int c = 0; c < 3; ++c) column[c][k] = p[c];
+    const double* p = xyz + 3 * i;
+    double rest[3 * kWidth];
+    if (i + kWidth > n) {  // behind the end, the last point again
+      for (int k = 0; k < 3 * kWidth; ++k) rest[k] = p[k < 3 * (n - i) ? k : 3 * (n - i - 1) + k % 3];
+      p = rest;
     }
-    const Vec3<Intervals> x = T * Point{{load(column[0]), load(column[1]), load(column[2])}};
-    Interval component[3][kWidth];
-    for (int c = 0; c < 3; ++c) x[c].write(component[c]);
-    for (int k = 0; k < kWidth && i + k < n; ++k) {
-      for (int c = 0; c < 3; ++c) out[i + k][c] = component[c][k];
-    }
+    const Vec3<Intervals> x = T * Point{{everyThird(p), everyThird(p + 1), everyThird(p + 2)}};
+    for (int c = 0; c < 3; ++c) write(x[c], &out[0][c], 3, i, n);
   }
 }
 
@@ -83,7 +81,7 @@ FCL_ARTIC_INLINE void tripleProducts(const FrameBounds& first, const FrameBounds
       Vec3<Intervals> p[4], d[3];
       place(pose, i, p);
       differences(p, d);
-      write(tripleProduct(d[0], d[1], d[2]), value, i, n);
+      write(tripleProduct(d[0], d[1], d[2]), value, 1, i, n);
     }
     return;
   }
@@ -95,8 +93,8 @@ FCL_ARTIC_INLINE void tripleProducts(const FrameBounds& first, const FrameBounds
     place(speed, i, v);
     differences(v, e);
     const Vec3<Intervals> normal = cross(d[1], d[2]);
-    write(dot(d[0], normal), value, i, n);
-    write(dot(e[0], normal) + dot(d[0], cross(e[1], d[2]) + cross(d[1], e[2])), rate, i, n);
+    write(dot(d[0], normal), value, 1, i, n);
+    write(dot(e[0], normal) + dot(d[0], cross(e[1], d[2]) + cross(d[1], e[2])), rate, 1, i, n);
   }
 }
 

@@ -23,6 +23,9 @@ using Ends = double;
 FCL_ARTIC_INLINE Ends load(const double* x) {
   return *x;
 }
+FCL_ARTIC_INLINE Ends everyThird(const double* x) {
+  return *x;
+}
 
 /// One interval: the batches' code takes it for lanes, of which it has one.
 struct Intervals {
@@ -35,7 +38,7 @@ struct Intervals {
       : lower(x.lower() - kVanishing * isTiny(x.lower())), upper(x.upper() + kVanishing * isTiny(x.upper())) {}
   explicit FCL_ARTIC_INLINE Intervals(double x)
       : lower(x - kVanishing * isTiny(x)), upper(x + kVanishing * isTiny(x)) {}
-  FCL_ARTIC_INLINE void write(Interval* out) const { *out = Interval(lower, upper); }
+  FCL_ARTIC_INLINE void write(Interval* out, int = 1) const { *out = Interval(lower, upper); }
 
   static constexpr double kVanishing = 0x1p-1000;
   static FCL_ARTIC_INLINE bool isTiny(double x) { return __builtin_fabs(x) < kVanishing; }

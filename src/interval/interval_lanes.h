@@ -19,8 +19,8 @@ FCL_ARTIC_INLINE Ends spread(double x) {
 FCL_ARTIC_INLINE Ends load(const double* x) {
   return _mm512_loadu_pd(x);
 }
-FCL_ARTIC_INLINE void store(double* x, Ends a) {
-  _mm512_storeu_pd(x, a);
+FCL_ARTIC_INLINE Ends everyThird(const double* x) {
+  return _mm512_i32gather_pd(_mm256_set_epi32(21, 18, 15, 12, 9, 6, 3, 0), x, 8);
 }
 FCL_ARTIC_INLINE Ends least(Ends a, Ends b) {
   return _mm512_min_pd(a, b);
@@ -37,6 +37,17 @@ FCL_ARTIC_INLINE Ends addUp(Ends a, Ends b) {
 FCL_ARTIC_INLINE Ends mulUp(Ends a, Ends b) {
   return _mm512_mul_round_pd(a, b, _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC);
 }
+FCL_ARTIC_INLINE void writePairs(Ends n, Ends h, Interval* out, int stride) {
+  const Ends even = _mm512_unpacklo_pd(n, h), odd = _mm512_unpackhi_pd(n, h);
+  out[0] = Interval::raw(_mm512_castpd512_pd128(even));
+  out[stride] = Interval::raw(_mm512_castpd512_pd128(odd));
+  out[2 * stride] = Interval::raw(_mm512_extractf64x2_pd(even, 1));
+  out[3 * stride] = Interval::raw(_mm512_extractf64x2_pd(odd, 1));
+  out[4 * stride] = Interval::raw(_mm512_extractf64x2_pd(even, 2));
+  out[5 * stride] = Interval::raw(_mm512_extractf64x2_pd(odd, 2));
+  out[6 * stride] = Interval::raw(_mm512_extractf64x2_pd(even, 3));
+  out[7 * stride] = Interval::raw(_mm512_extractf64x2_pd(odd, 3));
+}
 #elif FCL_ARTIC_ISA_BITS == 256
 using Ends = __m256d;
 FCL_ARTIC_INLINE Ends spread(double x) {
@@ -45,8 +56,8 @@ FCL_ARTIC_INLINE Ends spread(double x) {
 FCL_ARTIC_INLINE Ends load(const double* x) {
   return _mm256_loadu_pd(x);
 }
-FCL_ARTIC_INLINE void store(double* x, Ends a) {
-  _mm256_storeu_pd(x, a);
+FCL_ARTIC_INLINE Ends everyThird(const double* x) {
+  return _mm256_set_pd(x[9], x[6], x[3], x[0]);
 }
 FCL_ARTIC_INLINE Ends least(Ends a, Ends b) {
   return _mm256_min_pd(a, b);
@@ -67,6 +78,13 @@ FCL_ARTIC_INLINE Ends mulUp(Ends a, Ends b) {
   asm("vmulpd %2, %1, %0" : "=x"(o) : "x"(a), "x"(b), "m"(rounding_mode));
   return o;
 }
+FCL_ARTIC_INLINE void writePairs(Ends n, Ends h, Interval* out, int stride) {
+  const Ends even = _mm256_unpacklo_pd(n, h), odd = _mm256_unpackhi_pd(n, h);
+  out[0] = Interval::raw(_mm256_castpd256_pd128(even));
+  out[stride] = Interval::raw(_mm256_castpd256_pd128(odd));
+  out[2 * stride] = Interval::raw(_mm256_extractf128_pd(even, 1));
+  out[3 * stride] = Interval::raw(_mm256_extractf128_pd(odd, 1));
+}
 #else
 using Ends = __m128d;
 FCL_ARTIC_INLINE Ends spread(double x) {
@@ -75,8 +93,8 @@ FCL_ARTIC_INLINE Ends spread(double x) {
 FCL_ARTIC_INLINE Ends load(const double* x) {
   return _mm_loadu_pd(x);
 }
-FCL_ARTIC_INLINE void store(double* x, Ends a) {
-  _mm_storeu_pd(x, a);
+FCL_ARTIC_INLINE Ends everyThird(const double* x) {
+  return _mm_set_pd(x[3], x[0]);
 }
 FCL_ARTIC_INLINE Ends least(Ends a, Ends b) {
   return _mm_min_pd(a, b);
@@ -93,6 +111,10 @@ FCL_ARTIC_INLINE Ends addUp(Ends a, Ends b) {
 FCL_ARTIC_INLINE Ends mulUp(Ends a, Ends b) {
   return directed::mul(a, b);
 }
+FCL_ARTIC_INLINE void writePairs(Ends n, Ends h, Interval* out, int stride) {
+  out[0] = Interval::raw(_mm_unpacklo_pd(n, h));
+  out[stride] = Interval::raw(_mm_unpackhi_pd(n, h));
+}
 #endif
 
 /// What batches need set while they compute: AVX-512 only that subnormals are kept.
@@ -107,12 +129,8 @@ struct Intervals {
   FCL_ARTIC_INLINE Intervals(Ends negative_lower, Ends upper) : n(negative_lower), h(upper) {}
   /// The same in every lane.
   explicit FCL_ARTIC_INLINE Intervals(Interval x) : n(spread(-x.lower())), h(spread(x.upper())) {}
-  FCL_ARTIC_INLINE void write(Interval* out) const {
-    alignas(64) double lower[kLanes], upper[kLanes];
-    store(lower, n);
-    store(upper, h);
-    for (int i = 0; i < kLanes; ++i) out[i] = Interval::raw(_mm_set_pd(upper[i], lower[i]));
-  }
+  /// Interval k to out[k * stride].
+  FCL_ARTIC_INLINE void write(Interval* out, int stride = 1) const { writePairs(n, h, out, stride); }
 };
 
 /// NaN becomes an infinite end.
