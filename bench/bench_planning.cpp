@@ -23,6 +23,7 @@
 #include "fcl_artic/ompl/planning_setup.h"
 #include "options.h"
 #include "planning/plans.h"
+#include "random_motion.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::bench;
@@ -193,28 +194,15 @@ class Bench {
 void addRandom(Bench& bench, const std::string& name, const Robot& robot, const Environment& environment,
                const std::map<int, World>& worlds, std::size_t count, double length) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<Query> free, hit;
   const KinematicTree& tree = *robot.tree;
   for (int tries = 0; tries < 200000 && (free.size() < count || hit.size() < count); ++tries) {
     auto world = worlds.begin();
     std::advance(world, tries % static_cast<int>(worlds.size()));
-    std::vector<double> from, to;
-    double norm = 0;
-    for (const std::string& joint : environment.joints) {
-      const Joint& j = tree.joint(tree.jointId(joint));
-      from.push_back(0.5 * (j.lower + j.upper) + 0.5 * (j.upper - j.lower) * unit(random));
-      to.push_back(unit(random));
-      norm += to.back() * to.back();
-    }
-    bool within = true;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-      const Joint& j = tree.joint(tree.jointId(environment.joints[i]));
-      to[i] = from[i] + to[i] * length / std::sqrt(norm);
-      within = within && to[i] >= j.lower && to[i] <= j.upper;
-    }
+    bool within = false;
+    const Ends ends = randomEnds(tree, environment.joints, length, random, within);
     if (!within) continue;
-    Query query(world->second, environment, tree, from, to, kFree);
+    Query query(world->second, environment, tree, ends.from, ends.to, kFree);
     const ob::SpaceInformation& si = *world->second.ours.si;
     if (!si.isValid(query.s1->get()) || !si.isValid(query.s2->get())) continue;
     std::vector<Query>& set = si.checkMotion(query.s1->get(), query.s2->get()) ? free : hit;

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a free motion of a Panda costs as its surroundings grow: 10 to 10,000 boxes, cylinders and balls, all within
+// reach (clutter) or spread out at one density (room), and 20 bumpy spheres of 1k to 1M triangles, as 20 meshes and as
+// one. Random motions of 2.7 rad, self collision included. FCL_ARTIC_DATA names the folder with robots/ and problems/.
+//
+// Clutter leaves a motion its way: obstacles that come within 5 mm of it are left out, so that each motion has a scene
+// of its own. The other scenes are drawn once; motions are drawn until enough of them are free.
+
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fmt/format.h>
+
+#include "arm_scene.h"
+#include "options.h"
+#include "planning/problems.h"
+#include "plot.h"
+#include "random_motion.h"
+
+using namespace fcl_artic;
+using namespace fcl_artic::bench;
+using planning_data::Environment;
+
+namespace {
+
+constexpr Answer kFree = 2;
+constexpr double kLength = 2.7, kReach = 1.2, kShoulder = 0.333, kWay = 5e-3;
+constexpr double kNearBase = 0.25;  ///< obstacles of shared scenes keep clear of the base
+
+using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
+struct Obstacle {
+  Geometry geometry;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+};
+
+/// A manager with what it holds pointers to.
+class World {
+ public:
+  World(const Robot& robot, const std::vector<Obstacle>& obstacles) : manager_(robot.tree) {
+    for (const LinkGeometry& g : robot.geometry) {
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(*g.object));
+      manager_.bind(g.link, objects_.back().get(), g.offset);
+    }
+    manager_.setAllowedCollisions(robot.allowed);
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(obstacles[i].geometry, obstacles[i].pose));
+      manager_.registerObject(objects_.back().get(), "o" + std::to_string(i));
+    }
+    manager_.setup();
+  }
+  const ArticulatedCollisionManager& manager() const { return manager_; }
+
+ private:
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+  ArticulatedCollisionManager manager_;
+};
+
+/// What a planner asks.
+CertifiedRequest planned() {
+  CertifiedRequest request;
+  request.mode = ContactMode::any;
+  request.tolerance_time = 0x1p-12;
+  request.tolerance_distance = 1e-5;
+  return request;
+}
+
+Eigen::Vector3d inBall(Random& random, double radius) {
+  for (;;) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    const Eigen::Vector3d v(x, y, z);
+    if (v.squaredNorm() <= 1) return radius * v;
+  }
+}
+
+Obstacle randomObstacle(Random& random, double size, const Eigen::Vector3d& at) {
+  Obstacle obstacle;
+  const double a = random.uniform(0.3, 1) * size, b = random.uniform(0.3, 1) * size, c = random.uniform(0.3, 1) * size;
+  switch (random.index(3)) {
+    case 0:
+      obstacle.geometry = std::make_shared<fcl::Boxd>(a, b, c);
+      break;
+    case 1:
+      obstacle.geometry = std::make_shared<fcl::Cylinderd>(0.5 * a, b);
+      break;
+    default:
+      obstacle.geometry = std::make_shared<fcl::Sphered>(0.5 * a);
+  }
+  const Eigen::Vector3d axis = inBall(random, 1).normalized();
+  obstacle.pose = Eigen::Translation3d(at) * Eigen::AngleAxisd(random.uniform(-kPi, kPi), axis);
+  return obstacle;
+}
+
+class Bench {
+ public:
+  Bench(Report& report, const std::filesystem::path& data, std::size_t queries, int passes)
+      : report_(report),
+        robot_(planning_data::readRobot(data, "panda")),
+        environment_(
+            planning_data::readEnvironment(planning_data::problemsPath(data, "panda", "table_pick"), *robot_.tree)),
+        queries_(queries),
+        passes_(passes) {}
+
+  /// All obstacles within reach, each motion in its own. The smaller scenes are beginnings of the larger ones.
+  void addClutter(const std::vector<std::size_t>& sizes) {
+    const std::size_t most = *std::max_element(sizes.begin(), sizes.end());
+    for (const std::size_t size : sizes) {
+      report_.add("clutter", "free", fmt::format("{} obstacles", size), [this, size, most] {
+        if (clutter_.empty()) {
+          clutter_motions_ = freeMotions(World(robot_, {}).manager());
+          for (std::size_t i = 0; i < clutter_motions_.size(); ++i)
+            clutter_.push_back(around(clutter_motions_[i], most, i));
+        }
+        std::vector<std::unique_ptr<World>> worlds;
+        for (std::vector<Obstacle> obstacles : clutter_) {
+          obstacles.resize(size);
+          worlds.push_back(std::make_unique<World>(robot_, obstacles));
+        }
+        return measured(static_cast<double>(size), clutter_motions_,
+                        [&](std::size_t i) -> const ArticulatedCollisionManager& { return worlds[i]->manager(); });
+      });
+    }
+  }
+
+  /// 20 obstacles in each ball of the arm's reach, in an ever larger room.
+  void addRoom(const std::vector<std::size_t>& sizes) {
+    for (const std::size_t size : sizes) {
+      report_.add("room", "free", fmt::format("{} obstacles", size), [this, size] {
+        Random random(5);
+        std::vector<Obstacle> obstacles;
+        const double half = kReach * std::cbrt(kPi / 6 * std::max(1.0, static_cast<double>(size) / 20));
+        while (obstacles.size() < size) {
+          const double x = random.uniform(-half, half), y = random.uniform(-half, half),
+                       z = random.uniform(-half, half);
+          const Eigen::Vector3d at(x, y, z + kShoulder);
+          if (at.head<2>().norm() > kNearBase) obstacles.push_back(randomObstacle(random, 0.15, at));
+        }
+        return measuredInOne(static_cast<double>(size), obstacles);
+      });
+    }
+  }
+
+  void addMeshes(const std::vector<std::size_t>& sizes) {
+    for (const bool merged : {false, true}) {
+      for (const std::size_t size : sizes) {
+        report_.add(merged ? "one mesh" : "20 meshes", "free", fmt::format("{} triangles", size), [this, size, merged] {
+          Random random(6);
+          std::vector<TriangleMesh> meshes;
+          const int bands = std::max(3, static_cast<int>(std::lround(std::sqrt(static_cast<double>(size) / 80))) + 1);
+          std::size_t triangles = 0;
+          while (meshes.size() < 20) {
+            BumpyEllipsoid sphere;
+            sphere.centre = inBall(random, kReach) + Eigen::Vector3d(0, 0, kShoulder);
+            sphere.half.setConstant(random.uniform(0.05, 0.12));
+            if (sphere.centre.head<2>().norm() < kNearBase) continue;
+            meshes.push_back(sphere.mesh(2 * bands, bands));
+            triangles += meshes.back().triangles.size();
+          }
+          if (merged) meshes = {merge(meshes)};
+          std::vector<Obstacle> obstacles;
+          for (const TriangleMesh& mesh : meshes) obstacles.push_back({toBvh<fcl::OBBRSSd>(mesh)});
+          return measuredInOne(static_cast<double>(triangles), obstacles);
+        });
+      }
+    }
+  }
+
+  /// How much more the larger of two sizes costs than the smaller.
+  void noteRatio(const std::string& scene, double small, double large) {
+    const Row *a = nullptr, *b = nullptr;
+    for (const Row& row : report_.rows()) {
+      if (row.scene == scene && row.size == small) a = &row;
+      if (row.scene == scene && row.size == large) b = &row;
+    }
+    if (!a || !b) return;
+    report_.note(fmt::format("{}: {:g} obstacles cost {:.2f} times as much as {:g} (median; mean {:.2f})", scene, large,
+                             b->median_us / a->median_us, small, b->mean_us / a->mean_us));
+  }
+
+ private:
+  JointMotion randomMotion(std::mt19937& random) const {
+    for (;;) {
+      bool within = false;
+      const Ends ends = randomEnds(*robot_.tree, environment_.joints, kLength, random, within);
+      if (!within) continue;
+      return JointMotion::linear(*robot_.tree, environment_.configuration(*robot_.tree, ends.from),
+                                 environment_.configuration(*robot_.tree, ends.to));
+    }
+  }
+
+  std::vector<JointMotion> freeMotions(const ArticulatedCollisionManager& manager) const {
+    std::mt19937 random(7);
+    std::vector<JointMotion> motions;
+    CertifiedResult result;
+    for (int tries = 0; motions.size() < queries_ && tries < 100000; ++tries) {
+      JointMotion motion = randomMotion(random);
+      manager.continuousCollide(motion, planned(), result);
+      if (result.isFree()) motions.push_back(std::move(motion));
+    }
+    return motions;
+  }
+
+  /// Obstacles within reach that leave this motion its way.
+  std::vector<Obstacle> around(const JointMotion& motion, std::size_t count, std::uint64_t seed) const {
+    Random random(100 + seed);
+    std::vector<Obstacle> kept;
+    while (kept.size() < count) {
+      std::vector<Obstacle> drawn;
+      for (std::size_t i = 0; i < count; ++i) {
+        drawn.push_back(randomObstacle(random, 0.08, inBall(random, kReach) + Eigen::Vector3d(0, 0, kShoulder)));
+      }
+      CertifiedRequest request;
+      request.mode = ContactMode::firstOfEveryPair;
+      request.max_contacts = 1u << 20;
+      request.margin = kWay;
+      request.check_self = false;
+      request.tolerance_time = 1e-3;
+      CertifiedResult result;
+      const World world(robot_, drawn);
+      world.manager().continuousCollide(motion, request, result);
+      std::set<std::string> touching;
+      for (const CertifiedContact& contact : result.contacts) touching.insert(contact.body2.name);
+      for (std::size_t i = 0; i < count && kept.size() < count; ++i) {
+        if (!touching.count("o" + std::to_string(i))) kept.push_back(drawn[i]);
+      }
+    }
+    return kept;
+  }
+
+  Measured measuredInOne(double size, const std::vector<Obstacle>& obstacles) {
+    const World world(robot_, obstacles);
+    return measured(size, freeMotions(world.manager()),
+                    [&](std::size_t) -> const ArticulatedCollisionManager& { return world.manager(); });
+  }
+
+  template <class ManagerOf>
+  Measured measured(double size, const std::vector<JointMotion>& motions, const ManagerOf& manager) const {
+    const CertifiedRequest request = planned();
+    CertifiedResult result;
+    Measured measured = measure(motions.size(), passes_, [&](std::size_t i) {
+      manager(i).continuousCollide(motions[i], request, result);
+      return result.isFree() ? kFree : result.t_upper;
+    });
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      manager(i).continuousCollide(motions[i], request, result);
+      addCounters(measured.row, result.statistics);
+    }
+    measured.row.size = size;
+    return measured;
+  }
+
+  Report& report_;
+  Robot robot_;
+  Environment environment_;
+  std::size_t queries_;
+  int passes_;
+  std::vector<JointMotion> clutter_motions_;
+  std::vector<std::vector<Obstacle>> clutter_;
+};
+
+std::string plotOf(const std::vector<Row>& rows, const std::vector<std::string>& scenes, const std::string& title,
+                   const std::string& label) {
+  std::vector<Series> series;
+  for (const std::string& scene : scenes) {
+    Series median{scene + ", median", {}}, mean{scene + ", mean", {}};
+    for (const Row& row : rows) {
+      if (row.scene != scene) continue;
+      median.points.emplace_back(row.size, row.median_us);
+      mean.points.emplace_back(row.size, row.mean_us);
+    }
+    if (median.points.empty()) continue;
+    series.push_back(std::move(median));
+    series.push_back(std::move(mean));
+  }
+  return logLogPlot(title, label, "us per free motion", series);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Report report("bench_scenes");
+  CLI::App app("A Panda's free motions in growing scenes (FCL_ARTIC_DATA names the data)");
+  std::size_t queries = 50;
+  int passes = 3;
+  std::vector<std::size_t> obstacles = {10, 20, 100, 1000, 10000}, triangles = {1000, 10000, 100000, 1000000};
+  app.add_option("--queries", queries, "free motions of each scene")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--passes", passes, "passes over the motions; the least time of each counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--obstacles", obstacles, "numbers of obstacles")->capture_default_str();
+  app.add_option("--triangles", triangles, "sizes of the mesh scenes")->capture_default_str();
+  if (const auto status = readOptions(app, report, argc, argv)) return *status;
+  const std::filesystem::path data = planning_data::sharedData();
+  if (data.empty()) {
+    std::cout << "bench_scenes skipped: FCL_ARTIC_DATA does not name a folder with robots/, problems/ and edges/\n";
+    return 0;
+  }
+  Bench bench(report, data, queries, passes);
+  bench.addClutter(obstacles);
+  bench.addRoom(obstacles);
+  bench.addMeshes(triangles);
+  report.run();
+  for (const char* scene : {"clutter", "room"}) bench.noteRatio(scene, 20, 1000);
+  std::string csv = "scene,size,queries,hits,median_us,mean_us,p95_us\n";
+  for (const Row& r : report.rows()) {
+    csv += fmt::format("{},{:g},{},{},{:.3f},{:.3f},{:.3f}\n", r.scene, r.size, r.queries, r.hits, r.median_us,
+                       r.mean_us, r.p95_us);
+  }
+  report.write("bench_scenes.csv", csv);
+  report.write("bench_scenes_obstacles.svg",
+               plotOf(report.rows(), {"clutter", "room"}, "Panda, free motions of 2.7 rad", "obstacles"));
+  report.write("bench_scenes_triangles.svg", plotOf(report.rows(), {"20 meshes", "one mesh"},
+                                                    "Panda, free motions of 2.7 rad", "triangles of the scene"));
+  return report.finish();
+} catch (const std::exception& error) {
+  std::cerr << "bench_scenes: " << error.what() << '\n';
+  return 1;
+}
