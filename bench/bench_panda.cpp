@@ -6,11 +6,14 @@
 //
 // Exit status 1 when a collision is missed or reported late.
 
+#include <algorithm>
+#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <thread>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -54,6 +57,32 @@ class Worlds {
   Environment environment_;
   std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers_;
 };
+
+/// Motions of one scene as batches over 1, 2, 4 ... threads, in turn; the least time of the passes counts.
+void noteThreads(Report& report, const std::vector<Asked>& edges, const CertifiedRequest& request, int passes) {
+  constexpr std::size_t kMotions = 8000;
+  std::vector<JointMotion> motions;
+  for (std::size_t i = 0; motions.size() < kMotions; ++i) {
+    const Asked& edge = edges[i % edges.size()];
+    if (edge.manager == edges[0].manager) motions.push_back(edge.motion);
+  }
+  using Clock = std::chrono::steady_clock;
+  const int most = static_cast<int>(std::thread::hardware_concurrency());
+  std::map<int, double> seconds;
+  std::vector<CertifiedResult> results;
+  for (int pass = 0; pass < passes; ++pass) {
+    for (int threads = 1; threads <= std::max(1, most); threads *= 2) {
+      const auto begin = Clock::now();
+      edges[0].manager->continuousCollide(motions, request, results, threads);
+      const double s = std::chrono::duration<double>(Clock::now() - begin).count();
+      seconds[threads] = seconds.count(threads) ? std::min(seconds[threads], s) : s;
+    }
+  }
+  for (const auto& [threads, s] : seconds) {
+    report.note(fmt::format("batch of {} motions over {} thread{}: {:.0f} motions per second, {:.2f} times those of one",
+                            kMotions, threads, threads == 1 ? "" : "s", kMotions / s, seconds[1] / s));
+  }
+}
 
 /// Verdicts beside the labels.
 struct Agreement {
@@ -154,6 +183,10 @@ int main(int argc, char** argv) try {
     measured.row.passes = passes;
     summarise(measured);
     report.addRow(measured.row);
+  }
+  if (!kept.front().empty()) {
+    request.mode = ContactMode::any;
+    noteThreads(report, kept.front(), request, passes);
   }
   std::size_t faults = 0;
   for (const auto& [method, agreement] : agreements) {
