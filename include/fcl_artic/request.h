@@ -22,6 +22,34 @@ enum class VisibilityMode {
   automatic,  ///< where it pays, as measured on the manager's own queries; off with a work budget
 };
 
+/// How a query is solved. Both give the same promise.
+enum class Method {
+  standard,   ///< the library's own
+  Redon2004,  ///< "Fast Continuous Collision Detection for Articulated Models" (Redon, Kim, Lin, Manocha 2004)
+};
+
+/// How the paper's method bounds a link's motion over a time interval.
+enum class MotionEnclosure {
+  intervalChain,  ///< products of interval matrices down the chain: the paper's
+  meanValue,      ///< X(tm) + X'(T) (T - tm)
+  taylor,         ///< a quadratic with a bounded remainder
+};
+
+/// Each idea of the paper's method by itself (doc/REDON2004.md). The defaults are the paper's.
+struct RedonOptions {
+  MotionEnclosure enclosure = MotionEnclosure::intervalChain;
+  /// A link's bounds are kept on 2^level parts of the motion (Section 5.1.1). -1: by the link's motion; 0: undivided; at
+  /// most 6.
+  int refinement_level = -1;
+  bool simultaneous = true;  ///< one list of equations per time interval (5.2.2); false: each equation by itself
+  bool newton = true;        ///< interval Newton, eq. (18)
+  /// Whether features of an equation can touch is asked in every interval; false: at the last, as the paper has it.
+  bool early_validity = true;
+  /// The motion is taken in 2^level equal windows, one after the other, up to the first contact; 0: at once, as the paper
+  /// has it; at most 10.
+  int window_level = 0;
+};
+
 /// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest {
   /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1.
@@ -41,6 +69,10 @@ struct CertifiedRequest {
   std::uint64_t work_budget = 0;
   /// Pairs that touch at t = 0 may separate; they are watched from the moment they have.
   bool ignore_initial_contact = false;
+  /// Method::Redon2004 solves pairs of meshes and boxes without a margin; other pairs, and what touches at t = 0, are left
+  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard).
+  Method method = Method::standard;
+  RedonOptions redon;
   /// Measure the time of each stage too (counts are always there).
   bool measure_times = false;
   VisibilityMode visibility = VisibilityMode::off;

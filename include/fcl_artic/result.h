@@ -57,6 +57,18 @@ struct CertifiedContact {
   }
 };
 
+/// Work of the paper's method (Method::Redon2004).
+struct RedonStatistics {
+  std::uint64_t pairs_by_standard = 0;  ///< pairs of bodies left to the library's own method
+  std::uint64_t box_tests = 0;       ///< pairs of oriented boxes, one sub-interval each
+  std::uint64_t leaf_pairs = 0;      ///< pairs of triangles whose boxes meet
+  std::uint64_t equations = 0;       ///< n_e
+  std::uint64_t intervals = 0;       ///< time intervals that motions were bounded over: s_max of eq. (17)
+  std::uint64_t evaluations = 0;     ///< equations bounded over an interval: a n_e
+  std::uint64_t steps_bounded = 0;   ///< moving joints of chains, bounded over an interval each
+  double culling_us = 0, boxes_us = 0, equations_us = 0;
+};
+
 /// Work of a query, by stage. Times only with CertifiedRequest::measure_times.
 struct QueryStatistics {
   std::uint64_t pairs = 0;              ///< body pairs that the request asks about
@@ -76,6 +88,7 @@ struct QueryStatistics {
   std::string visibility_executor;      ///< that did it: "cpu", "osmesa" or "egl"; empty: nothing was to be done
   std::string visibility_fallback;      ///< why it is "cpu" where another one was wanted
   double culling_us = 0, narrowphase_us = 0, report_us = 0, total_us = 0;
+  RedonStatistics redon;
 };
 
 /// The answer. Always written in full.

@@ -359,6 +359,13 @@ void ShapeTree::show() {
   view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
 
+const ObbTree* ShapeTree::obbTree() const {
+  std::call_once(obb_once_, [this] {
+    if (ObbTree::covers(view_)) obb_ = std::make_unique<const ObbTree>(view_);
+  });
+  return obb_.get();
+}
+
 std::size_t ShapeTree::bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(Node) + pieces_.capacity() * sizeof(Piece) +
          (vertices_.capacity() + hulls_.capacity()) * sizeof(double);

@@ -4,10 +4,12 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "geometry/obb_tree.h"
 #include "narrowphase/problem.h"
 
 namespace fcl_artic {
@@ -40,6 +42,8 @@ class ShapeTree {
   /// Box of the whole in its own frame.
   Eigen::Vector3d lower() const { return Eigen::Vector3f::Map(view_.nodes[0].lo).cast<double>(); }
   Eigen::Vector3d upper() const { return Eigen::Vector3f::Map(view_.nodes[0].hi).cast<double>(); }
+  /// Its triangles under a tree of oriented boxes; null for a body that has none (ObbTree::covers). Made when first asked for.
+  const ObbTree* obbTree() const;
   /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
   /// @throws std::invalid_argument when it is unbounded.
   std::array<double, 7> lineSweptSphere() const;
@@ -61,6 +65,8 @@ class ShapeTree {
   std::vector<double> vertices_;
   std::vector<double> hulls_;  ///< with room for alignment
   engine::TreeView view_;
+  mutable std::once_flag obb_once_;
+  mutable std::unique_ptr<const ObbTree> obb_;
 };
 
 /// Boxes to be put into a tree: the same builder serves pieces and obstacles.

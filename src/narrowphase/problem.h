@@ -145,6 +145,7 @@ struct Problem {
   /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
   const LinkPair* link_pairs = nullptr;
   std::int32_t num_link_pairs = 0;
+  const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
   std::int32_t num_scene_pairs = 0;
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   const std::int32_t* obstacles = nullptr;  ///< body of obstacle o
@@ -209,6 +210,7 @@ struct LeafContact {
   double normal[3];         ///< in A's tree frame, from A to B
   double point[3];          ///< in A's tree frame at time `t`
   double t;                 ///< t_upper when certain, else t_lower
+  std::int32_t feature = -1;  ///< FeatureKind, where the solver knows it
 };
 
 /// A pair in contact at t = 0 and the time from which it is watched again; 2: never.

@@ -132,6 +132,7 @@ class Solver {
     const Placement *inverse_a, *placement_b;
   };
   PairParts parts(int pair) const;
+  bool linkAllowed(int link_pair) const { return problem_->link_allowed && problem_->link_allowed[link_pair]; }
   double watchFrom(int pair) const;
 
   // Time batches.
@@ -706,10 +707,13 @@ inline void Solver::cull() {
   }
   if (query_->check_self && !problem_->num_movers) {  // no stage 1: pairs of free bodies
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
-    for (int p = 0; p < problem_->num_link_pairs; ++p) entries_.push({problem_->num_scene_pairs + p, 0, 0, kAllLanes});
+    for (int p = 0; p < problem_->num_link_pairs; ++p) {
+      if (!linkAllowed(p)) entries_.push({problem_->num_scene_pairs + p, 0, 0, kAllLanes});
+    }
   } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
     for (int p = 0; p < problem_->num_link_pairs; ++p) {
+      if (linkAllowed(p)) continue;
       const LinkPair& pair = problem_->link_pairs[p];
       const SweptBox& a = mover_box_[problem_->bodies[pair.a].mover];
       const SweptBox& b = mover_box_[problem_->bodies[pair.b].mover];

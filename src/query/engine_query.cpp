@@ -32,6 +32,13 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   requireTolerance(request.tolerance_time, "tolerance_time", true);
   requireTolerance(request.tolerance_distance, "tolerance_distance", true);
   requireTolerance(request.margin, "margin", false);
+  const auto requireLevel = [](int level, int least, int most, const char* name) {
+    if (level >= least && level <= most) return;
+    throw std::invalid_argument("request.redon." + std::string(name) + " is " + std::to_string(level) + ", not in [" +
+                                std::to_string(least) + ", " + std::to_string(most) + "]");
+  };
+  requireLevel(request.redon.refinement_level, -1, 6, "refinement_level");
+  requireLevel(request.redon.window_level, 0, 10, "window_level");
   engine::Query query;
   query.tolerance_time = request.tolerance_time;
   query.tolerance_distance = request.tolerance_distance;
@@ -87,6 +94,16 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.culling_us += s.culling_us;
   sum.narrowphase_us += s.narrowphase_us;
   sum.report_us += s.report_us;
+  sum.redon.pairs_by_standard += s.redon.pairs_by_standard;
+  sum.redon.box_tests += s.redon.box_tests;
+  sum.redon.leaf_pairs += s.redon.leaf_pairs;
+  sum.redon.equations += s.redon.equations;
+  sum.redon.intervals += s.redon.intervals;
+  sum.redon.evaluations += s.redon.evaluations;
+  sum.redon.steps_bounded += s.redon.steps_bounded;
+  sum.redon.culling_us += s.redon.culling_us;
+  sum.redon.boxes_us += s.redon.boxes_us;
+  sum.redon.equations_us += s.redon.equations_us;
 }
 
 Status statusOf(engine::Verdict verdict) {
@@ -109,6 +126,10 @@ std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTr
 
 void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
                    engine::LeafContact& leaf, FeatureKind& feature) {
+  if (leaf.feature >= 0) {  // its solver has done so
+    feature = static_cast<FeatureKind>(leaf.feature);
+    return;
+  }
   const engine::Piece &x = a.pieces[leaf.piece_a], &y = b.pieces[leaf.piece_b];
   if (x.num_vertices != 3 || y.num_vertices != 3) return;
   Eigen::Vector3d p[3], q[3];

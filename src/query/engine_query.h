@@ -11,6 +11,7 @@
 #include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
 #include "narrowphase/problem.h"
+#include "redon/redon.h"
 
 namespace fcl_artic {
 
@@ -23,6 +24,10 @@ class Workspace {
   Workspace& operator=(const Workspace&) = delete;
 
   void* engine() const { return engine_; }
+  redon::Workspace& redon() {
+    if (!redon_) redon_ = std::make_unique<redon::Workspace>();
+    return *redon_;
+  }
   engine::Body bodies[2];                      ///< of a pair query: their trees, all else as it is at first
   FrameSweep sweep;                            ///< of a pair query
   std::vector<double> coefficients;            ///< of its variables
@@ -31,6 +36,7 @@ class Workspace {
  private:
   friend class WorkspaceLoan;
   void* engine_;
+  std::unique_ptr<redon::Workspace> redon_;
   bool busy_ = false;
 };
 

@@ -871,7 +871,13 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   query.check_self = problem.num_link_pairs > 0;
   engine::Answer answer;
   visibility::Report stage;
-  visibility::solve(*m.visibility, *m.choice, request.visibility, workspace->engine(), problem, query, answer, stage);
+  RedonStatistics redon_work;
+  if (request.method == Method::Redon2004) {
+    const auto treeOf = [&m](std::int32_t body) { return m.item(body).shape->obbTree(); };
+    redon::solve(workspace->redon(), workspace->engine(), problem, query, request.redon, treeOf, answer, redon_work);
+  } else {
+    visibility::solve(*m.visibility, *m.choice, request.visibility, workspace->engine(), problem, query, answer, stage);
+  }
   const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();
 
   result.status = statusOf(answer.verdict);
@@ -907,6 +913,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.statistics.visibility_us = stage.elapsed_us;
   result.statistics.visibility_executor = stage.executor;
   result.statistics.visibility_fallback = stage.fallback;
+  result.statistics.redon = redon_work;
   if (request.measure_times) {
     result.statistics.report_us = since(solved);
     result.statistics.total_us = since(begin);

@@ -151,7 +151,13 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   problem.link_pairs = &pair;
   problem.num_link_pairs = 1;
   engine::Answer answer;
-  engine::engine().solve(workspace->engine(), problem, query, answer);
+  RedonStatistics redon_work;
+  if (request.method == Method::Redon2004) {
+    const auto treeOf = [&](std::int32_t body) { return (body == 0 ? body1 : body2).shape.obbTree(); };
+    redon::solve(workspace->redon(), workspace->engine(), problem, query, request.redon, treeOf, answer, redon_work);
+  } else {
+    engine::engine().solve(workspace->engine(), problem, query, answer);
+  }
 
   result.status = statusOf(answer.verdict);
   result.t_lower = answer.t_lower;
@@ -159,6 +165,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   result.certain = answer.certain;
   result.ignored_initial_contact = answer.num_ignored > 0;
   result.statistics = statisticsOf(answer.statistics);
+  result.statistics.redon = redon_work;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     engine::LeafContact leaf = answer.contacts[i];

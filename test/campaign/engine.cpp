@@ -93,8 +93,10 @@ Question prepare(const Scene& scene) {
   return question;
 }
 
-Answer ask(const Scene& scene) {
+Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how) {
   Question question = prepare(scene);
+  question.request.method = how.method;
+  question.request.redon = how.redon;
   const fcl_artic::JointMotion motion = motionOf(scene, *question.tree);
   Answer answer;
   const auto start = std::chrono::steady_clock::now();

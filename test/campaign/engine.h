@@ -30,7 +30,8 @@ struct Question {
 Question prepare(const Scene& scene);
 
 /// Asks the library through its public interface. The only place of the campaign that links to it.
-Answer ask(const Scene& scene);
+/// @param how  its method and that one's options.
+Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how = {});
 
 /// The tree and motion of a scene, in the library's types.
 std::shared_ptr<const fcl_artic::KinematicTree> treeOf(const Scene& scene);

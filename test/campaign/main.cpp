@@ -27,7 +27,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--try-spoiling", options.try_corruptions,
                "spoil a copy of each answer in each way, and count what is noticed");
+  bool redon = false;
+  app.add_flag("--redon2004", redon, "ask for the paper's method");
   CLI11_PARSE(app, argc, argv);
+  if (redon) options.how.method = fcl_artic::Method::Redon2004;
   try {
     if (*again) {
       if (options.family.empty()) {
@@ -35,7 +38,7 @@ int main(int argc, char** argv) {
         return 2;
       }
       std::string words;
-      const bool good = campaign::replay(options.family, replay, words);
+      const bool good = campaign::replay(options.family, replay, options.how, words);
       std::fputs(words.c_str(), stdout);
       return good ? 0 : 1;
     }

@@ -38,7 +38,7 @@ void runOne(const std::string& family, std::uint64_t seed, const Options& option
   const auto judged = Clock::now();
   Answer answer;
   try {
-    answer = ask(scene);
+    answer = ask(scene, options.how);
   } catch (const std::exception& e) {
     findings.push_back({Fault::fields, std::string("threw: ") + e.what()});
     ++tally.queries;
@@ -135,7 +135,7 @@ Report run(const Options& options) {
   return report;
 }
 
-bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
+bool replay(const std::string& family, std::uint64_t seed, const fcl_artic::CertifiedRequest& how, std::string& words) {
   const Scene scene = makeScene(family, seed);
   const Oracle oracle(scene);
   const Truth truth = oracle.judge(true);
@@ -149,7 +149,7 @@ bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
                   p.time, p.gap, p.gap_time);
     words += line;
   }
-  const Answer answer = ask(scene);
+  const Answer answer = ask(scene, how);
   const fcl_artic::CertifiedResult& r = answer.result;
   static const char* status[] = {"free", "contact", "undecided"};
   std::snprintf(line, sizeof line, "answer %s [%.17g, %.17g]%s in %.1f us\n", status[static_cast<int>(r.status)],

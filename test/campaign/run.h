@@ -17,6 +17,7 @@ struct Options {
   std::uint64_t seed = 1;
   int threads = 2;
   std::string family;                        ///< only this class; empty: all, in their shares
+  fcl_artic::CertifiedRequest how;           ///< method and its options
   Corruption corruption = Corruption::none;  ///< spoils the answers before they are examined
   bool try_corruptions = false;  ///< besides, spoils a copy of each answer in each way, and counts what is seen
   std::function<void(std::uint64_t done)> progress;  ///< called from any thread
@@ -60,7 +61,7 @@ Report run(const Options& options);
 
 /// One query again, in words: the scene, the oracle's findings, the answer, the faults.
 /// @return whether it is without fault
-bool replay(const std::string& family, std::uint64_t seed, std::string& words);
+bool replay(const std::string& family, std::uint64_t seed, const fcl_artic::CertifiedRequest& how, std::string& words);
 
 std::string toText(const Report& report);
 
