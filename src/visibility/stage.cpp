@@ -20,14 +20,14 @@ constexpr std::size_t kMostObjects = 20000;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 
-/// The part of the link's box that all its obstacles' boxes leave, a little larger, so that a point on its border is well
-/// within by the rounding of its pixel coordinates.
-Window windowOf(const Box& link, const Box& obstacles) {
+/// The part of the link's box that the pieces' boxes leave, a little larger, so that a point on its border is well within by
+/// the rounding of its pixel coordinates.
+Window windowOf(const Bounds& link, const Bounds& pieces) {
   Window window;
   double longest = 0;
   for (int k = 0; k < 3; ++k) {
-    window.lo[k] = std::max(link.lo[k], obstacles.lo[k]);
-    window.hi[k] = std::min(link.hi[k], obstacles.hi[k]);
+    window.lo[k] = std::max(link.lo[k], pieces.lo[k]);
+    window.hi[k] = std::min(link.hi[k], pieces.hi[k]);
     longest = std::max(longest, window.hi[k] - window.lo[k]);
   }
   for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ Window windowOf(const Box& link, const Box& obstacles) {
 
 }  // namespace
 
-/// One window per link, its swept parts, and per pair a group of the obstacle's pieces.
+/// One window per link, its swept parts, and per pair a group of those pieces of the obstacle whose bounds meet a part's.
 void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates, std::int32_t n,
                 ExecutorLoan& loan) {
   Batch& batch = loan->batch;
@@ -54,48 +54,33 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
   for (std::int32_t begin = 0; begin < n; begin = end) {
     const std::int32_t mover = candidates[begin].mover;
     std::uint32_t lanes = 0;
-    Box obstacles = {}, link = {};
-    for (end = begin; end < n && candidates[end].mover == mover; ++end) {
-      const engine::Body& body = problem.bodies[candidates[end].obstacle];
-      Box box;
-      const double margin = candidates[end].margin * (1 + 0x1p-50);
-      for (int k = 0; k < 3; ++k) {
-        box.lo[k] = body.lo[k] - margin;
-        box.hi[k] = body.hi[k] + margin;
-      }
-      if (end == begin) obstacles = box;
-      obstacles.join(box);
-      lanes |= candidates[end].lanes;
-    }
-    Box part_of[kParts];
-    bool first = true;
-    const auto window = static_cast<std::int32_t>(batch.windows.size());
+    for (end = begin; end < n && candidates[end].mover == mover; ++end) lanes |= candidates[end].lanes;
+    Bounds parts[kParts], link = Bounds::none(), reach = Bounds::none();
     for (int lane = 0; lane < kParts; ++lane) {
       if (!(lanes >> lane & 1)) continue;
-      const SweptLink& swept = links[kParts * mover + lane];
-      part_of[lane] = boxOf(swept);
-      if (first) link = part_of[lane];
-      first = false;
-      link.join(part_of[lane]);
-      batch.swept.push_back({addVolume(swept, batch), window});
+      parts[lane] = boundsOf(links[kParts * mover + lane]);
+      link.join(parts[lane]);
     }
-    batch.windows.push_back(windowOf(link, obstacles));
-    const Window& w = batch.windows.back();
-    double pixel = w.hi[0] - w.lo[0];
-    for (int k = 1; k < 3; ++k) pixel = std::min(pixel, w.hi[k] - w.lo[k]);
-    pixel /= batch.resolution;
+    const double size = std::max({link.hi[0] - link.lo[0], link.hi[1] - link.lo[1], link.hi[2] - link.lo[2]});
+    const double least = size / (4 * batch.resolution);  // a quarter of a pixel, before the window is known
+
+    const auto window = static_cast<std::int32_t>(batch.windows.size());
+    const std::size_t first_object = batch.objects.size();
+    lanes = 0;
     for (std::int32_t i = begin; i < end; ++i) {
-      Box parts[kParts];
-      int num_parts = 0;
-      for (int lane = 0; lane < kParts; ++lane) {
-        if (candidates[i].lanes >> lane & 1) parts[num_parts++] = part_of[lane];
-      }
+      const CullCandidate& c = candidates[i];
       const std::size_t objects = batch.objects.size();
-      if (!BodyPieces(problem.bodies[candidates[i].obstacle], candidates[i].margin)
-               .add(parts, num_parts, 0.25 * pixel, kMostObjects, window, i, batch)) {
+      std::uint32_t met = c.lanes;
+      if (!BodyPieces(problem.bodies[c.obstacle], c.margin).add(parts, met, least, kMostObjects, window, i, batch, reach)) {
         batch.objects.resize(objects);
         batch.objects.push_back({Volume(), window, i});  // without a point: unusable, so that the pair stays
       }
+      lanes |= met;
+    }
+    if (batch.objects.size() == first_object) continue;
+    batch.windows.push_back(windowOf(link, reach));
+    for (int lane = 0; lane < kParts; ++lane) {
+      if (lanes >> lane & 1) batch.swept.push_back({addVolume(links[kParts * mover + lane], batch), window});
     }
   }
   pieces += batch.objects.size();
@@ -107,7 +92,7 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
     bool touching = false;
     for (; i < batch.objects.size() && batch.objects[i].group == group; ++i) touching = touching || may[i];
     if (touching) continue;
-    candidates[group].lanes = 0;
+    candidates[group].lanes = 0;  // Single lanes are left as they are: the solver would find the same, by other roundings.
     ++culled;
   }
 }

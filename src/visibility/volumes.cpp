@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fcl_artic {
 namespace visibility {
@@ -18,33 +19,54 @@ constexpr double kOctagon[8][2] = {{kOctagonLong, kOctagonShort},   {kOctagonSho
                                    {-kOctagonShort, kOctagonLong},  {-kOctagonLong, kOctagonShort},
                                    {-kOctagonLong, -kOctagonShort}, {-kOctagonShort, -kOctagonLong},
                                    {kOctagonShort, -kOctagonLong},  {kOctagonLong, -kOctagonShort}};
+/// Of the directions of Bounds.
+constexpr double kSqrt2 = 1.41421356237310, kSqrt3 = 1.73205080756888;
+constexpr double kLengths[Bounds::kDirections] = {1,      1,      1,      kSqrt2, kSqrt2, kSqrt2, kSqrt2,
+                                                  kSqrt2, kSqrt2, kSqrt3, kSqrt3, kSqrt3, kSqrt3};
 /// Corners of an icosahedron around the unit ball: (0, +-a, +-b) and its cyclic shifts, b / a the golden section. Its faces
 /// are at a phi^2 / sqrt(3) from the middle.
 constexpr double kIcosahedronA = 0.66158453886, kIcosahedronB = 1.07046626935;
 
 }  // namespace
 
-void Box::join(const Box& other) {
-  for (int k = 0; k < 3; ++k) {
-    lo[k] = std::min(lo[k], other.lo[k]);
-    hi[k] = std::max(hi[k], other.hi[k]);
+Bounds Bounds::none() {
+  Bounds b;
+  for (int d = 0; d < kDirections; ++d) {
+    b.lo[d] = std::numeric_limits<double>::infinity();
+    b.hi[d] = -b.lo[d];
+  }
+  return b;
+}
+
+void Bounds::join(const Bounds& other) {
+  for (int d = 0; d < kDirections; ++d) {
+    lo[d] = std::min(lo[d], other.lo[d]);
+    hi[d] = std::max(hi[d], other.hi[d]);
   }
 }
 
-Box boxOf(const engine::SweptLink& link) {
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    double lo = link.points[0][k], hi = lo;
-    for (int i = 1; i < 6; ++i) {
-      lo = std::min(lo, link.points[i][k]);
-      hi = std::max(hi, link.points[i][k]);
+Bounds boundsOf(const double* points, int count, double radius) {
+  Bounds b;
+  double size = radius;
+  for (int i = 0; i < count; ++i) {
+    const double *p = points + 3 * i, x = p[0], y = p[1], z = p[2];
+    const double at[Bounds::kDirections] = {x,     y,     z,         x + y,     x - y,     y + z,    y - z,
+                                            z + x, z - x, x + y + z, x + y - z, x - y + z, x - y - z};
+    for (int d = 0; d < Bounds::kDirections; ++d) {
+      b.lo[d] = i ? std::min(b.lo[d], at[d]) : at[d];
+      b.hi[d] = i ? std::max(b.hi[d], at[d]) : at[d];
     }
-    const double grow = link.radius + 0x1p-50 * (std::abs(lo) + std::abs(hi) + link.radius);
-    box.lo[k] = lo - grow;
-    box.hi[k] = hi + grow;
+    size += std::abs(x) + std::abs(y) + std::abs(z);
   }
-  return box;
+  for (int d = 0; d < Bounds::kDirections; ++d) {
+    const double grow = kLengths[d] * radius + 0x1p-48 * size;
+    b.lo[d] -= grow;
+    b.hi[d] += grow;
+  }
+  return b;
 }
+
+Bounds boundsOf(const engine::SweptLink& link) { return boundsOf(&link.points[0][0], 6, link.radius); }
 
 Volume addVolume(const engine::SweptLink& link, Batch& batch) {
   Volume volume;
@@ -65,21 +87,14 @@ void BodyPieces::toWorld(const double* p, double* x) const {
   for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
 }
 
-Box BodyPieces::boxOf(const Node& node) const {
-  double center[3], half[3], middle[3];
-  for (int k = 0; k < 3; ++k) {
-    center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
-    half[k] = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
+/// Of the node's box, turned into the world.
+Bounds BodyPieces::boundsOf(const Node& node) const {
+  double corners[8][3];
+  for (int c = 0; c < 8; ++c) {
+    const double p[3] = {c & 1 ? node.hi[0] : node.lo[0], c & 2 ? node.hi[1] : node.lo[1], c & 4 ? node.hi[2] : node.lo[2]};
+    toWorld(p, corners[c]);
   }
-  toWorld(center, middle);
-  Box box;
-  for (int k = 0; k < 3; ++k) {
-    const double* R = body_.placement.R + 3 * k;
-    const double reach = std::abs(R[0]) * half[0] + std::abs(R[1]) * half[1] + std::abs(R[2]) * half[2] + pad_;
-    box.lo[k] = middle[k] - reach;
-    box.hi[k] = middle[k] + reach;
-  }
-  return box;
+  return visibility::boundsOf(&corners[0][0], 8, pad_);
 }
 
 Volume BodyPieces::ballAround(const Node& node, Batch& batch) const {
@@ -154,27 +169,51 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
   return volume;
 }
 
-bool BodyPieces::add(const Box* parts, int num_parts, double least, std::size_t most, std::int32_t window,
-                     std::int32_t group, Batch& batch) const {
+bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, std::size_t most, std::int32_t window,
+                     std::int32_t group, Batch& batch, Bounds& reach) const {
   const engine::TreeView& tree = *body_.tree;
   if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
-  std::int32_t stack[128];
+  const auto met = [&](const Bounds& bounds, std::uint32_t asked) {
+    std::uint32_t mask = 0;
+    for (int lane = 0; lane < 8; ++lane) {
+      if ((asked >> lane & 1) && parts[lane].meets(bounds)) mask |= 1u << lane;
+    }
+    return mask;
+  };
+  struct Open {
+    std::int32_t node;
+    std::uint32_t lanes;
+  };
+  Open stack[128];
   int open = 0;
-  stack[open++] = 0;
+  stack[open++] = {0, lanes};
+  std::uint32_t touched = 0;
   while (open) {
-    const Node& node = tree.nodes[stack[--open]];
-    const Box box = boxOf(node);
-    if (std::none_of(parts, parts + num_parts, [&](const Box& part) { return part.meets(box); })) continue;
+    const Open top = stack[--open];
+    const Node& node = tree.nodes[top.node];
     const bool small = static_cast<double>(node.radius) < least;
     if (!node.isLeaf() && !small) {
+      const std::uint32_t mask = met(boundsOf(node), top.lanes);
+      if (!mask) continue;
       if (open + 2 > 128) return false;
-      stack[open++] = node.right();
-      stack[open++] = node.left();
+      stack[open++] = {node.right(), mask};
+      stack[open++] = {node.left(), mask};
       continue;
     }
     if (batch.objects.size() >= most) return false;
-    batch.objects.push_back({small ? ballAround(node, batch) : volumeOf(tree.pieces[node.piece()], batch), window, group});
+    const std::size_t points = batch.points.size();
+    const Volume volume = small ? ballAround(node, batch) : volumeOf(tree.pieces[node.piece()], batch);
+    const Bounds bounds = visibility::boundsOf(batch.points.data() + points, volume.count, volume.radius);
+    const std::uint32_t mask = met(bounds, top.lanes);
+    if (mask) {
+      touched |= mask;
+      reach.join(bounds);
+      batch.objects.push_back({volume, window, group});
+    } else {
+      batch.points.resize(points);
+    }
   }
+  lanes &= touched;
   return true;
 }
 

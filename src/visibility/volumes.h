@@ -11,18 +11,27 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// An axis-aligned box in the world.
-struct Box {
-  double lo[3], hi[3];
-  bool meets(const Box& other) const {
-    return lo[0] <= other.hi[0] && other.lo[0] <= hi[0] && lo[1] <= other.hi[1] && other.lo[1] <= hi[1] &&
-           lo[2] <= other.hi[2] && other.lo[2] <= hi[2];
+/// Bounds along 13 directions in the world: the axes, the diagonals of their planes and of space (a 26-DOP).
+struct Bounds {
+  static constexpr int kDirections = 13;
+  double lo[kDirections], hi[kDirections];
+
+  /// Not certainly apart; so too where a number is none.
+  bool meets(const Bounds& other) const {
+    for (int d = 0; d < kDirections; ++d) {
+      if (lo[d] > other.hi[d] || other.lo[d] > hi[d]) return false;
+    }
+    return true;
   }
-  void join(const Box& other);
+  /// Holds nothing.
+  static Bounds none();
+  void join(const Bounds& other);
 };
+/// Of the hull of points, grown by a ball; rounded outward.
+Bounds boundsOf(const double* points, int count, double radius);
 
 /// A link's line swept sphere over one of the motion's parts.
-Box boxOf(const engine::SweptLink& link);
+Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
 /// Pieces of a still body, in the world.
@@ -30,15 +39,18 @@ class BodyPieces {
  public:
   /// @param margin  that all of it is grown by, m.
   BodyPieces(const engine::Body& body, double margin);
-  /// Adds those whose boxes meet one of `parts`, as objects of a group: triangles and other convex pieces; a node smaller
+  /// Adds those whose bounds meet one of the parts, as objects of a group: triangles and other convex pieces; a node smaller
   /// than `least` (m) as the ball around its box, with all that is in it.
+  /// @param parts  bounds of what is swept in each of the eight parts of the motion.
+  /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param most  of all objects of the batch.
-  /// @return false where that was too few, or the body is unbounded: what was added is not all of it.
-  bool add(const Box* parts, int num_parts, double least, std::size_t most, std::int32_t window, std::int32_t group,
-           Batch& batch) const;
+  /// @param[in,out] reach  joined with the bounds of what is added.
+  /// @return false where that was too few, or the body is unbounded: nothing is known, lanes are as they were.
+  bool add(const Bounds* parts, std::uint32_t& lanes, double least, std::size_t most, std::int32_t window,
+           std::int32_t group, Batch& batch, Bounds& reach) const;
 
  private:
-  Box boxOf(const engine::Node& node) const;
+  Bounds boundsOf(const engine::Node& node) const;
   void toWorld(const double* p, double* x) const;
   Volume volumeOf(const engine::Piece& piece, Batch& batch) const;
   Volume ballAround(const engine::Node& node, Batch& batch) const;

@@ -47,7 +47,7 @@ if(CASE STREQUAL "install")
 
 elseif(CASE STREQUAL "cmake")
   run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" "-DWITH_URDF=${WITH_URDF}"
-      "-DWITH_OMPL=${WITH_OMPL}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+      "-DWITH_OMPL=${WITH_OMPL}" "-DWITH_VISIBILITY=${WITH_VISIBILITY}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
       -S "${SOURCE}/test/consumer" -B "${WORK}/build")
   run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/build")
   run(COMMAND "${WORK}/build/core")
@@ -58,6 +58,10 @@ elseif(CASE STREQUAL "cmake")
   endif()
   if(WITH_OMPL)
     run(COMMAND "${WORK}/build/planner" "${stage}/share/fcl_artic")
+  endif()
+
+  if(WITH_VISIBILITY)
+    run(COMMAND "${WORK}/build/culler")
   endif()
 
 elseif(CASE STREQUAL "missing_component")
@@ -75,6 +79,9 @@ elseif(CASE STREQUAL "pkg_config")
   if(WITH_OMPL)
     list(APPEND packages fcl_artic_ompl)
   endif()
+  if(WITH_VISIBILITY)
+    list(APPEND packages fcl_artic_visibility)
+  endif()
   foreach(package IN LISTS packages)
     execute_process(COMMAND pkg-config --modversion ${package} OUTPUT_VARIABLE version
       OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -88,6 +95,8 @@ elseif(CASE STREQUAL "pkg_config")
       set(program core)
     elseif(package STREQUAL "fcl_artic_ompl")
       set(program planner)
+    elseif(package STREQUAL "fcl_artic_visibility")
+      set(program culler)
     else()
       set(program robot)
     endif()
