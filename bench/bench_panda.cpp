@@ -152,6 +152,14 @@ int main(int argc, char** argv) try {
   const auto add = [&](const std::string& environment, const std::string& set, const std::vector<Asked>& edges) {
     addMode(environment, set, edges, ContactMode::first, "fcl_artic, first contact");
     addMode(environment, set, edges, ContactMode::any, "fcl_artic, any contact");
+    if (set != "free") return;
+    report.add("panda " + environment, set, "fcl_artic, clearance", [&] {
+      return measure(edges.size(), passes, [&](std::size_t i) -> Answer {
+        const Clearance clearance = edges[i].manager->clearance(edges[i].motion);
+        if (!clearance.within_tolerance) throw std::runtime_error(edges[i].name + ": the clearance stays open");
+        return kFree + clearance.lower;
+      });
+    });
   };
 
   std::map<std::string, Worlds> worlds;

@@ -2,7 +2,8 @@
 //
 // The clearance of a motion by queries with margins. One that is free proves that nothing comes nearer than its margin;
 // a pose proven in contact shows a pair and a time with no more than that between them. The margin goes down by kStep
-// until a query is free, then halves the bracket (by ratio: the tolerance is relative).
+// until a query is free, then halves the bracket (by ratio: the tolerance is relative). Measured on a planner's motions: looking
+// at single poses in between, for a tighter upper bound, costs as much as it saves.
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -4,10 +4,22 @@
 #include <regex>
 #include <vector>
 
+#ifdef FCL_ARTIC_HAS_PLANS
 #include "bars.h"
+#endif
 #include "run_program.h"
 
 namespace {
+
+#ifndef FCL_ARTIC_HAS_PLANS
+
+TEST_F(ProgramTest, BenchPlanningIsNotThereWithoutOmpl) {
+  const Outcome run = this->run("bench planning --data " + path("nowhere"));
+  EXPECT_EQ(run.status, 2);
+  expectContains(run.err, "built without OMPL");
+}
+
+#else
 
 using fcl_artic::app::BarChart;
 using fcl_artic::app::toSvg;
@@ -67,5 +79,7 @@ TEST_F(ProgramTest, BenchPlanningOnOneProblem) {
   EXPECT_EQ(rows, 3);
   EXPECT_EQ(heightsOfBars(read(path("planning/planning.svg"))).size(), 12u);  // four charts of three bars
 }
+
+#endif
 
 }  // namespace
