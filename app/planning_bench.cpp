@@ -299,7 +299,7 @@ int benchPlanning(const PlanningBenchOptions& options) {
     write(out / "planning.csv", bench.csv());
     write(out / "planning.svg", bench.plot());
     if (!hasPictures()) {
-      fmt::print("no picture: this program was built without OSMesa or libpng\n");
+      fmt::print("no picture: this program was built without the component visibility or libpng\n");
     } else if (!bench.picture((out / "planning.png").string())) {
       fmt::print("no picture: no plan that sampling accepted collides\n");
     }

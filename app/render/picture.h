@@ -21,7 +21,7 @@ struct PictureOptions {
   std::string title;                              ///< one line; empty: none
 };
 
-/// @throws std::runtime_error when this program was built without OSMesa.
+/// @throws std::runtime_error when this program was built without the component visibility.
 void requirePictures();
 
 /// Draws an answer, off screen, as PNG: the robot at t_lower, the obstacles, the sweep as translucent poses (paler

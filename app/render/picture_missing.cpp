@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for picture.cpp where OSMesa or libpng was not found.
+// Stands in for picture.cpp without the component visibility or libpng.
 #include <stdexcept>
 
 #include "picture.h"
@@ -7,7 +7,7 @@
 namespace fcl_artic::render {
 
 void requirePictures() {
-  throw std::runtime_error("--image: this program was built without OSMesa and libpng and can't draw pictures");
+  throw std::runtime_error("--image: this program was built without the component visibility or libpng and can't draw pictures");
 }
 
 void writePicture(const std::string&, const Robot&, const std::vector<Scene::Obstacle>&, const JointPath&,

@@ -8,11 +8,8 @@
 #include <string>
 #include <unordered_map>
 
-#define GL_GLEXT_PROTOTYPES
-#include <GL/osmesa.h>
-#include <GL/glext.h>
-
 #include "shaders.h"
+#include "visibility/gl_functions.h"
 
 namespace fcl_artic::render {
 namespace {
@@ -26,64 +23,55 @@ constexpr int kShadowSize = 4096;
 constexpr float kCreaseCosine = 0.77f;  // edges sharper than 40 degrees stay sharp
 constexpr float kSeeThrough = 0.38f;    // of the robot behind obstacles
 
-class Program {
- public:
-  Program(const std::string& vertex, const std::string& fragment) : id_(glCreateProgram()) {
-    const GLuint v = compile(GL_VERTEX_SHADER, vertex), f = compile(GL_FRAGMENT_SHADER, fragment);
-    glAttachShader(id_, v);
-    glAttachShader(id_, f);
-    glLinkProgram(id_);
-    glDeleteShader(v);
-    glDeleteShader(f);
-    GLint good = 0;
-    glGetProgramiv(id_, GL_LINK_STATUS, &good);
-    if (!good) {
-      char log[2048] = "";
-      glGetProgramInfoLog(id_, sizeof log, nullptr, log);
-      throw std::runtime_error(std::string("can't link a shader: ") + log);
+/// OpenGL of the renderer at work on this thread.
+thread_local const visibility::GlFunctions* bound = nullptr;
+const visibility::GlFunctions& api() { return *bound; }
+
+/// OSMesa's, or, where there is none, EGL's.
+std::unique_ptr<OffscreenContext> openContext() {
+  std::string reasons;
+  for (const OffscreenBackend backend : {OffscreenBackend::osmesa, OffscreenBackend::egl}) {
+    try {
+      return OffscreenContext::create(backend, 3, 3);
+    } catch (const std::runtime_error& e) {
+      reasons += (reasons.empty() ? "" : "; ") + std::string(e.what());
     }
   }
-  void use() const { glUseProgram(id_); }
-  void set(const char* name, float x) const { glUniform1f(at(name), x); }
-  void set(const char* name, int x) const { glUniform1i(at(name), x); }
-  void set(const char* name, const Vector3f& v) const { glUniform3fv(at(name), 1, v.data()); }
-  void set(const char* name, float x, float y) const { glUniform2f(at(name), x, y); }
-  void set(const char* name, const Matrix4f& m) const { glUniformMatrix4fv(at(name), 1, GL_FALSE, m.data()); }
+  throw std::runtime_error("no OpenGL without a window: " + reasons);
+}
+
+class Program {
+ public:
+  Program(const std::string& vertex, const std::string& fragment) : id_(api().program(vertex.c_str(), fragment.c_str())) {}
+  void use() const { api().UseProgram(id_); }
+  void set(const char* name, float x) const { api().Uniform1f(at(name), x); }
+  void set(const char* name, int x) const { api().Uniform1i(at(name), x); }
+  void set(const char* name, const Vector3f& v) const { api().Uniform3fv(at(name), 1, v.data()); }
+  void set(const char* name, float x, float y) const { api().Uniform2f(at(name), x, y); }
+  void set(const char* name, const Matrix4f& m) const { api().UniformMatrix4fv(at(name), 1, GL_FALSE, m.data()); }
 
  private:
-  GLint at(const char* name) const { return glGetUniformLocation(id_, name); }
-  static GLuint compile(GLenum kind, const std::string& source) {
-    const GLuint shader = glCreateShader(kind);
-    const char* text = source.c_str();
-    glShaderSource(shader, 1, &text, nullptr);
-    glCompileShader(shader);
-    GLint good = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good) return shader;
-    char log[2048] = "";
-    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
-    throw std::runtime_error(std::string("can't compile a shader: ") + log);
-  }
+  GLint at(const char* name) const { return api().GetUniformLocation(id_, name); }
   GLuint id_;
 };
 
 class Texture {
  public:
   Texture(int width, int height, GLint internal, GLenum format, GLenum type, GLint filter) {
-    glGenTextures(1, &id);
-    glBindTexture(GL_TEXTURE_2D, id);
-    glTexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, type, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    api().GenTextures(1, &id);
+    api().BindTexture(GL_TEXTURE_2D, id);
+    api().TexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, type, nullptr);
+    api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+    api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
+    api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   }
-  ~Texture() { glDeleteTextures(1, &id); }
+  ~Texture() { api().DeleteTextures(1, &id); }
   Texture(const Texture&) = delete;
   Texture& operator=(const Texture&) = delete;
   void bind(int unit) const {
-    glActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
-    glBindTexture(GL_TEXTURE_2D, id);
+    api().ActiveTexture(static_cast<GLenum>(GL_TEXTURE0 + unit));
+    api().BindTexture(GL_TEXTURE_2D, id);
   }
   GLuint id = 0;
 };
@@ -99,23 +87,23 @@ Texture depthTexture(int w, int h, GLint filter) {
 class Target {
  public:
   Target(int width, int height, const Texture* color, const Texture* depth) : width_(width), height_(height) {
-    glGenFramebuffers(1, &id);
-    glBindFramebuffer(GL_FRAMEBUFFER, id);
-    if (color) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color->id, 0);
-    if (depth) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth->id, 0);
-    glDrawBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
-    glReadBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
-    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw std::runtime_error("OSMesa can't draw to a buffer of " + std::to_string(width) + "x" +
+    api().GenFramebuffers(1, &id);
+    api().BindFramebuffer(GL_FRAMEBUFFER, id);
+    if (color) api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, color->id, 0);
+    if (depth) api().FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth->id, 0);
+    api().DrawBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
+    api().ReadBuffer(color ? GL_COLOR_ATTACHMENT0 : GL_NONE);
+    if (api().CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+      throw std::runtime_error("OpenGL can't draw to a buffer of " + std::to_string(width) + "x" +
                                std::to_string(height) + " pixels");
     }
   }
-  ~Target() { glDeleteFramebuffers(1, &id); }
+  ~Target() { api().DeleteFramebuffers(1, &id); }
   Target(const Target&) = delete;
   Target& operator=(const Target&) = delete;
   void begin() const {
-    glBindFramebuffer(GL_FRAMEBUFFER, id);
-    glViewport(0, 0, width_, height_);
+    api().BindFramebuffer(GL_FRAMEBUFFER, id);
+    api().Viewport(0, 0, width_, height_);
   }
   GLuint id = 0;
 
@@ -128,21 +116,21 @@ struct Buffers {
   GLuint array = 0, data[2] = {0, 0};
   GLsizei corners = 0;
   explicit Buffers(const Surface& surface) : corners(static_cast<GLsizei>(surface.corners.size())) {
-    glGenVertexArrays(1, &array);
-    glGenBuffers(2, data);
-    glBindVertexArray(array);
+    api().GenVertexArrays(1, &array);
+    api().GenBuffers(2, data);
+    api().BindVertexArray(array);
     const std::vector<Vector3f>* sources[2] = {&surface.corners, &surface.normals};
     for (GLuint i = 0; i < 2; ++i) {
-      glBindBuffer(GL_ARRAY_BUFFER, data[i]);
-      glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sources[i]->size() * sizeof(Vector3f)),
+      api().BindBuffer(GL_ARRAY_BUFFER, data[i]);
+      api().BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sources[i]->size() * sizeof(Vector3f)),
                    sources[i]->data(), GL_STATIC_DRAW);
-      glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
-      glEnableVertexAttribArray(i);
+      api().VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+      api().EnableVertexAttribArray(i);
     }
   }
   ~Buffers() {
-    glDeleteVertexArrays(1, &array);
-    glDeleteBuffers(2, data);
+    api().DeleteVertexArrays(1, &array);
+    api().DeleteBuffers(2, data);
   }
   Buffers(const Buffers&) = delete;
   Buffers& operator=(const Buffers&) = delete;
@@ -257,8 +245,8 @@ std::shared_ptr<const Surface> makeSurface(const Triangles& triangles) {
 }
 
 struct Renderer::Impl {
-  std::vector<unsigned char> canvas;  // OSMesa wants one; all passes draw to buffers of their own
-  OSMesaContext context;
+  std::unique_ptr<OffscreenContext> context = openContext();
+  std::unique_ptr<visibility::GlFunctions> functions;
 
   struct Programs {
     Program depth{shaders::kBodyVertex, shaders::kEmptyFragment};
@@ -277,21 +265,28 @@ struct Renderer::Impl {
   // Kept with their surfaces, so that an address is not used again for another one.
   std::map<std::shared_ptr<const Surface>, std::unique_ptr<Buffers>> buffers;
 
-  Impl() : canvas(16 * 16 * 4) {
-    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                          OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
-    context = OSMesaCreateContextAttribs(wanted, nullptr);
-    if (!context || !OSMesaMakeCurrent(context, canvas.data(), GL_UNSIGNED_BYTE, 16, 16)) {
-      if (context) OSMesaDestroyContext(context);
-      throw std::runtime_error("OSMesa does not offer OpenGL 3.3");
+  Impl() {
+    context->makeCurrent();
+    try {
+      functions = std::make_unique<visibility::GlFunctions>(*context);
+      bound = functions.get();
+      api().GenVertexArrays(1, &empty_array);
+      api().PixelStorei(GL_PACK_ALIGNMENT, 1);
+      programs = std::make_unique<Programs>();
+    } catch (...) {
+      leave();
+      throw;
     }
-    glGenVertexArrays(1, &empty_array);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    programs = std::make_unique<Programs>();
   }
   ~Impl() {
     buffers.clear();
-    OSMesaDestroyContext(context);
+    leave();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  void leave() {
+    context->release();
+    bound = nullptr;
   }
 
   const Buffers& buffersOf(const std::shared_ptr<const Surface>& surface) {
@@ -302,8 +297,8 @@ struct Renderer::Impl {
   void drawBody(const Program& program, const Body& body) {
     const Buffers& b = buffersOf(body.surface);
     program.set("model", Matrix4f(body.M_0.matrix().cast<float>()));
-    glBindVertexArray(b.array);
-    glDrawArrays(GL_TRIANGLES, 0, b.corners);
+    api().BindVertexArray(b.array);
+    api().DrawArrays(GL_TRIANGLES, 0, b.corners);
   }
   void drawMaterial(const Body& body) {
     const Program& p = programs->body;
@@ -315,8 +310,8 @@ struct Renderer::Impl {
     drawBody(p, body);
   }
   void drawScreen() {
-    glBindVertexArray(empty_array);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    api().BindVertexArray(empty_array);
+    api().DrawArrays(GL_TRIANGLES, 0, 3);
   }
 };
 
@@ -329,12 +324,12 @@ std::vector<int> Renderer::visiblePixels(const std::vector<Body>& bodies, const 
   const Texture depth = depthTexture(width, height, GL_NEAREST);
   const Target target(width, height, &color, &depth);
   target.begin();
-  glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LESS);
-  glDepthMask(GL_TRUE);
-  glClearColor(1, 1, 1, 1);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  api().Disable(GL_BLEND);
+  api().Enable(GL_DEPTH_TEST);
+  api().DepthFunc(GL_LESS);
+  api().DepthMask(GL_TRUE);
+  api().ClearColor(1, 1, 1, 1);
+  api().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const Program& program = impl_->programs->group;
   program.use();
   program.set("view_projection", Matrix4f(perspective(static_cast<double>(width) / height, camera.near, camera.far) *
@@ -346,7 +341,7 @@ std::vector<int> Renderer::visiblePixels(const std::vector<Body>& bodies, const 
     impl_->drawBody(program, bodies[i]);
   }
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-  glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+  api().ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
   std::vector<int> count(static_cast<std::size_t>(top) + 1);
   for (std::size_t i = 0; i < pixels.size(); i += 4) {
     if (pixels[i] < count.size()) ++count[pixels[i]];
@@ -359,7 +354,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   const Impl::Programs& programs = *gl.programs;
   const int w = kSupersampling * width, h = kSupersampling * height;
   GLint limit = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  api().GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   if (w > limit || h > limit) {
     throw std::runtime_error("a picture has at most " + std::to_string(limit / kSupersampling) + " pixels a side");
   }
@@ -382,16 +377,16 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   const Texture depth = depthTexture(w, h, GL_NEAREST), layer_depth = depthTexture(w, h, GL_NEAREST);
   const Texture occlusion = colorTexture(width, height), blurred = colorTexture(width, height);
   const Texture shadow = depthTexture(kShadowSize, kShadowSize, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
 
   // Depth as the sun sees it.
-  glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_LEQUAL);
-  glDepthMask(GL_TRUE);
+  api().Disable(GL_BLEND);
+  api().Enable(GL_DEPTH_TEST);
+  api().DepthFunc(GL_LEQUAL);
+  api().DepthMask(GL_TRUE);
   const Target shadow_target(kShadowSize, kShadowSize, nullptr, &shadow);
   shadow_target.begin();
-  glClear(GL_DEPTH_BUFFER_BIT);
+  api().Clear(GL_DEPTH_BUFFER_BIT);
   programs.depth.use();
   programs.depth.set("view_projection", shadow_matrix);
   for (const Body& body : stage.solid) {
@@ -401,8 +396,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   // Depth and normals as the camera sees them, and how open each point is.
   const Target normal_target(w, h, &normal, &depth);
   normal_target.begin();
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  api().ClearColor(0, 0, 0, 0);
+  api().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   programs.normal.use();
   programs.normal.set("view_projection", view_projection);
   programs.normal.set("eye", eye);
@@ -413,7 +408,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   programs.normal.set("clear_of_ghosts", 0.0f);
   if (ground_seen) gl.drawBody(programs.normal, ground);
 
-  glDisable(GL_DEPTH_TEST);
+  api().Disable(GL_DEPTH_TEST);
   const Target occlusion_target(width, height, &occlusion, nullptr);
   occlusion_target.begin();
   programs.occlusion.use();
@@ -453,16 +448,16 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     p.set("sun", Vector3f(sun.cast<float>()));
     p.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
   };
-  glEnable(GL_DEPTH_TEST);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  api().Enable(GL_DEPTH_TEST);
+  api().BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   if (ground_seen) {
-    glEnable(GL_BLEND);
+    api().Enable(GL_BLEND);
     light(programs.ground);
     programs.ground.set("focus", Vector3f(stage.focus.cast<float>()));
     programs.ground.set("fade_radius", static_cast<float>(fade_radius));
     programs.ground.set("cell", static_cast<float>(roundStep(0.2 * stage.radius)));
     gl.drawBody(programs.ground, ground);
-    glDisable(GL_BLEND);
+    api().Disable(GL_BLEND);
   }
   const Program& body_program = programs.body;
   light(body_program);
@@ -480,20 +475,20 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     int outline = 0;             // pixels of light rim
   };
   const auto lay = [&](const std::vector<Body>& bodies, const Lay& how) {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, layer_target.id);
-    if (!how.over_all) glBlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    api().BindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
+    api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, layer_target.id);
+    if (!how.over_all) api().BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
     layer_target.begin();
-    glClearColor(0, 0, 0, 0);
-    glClear(how.over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+    api().ClearColor(0, 0, 0, 0);
+    api().Clear(how.over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
     light(body_program);
     body_program.set("opacity", how.opacity);
     body_program.set("rim", how.rim);
     body_program.set("use_occlusion", 0);
     for (const Body& body : bodies) gl.drawMaterial(body);
     main_target.begin();
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
+    api().Disable(GL_DEPTH_TEST);
+    api().Enable(GL_BLEND);
     programs.layer.use();
     layer.bind(0);
     normal.bind(1);
@@ -502,8 +497,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     programs.layer.set("outline", how.outline);
     programs.layer.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
     gl.drawScreen();
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
+    api().Disable(GL_BLEND);
+    api().Enable(GL_DEPTH_TEST);
   };
   std::vector<Body> important;
   for (const Body& body : stage.solid) {
@@ -517,7 +512,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   const Texture final_color(width, height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, GL_NEAREST);
   const Target final_target(width, height, &final_color, nullptr);
   final_target.begin();
-  glDisable(GL_DEPTH_TEST);
+  api().Disable(GL_DEPTH_TEST);
   programs.resolve.use();
   color.bind(0);
   programs.resolve.set("source", 0);
@@ -525,8 +520,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   Image image{width, height, {}};
   const std::size_t row = 3 * static_cast<std::size_t>(width);
   std::vector<std::uint8_t> flipped(row * static_cast<std::size_t>(height));
-  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, flipped.data());
-  if (const GLenum error = glGetError()) throw std::runtime_error("OpenGL error " + std::to_string(error));
+  api().ReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, flipped.data());
+  if (const GLenum error = api().GetError()) throw std::runtime_error("OpenGL error " + std::to_string(error));
   image.rgb.reserve(flipped.size());
   for (int y = height - 1; y >= 0; --y) {
     const auto first = flipped.begin() + static_cast<std::ptrdiff_t>(row * static_cast<std::size_t>(y));

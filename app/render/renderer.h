@@ -56,7 +56,7 @@ struct Stage {
   double ground_z = 0;
 };
 
-/// Draws stages off screen with OSMesa. One renderer at a time and thread.
+/// Draws stages off screen, by OSMesa or else EGL. One renderer at a time and thread.
 class Renderer {
  public:
   /// @throws std::runtime_error when OpenGL 3.3 can't be had or a shader does not compile.

@@ -13,3 +13,4 @@
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/trajectory.h"
+#include "fcl_artic/visibility.h"

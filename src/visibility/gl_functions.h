@@ -19,7 +19,7 @@ struct GlFunctions {
   X(ActiveTexture, ACTIVETEXTURE) X(AttachShader, ATTACHSHADER) X(BeginQuery, BEGINQUERY) X(BindBuffer, BINDBUFFER)        \
   X(BindBufferBase, BINDBUFFERBASE) X(BindFramebuffer, BINDFRAMEBUFFER) X(BindTexture, BINDTEXTURE)                        \
   X(BindVertexArray, BINDVERTEXARRAY) X(BlendEquation, BLENDEQUATION) X(BlendFunc, BLENDFUNC)                              \
-  X(BlendFuncSeparate, BLENDFUNCSEPARATE) X(BufferData, BUFFERDATA) X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)      \
+  X(BlitFramebuffer, BLITFRAMEBUFFER) X(BufferData, BUFFERDATA) X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)          \
   X(Clear, CLEAR) X(ClearBufferfv, CLEARBUFFERFV) X(ClearColor, CLEARCOLOR) X(ClearDepth, CLEARDEPTH)                      \
   X(ColorMask, COLORMASK) X(CompileShader, COMPILESHADER) X(CreateProgram, CREATEPROGRAM) X(CreateShader, CREATESHADER)    \
   X(DeleteBuffers, DELETEBUFFERS) X(DeleteFramebuffers, DELETEFRAMEBUFFERS) X(DeleteProgram, DELETEPROGRAM)                \

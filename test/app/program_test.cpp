@@ -247,10 +247,10 @@ TEST_F(ProgramTest, GeneratedDataIsReadBack) {
 }
 
 #ifndef FCL_ARTIC_HAS_PICTURES
-TEST_F(ProgramTest, WithoutOsMesaPicturesAreRefused) {
+TEST_F(ProgramTest, WithoutTheComponentPicturesAreRefused) {
   const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 1,0 --image " + path("x.png"));
   EXPECT_EQ(run.status, 2);
-  EXPECT_NE(run.err.find("without OSMesa"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("without the component visibility"), std::string::npos) << run.err;
 }
 #endif
 
