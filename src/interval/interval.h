@@ -64,6 +64,7 @@ class Interval {
   static FCL_ARTIC_INLINE __m128d known(__m128d v) { return _mm_min_pd(v, infinities()); }
   FCL_ARTIC_INLINE __m128d swapped() const { return _mm_shuffle_pd(v_, v_, 1); }
   static FCL_ARTIC_INLINE __m128d negated(__m128d v) { return _mm_xor_pd(v, _mm_set1_pd(-0.0)); }
+  static Interval ofCorners(__m128d p, __m128d q, __m128d r, __m128d s);
   __m128d v_;
 
   friend Interval operator+(Interval a, Interval b);
@@ -88,14 +89,16 @@ FCL_ARTIC_INLINE Interval operator-(Interval a) {
   return Interval::raw(a.swapped());
 }
 
-/// The ends of a product are among the four products of ends. MAXPD gives its second operand where the first one is
-/// NaN: a product 0 * inf, which stands for 0 * (some number), is dropped, and another one covers it; if it is the
-/// first one there is, known() makes it an infinite end.
+/// The ends of a product or quotient are among the four of ends. MAXPD gives its second operand where the first one is
+/// NaN: 0 * inf and inf / inf, which stand for some number that others cover, are dropped; the innermost makes an
+/// infinite end.
+FCL_ARTIC_INLINE Interval Interval::ofCorners(__m128d p, __m128d q, __m128d r, __m128d s) {
+  return raw(known(_mm_max_pd(p, _mm_max_pd(q, _mm_max_pd(r, s)))));
+}
 FCL_ARTIC_INLINE Interval operator*(Interval a, Interval b) {
   const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
-  const __m128d p = directed::mul(n, c), q = directed::mul(Interval::negated(n), b.v_), r = directed::mul(h, b.v_),
-                s = directed::mul(Interval::negated(h), c);
-  return Interval::raw(Interval::known(_mm_max_pd(p, _mm_max_pd(q, _mm_max_pd(s, r)))));
+  return Interval::ofCorners(directed::mul(n, c), directed::mul(Interval::negated(n), b.v_),
+                             directed::mul(Interval::negated(h), c), directed::mul(h, b.v_));
 }
 FCL_ARTIC_INLINE Interval operator*(Interval a, double b) {
   const __m128d k = _mm_set1_pd(b);
@@ -110,12 +113,8 @@ FCL_ARTIC_INLINE Interval operator*(double a, Interval b) {
 FCL_ARTIC_INLINE Interval operator/(Interval a, Interval b) {
   if (b.containsZero()) return Interval::entire();
   const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
-  const __m128d p = directed::div(n, c), q = directed::div(Interval::negated(n), b.v_), r = directed::div(h, b.v_),
-                s = directed::div(Interval::negated(h), c);
-  // inf/inf may stand for any number of its sign, so NaN must not be dropped.
-  const __m128d unknown = _mm_or_pd(_mm_cmpunord_pd(p, q), _mm_cmpunord_pd(r, s));
-  const __m128d most = _mm_max_pd(_mm_max_pd(p, q), _mm_max_pd(r, s));
-  return Interval::raw(Interval::known(_mm_or_pd(most, unknown)));
+  return Interval::ofCorners(directed::div(n, c), directed::div(Interval::negated(n), b.v_),
+                             directed::div(Interval::negated(h), c), directed::div(h, b.v_));
 }
 
 /// Tighter than a * a where a straddles 0.
