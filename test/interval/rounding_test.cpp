@@ -41,6 +41,7 @@ TEST(Rounding, ScopePutsTheCallersModeBack) {
         EXPECT_GT((Interval(0x1p-1074) + Interval(0.0)).upper(), 0);  // no flushing
       }
       EXPECT_EQ(control(), mine);
+      std::fesetround(FE_TONEAREST);  // of the old floating-point unit, too
       _mm_setcsr(before);
     }
   }
