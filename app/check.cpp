@@ -18,6 +18,7 @@
 #include "fcl_artic/fcl_artic.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "progress.h"
+#include "redon_options.h"
 #include "render/picture.h"
 #include "report.h"
 #include "waypoints.h"
@@ -264,6 +265,13 @@ void addCheck(CLI::App& program, int& exit_status) {
                   "Pairs that touch at t = 0 may separate; they are watched from then on")->group("Query");
   check->add_flag("--no-self", o.no_self, "Do not check links against links")->group("Query");
   check->add_flag("--no-scene", o.no_scene, "Do not check links against obstacles")->group("Query");
+
+  check->add_option_function<std::string>(
+           "--method", [&request](const std::string& name) {
+             request.method = name == "redon2004" ? Method::Redon2004 : Method::standard;
+           }, "standard, or redon2004: the paper's own, with the options below")
+      ->check(CLI::IsMember({"standard", "redon2004"}))->group("Query");
+  addRedonOptions(*check, request.redon);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and contact as PNG")

@@ -45,9 +45,9 @@ struct RedonOptions {
   bool newton = true;        ///< interval Newton, eq. (18)
   /// Whether features of an equation can touch is asked in every interval; false: at the last, as the paper has it.
   bool early_validity = true;
-  /// The motion is taken in 2^level equal windows, one after the other, up to the first contact; 0: at once, as the paper
-  /// has it; at most 10.
-  int window_level = 0;
+  /// Boxes and equations go together through the sub-intervals in the order of time, up to the first contact; false: all
+  /// boxes over the whole motion first, as the paper has it.
+  bool in_time_order = true;
 };
 
 /// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.

@@ -32,13 +32,10 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   requireTolerance(request.tolerance_time, "tolerance_time", true);
   requireTolerance(request.tolerance_distance, "tolerance_distance", true);
   requireTolerance(request.margin, "margin", false);
-  const auto requireLevel = [](int level, int least, int most, const char* name) {
-    if (level >= least && level <= most) return;
-    throw std::invalid_argument("request.redon." + std::string(name) + " is " + std::to_string(level) + ", not in [" +
-                                std::to_string(least) + ", " + std::to_string(most) + "]");
-  };
-  requireLevel(request.redon.refinement_level, -1, 6, "refinement_level");
-  requireLevel(request.redon.window_level, 0, 10, "window_level");
+  const int level = request.redon.refinement_level;
+  if (level < -1 || level > 6) {
+    throw std::invalid_argument("request.redon.refinement_level is " + std::to_string(level) + ", not in [-1, 6]");
+  }
   engine::Query query;
   query.tolerance_time = request.tolerance_time;
   query.tolerance_distance = request.tolerance_distance;

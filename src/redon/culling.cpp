@@ -11,7 +11,7 @@ namespace {
 /// A link is split in time until it moves by no more than this part of its size in a sub-interval. Measured
 /// (doc/REDON2004.md).
 constexpr double kMotionPerSize = 0.125;
-constexpr int kCached = 1024;
+constexpr int kCached = 2048;
 
 using engine::Body;
 using engine::Node;
@@ -23,17 +23,19 @@ void Culling::begin(const engine::Problem& problem, const engine::Query& query, 
   query_ = &query;
   options_ = &options;
   counts_ = &counts;
-  cache_.resize(kCached << kFinest);
-  for (Swept& s : cache_) s.stamp = -1;
-  stamp_ = 0;
+  cache_.resize(kCached);
+  stamp_pair_ = -1;
+  motions_.resize(static_cast<std::size_t>(problem_->num_sweeps));
+  for (int i = 0; i < problem_->num_sweeps; ++i) {
+    auto& steps = motions_[static_cast<std::size_t>(i)];
+    steps.resize(static_cast<std::size_t>(problem_->sweeps[i].num_steps));
+    for (Motion& m : steps) m.level = -1;
+  }
+  for (std::vector<bool>& set : chains_set_) std::fill(set.begin(), set.end(), false);
+  moverBoxes();
 }
 
-/// Neighbours share the same computed number: no time is left out.
-double Culling::timeOf(int level, int k) const {
-  return k == 1 << level ? end_ : begin_ + (end_ - begin_) * (static_cast<double>(k) / (1 << level));
-}
-
-/// Bounds of a link over the window, on 2^r equal parts; r from how far the ball (center, radius) in the step's frame moves.
+/// Bounds of a link's motion on 2^r equal parts; r from how far the ball (center, radius) in the step's frame moves.
 Culling::Motion& Culling::motionOf(int sweep, int step, const double* center, double radius) {
   Motion& motion = motions_[static_cast<std::size_t>(sweep)][static_cast<std::size_t>(step)];
   if (motion.level >= 0) return motion;
@@ -55,7 +57,7 @@ Culling::Motion& Culling::motionOf(int sweep, int step, const double* center, do
     double speed = 0, turn = 0;
     for (int k = 0; k < 3; ++k) speed += v[k].magnitude() * v[k].magnitude();
     for (const Interval& x : whole.rate.R.m) turn += x.magnitude() * x.magnitude();
-    const double moved = (end_ - begin_) * (std::sqrt(speed) + std::sqrt(turn) * radius);
+    const double moved = std::sqrt(speed) + std::sqrt(turn) * radius;
     level = 0;
     while (level < kFinest && moved > kMotionPerSize * radius * (1 << level)) ++level;
   }
@@ -101,20 +103,9 @@ void Culling::moverBoxes() {
   }
 }
 
-void Culling::bodyPairs(double begin, double end, const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
-                        std::vector<BodyPair>& out) {
-  begin_ = begin;
-  end_ = end;
-  motions_.resize(static_cast<std::size_t>(problem_->num_sweeps));
-  for (int i = 0; i < problem_->num_sweeps; ++i) {
-    auto& steps = motions_[static_cast<std::size_t>(i)];
-    steps.resize(static_cast<std::size_t>(problem_->sweeps[i].num_steps));
-    for (Motion& m : steps) m.level = -1;
-  }
-  for (std::vector<bool>& set : chains_set_) std::fill(set.begin(), set.end(), false);
+void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out) {
   out.clear();
   masks_.clear();
-  moverBoxes();
   const auto add = [&](std::int32_t index, std::uint64_t mask) {
     BodyPair pair;
     pair.index = index;
@@ -178,77 +169,94 @@ void Culling::bodyPairs(double begin, double end, const std::function<bool(std::
   }
 }
 
-bool Culling::leafPairs(const std::vector<BodyPair>& pairs, std::vector<LeafPair>& out) {
-  out.clear();
+void Culling::start(const std::vector<BodyPair>& pairs) {
+  stamp_pair_ = -1;  // boxes of an earlier list of pairs are others
+  for (std::vector<Entry>& entries : waiting_) entries.clear();
+  traversals_.resize(pairs.size());
+  finest_ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!traverse(static_cast<std::int32_t>(i), pairs[i], masks_[i], out)) return false;
+    const BodyPair& pair = pairs[i];
+    Traversal& t = traversals_[i];
+    t.level = 0;
+    t.relative.clear();
+    if (pair.parts.step_b < 0) {
+      t.relative.push_back(pair.inverse_a * pair.placement_b);
+    } else {
+      const ObbNode& root = pair.b->nodes()[0];
+      const engine::Placement& p = *pair.parts.placement_b;
+      double center[3], radius = 0;
+      for (int k = 0; k < 3; ++k) {
+        center[k] = p.t[k];
+        for (int j = 0; j < 3; ++j) center[k] += p.R[3 * k + j] * root.center[j];
+        radius += static_cast<double>(root.half[k]) * root.half[k];
+      }
+      const Motion& motion = motionOf(pair.parts.sweep, pair.parts.step_b, center, std::sqrt(radius));
+      t.level = motion.level;
+      for (const FrameBounds& f : motion.frames) t.relative.push_back(relate(pair.inverse_a, f.pose, pair.placement_b));
+    }
+    t.mask = masks_[i];
+    if (t.level < kFinest) t.mask &= (1ull << (1 << t.level)) - 1;
+    finest_ = std::max(finest_, t.level);
   }
-  counts_->leaf_pairs += out.size();
-  return true;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (traversals_[i].mask) wait({static_cast<std::int32_t>(i), 0, 0, traversals_[i].mask});
+  }
 }
 
-const SweptObb& Culling::swept(const std::vector<ObbNode>& nodes, int node, int k) {
-  Swept& s = cache_[(static_cast<std::size_t>(node & (kCached - 1)) << kFinest) | static_cast<std::size_t>(k)];
-  if (s.node != node || s.stamp != stamp_) {
-    s.node = node;
+/// Puts a pair of boxes where its first sub-interval begins.
+void Culling::wait(const Entry& e) {
+  const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
+  waiting_[__builtin_ctzll(e.mask) << (finest_ - level)].push_back(e);
+}
+
+const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
+  if (e.pair != stamp_pair_ || k != stamp_part_) {
+    stamp_pair_ = e.pair;
+    stamp_part_ = k;
+    ++stamp_;
+  }
+  Swept& s = cache_[static_cast<std::size_t>(e.b & (kCached - 1))];
+  if (s.node != e.b || s.stamp != stamp_) {
+    s.node = e.b;
     s.stamp = stamp_;
-    sweep(relative_[static_cast<std::size_t>(k)], nodes[static_cast<std::size_t>(node)], s.box);
+    sweep(traversals_[static_cast<std::size_t>(e.pair)].relative[static_cast<std::size_t>(k)],
+          pair.b->nodes()[static_cast<std::size_t>(e.b)], s.box);
   }
   return s.box;
 }
 
-/// Both trees down at once, the larger box first. A sub-interval in which two boxes are apart is done with for all below
-/// them; the first in which they are not ends the walk.
-bool Culling::traverse(std::int32_t number, const BodyPair& pair, std::uint64_t mask, std::vector<LeafPair>& out) {
-  const std::vector<ObbNode> &A = pair.a->nodes(), &B = pair.b->nodes();
-  ++stamp_;
-  relative_.clear();
-  int level = 0;
-  if (pair.parts.step_b < 0) {
-    relative_.push_back(pair.inverse_a * pair.placement_b);
-  } else {
-    double center[3] = {0, 0, 0}, radius = 0;
-    const engine::Placement& p = *pair.parts.placement_b;
-    for (int i = 0; i < 3; ++i) {
-      center[i] = p.t[i];
-      for (int k = 0; k < 3; ++k) center[i] += p.R[3 * i + k] * B[0].center[k];
-      radius += static_cast<double>(B[0].half[i]) * B[0].half[i];
-    }
-    const Motion& motion = motionOf(pair.parts.sweep, pair.parts.step_b, center, std::sqrt(radius));
-    level = motion.level;
-    for (const FrameBounds& frame : motion.frames) relative_.push_back(relate(pair.inverse_a, frame.pose, pair.placement_b));
-  }
-  if (level < kFinest) mask &= (1ull << (1 << level)) - 1;
-
-  struct Entry {
-    std::int32_t a, b;
-    std::uint64_t mask;
-  };
-  std::vector<Entry> stack{{0, 0, mask}};
+/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait for
+/// the next one.
+bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
+  std::vector<Entry>& stack = waiting_[slot];
   while (!stack.empty()) {
     Entry e = stack.back();
     stack.pop_back();
-    const ObbNode &x = A[static_cast<std::size_t>(e.a)], &y = B[static_cast<std::size_t>(e.b)];
-    while (e.mask) {
-      ++counts_->box_tests;
-      if (!certainlyDisjoint(x, swept(B, e.b, __builtin_ctzll(e.mask)), y.half)) {
-        break;
-      }
+    const BodyPair& pair = pairs[static_cast<std::size_t>(e.pair)];
+    const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)], &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
+    const int k = __builtin_ctzll(e.mask);
+    ++counts_->box_tests;
+    if (certainlyDisjoint(x, swept(pair, e, k), y.half)) {
       e.mask &= e.mask - 1;
+      if (e.mask) wait(e);
+      continue;
     }
-    if (!e.mask) continue;
     if (query_->work_budget && workOf(*counts_) > query_->work_budget) return false;
     if (x.isLeaf() && y.isLeaf()) {
-      out.push_back({number, x.triangle(), y.triangle(), timeOf(level, __builtin_ctzll(e.mask))});
+      ++counts_->leaf_pairs;
+      const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
+      out.push_back({e.pair, x.triangle(), y.triangle(), timeOf(level, k), options_->in_time_order ? timeOf(level, k + 1) : 1});
+      e.mask &= e.mask - 1;
+      if (e.mask && options_->in_time_order) wait(e);
     } else if (y.isLeaf() || (!x.isLeaf() && x.size() > y.size())) {
-      stack.push_back({x.child + 1, e.b, e.mask});
-      stack.push_back({x.child, e.b, e.mask});
+      stack.push_back({e.pair, x.child + 1, e.b, e.mask});
+      stack.push_back({e.pair, x.child, e.b, e.mask});
     } else {
-      stack.push_back({e.a, y.child + 1, e.mask});
-      stack.push_back({e.a, y.child, e.mask});
+      stack.push_back({e.pair, e.a, y.child + 1, e.mask});
+      stack.push_back({e.pair, e.a, y.child, e.mask});
     }
   }
-    return true;
+  return true;
 }
 
 }  // namespace redon

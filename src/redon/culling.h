@@ -22,48 +22,63 @@ struct BodyPair {
   IntervalTransform inverse_a, placement_b;
 };
 
-/// Two triangles whose boxes meet.
+/// Two triangles whose boxes meet in some sub-interval.
 struct LeafPair {
-  std::int32_t pair;  ///< index into the list of body pairs
-  std::int32_t a, b;  ///< triangles
-  double from;        ///< their boxes are proven apart before this time
+  std::int32_t pair;   ///< index into the list of body pairs
+  std::int32_t a, b;   ///< triangles
+  double from, until;  ///< to be looked at in this time
 };
 
+/// Goes through the sub-intervals in the order of time, so that nothing is spent on boxes behind the first contact.
 class Culling {
  public:
   using TreeOf = std::function<const ObbTree*(std::int32_t body)>;
 
   void begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
-  /// Pairs of bodies that may touch in the window, of those wanted.
+  /// Pairs of bodies that may touch, of those wanted.
   /// @param wanted  by index of the pair in the problem.
-  void bodyPairs(double begin, double end, const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
-                 std::vector<BodyPair>& out);
-  /// Pairs of their triangles. To be called right after bodyPairs(), for the same window.
+  void bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out);
+  /// To be called next: makes the bounds of their motions.
+  void start(const std::vector<BodyPair>& pairs);
+  /// The finest sub-intervals of all pairs: [0, 1] in so many equal parts.
+  int numSlots() const { return 1 << finest_; }
+  double slotBegin(int slot) const { return timeOf(finest_, slot); }
+  /// Pairs of triangles whose boxes meet from the beginning of this slot on. Slots are asked for one after the other.
+  /// @param[out] out  appended to.
   /// @return false when the work budget ran out.
-  bool leafPairs(const std::vector<BodyPair>& pairs, std::vector<LeafPair>& out);
+  bool leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out);
 
  private:
   static constexpr int kFinest = 6;  ///< 2^6 sub-intervals: one bit each
-  /// One link's motion over the window, on its own sub-intervals.
+  /// One link's motion, on its own sub-intervals.
   struct Motion {
     int level = -1;  ///< the paper's r_i; -1: not bounded yet
     std::vector<FrameBounds> frames;
   };
   struct Swept {
-    std::int32_t node = -1, stamp = -1;
+    std::int32_t node = -1;
+    std::int64_t stamp = -1;
     SweptObb box;
   };
+  struct Entry {
+    std::int32_t pair, a, b;
+    std::uint64_t mask;  ///< of the pair's sub-intervals in which the boxes may meet
+  };
+  struct Traversal {
+    std::uint64_t mask;
+    int level;
+    std::vector<IntervalTransform> relative;  ///< B in A, by sub-interval
+  };
   Motion& motionOf(int sweep, int step, const double* center, double radius);
-  double timeOf(int level, int k) const;
+  static double timeOf(int level, int k) { return static_cast<double>(k) / (1 << level); }  // exact
   void moverBoxes();
-  bool traverse(std::int32_t number, const BodyPair& pair, std::uint64_t mask, std::vector<LeafPair>& out);
-  const SweptObb& swept(const std::vector<ObbNode>& nodes, int node, int k);
+  void wait(const Entry& e);
+  const SweptObb& swept(const BodyPair& pair, const Entry& e, int k);
 
   const engine::Problem* problem_ = nullptr;
   const engine::Query* query_ = nullptr;
   const Options* options_ = nullptr;
   Counts* counts_ = nullptr;
-  double begin_ = 0, end_ = 1;
   std::vector<SweepChains> chains_[kFinest + 1];  ///< by level and sub-interval
   std::vector<bool> chains_set_[kFinest + 1];
   std::vector<std::vector<Motion>> motions_;      ///< by sweep and step
@@ -73,9 +88,12 @@ class Culling {
   std::vector<std::vector<Box>> mover_boxes_;  ///< by mover and sub-interval
   std::vector<int> mover_levels_;
   std::vector<std::uint64_t> masks_;           ///< of the body pairs found
-  std::vector<IntervalTransform> relative_;    ///< of the present pair, by sub-interval
+  std::vector<Traversal> traversals_;          ///< of the body pairs
+  int finest_ = 0;
+  std::vector<Entry> waiting_[1 << kFinest];   ///< by slot
   std::vector<Swept> cache_;
-  std::int32_t stamp_ = 0;
+  std::int64_t stamp_ = 0;                     ///< of the present pair and sub-interval
+  std::int32_t stamp_pair_ = -1, stamp_part_ = -1;
 };
 
 }  // namespace redon

@@ -153,29 +153,34 @@ void Run::solveRest(Answer& answer) {
   engine::engine().solve(engine_, w_.rest, query_, answer);
 }
 
-/// The paper's pairs, window by window.
+/// The paper's pairs: all triangles that may touch, and then all their equations on [0, 1]; or, in the order of time, one
+/// sub-interval after the other.
 Found Run::search(const std::function<bool(std::int32_t)>& wanted, double limit) {
-  const int windows = 1 << options_.window_level;
+  StageClock clock(query_.measure_times);
   Found found;
-  for (int i = 0; i < windows; ++i) {
-    const double begin = static_cast<double>(i) / windows, end = static_cast<double>(i + 1) / windows;
+  w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
+  clock.lap(counts_.culling_us);
+  w_.culling.start(w_.pairs);
+  w_.leaves.clear();
+  for (int slot = 0; slot < w_.culling.numSlots(); ++slot) {
+    const double begin = w_.culling.slotBegin(slot), end = w_.culling.slotBegin(slot + 1);
     if (begin > limit) break;
-    StageClock clock(query_.measure_times);
-    w_.culling.bodyPairs(begin, end, wanted, treeOf_, w_.pairs);
-    clock.lap(counts_.culling_us);
-    const bool done = w_.culling.leafPairs(w_.pairs, w_.leaves);
+    const bool in_budget = w_.culling.leafPairs(w_.pairs, slot, w_.leaves);
     clock.lap(counts_.boxes_us);
-    w_.equations.clear();
-    if (done) {
-      w_.equations.add(w_.pairs, w_.leaves);
-      found = w_.solver.solve(w_.pairs, w_.equations, begin, end, limit, w_.contacts);
-    }
-    clock.lap(counts_.equations_us);
-    if (!done) {
+    if (!in_budget) {
       found.out_of_budget = true;
-      found.t_lower = begin;
+      found.t_lower = options_.in_time_order ? begin : 0;
+      return found;
     }
-    if (found.contact || found.out_of_budget) return found;
+    const bool last = slot + 1 == w_.culling.numSlots();
+    if (w_.leaves.empty() || (!options_.in_time_order && !last)) continue;
+    w_.equations.clear();
+    w_.equations.add(w_.pairs, w_.leaves);
+    found = w_.solver.solve(w_.pairs, w_.equations, options_.in_time_order ? begin : 0, end, limit, w_.contacts);
+    clock.lap(counts_.equations_us);
+    if (found.contact || found.out_of_budget || end > limit) return found;
+    w_.leaves.erase(std::remove_if(w_.leaves.begin(), w_.leaves.end(), [&](const LeafPair& l) { return l.until <= end; }),
+                    w_.leaves.end());
   }
   return found;
 }

@@ -19,14 +19,14 @@ std::vector<CertifiedRequest> allSwitches() {
     for (const int level : {-1, 0, 3}) {
       for (const bool simultaneous : {true, false}) {
         for (const bool newton : {true, false}) {
-          for (const int windows : {0, 2}) {
+          for (const bool in_time_order : {true, false}) {
             CertifiedRequest request;
             request.method = fcl_artic::Method::Redon2004;
             request.redon.enclosure = enclosure;
             request.redon.refinement_level = level;
             request.redon.simultaneous = simultaneous;
             request.redon.newton = newton;
-            request.redon.window_level = windows;
+            request.redon.in_time_order = in_time_order;
             all.push_back(request);
           }
         }
