@@ -102,6 +102,55 @@ TEST(ChainBounds, HoldExactPosesOfBodies) {
   campaign<BodyCase>("ChainBounds bodies", 100000);
 }
 
+/// Slides only, at single times, every other joint fixed: what the intervals are wider than a point by is what is known
+/// of the stored transforms, and little else that could hide an error in it.
+TEST(ChainBounds, HoldTheModelsOfStoredTransforms) {
+  Random random(seedOf("Stored transforms"));
+  constexpr int kSlides = 4;
+  long checks = 0;
+  for (int round = 0; round < scaled(100000) / (12 * kSlides); ++round) {
+    KinematicTree tree;
+    tree.addLink("link0");
+    double coefficients[2 * kSlides];
+    for (double& c : coefficients) c = random.in(-1, 1);
+    for (int i = 1; i <= 2 * kSlides; ++i) {
+      Joint joint;
+      joint.name = "joint" + std::to_string(i);
+      joint.parent = "link" + std::to_string(i - 1);
+      joint.child = "link" + std::to_string(i);
+      joint.type = i % 2 ? JointType::fixed : JointType::prismatic;
+      joint.axis = Eigen::Vector3d::UnitZ();
+      joint.origin.linear() = random.rotation();
+      joint.origin.translation() = random.unit() * random.direction();
+      tree.addLink(joint.child);
+      tree.addJoint(joint);
+    }
+    const FrameSweep sweep = FrameSweep::fromWorld(tree);
+    engine::Query query;
+    query.coefficients = coefficients;
+    query.num_variables = kSlides;
+    const double t = random.unit();
+    FrameBounds frames[kSlides];
+    ChainBounds chain;
+    chain.reset(sweep.view(), query);
+    chain.enclose(t, t, kEnclosures[round % 3], Derivatives::none, frames);
+    RealRigid exact;
+    for (int i = 0; i < 2 * kSlides; ++i) {
+      exact = exact * properly(tree.joint(i).origin);
+      if (i % 2 == 0) continue;
+      const int v = i / 2;
+      RealRigid slide;
+      slide.t = {0.0, 0.0, Real(coefficients[v]) + Real(coefficients[kSlides + v]) * Real(t)};
+      exact = exact * slide;
+      for (int e = 0; e < 12; ++e) {
+        ASSERT_TRUE(holds(entry(frames[v].pose, e), entry(exact, e))) << "round " << round << " slide " << v;
+        ++checks;
+      }
+    }
+  }
+  std::printf("%ld entries\n", checks);
+}
+
 }  // namespace
 }  // namespace numerics_test
 }  // namespace fcl_artic
