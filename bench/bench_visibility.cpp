@@ -24,13 +24,13 @@ using namespace fcl_artic::bench;
 
 namespace {
 
-struct Method {
+struct Way {
   std::string name;
   VisibilityMode mode;
   std::shared_ptr<const VisibilityCuller> culler;
 };
 
-std::vector<Method> methods() {
+std::vector<Way> ways() {
   const auto options = [](int resolution, VisibilityRule rule) {
     VisibilityOptions o;
     o.resolution = resolution;
@@ -40,7 +40,7 @@ std::vector<Method> methods() {
   const auto cpu = [&](int resolution, VisibilityRule rule) {
     return std::make_shared<VisibilityCuller>(options(resolution, rule));
   };
-  std::vector<Method> all = {
+  std::vector<Way> all = {
       {"off", VisibilityMode::off, nullptr},
       {"automatic", VisibilityMode::automatic, cpu(32, VisibilityRule::intervals)},
       {"cpu 16", VisibilityMode::on, cpu(16, VisibilityRule::intervals)},
@@ -139,7 +139,7 @@ int main(int argc, char** argv) {
     std::string name;
     PipeSceneOptions options;
   } scenes[] = {{"500 pipes", {500, 1, 1.0}}, {"1500 thin pipes", {1500, 1, 0.5}}, {"125 chains", {125, 4, 1.0}}};
-  const std::vector<Method> all = methods();
+  const std::vector<Way> all = ways();
   std::deque<PipeScene> kept_scenes;
   std::deque<std::vector<JointMotion>> kept_motions;
   report.note(fmt::format("\n{:<16} {:>3} {:>6} {:>8} {:>7} {:>6}  {:<20} {:>7} {:>8} {:>10} {:>9} {:>10} {:>9}", "scene", "deg",
@@ -154,7 +154,7 @@ int main(int argc, char** argv) {
       const auto& motions = kept_motions.emplace_back(scene.motions(step * kPi / 180, count));
       const Truth truth = findTruth(scene, motions);
       const auto off_us = std::make_shared<double>(0);
-      for (const Method& method : all) {
+      for (const Way& method : all) {
         report.add(entry.name, fmt::format("{:g}", step), method.name, [&scene, &motions, &method, &report, passes, truth, off_us,
                                                                        name = entry.name, step] {
           scene.manager().setVisibility(method.culler);
