@@ -152,6 +152,11 @@ FCL_ARTIC_INLINE Interval min(Interval a, Interval b) {
   return -max(-a, -b);
 }
 
+/// [-radius, radius]
+FCL_ARTIC_INLINE Interval plusMinus(double radius) {
+  return Interval(-radius, radius);
+}
+
 /// The smallest interval that holds both.
 FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) {
   return Interval::raw(_mm_max_pd(a.raw(), b.raw()));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "interval/chain_bounds.h"
+#include "interval/turn_series.h"
 #include "numerics/body_cases.h"
 #include "operands.h"
 
@@ -149,6 +150,32 @@ TEST(ChainBounds, HoldTheModelsOfStoredTransforms) {
     }
   }
   std::printf("%ld entries\n", checks);
+}
+
+TEST(ChainBounds, TurnSeriesHoldExactValues) {
+  Random random(seedOf("Turn series"));
+  const int rounds = scaled(100000) / 5;
+  for (int round = 0; round < rounds; ++round) {
+    const double middle = random.chance(0.3) ? random.in(0.4, 0.6) : random.size(1e-15, 4e3);
+    const double from = random.chance(0.2) ? middle : middle * random.unit();
+    const double to = random.chance(0.2) ? middle : middle + random.size(1e-6, 10);
+    const Interval g(from, to);
+    const Real at = std::max(member(random, g), 1e-15), x = sqrt(at), one = 1.0, two = 2.0;
+    const Real a = sin(x) / x, b = (one - cos(x)) / at, c = (one - a) / at;
+    const Real b1 = (a - two * b) / (two * at), a1 = (cos(x) - a) / (two * at), c1 = (-a1 - c) / at;
+    if (from < 1e-15) continue;
+    const ScopedRounding scope(kRoundingModes[round % 4]);
+    const RoundUpward upward;
+    const TurnSeries f = turnSeries(g);
+    constexpr double error = 1e-25;  // what 256 bits lose where the differences cancel
+    ASSERT_TRUE(holds(f.a, a, error) && holds(f.b, b, error) && holds(f.c, c, error) && holds(f.b1, b1, error) &&
+                holds(f.c1, c1, error))
+        << "[" << from << ", " << to << "] at " << at.toDouble();
+  }
+  const RoundUpward upward;
+  const TurnSeries none = turnSeries(Interval(0.0));
+  EXPECT_TRUE(none.a.contains(1) && none.b.contains(0.5) && none.c.contains(Interval(1.0 / 6)));
+  EXPECT_LT(none.c1.width(), 1e-15);
 }
 
 }  // namespace
