@@ -29,9 +29,6 @@ using engine::Placement;
 using Geometry = std::shared_ptr<const fcl::CollisionGeometryd>;
 using MovingObject = fcl::ContinuousCollisionObjectd;
 
-/// What `automatic` expects its first trial to take: a query of the executor cpu, a new context of another one.
-constexpr double kFirstTrialCpuUs = 1e3, kFirstTrialUs = 2e5;
-
 /// A geometry of the manager, obstacle or link.
 struct Item {
   fcl::CollisionObjectd* object = nullptr;
@@ -121,7 +118,8 @@ struct ArticulatedCollisionManager::Impl {
   std::size_t num_link_sweeps = 0, num_self_pairs = 0;
   std::vector<engine::BoundedSource> sources;  ///< of moving obstacles' bounded motions
   std::shared_ptr<const VisibilityCuller> visibility = std::make_shared<VisibilityCuller>();
-  std::unique_ptr<visibility::Choice> choice = std::make_unique<visibility::Choice>(kFirstTrialCpuUs);  ///< measured times
+  std::unique_ptr<visibility::Choice> choice =
+      std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*visibility));  ///< measured times
 
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
   Eigen::MatrixXd moving_coefficients;
@@ -752,9 +750,8 @@ void ArticulatedCollisionManager::resetMargins() {
 }
 
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
-  const bool cpu = !culler;
-  impl_->visibility = cpu ? std::make_shared<VisibilityCuller>() : std::move(culler);
-  impl_->choice = std::make_unique<visibility::Choice>(cpu ? kFirstTrialCpuUs : kFirstTrialUs);
+  impl_->visibility = culler ? std::move(culler) : std::make_shared<VisibilityCuller>();
+  impl_->choice = std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*impl_->visibility));
 }
 
 void ArticulatedCollisionManager::setup() {

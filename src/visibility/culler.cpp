@@ -86,6 +86,8 @@ void ExecutorLoan::giveUp(const std::string& reason) {
   slot_->name = "cpu";
 }
 
+double ExecutorLoan::firstUse(const VisibilityCuller& culler) { return culler.impl_->factory ? 2e5 : 1e3; }
+
 }  // namespace visibility
 
 VisibilityCuller::VisibilityCuller(const VisibilityOptions& options) : VisibilityCuller(options, "cpu", nullptr) {}

@@ -31,6 +31,8 @@ class ExecutorLoan {
   Slot* operator->() const { return slot_.get(); }
   /// The executor failed in the midst of its work: the slot is not used again, and cpu takes over.
   void giveUp(const std::string& reason);
+  /// What a first use may take, us: a query, or else a new context with its self-test.
+  static double firstUse(const VisibilityCuller& culler);
 
  private:
   VisibilityCuller::Impl& culler_;
