@@ -152,7 +152,7 @@ class Solver {
   double firstFreeTime(double start, double width, int begin, int end);
   void solvePairs();
   bool movesFar() const;
-  void solveLane(int lane, int begin, int end);
+  void solveLane(double start, double stop, int lane, int begin, int end);
   Step solveOpenLane(double start, double width, int begin, int end, int lane, bool last);
   void solvePieces(const Final& f, double stop, int begin, int end, int lane);
   void descend(int begin, int end, unsigned mask);
@@ -305,6 +305,9 @@ inline void Solver::beginBatch(double start, double width) {
 }
 
 inline void Solver::evaluateAt(const double* tm, double d) {
+  bool same = d == d_;
+  for (int i = 0; i < kLanes; ++i) same = same && tm[i] == tm_at_[i];
+  if (same) return;  // what is evaluated already serves
   for (int i = 0; i < kLanes; ++i) {
     tm_at_[i] = tm[i];
     tm_.set(i, tm[i]);
@@ -1035,9 +1038,9 @@ inline void Solver::solvePieces(const Final& f, double stop, int begin, int end,
   }
 }
 
-/// One eighth of the motion: the pairs that may touch in it, those that meet first before the others.
-inline void Solver::solveLane(int lane, int begin, int end) {
-  const double lane_start = 0.125 * lane, stop = 0.125 * (lane + 1);
+/// Part of the motion: the pairs that may touch in it, those that meet first before the others.
+/// @param lane  of the first batch, whose entries count; -1: all do.
+inline void Solver::solveLane(double start, double stop, int lane, int begin, int end) {
   candidates_.clear();
   const int roots = entries_.size();
   for (int i = begin; i < end && !finished();) {
@@ -1046,7 +1049,7 @@ inline void Solver::solveLane(int lane, int begin, int end) {
     bool leaves = true;
     for (; i < end && entries_[i].pair == pair_index; ++i) {
       const Entry e = entries_[i];
-      if (!(e.mask >> lane & 1)) continue;
+      if (lane >= 0 && !(e.mask >> lane & 1)) continue;
       leaves = leaves && isLeafPair(e);
       entries_.push(e);
     }
@@ -1054,7 +1057,7 @@ inline void Solver::solveLane(int lane, int begin, int end) {
     if (count == 0) continue;
     Final f = {};
     f.entry = entries_[first];
-    f.t_lower = max(lane_start, watchFrom(pair_index));
+    f.t_lower = max(start, watchFrom(pair_index));
     f.first = first;
     f.count = count;
     // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or parts of
@@ -1137,10 +1140,19 @@ inline void Solver::solvePairs() {
   const auto search = [&](int begin, int end) {
     t_upper_ = limit_ = 2;
     front_ = 0;
-    int from = entries_.size();
+    const int from = entries_.size();
+    if (end - begin == 1) {
+      // One pair alone needs no order among pairs: it is followed from its first open lane to its last.
+      const Entry& e = entries_[begin];
+      setupPair(e.pair);
+      if (isLeafPair(e) || (side_[0].still->outer && side_[1].still->outer && movesFar())) {
+        const double start = 0.125 * __builtin_ctz(e.mask), stop = 0.125 * (32 - __builtin_clz(e.mask));
+        return solveLane(start, stop, -1, begin, end);
+      }
+    }
     descend(begin, end, kAllLanes);
     for (int lane = 0; lane < kLanes && 0.125 * lane < limit_ && !finished(); ++lane) {
-      solveLane(lane, from, entries_.size());
+      solveLane(0.125 * lane, 0.125 * (lane + 1), lane, from, entries_.size());
       const unsigned later = kAllLanes & ~((2u << lane) - 1);
       if (!later || limit_ <= 0.125 * (lane + 1)) continue;
       bool put_off = false;
@@ -1319,8 +1331,10 @@ inline void Solver::lookBack(Final& f) {
 /// Point and normal of a pair that is stuck.
 inline void Solver::describe(Final& f, LeafContact& contact) {
   if (!f.have_normal && f.t_lower > 0) lookBack(f);
-  const double tm[kLanes] = {f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower};
-  evaluateAt(tm, 0);
+  if (!(f.certain && f.have_normal)) {  // what is missing is seen at t_lower
+    const double tm[kLanes] = {f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower, f.t_lower};
+    evaluateAt(tm, 0);
+  }
   setupPair(f.entry.pair);
   const PairParts bodies = parts(f.entry.pair);
   contact = {};
@@ -1443,6 +1457,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   front_ = 0;
   witness_pair_ = present_ = roots_batch_ = -1;
   t_upper_ = limit_ = claimed_ = 2;
+  d_ = -1;
   out_of_budget_ = decide_only_ = false;
   first_step_.resize(problem.num_sweeps);
   bounds_ready_.resize(problem.num_sweeps);
