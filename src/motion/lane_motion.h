@@ -626,7 +626,7 @@ struct PairPads {
   double pose;  ///< of a difference point at tm
 };
 
-/// B seen from A (`m`) and A seen from B, with remainders and pads.
+/// B seen from A: quadratic, remainders and pads. Of the way back, A seen from B, the remainder only: invert() makes the rest.
 /// @param frame  of the step that carries B, seen from the base frame; null where B stands still in it.
 /// @param b  of that step; all zero where B stands still.
 /// @param extents  largest distances of points of A and of B from their frames' origins, summed.
@@ -635,9 +635,6 @@ inline PairPads relateBodies(const FrameLanes* frame, const StepBounds& b, bool 
                              RigidLanes& inverse) {
   placeBehind(frame, placement_b, m);
   placeInFront(inverse_a, m);
-  invert(m, inverse);
-  m.makeBernstein();
-  inverse.makeBernstein();
 
   // Bounds of B's origin seen from A's frame: a point fixed at distance `l` in the step's frame adds B_n l.
   const Rates& r = b.rates;

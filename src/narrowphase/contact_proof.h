@@ -74,6 +74,19 @@ inline bool originWeights(Simplex& s) {
   return best < 1e300;
 }
 
+/// The points of both pieces, in A's frame, that the weights tell.
+inline void combine(const DifferenceBody& body, const Simplex& s, double* a, double* b) {
+  double x[3] = {0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    a[k] = 0;
+    for (int i = 0; i < s.n; ++i) {
+      a[k] += s.weight[i] * s.v[i].a[k];
+      x[k] += s.weight[i] * s.v[i].b[k];
+    }
+  }
+  body.place(x, b);
+}
+
 /// A half-space holds a point of the other piece, or a plane lies between two of its points: known from support points alone.
 /// Each is off by eps at most, and its distance from the boundary, n.x - offset, is the difference point's n.w.
 inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, double eps, double* point) {
@@ -101,31 +114,32 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
       reach = -min(other.radius, -high);
     }
   }
-  for (int k = 0; k < 3; ++k) {
-    const double x = of_a ? lowest.b[k] : lowest.a[k], y = of_a ? highest.b[k] : highest.a[k];
-    point[k] = x + part * (y - x) - (of_a ? reach : -reach) * n[k];
+  const double *x = lowest.a, *y = highest.a;
+  double placed[2][3];
+  if (of_a) {
+    body.place(lowest.b, placed[0]);
+    body.place(highest.b, placed[1]);
+    x = placed[0];
+    y = placed[1];
   }
+  for (int k = 0; k < 3; ++k) point[k] = x[k] + part * (y[k] - x[k]) - (of_a ? reach : -reach) * n[k];
   return true;
 }
 
 /// Proves that the pieces, grown by their radii and the margin, meet at this pose.
 /// @param eps  bound on the error of a computed difference point.
+/// @param start  as in gjk().
 /// @param[out] point  in A's frame, about midway between points of both that are in contact.
 inline bool certainlyTouching(const DifferenceBody& body, double margin, double eps, const double* guess,
-                              double* point) {
+                              double* point, const Simplex* start = nullptr) {
   const double radii = body.a->radius + body.b->radius + margin;
   if (unbounded(*body.a) || unbounded(*body.b)) return certainlyTouchesUnbounded(body, radii, eps, point);
   GjkResult g;
-  gjk(body, guess, 1e-12, 0.0, 64, g);
+  gjk(body, guess, 1e-12, 0.0, 64, g, start);
   const auto witness = [&](const Simplex& s) {
-    for (int k = 0; k < 3; ++k) {
-      double a = 0, b = 0;
-      for (int i = 0; i < s.n; ++i) {
-        a += s.weight[i] * s.v[i].a[k];
-        b += s.weight[i] * s.v[i].b[k];
-      }
-      point[k] = a + (body.a->radius + 0.5 * margin) / (radii > 0 ? radii : 1) * (b - a);
-    }
+    double a[3], b[3];
+    combine(body, s, a, b);
+    for (int k = 0; k < 3; ++k) point[k] = a[k] + (body.a->radius + 0.5 * margin) / (radii > 0 ? radii : 1) * (b[k] - a[k]);
   };
   if (!originWeights(g.simplex)) return false;
   witness(g.simplex);
@@ -175,7 +189,7 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
   for (const double* p : corner) {
     for (int k = 0; k < 3; ++k) shifted.shift[k] = p[k];
     GjkResult h;
-    gjk(shifted, guess, 1e-12, 0.0, 64, h);
+    gjk(shifted, guess, 1e-12, 0.0, 64, h, &g.simplex);
     if (h.lower > 0 || !originWeights(h.simplex)) return false;
     double residual[3] = {0, 0, 0}, sum = 0, size = 0;
     for (int i = 0; i < h.simplex.n; ++i) {

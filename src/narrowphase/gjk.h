@@ -18,7 +18,7 @@ struct PoseAt {
   }
 };
 
-/// A point w = b - a of the difference B - A, and where it came from (a and b in A's frame).
+/// A point w of the difference B - A (A's frame), and where it came from: a in A's frame, b in B's.
 struct DifferencePoint {
   double w[3], a[3], b[3];
 };
@@ -46,16 +46,23 @@ struct DifferenceBody {
     for (int k = 0; k < 3; ++k) m[k] = sign * b->size[k];
   }
 
+  /// A point of B's frame, in A's.
+  void place(const double* x, double* b) const {
+    for (int k = 0; k < 3; ++k) b[k] = dot(pose.R + 3 * k, x) + pose.c[k];
+  }
+  /// w of a point whose a and b are known.
+  void subtract(DifferencePoint& p) const {
+    double x[3];
+    place(p.b, x);
+    for (int k = 0; k < 3; ++k) p.w[k] = x[k] - p.a[k] - shift[k];
+  }
   /// The difference's point that is least along n.
   void support(const double* n, DifferencePoint& p) const {
-    double m[3], x[3] = {0, 0, 0};
+    double m[3];
     supportPoint(*tree_a, *a, n, p.a);
     opposite(n, m);
-    supportPoint(*tree_b, *b, m, x);
-    for (int k = 0; k < 3; ++k) {
-      p.b[k] = pose.R[3 * k] * x[0] + pose.R[3 * k + 1] * x[1] + pose.R[3 * k + 2] * x[2] + pose.c[k];
-      p.w[k] = p.b[k] - p.a[k] - shift[k];
-    }
+    supportPoint(*tree_b, *b, m, p.b);
+    subtract(p);
   }
 };
 
@@ -217,21 +224,39 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
 /// @param guess  direction from A to B to start with, any length but 0.
 /// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
 /// @param radii  rounding radii and margin: cores nearer than this overlap.
+/// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty: none.
 inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
-                GjkResult& out) {
-  out = GjkResult();
+                GjkResult& out, const Simplex* start = nullptr) {
+  out.overlap = false;
+  out.lower = -1e300;
   if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
-  double length = norm(guess);
+  double length = norm(guess), v[3], size = 0;
   for (int k = 0; k < 3; ++k) out.n[k] = length > 1e-100 ? guess[k] / length : (k == 0);  // far from underflow: unit
   Simplex& s = out.simplex;
   DifferencePoint p;
-  body.support(out.n, p);
-  out.iterations = 1;
-  out.lower = dot(out.n, p.w);
-  s.v[0] = p;
-  s.weight[0] = 1;
-  s.n = 1;
-  double v[3] = {p.w[0], p.w[1], p.w[2]}, size = norm(p.w);
+  if (start && start->n) {
+    out.iterations = 0;
+    s.n = start->n;
+    for (int i = 0; i < s.n; ++i) {
+      s.v[i] = start->v[i];
+      body.subtract(s.v[i]);
+      size = max(size, norm(s.v[i].w));
+    }
+    if (!reduceSimplex(s, v)) {
+      out.overlap = true;
+      out.distance = 0;
+      return;
+    }
+  } else {
+    body.support(out.n, p);
+    out.iterations = 1;
+    out.lower = dot(out.n, p.w);
+    s.v[0] = p;
+    s.weight[0] = 1;
+    s.n = 1;
+    size = norm(p.w);
+    for (int k = 0; k < 3; ++k) v[k] = p.w[k];
+  }
   while (out.iterations < max_iterations) {
     const double vv = dot(v, v);
     // The origin within rounding of a face of the simplex is as good as inside (aligned faces bring that about).

@@ -146,6 +146,7 @@ inline void supportPoint(const TreeView& tree, const Piece& piece, const double*
       return;
     }
     case PieceKind::point:
+    default:
       for (int k = 0; k < 3; ++k) x[k] = m[k];
       return;
     case PieceKind::segment:

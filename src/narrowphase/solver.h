@@ -140,6 +140,7 @@ class Solver {
   void evaluateAt(const double* tm, double d);
   const FrameLanes* frames(int sweep);
   void setupPair(int pair);
+  const Side& side(int s);
   void updateLive();
   bool isLeafPair(const Entry& e) const;
 
@@ -206,7 +207,8 @@ class Solver {
   std::int32_t batch_ = 0;
 
   // The present pair.
-  Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B
+  Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B. Certificates take them from side(), which makes what is missing.
+  bool side_ready_[2] = {false, false};
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
   double witness_[3];          ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
@@ -242,6 +244,7 @@ class Solver {
     double gap;        ///< along it
     double speed;      ///< of the one body seen from the other, about
     bool have_normal;
+    Simplex simplex;   ///< GJK's last
     bool stuck;        ///< the gap is gone at t_lower, as far as can be told
     bool certain;
     double t_upper, point[3];  ///< a proven contact
@@ -391,13 +394,15 @@ inline void Solver::setupPair(int index) {
   const PairPads pads = relateBodies(pair.step_b >= 0 ? frame + pair.step_b : nullptr, b,
                                      problem_->sweeps[pair.sweep].first_order, *pair.inverse_a, *pair.placement_b,
                                      A.tree->extent + B.tree->extent, margin_, d_, m, side_[1].m);
+  side_ready_[0] = side_ready_[1] = false;
   pad_ = pads.pad;
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
 
   // How far the motion takes the body in half an interval: B seen from A, or A from a B that is unbounded.
-  const Side& side = side_[B.tree->nodes[0].radius < engine::kUnbounded ? 0 : 1];
+  const bool from_a = B.tree->nodes[0].radius < engine::kUnbounded;
+  const Side& side = from_a ? side_[0] : this->side(1);
   const Node& root = side.moving->nodes[0];
   double center[3];
   middleOf(root, center);
@@ -408,6 +413,16 @@ inline void Solver::setupPair(int index) {
   pool_.clear();
   if (witness_pair_ != index) have_witness_ = false;
   witness_pair_ = index;
+}
+
+/// One body seen from the other, ready for certificates: many a look needs one of both only, or none.
+inline const Side& Solver::side(int s) {
+  if (!side_ready_[s]) {
+    if (s) invert(side_[0].m, side_[1].m);
+    side_[s].m.makeBernstein();
+    side_ready_[s] = true;
+  }
+  return side_[s];
 }
 
 /// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be there.
@@ -432,7 +447,7 @@ inline int Solver::sweptNode(int side, int index) {
   cached.epoch = pair_epoch_;
   cached.node = index;
   cached.slot = pool_.size();
-  sweepNode(side_[side].m, side_[side].moving->nodes[index], pad_ + margin_, pool_.grow());
+  sweepNode(this->side(side).m, side_[side].moving->nodes[index], pad_ + margin_, pool_.grow());
   return cached.slot;
 }
 
@@ -461,7 +476,7 @@ inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
 inline unsigned Solver::apartFromUnbounded(int a, int b) {
   unsigned separated = 0;
   for (int s = 0; s < 2; ++s) {
-    const Side& side = side_[s];
+    const Side& side = this->side(s);
     const Piece& still = side.still->pieces[0];
     const Node& node = side.moving->nodes[s ? a : b];
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
@@ -507,6 +522,7 @@ template <class F>
 inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap) {
   double guess[3], sign = 0;
   bool have_guess = false;
+  Simplex last;
   unsigned untried = mask;
   while (most > 0 && (untried &= live_ & ~contact_lane_) != 0) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
@@ -521,7 +537,8 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
       for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
     }
     GjkResult g;
-    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g);
+    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g, &last);
+    last = g.simplex;
     ++statistics_.gjk;
     for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
     have_guess = true;
@@ -533,12 +550,12 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
     have_witness_ = true;
     ++statistics_.certificates;
-    unsigned separated = certainlySeparated(side_[0], a, b, g.n, margin_, pad_, sign);
+    unsigned separated = certainlySeparated(side(0), a, b, g.n, margin_, pad_, sign);
     if (mask & ~separated) {
       double n[3];
       body.opposite(g.n, n);
       ++statistics_.certificates;
-      separated |= certainlySeparated(side_[1], b, a, n, margin_, pad_, sign);
+      separated |= certainlySeparated(side(1), b, a, n, margin_, pad_, sign);
     }
     mask &= ~separated;
     untried &= mask;
@@ -560,9 +577,10 @@ inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
   if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
   if (!A.outer || !B.outer) return mask;
-  for (const Side& side : side_) {  // a small body within the bounds of a large mesh: its hull would say nothing
-    const Node &large = side.still->nodes[0], &small = side.moving->nodes[0];
-    if (side.still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
+  for (int s = 0; s < 2; ++s) {  // a small body within the bounds of a large mesh: its hull would say nothing
+    const Node &large = side_[s].still->nodes[0], &small = side_[s].moving->nodes[0];
+    if (side_[s].still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
+    const Side& side = this->side(s);
     double center[3];
     middleOf(small, center);
     bool inside = true;
@@ -586,17 +604,17 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   double sign = 0;
   if (hasDirection(a)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[0], a, b, a.size, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(0), a, b, a.size, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (hasDirection(b)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[1], b, a, b.size, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(1), b, a, b.size, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (have_witness_) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side_[0], a, b, witness_, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(0), a, b, witness_, margin_, pad_, sign);
     if (!mask) return 0;
   }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
@@ -617,7 +635,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (!mask) return;
   }
   direction_.ready = false;
-  if (have_witness_) direction_.prepare(side_[0], witness_, pad_ + margin_);
+  if (have_witness_) direction_.prepare(side(0), witness_, pad_ + margin_);
   push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   for (int lane = 0; lane < kLanes;) {
@@ -903,7 +921,7 @@ inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane) {
 /// lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
 inline bool Solver::proveVertexInside(int pair, int lane) {
   for (int s = 0; s < 2; ++s) {
-    const Side& side = side_[s];
+    const Side& side = this->side(s);
     const TreeView &mesh = *side.moving, &solid = *side.still;
     if (mesh.pieces[0].kind != PieceKind::vertices || !mesh.outer || mesh.outer->kind != PieceKind::hull) continue;
     if (solid.num_pieces != 1 || solid.pieces[0].kind == PieceKind::vertices || unbounded(solid.pieces[0])) continue;
@@ -1191,12 +1209,15 @@ inline void Solver::solvePairs() {
 }
 
 /// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the first
-/// root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so far.
+/// root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so far. Two
+/// directions tell how they turn: from then on the certificate's turns likewise, and the steps are a secant method's.
 /// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
 /// @return false where it ended before `stop` (and before the earliest proven contact).
 inline bool Solver::advance(Final& f, double stop, bool patient) {
   const double expected = query_->tolerance_time / 16;
-  double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kWitnessAccuracy;
+  double span = stop - f.t_lower, accuracy = patient ? 1e-7 : 0.02;
+  double seen = f.t_lower, turn[3] = {0, 0, 0};  // when f.normal was found; how it turns, per unit of time
+  bool turns = false;
   f.stuck = false;
   for (int round = 0; round < (patient ? 48 : 24); ++round) {
     const double t = f.t_lower;
@@ -1218,8 +1239,9 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
     const auto look = [&](int lane, double tau) {
       const DifferenceBody body = differenceAt(a, b, lane, tau);
       GjkResult g;
-      gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g);
+      gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
       ++statistics_.gjk;
+      f.simplex = g.simplex;
       if (g.overlap) return false;
       for (int k = 0; k < 3; ++k) f.normal[k] = witness_[k] = g.n[k];
       f.gap = g.lower - radii;
@@ -1227,32 +1249,57 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
     };
     if (!f.have_normal && !look(0, -1)) break;
 
-    statistics_.certificates += 2;
-    const DifferenceBody here = differenceAt(a, b, 0);
-    double n[3];
-    here.opposite(f.normal, n);
-    Lanes G[2][3];
-    gapBound(side_[0], a, b, f.normal, margin_, pad_, G[0]);
-    gapBound(side_[1], b, a, n, margin_, pad_, G[1]);
+    double x[kLanes];  // how far each lane is certainly free
     unsigned separated = 0;
-    for (const Lanes* g : G) separated |= greater(min(min(g[0], g[1]), g[2]), Lanes(0.0));
+    if (turns) {
+      ++statistics_.certificates;
+      TurningDirection n;
+      const Lanes begin = tm_ - Lanes(seen + d);
+      for (int k = 0; k < 3; ++k) {
+        n.begin[k] = mulAdd(begin, turn[k], f.normal[k]);
+        n.end[k] = n.begin[k] + Lanes(2 * d * turn[k]);
+      }
+      Lanes G[4];
+      gapBound(side(0), a, b, n, margin_, pad_, G);
+      separated = greater(min(min(G[0], G[1]), min(G[2], G[3])), Lanes(0.0));
+      if (separated != kAllLanes) {
+        const int lane = __builtin_ctz(~separated);
+        const double coefficients[4] = {G[0][lane], G[1][lane], G[2][lane], G[3][lane]};
+        x[lane] = positivePrefix<4>(coefficients);
+      }
+    } else {
+      statistics_.certificates += 2;
+      const DifferenceBody here = differenceAt(a, b, 0);
+      double n[3];
+      here.opposite(f.normal, n);
+      Lanes G[2][3];
+      gapBound(side(0), a, b, f.normal, margin_, pad_, G[0]);
+      gapBound(side(1), b, a, n, margin_, pad_, G[1]);
+      for (const Lanes* g : G) separated |= greater(min(min(g[0], g[1]), g[2]), Lanes(0.0));
+      if (separated != kAllLanes) {
+        const int lane = __builtin_ctz(~separated);
+        x[lane] = 0;
+        for (const Lanes* g : G) {
+          const double coefficients[3] = {g[0][lane], g[1][lane], g[2][lane]};
+          x[lane] = max(x[lane], positivePrefix<3>(coefficients));
+        }
+      }
+    }
     if (separated == kAllLanes) {
       f.t_lower = min(stop, t + span);
       span *= 4;
       continue;
     }
     const int lane = __builtin_ctz(~separated);
-    double x = 0;
-    for (const Lanes* g : G) {
-      const double coefficients[3] = {g[0][lane], g[1][lane], g[2][lane]};
-      x = max(x, positivePrefix(coefficients));
-    }
     // Lanes before it are free, and it is [tm - d, tm + d].
-    const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
+    const double root = (x[lane] >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x[lane]) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
-    const double progress = f.t_lower - t, gap = f.gap;
+    const double progress = f.t_lower - seen, gap = f.gap, before[3] = {f.normal[0], f.normal[1], f.normal[2]};
     if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
-    if (progress > 0 && gap > 0) {
+    turns = progress > 0 && dot(before, f.normal) > 0.5 && !unbounded(a) && !unbounded(b);
+    for (int k = 0; k < 3; ++k) turn[k] = turns ? (f.normal[k] - before[k]) / progress : 0;
+    seen = f.t_lower;
+    if (seen > t && gap > 0) {
       const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
       if (!patient && left < expected) break;
       span = min(4 * span, max(2 * left, kNarrowestLane));
@@ -1295,7 +1342,8 @@ inline bool Solver::prove(Final& f) {
     const int k = (head + i) % kLanes;
     const DifferenceBody body = differenceAt(a, b, k);
     ++statistics_.contact_proofs;
-    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point)) {
+    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point,
+                          &f.simplex)) {
       f.certain = true;
       f.t_upper = tm[k];
       t_upper_ = min(t_upper_, tm[k]);
@@ -1360,12 +1408,9 @@ inline void Solver::describe(Final& f, LeafContact& contact) {
     }
     // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
     const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
-    for (int k = 0; k < 3; ++k) {
-      contact.point[k] = out * f.normal[k];
-      for (int q = 0; q < g.simplex.n; ++q) {
-        contact.point[k] += 0.5 * g.simplex.weight[q] * (g.simplex.v[q].a[k] + g.simplex.v[q].b[k]);
-      }
-    }
+    double x[3], y[3];
+    combine(body, g.simplex, x, y);
+    for (int k = 0; k < 3; ++k) contact.point[k] = out * f.normal[k] + 0.5 * (x[k] + y[k]);
   }
   if (!f.have_normal) {
     // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.

@@ -39,9 +39,12 @@ struct Chain {
 PairPads relateSides(const PairInput& in, Side* side) {
   const Chain chain(in);
   StepBounds none = {};
-  return relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
-                      in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.inverse_a, in.placement_b,
-                      in.extents, in.margin, in.d, side[0].m, side[1].m);
+  const PairPads pads = relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
+                                     in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.inverse_a,
+                                     in.placement_b, in.extents, in.margin, in.d, side[0].m, side[1].m);
+  invert(side[0].m, side[1].m);
+  for (int s = 0; s < kSides; ++s) side[s].m.makeBernstein();
+  return pads;
 }
 
 void write(const Side* side, const PairPads& pads, PairOutput& out) {
@@ -80,7 +83,7 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int k = 0; k < 3; ++k) out.G[lane][k] = G[k][lane];
-    out.prefix[lane] = positivePrefix(out.G[lane]);
+    out.prefix[lane] = positivePrefix<3>(out.G[lane]);
   }
 }
 
@@ -121,7 +124,7 @@ void sineCosineOf(const double* x, double* sine, double* cosine) {
 }
 
 double positivePrefixOf(const double* G) {
-  return positivePrefix(G);
+  return positivePrefix<3>(G);
 }
 
 bool certainlyTouchingOf(const TouchInput& in) {
