@@ -153,14 +153,14 @@ class Solver {
   double firstFreeTime(double start, double width, int begin, int end);
   void solvePairs();
   bool movesFar() const;
-  void solveLane(double start, double stop, int lane, int begin, int end);
+  void solveLane(double start, double stop, int lane, int begin, int end, unsigned first_lanes = 0);
   Step solveOpenLane(double start, double width, int begin, int end, int lane, bool last);
   void solvePieces(const Final& f, double stop, int begin, int end, int lane);
   void descend(int begin, int end, unsigned mask);
   Step solveInterval(double start, double width, int begin, int end, int parent_lane);
   Step finishLane(double start, double width, int begin, int end, int lane, bool* refine);
   void piecesOf(const Final& f, const Piece*& a, const Piece*& b) const;
-  bool advance(Final& f, double stop, bool patient);
+  bool advance(Final& f, double stop, bool patient, unsigned first_lanes = 0);
   bool settle(Final& f, double stop);
   bool prove(Final& f);
   void lookBack(Final& f);
@@ -1058,7 +1058,8 @@ inline void Solver::solvePieces(const Final& f, double stop, int begin, int end,
 
 /// Part of the motion: the pairs that may touch in it, those that meet first before the others.
 /// @param lane  of the first batch, whose entries count; -1: all do.
-inline void Solver::solveLane(double start, double stop, int lane, int begin, int end) {
+/// @param first_lanes  see advance().
+inline void Solver::solveLane(double start, double stop, int lane, int begin, int end, unsigned first_lanes) {
   candidates_.clear();
   const int roots = entries_.size();
   for (int i = begin; i < end && !finished();) {
@@ -1084,7 +1085,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     const bool whole = f.entry.a == 0 && f.entry.b == 0;
     f.hulls = whole && !leaves && problem_->bodies[pair.a].tree->outer && problem_->bodies[pair.b].tree->outer;
     f.pieces = !(leaves && count == 1) && !f.hulls;
-    if (f.t_lower >= stop || (!f.pieces && advance(f, stop, false))) {
+    if (f.t_lower >= stop || (!f.pieces && advance(f, stop, false, first_lanes))) {
       entries_.truncate(first);
       continue;
     }
@@ -1165,7 +1166,7 @@ inline void Solver::solvePairs() {
       setupPair(e.pair);
       if (isLeafPair(e) || (side_[0].still->outer && side_[1].still->outer && movesFar())) {
         const double start = 0.125 * __builtin_ctz(e.mask), stop = 0.125 * (32 - __builtin_clz(e.mask));
-        return solveLane(start, stop, -1, begin, end);
+        return solveLane(start, stop, -1, begin, end, watchFrom(e.pair) > 0 ? 0 : e.mask);
       }
     }
     descend(begin, end, kAllLanes);
@@ -1212,8 +1213,9 @@ inline void Solver::solvePairs() {
 /// root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so far. Two
 /// directions tell how they turn: from then on the certificate's turns likewise, and the steps are a secant method's.
 /// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
+/// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
 /// @return false where it ended before `stop` (and before the earliest proven contact).
-inline bool Solver::advance(Final& f, double stop, bool patient) {
+inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query_->tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : 0.02;
   double seen = f.t_lower, turn[3] = {0, 0, 0};  // when f.normal was found; how it turns, per unit of time
@@ -1223,10 +1225,12 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
     const double t = f.t_lower;
     stop = min(stop, limit_);
     if (t >= stop) return true;
-    span = min(span, stop - t);
+    const bool first = round == 0 && first_lanes;
+    const double from = first ? 0 : t;
+    span = first ? 1 : min(span, stop - t);
     const double w = span / kLanes, d = 0.5 * w + kLaneSlack;
     double tm[kLanes];
-    for (int k = 0; k < kLanes; ++k) tm[k] = t + (k + 0.5) * w;
+    for (int k = 0; k < kLanes; ++k) tm[k] = from + (k + 0.5) * w;
     evaluateAt(tm, d);
     setupPair(f.entry.pair);
     f.speed = amplitude_ / d;
@@ -1247,10 +1251,10 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       f.gap = g.lower - radii;
       return f.have_normal = have_witness_ = true;
     };
-    if (!f.have_normal && !look(0, -1)) break;
+    if (!f.have_normal && !look(first ? __builtin_ctz(first_lanes) : 0, -1)) break;
 
     double x[kLanes];  // how far each lane is certainly free
-    unsigned separated = 0;
+    unsigned separated = first ? kAllLanes & ~first_lanes : 0;
     if (turns) {
       ++statistics_.certificates;
       TurningDirection n;
@@ -1261,7 +1265,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       }
       Lanes G[4];
       gapBound(side(0), a, b, n, margin_, pad_, G);
-      separated = greater(min(min(G[0], G[1]), min(G[2], G[3])), Lanes(0.0));
+      separated |= greater(min(min(G[0], G[1]), min(G[2], G[3])), Lanes(0.0));
       if (separated != kAllLanes) {
         const int lane = __builtin_ctz(~separated);
         const double coefficients[4] = {G[0][lane], G[1][lane], G[2][lane], G[3][lane]};
@@ -1286,7 +1290,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient) {
       }
     }
     if (separated == kAllLanes) {
-      f.t_lower = min(stop, t + span);
+      f.t_lower = min(stop, from + span);
       span *= 4;
       continue;
     }

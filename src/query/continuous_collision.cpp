@@ -178,8 +178,9 @@ S answer(Body<S>&& body1, Body<S>&& body2, const fcl::ContinuousCollisionRequest
   result.is_collide = !proven.isFree();
   result.time_of_contact = result.is_collide ? roundedDown(proven.t_lower, S()) : S(1);
   const double t = static_cast<double>(result.time_of_contact);
-  result.contact_tf1 = body1.motion.pose(t).template cast<S>();
-  result.contact_tf2 = body2.motion.pose(t).template cast<S>();
+  const bool same = t == proven.t_lower;
+  result.contact_tf1 = (same ? proven.tf1_at_lower : body1.motion.pose(t)).template cast<S>();
+  result.contact_tf2 = (same ? proven.tf2_at_lower : body2.motion.pose(t)).template cast<S>();
   return result.time_of_contact;
 }
 
