@@ -70,46 +70,6 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
   }
 }
 
-/// A direction n, fixed in the still body's frame, made ready for many node boxes: the certificate of certificate.h with the
-/// boxes as pieces. n.x over a moving box lies above the quadratic with Bernstein points g_k + u_k.m - |u_k|.h (center m, half
-/// sizes h), u_k = R_k^T n, g_k = n.c_k.
-struct NodeDirection {
-  bool ready = false;
-  double n[3];  ///< from the still to the moving body
-  Lanes u[3][3], g[3];
-  double slack;  ///< remainder, pad and margin, for points as far out as any of the moving body
-
-  FCL_ARTIC_INLINE void prepare(const Side& side, const double* direction, double pad_and_margin) {
-    for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 3; ++j) {
-        u[k][j] = mulAdd(side.m.Rb[k][j], direction[0],
-                         mulAdd(side.m.Rb[k][3 + j], direction[1], side.m.Rb[k][6 + j] * Lanes(direction[2])));
-      }
-      g[k] = dot(side.m.cb[k], direction);
-      n[k] = direction[k];
-    }
-    slack = side.m.rem_c + side.m.rem_R * side.moving->extent + pad_and_margin;
-    ready = true;
-  }
-  FCL_ARTIC_INLINE unsigned keepsApart(const Node& still, const Node& moving) const {
-    double upper = slack, c[3], h[3];
-    for (int k = 0; k < 3; ++k) {
-      const double lo = still.lo[k], hi = still.hi[k];
-      upper += 0.5 * (n[k] * (lo + hi) + abs(n[k]) * (hi - lo));
-      c[k] = 0.5 * (static_cast<double>(moving.lo[k]) + static_cast<double>(moving.hi[k]));
-      h[k] = 0.5 * (static_cast<double>(moving.hi[k]) - static_cast<double>(moving.lo[k]));
-    }
-    unsigned apart = kAllLanes;
-    const Lanes top(upper);
-    for (int k = 0; k < 3; ++k) {
-      const Lanes center = mulAdd(u[k][0], c[0], mulAdd(u[k][1], c[1], mulAdd(u[k][2], c[2], g[k])));
-      const Lanes half = mulAdd(abs(u[k][0]), h[0], mulAdd(abs(u[k][1]), h[1], abs(u[k][2]) * Lanes(h[2])));
-      apart &= greater(center - half, top);
-    }
-    return apart;
-  }
-};
-
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
   std::int32_t pair, a, b;
@@ -179,6 +139,10 @@ class Solver {
   bool finished() const { return out_of_budget_ || (query_->any && limit_ < 2); }
   unsigned leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask);
   int sweptNode(int side, int node);
+  bool isSwept(int side, int node) const {
+    const Cached& cached = cached_[side][node & (kCached - 1)];
+    return cached.epoch == pair_epoch_ && cached.node == node;
+  }
   DifferenceBody differenceAt(const Piece& a, const Piece& b, int lane, double tau = 0) const;
   bool outOfBudget();
   double now() const;
@@ -212,7 +176,6 @@ class Solver {
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
   double witness_[3];          ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
-  NodeDirection direction_;    ///< the same, for nodes
   std::int32_t witness_pair_ = -1;
   std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
   std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
@@ -443,7 +406,7 @@ inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion
 /// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this batch.
 inline int Solver::sweptNode(int side, int index) {
   Cached& cached = cached_[side][index & (kCached - 1)];
-  if (cached.epoch == pair_epoch_ && cached.node == index) return cached.slot;
+  if (isSwept(side, index)) return cached.slot;
   cached.epoch = pair_epoch_;
   cached.node = index;
   cached.slot = pool_.size();
@@ -461,13 +424,12 @@ FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
 inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   ++statistics_.node_tests;
   const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
-  if (direction_.ready) {
-    mask &= ~direction_.keepsApart(A, B);
-    if (!mask) return 0;
-  }
-  mask &= ~apart(pool_[sweptNode(0, b)], A);
+  // Of two nodes one has mostly been met before: its swept box is there.
+  const int known = isSwept(0, b) ? 0 : 1;
+  const auto box = [&](int s) { return apart(pool_[s ? sweptNode(1, a) : sweptNode(0, b)], s ? B : A); };
+  mask &= ~box(known);
   if (!mask) return 0;
-  mask &= ~apart(pool_[sweptNode(1, a)], B);
+  mask &= ~box(1 - known);
   if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
   return mask & ~apartFromUnbounded(a, b);
 }
@@ -634,8 +596,6 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (mask) mask = hullsMayTouch(mask, pair, false);
     if (!mask) return;
   }
-  direction_.ready = false;
-  if (have_witness_) direction_.prepare(side(0), witness_, pad_ + margin_);
   push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   for (int lane = 0; lane < kLanes;) {
@@ -674,7 +634,6 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     }
   }
   for (Buffer<Entry>& stack : stack_) stack.clear();
-  direction_.ready = false;
 }
 
 /// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
