@@ -596,15 +596,18 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (mask) mask = hullsMayTouch(mask, pair, false);
     if (!mask) return;
   }
-  push({pair, a, b, mask});
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
-  for (int lane = 0; lane < kLanes;) {
-    if (stack_[lane].size() == 0) {
-      ++lane;
-      continue;
+  Entry e = {pair, a, b, mask};
+  bool held = true;  // e goes on with a child; else it is the next of the stacks
+  for (int lane = 0;;) {
+    if (!held) {
+      while (lane < kLanes && stack_[lane].size() == 0) ++lane;
+      if (lane == kLanes) break;
+      const int top = stack_[lane].size() - 1;
+      e = stack_[lane][top];
+      stack_[lane].truncate(top);
     }
-    Entry e = stack_[lane][stack_[lane].size() - 1];
-    stack_[lane].truncate(stack_[lane].size() - 1);
+    held = false;
     if (const unsigned later = e.mask & ~live_) {
       if (!decide_only_) entries_.push({pair, e.a, e.b, later | kPutOff});
       e.mask &= live_;
@@ -625,12 +628,16 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       }
     } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time) {
       entries_.push(e);
-    } else if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
-      push({pair, x.right(), e.b, e.mask});
-      push({pair, x.left(), e.b, e.mask});
     } else {
-      push({pair, e.a, y.right(), e.mask});
-      push({pair, e.a, y.left(), e.mask});
+      if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
+        push({pair, x.right(), e.b, e.mask});
+        e.a = x.left();
+      } else {
+        push({pair, e.a, y.right(), e.mask});
+        e.b = y.left();
+      }
+      held = (e.mask >> lane & 1) != 0;
+      if (!held) push(e);
     }
   }
   for (Buffer<Entry>& stack : stack_) stack.clear();
