@@ -53,31 +53,31 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
   return above | below;
 }
 
-/// A part [0, x] of [0, 1] on which the polynomial with Bernstein coefficients G[0..N) is certainly positive: up to its first
-/// root, as far as rounding lets that be proven. Bezier clipping: a polynomial lies above the lower convex hull of its
-/// control points, so it is positive up to where that hull falls to zero; from there on the same again. The steps double their
-/// digits towards a simple root and halve the way to a double one.
-template <int N>
+/// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first
+/// root, as far as rounding lets that be proven. z is only a guess until de Casteljau's subdivision at z has shown that
+/// the coefficients over [0, z], and over [z, 1] where all of [0, 1] is claimed, are not negative.
 inline double positivePrefix(const double* G) {
-  constexpr int kMost = 16;
-  double size = 0, g[N];
-  for (int i = 0; i < N; ++i) size = max(size, abs(G[i]));
-  // A subdivision's N - 1 levels err by at most 5 kUlp of the largest coefficient each, and errors do not grow in later ones.
-  for (int i = 0; i < N; ++i) g[i] = G[i] - 6 * (N - 1) * kMost * kUlp * size;
-  double left = 1;  // of [0, 1], behind what is positive
-  for (int round = 0; round < kMost && g[0] > 0; ++round) {
-    double z = 1;
-    for (int i = 1; i < N; ++i) {
-      if (g[i] < 0) z = min(z, i * g[0] / ((N - 1) * (g[0] - g[i])));
-    }
-    if (z == 1) return 1;
-    if (z < 1e-3) break;
-    for (int level = 1; level < N; ++level) {  // de Casteljau: coefficients over [z, 1]
-      for (int i = 0; i < N - level; ++i) g[i] += z * (g[i + 1] - g[i]);
-    }
-    left *= 1 - z;
+  // The subdivision errs by at most 11 kUlp of the largest coefficient.
+  const double reserve = 16 * kUlp * max(max(abs(G[0]), abs(G[1])), abs(G[2]));
+  const double g0 = G[0] - reserve, g1 = G[1] - reserve, g2 = G[2] - reserve;
+  if (!(g0 > 0)) return 0;
+  if (g1 >= 0 && g2 >= 0) return 1;
+  const double a = (g0 - g1) + (g2 - g1), b = g1 - g0, discriminant = b * b - a * g0;  // g0 + 2 b z + a z^2
+  double guess;
+  if (!(discriminant > 0)) {
+    guess = -b / a;  // no root: the lowest point
+  } else {
+    const double root = sqrt(discriminant);
+    guess = b <= 0 ? g0 / (root - b) : -(b + root) / a;  // the first root, without cancellation
   }
-  return max(0.0, (1 - left) - 64 * kUlp);
+  static const double kParts[3] = {1 - 1e-12, 1 - 1e-8, 1 - 1e-3};
+  for (const double part : kParts) {
+    const double z = max(0.0, min(guess, 1.0)) * part;
+    const double left = g0 + z * (g1 - g0), right = g1 + z * (g2 - g1), middle = left + z * (right - left);
+    if (!(left >= 0 && middle >= 0)) continue;
+    return right >= 0 && g2 >= 0 ? 1 : z;
+  }
+  return 0;
 }
 
 /// Bernstein coefficients of a lower bound of the gap beyond `margin` along n, over each lane's interval.
@@ -101,10 +101,13 @@ struct TurningDirection {
 /// The same along a direction that turns, as the gap's own does between edges and curved surfaces, in neither body's frame. The
 /// product of a linear n and a quadratic motion is a cubic: Bernstein points (R_0 n_0, (R_0 n_1 + 2 R_1 n_0) / 3,
 /// (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line between its values
-/// at both ends; |n| does too, and all that is taken off is multiplied by the larger of both.
+/// at both ends; |n| does too, and all that is taken off is multiplied by the larger of both. The quadratic with the points
+/// (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to degree 3 none of its points is higher.
+/// @param side  B seen from A: the pad is derived for the direct motion (doc/NUMERICS.md, "Pads").
 FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const TurningDirection& n,
                                double margin, double pad, Lanes* G) {
   const Lanes third(1.0 / 3);
+  Lanes g[4];
   Lanes s_lower[2], s_upper[2];
   coreRange(*side.still, still, n.begin, s_lower[0], s_upper[0]);
   coreRange(*side.still, still, n.end, s_lower[1], s_upper[1]);
@@ -113,7 +116,7 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
                                                side.m.rem_R * moving.reach + pad));
   for (int k = 0; k < 4; ++k) {
     // Point k of the cubic: (k n_1 X_(k-1) + (3 - k) n_0 X_k) / 3.
-    Lanes u[3], g(0.0);
+    Lanes u[3], origin(0.0);
     for (int j = 0; j < 3; ++j) u[j] = Lanes(0.0);
     for (int end = 0; end < 2; ++end) {
       const int point = k - end;
@@ -125,13 +128,17 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
         const Lanes* R = side.m.Rb[point];
         u[j] = mulAdd(R[j], m[0], mulAdd(R[3 + j], m[1], mulAdd(R[6 + j], m[2], u[j])));
       }
-      g = g + dot(side.m.cb[point], m);
+      origin = origin + dot(side.m.cb[point], m);
     }
     Lanes upper;
-    coreRange(*side.moving, moving, u, G[k], upper);
+    coreRange(*side.moving, moving, u, g[k], upper);
     const Lanes part = Lanes(k / 3.0);
-    G[k] = G[k] + g - (mulAdd(part, s_upper[1] - s_upper[0], s_upper[0]) + length);
+    g[k] = g[k] + origin - (mulAdd(part, s_upper[1] - s_upper[0], s_upper[0]) + length);
   }
+  const Lanes half(0.5), more(1.5);
+  G[0] = g[0];
+  G[1] = min(more * g[1] - half * g[0], more * g[2] - half * g[3]);
+  G[2] = g[3];
 }
 
 }  // namespace FCL_ARTIC_ISA

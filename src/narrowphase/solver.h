@@ -1219,50 +1219,40 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
     };
     if (!f.have_normal && !look(first ? __builtin_ctz(first_lanes) : 0, -1)) break;
 
-    double x[kLanes];  // how far each lane is certainly free
-    unsigned separated = first ? kAllLanes & ~first_lanes : 0;
+    // One bound along a direction that turns, or two along one that does not, in either frame.
+    Lanes G[2][3];
+    const int bounds = turns ? 1 : 2;
     if (turns) {
-      ++statistics_.certificates;
       TurningDirection n;
       const Lanes begin = tm_ - Lanes(seen + d);
       for (int k = 0; k < 3; ++k) {
         n.begin[k] = mulAdd(begin, turn[k], f.normal[k]);
         n.end[k] = n.begin[k] + Lanes(2 * d * turn[k]);
       }
-      Lanes G[4];
-      gapBound(side(0), a, b, n, margin_, pad_, G);
-      separated |= greater(min(min(G[0], G[1]), min(G[2], G[3])), Lanes(0.0));
-      if (separated != kAllLanes) {
-        const int lane = __builtin_ctz(~separated);
-        const double coefficients[4] = {G[0][lane], G[1][lane], G[2][lane], G[3][lane]};
-        x[lane] = positivePrefix<4>(coefficients);
-      }
+      gapBound(side(0), a, b, n, margin_, pad_, G[0]);
     } else {
-      statistics_.certificates += 2;
       const DifferenceBody here = differenceAt(a, b, 0);
       double n[3];
       here.opposite(f.normal, n);
-      Lanes G[2][3];
       gapBound(side(0), a, b, f.normal, margin_, pad_, G[0]);
       gapBound(side(1), b, a, n, margin_, pad_, G[1]);
-      for (const Lanes* g : G) separated |= greater(min(min(g[0], g[1]), g[2]), Lanes(0.0));
-      if (separated != kAllLanes) {
-        const int lane = __builtin_ctz(~separated);
-        x[lane] = 0;
-        for (const Lanes* g : G) {
-          const double coefficients[3] = {g[0][lane], g[1][lane], g[2][lane]};
-          x[lane] = max(x[lane], positivePrefix<3>(coefficients));
-        }
-      }
     }
+    statistics_.certificates += static_cast<std::uint64_t>(bounds);
+    unsigned separated = first ? kAllLanes & ~first_lanes : 0;
+    for (int i = 0; i < bounds; ++i) separated |= greater(min(min(G[i][0], G[i][1]), G[i][2]), Lanes(0.0));
     if (separated == kAllLanes) {
       f.t_lower = min(stop, from + span);
       span *= 4;
       continue;
     }
     const int lane = __builtin_ctz(~separated);
+    double x = 0;
+    for (int i = 0; i < bounds; ++i) {
+      const double coefficients[3] = {G[i][0][lane], G[i][1][lane], G[i][2][lane]};
+      x = max(x, positivePrefix(coefficients));
+    }
     // Lanes before it are free, and it is [tm - d, tm + d].
-    const double root = (x[lane] >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x[lane]) - 4 * kUlp;
+    const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
     const double progress = f.t_lower - seen, gap = f.gap, before[3] = {f.normal[0], f.normal[1], f.normal[2]};
     if (!look(lane, (f.t_lower - tm[lane]) / d)) break;

@@ -22,6 +22,7 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
   const std::vector<const Subject*> tested = subjects();
   const int cases = scaled(30000) / 16;
   int checks = 0, separated_lanes = 0, prefixes = 0, no_remainder = 0, small_pad = 0, no_middle = 0;
+  int turning_prefixes = 0, still_direction = 0;
   double used = -1;  // part of the pad that rounding took
   for (int i = 0; i < cases; ++i) {
     const int mode = kRoundingModes[random.below(4)];
@@ -42,6 +43,9 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
     n = random.chance(0.7) && n.norm() > 0 ? n.normalized() : random.direction();
     if (random.chance(0.1)) n = Eigen::Vector3d::Unit(random.below(3));
     for (int k = 0; k < 3; ++k) in.n[k] = n[k];
+    const bool unbounded_piece = std::max(a.piece.kind, b.piece.kind) >= engine::PieceKind::halfspace;
+    const Eigen::Vector3d turn = random.size(1e-9, 1) * random.direction();
+    for (int k = 0; k < 3; ++k) in.turn[k] = turn[k];
     const Real3 exact_n = unit(exactly(n));
     const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
     CertificateOutput out;
@@ -76,6 +80,32 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
         ++checks;
         ASSERT_GT(max(gapAt(tau, exact_n), gapAt(tau, Real(-1.0) * exact_n)), Real(0.0)) << where();
       }
+      if (in.side == 0 && !unbounded_piece) {
+        // The direction at this time, as long as it is; the bound is of what it tells, times its length.
+        const auto turned = [&](double at) {
+          Real3 d;
+          for (int k = 0; k < 3; ++k) {
+            const Real begin(in.n[k] - in.turn[k]), end(in.n[k] + in.turn[k]);
+            d[k] = begin + Real(at) * (end - begin);
+          }
+          return d;
+        };
+        const auto gapTurned = [&](double at) {
+          const Real3 d = turned(at);
+          const Real length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+          return length * gapAt(2 * at - 1, unit(d));
+        };
+        const Real turning = bernstein(out.turning_G[lane], z);
+        ++checks;
+        ASSERT_LE(turning, gapTurned(z)) << where();
+        still_direction += turning > Real(gap);
+        if (out.turning_prefix[lane] > 0) {
+          ++turning_prefixes;
+          ++checks;
+          const double at = out.turning_prefix[lane] * (random.chance(0.5) ? 1 : random.unit());
+          ASSERT_GT(gapTurned(at), Real(0.0)) << where() << " prefix " << out.turning_prefix[lane];
+        }
+      }
       if (out.prefix[lane] > 0) {
         ++prefixes;
         ++checks;
@@ -88,6 +118,9 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
               prefixes, used);
   std::printf("mutants: without remainder %d broken, pad / 1e4 %d broken, one Bernstein point less %d broken\n",
               no_remainder, small_pad, no_middle);
+  std::printf("turning: %d prefixes; taken for a direction that stands still %d broken\n", turning_prefixes, still_direction);
+  EXPECT_GT(turning_prefixes, cases / 4);
+  EXPECT_GT(still_direction, 0);
   EXPECT_GT(separated_lanes, cases / 2);
   EXPECT_GT(prefixes, cases / 2);
   EXPECT_GT(no_remainder, 0);

@@ -35,9 +35,11 @@ struct CertificateInput {
   engine::TreeView a, b;  ///< of one piece each
   double n[3] = {};       ///< unit, in A's frame for side 0, in B's for side 1
   int side = 0;
+  double turn[3] = {};  ///< the direction that turns goes from n - turn to n + turn over each interval
 };
 struct CertificateOutput {
   double G[8][3], prefix[8];
+  double turning_G[8][3], turning_prefix[8];  ///< along the direction that turns
   unsigned separated;
   double sign;
 };

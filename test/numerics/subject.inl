@@ -83,7 +83,18 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int k = 0; k < 3; ++k) out.G[lane][k] = G[k][lane];
-    out.prefix[lane] = positivePrefix<3>(out.G[lane]);
+    out.prefix[lane] = positivePrefix(out.G[lane]);
+  }
+  TurningDirection turning;
+  for (int k = 0; k < 3; ++k) {
+    turning.begin[k] = Lanes(in.n[k] - in.turn[k]);
+    turning.end[k] = Lanes(in.n[k] + in.turn[k]);
+  }
+  Lanes turned[3];
+  gapBound(s, still, moving, turning, in.motion.margin, pads.pad, turned);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int k = 0; k < 3; ++k) out.turning_G[lane][k] = turned[k][lane];
+    out.turning_prefix[lane] = positivePrefix(out.turning_G[lane]);
   }
 }
 
@@ -124,7 +135,7 @@ void sineCosineOf(const double* x, double* sine, double* cosine) {
 }
 
 double positivePrefixOf(const double* G) {
-  return positivePrefix<3>(G);
+  return positivePrefix(G);
 }
 
 bool certainlyTouchingOf(const TouchInput& in) {
