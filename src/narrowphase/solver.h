@@ -1290,7 +1290,8 @@ inline bool Solver::settle(Final& f, double stop) {
 
 /// Proof of contact within the tolerance behind t_lower.
 inline bool Solver::prove(Final& f) {
-  static const double kOffsets[kLanes] = {0.25, 0.5, 1, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
+  // Not quite 1: the sum rounds, and the bracket is to be no wider than the tolerance.
+  static const double kOffsets[kLanes] = {0.25, 0.5, 0.999, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
   double tm[kLanes];
   for (int k = 0; k < kLanes; ++k) tm[k] = min(1.0, f.t_lower + kOffsets[k] * query_->tolerance_time);
   evaluateAt(tm, 0);
