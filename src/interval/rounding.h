@@ -8,7 +8,7 @@
 #pragma once
 
 #if !defined(__x86_64__)
-#error "directed rounding is written for x86-64; other processors take interval/batch_portable.cpp"
+#error "directed rounding is written for x86-64, as the engine is"
 #endif
 #ifdef __FAST_MATH__
 #error "fcl_artic proves bounds in floating point: it cannot be compiled with -ffast-math"
