@@ -185,16 +185,21 @@ TEST(Margin, FeaturesAreNamedWhereThePairHasNone) {
   cart.manager->unbind(cart.body.get());
   cart.manager->bind("cart", tip.get());
   cart.manager->registerObject(other.get(), "flag");
-  cart.manager->setMargin("cart", 0.1);
-  cart.manager->setup();
-  const CertifiedResult far = cart.run(0, 1);
-  EXPECT_TRUE(touchesAt(far, 0.7));
-  EXPECT_EQ(far.contacts.at(0).feature, FeatureKind::volume);
-  cart.manager->setMargin("cart", "flag", 0);
-  cart.manager->setup();
-  const CertifiedResult near = cart.run(0, 1, withMargin(0.1));
-  EXPECT_TRUE(touchesAt(near, 0.8));
-  EXPECT_EQ(near.contacts.at(0).feature, FeatureKind::vertexFace);
+  for (const Method method : {Method::standard, Method::Redon2004}) {
+    CertifiedRequest request = withMargin(0.2);
+    request.method = method;
+    cart.manager->resetMargins();
+    cart.manager->setMargin("cart", 0.1);
+    cart.manager->setup();
+    const CertifiedResult far = cart.run(0, 1, request);
+    EXPECT_TRUE(touchesAt(far, 0.7));
+    EXPECT_EQ(far.contacts.at(0).feature, FeatureKind::volume);
+    cart.manager->setMargin("cart", "flag", 0);
+    cart.manager->setup();
+    const CertifiedResult near = cart.run(0, 1, request);
+    EXPECT_TRUE(touchesAt(near, 0.8));
+    EXPECT_EQ(near.contacts.at(0).feature, FeatureKind::vertexFace);
+  }
 }
 
 // Balls of a turning arm among balls, with and without margins of their own: the first time at which any comes as near
