@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole queries with the stage off and on: the same answers, bit for bit, over the campaign's scenes.
+// Whole queries with the stage off and on: the same answers over the campaign's scenes, bit for bit where the first contact is
+// asked for. (Where that of every pair is, what the solver does with one pair starts from what it did with the one before: a
+// bracket may end elsewhere within its tolerance.)
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <set>
 #include <thread>
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -46,8 +49,19 @@ bool sameAnswer(const CertifiedResult& a, const CertifiedResult& b) {
   return true;
 }
 
+/// The same but for where brackets end within the tolerance.
+bool alikeAnswer(const CertifiedResult& a, const CertifiedResult& b, double tolerance_time) {
+  const auto bodies = [](const CertifiedResult& r) {
+    std::multiset<std::pair<std::string, std::string>> all;
+    for (const CertifiedContact& c : r.contacts) all.insert({c.body1.name, c.body2.name});
+    return all;
+  };
+  return a.status == b.status && a.certain == b.certain && std::abs(a.t_lower - b.t_lower) <= tolerance_time &&
+         std::abs(a.t_upper - b.t_upper) <= tolerance_time && bodies(a) == bodies(b);
+}
+
 struct Counts {
-  std::uint64_t queries = 0, contacts = 0, pairs = 0, culled = 0, different = 0;
+  std::uint64_t queries = 0, contacts = 0, pairs = 0, culled = 0, other_bits = 0, different = 0;
 };
 
 /// Asks `n` of the campaign's questions without the stage and with it.
@@ -68,8 +82,10 @@ Counts compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::Visibilit
       question.request.visibility = mode;
       question.manager->continuousCollide(motion, question.request, result);
       if (!sameAnswer(off, result)) {
-        ++counts.different;
-        std::cout << "different: " << family << " " << seed << "\n";
+        const bool first = question.request.mode == fcl_artic::ContactMode::first;
+        const bool fault = first || !alikeAnswer(off, result, question.request.tolerance_time);
+        ++(fault ? counts.different : counts.other_bits);
+        std::cout << (fault ? "different: " : "other bits: ") << family << " " << seed << "\n";
       }
       if (mode != VisibilityMode::on) continue;
       EXPECT_EQ(result.statistics.visibility_fallback, "");
@@ -78,7 +94,8 @@ Counts compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::Visibilit
     }
   }
   std::cout << counts.queries << " queries, " << counts.contacts << " with contact, " << counts.pairs << " pairs seen, "
-            << counts.culled << " culled, " << counts.different << " different\n";
+            << counts.culled << " culled, " << counts.different << " different, " << counts.other_bits << " of other bits\n";
+  EXPECT_LE(counts.other_bits, 1 + n / 1000);
   return counts;
 }
 
