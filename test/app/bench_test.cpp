@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verb `bench planning`, on a single problem.
+// The verbs `bench table1` and `bench depth`, on a few steps, and `bench planning`, on a single problem.
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <vector>
 
@@ -10,6 +12,30 @@
 #include "run_program.h"
 
 namespace {
+
+TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
+  const Outcome run = this->run("bench table1 --queries 2 --passes 1 --angles 5 --triangles 2000 --csv " + path("table1.csv") +
+                                " --svg " + path("table1.svg"));
+  EXPECT_EQ(run.status, 0) << run.out << run.err;  // the verdicts agree
+  expectContains(run.out, "32.3713");  // Redon 2004, Table 1: 5 degrees, colliding, total
+  expectContains(run.out, "8.0184");
+  expectContains(run.out, "redon2004");
+  expectContains(run.out, "standard");
+  std::ifstream csv(path("table1.csv"));
+  int rows = 0;
+  for (std::string line; std::getline(csv, line); ++rows) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 14) << line;
+  }
+  EXPECT_EQ(rows, 7);  // head; printed, redon2004, standard, twice
+  EXPECT_TRUE(std::filesystem::exists(path("table1.svg")));
+}
+
+TEST_F(ProgramTest, BenchDepthSolvesBothWays) {
+  const Outcome run = this->run("bench depth --joints 2 8 --queries 2 --passes 1");
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+  expectContains(run.out, "simultaneous");
+  expectContains(run.out, "independent");
+}
 
 #ifndef FCL_ARTIC_HAS_PLANS
 

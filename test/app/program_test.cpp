@@ -30,6 +30,17 @@ TEST_F(ProgramTest, ContactIsOneAndTellsWhatAndWhere) {
   }
 }
 
+TEST_F(ProgramTest, ThePapersMethodIsAskedForByName) {
+  const Outcome run = this->run("check --json --method redon2004 --enclosure taylor --refinement 2 --independent --no-newton " +
+                                armAndBall() + " --from 0,0 --to 90deg,0");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const Json answer = Json::parse(run.out);
+  EXPECT_NEAR(answer.at("t_lower").get<double>(), kContactAngle / (M_PI / 2), 2e-6);
+  EXPECT_EQ(answer.at("statistics").at("redon2004").at("pairs_by_standard"), 2);  // of two links: a ball has no triangles
+  EXPECT_EQ(this->run("check --method redon2003 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
+  EXPECT_EQ(this->run("check --method redon2004 --refinement 7 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
+}
+
 TEST_F(ProgramTest, JsonHasItsKeysAndAllDigits) {
   const Outcome run = this->run("check --json " + armAndBall() + " --from hinge=0 --to hinge=90deg");
   ASSERT_EQ(run.status, 1) << run.err;
