@@ -511,13 +511,15 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     }
     for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
     have_witness_ = true;
-    ++statistics_.certificates;
-    unsigned separated = certainlySeparated(side(0), a, b, g.n, margin_, pad_, sign);
-    if (mask & ~separated) {
-      double n[3];
-      body.opposite(g.n, n);
+    // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving one's 24.
+    double n[3];
+    body.opposite(g.n, n);
+    const int first = a.num_vertices > b.num_vertices ? 0 : 1;
+    unsigned separated = 0;
+    for (int i = 0; i < 2 && (mask & ~separated); ++i) {
       ++statistics_.certificates;
-      separated |= certainlySeparated(side(1), b, a, n, margin_, pad_, sign);
+      separated |= (first + i) & 1 ? certainlySeparated(side(1), b, a, n, margin_, pad_, sign)
+                                   : certainlySeparated(side(0), a, b, g.n, margin_, pad_, sign);
     }
     mask &= ~separated;
     untried &= mask;
