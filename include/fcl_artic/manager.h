@@ -132,7 +132,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::size_t size() const;
   bool empty() const { return size() == 0; }
 
-  /// First contact of the motion, or the proof that there is none (METHOD: "The promise").
+  /// First contact of the motion, or the proof that there is none (doc/PROMISE.md).
   /// @throws std::invalid_argument when the motion is not one of this tree, or for a tolerance or margin that is
   ///   negative or not finite.
   /// @throws std::logic_error when changes were made after the last setup() or update().

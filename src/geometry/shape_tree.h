@@ -32,7 +32,7 @@ class ShapeTree {
                                                        const Eigen::Vector3d& c);
   /// The convex hull of points, of any number from 1 on, as one piece. They need not all be its corners.
   static std::shared_ptr<const ShapeTree> fromHull(const std::vector<Eigen::Vector3d>& points);
-  /// One convex piece without vertices, as SHAPES section 1.3 has it; sizes must be positive and finite. halfspace and
+  /// One convex piece without vertices; sizes must be positive and finite. halfspace and
   /// plane: a unit normal; the whole is unbounded then, and its box ends at engine::kUnbounded.
   static std::shared_ptr<const ShapeTree> fromPiece(const engine::Piece& piece);
   /// Bounded pieces without vertices, their primitive ids as given; empty for none.

@@ -215,7 +215,7 @@ struct FactorLanes {
   Lanes J[9], o[3], v[3], a[3], w[3], al[3];
 };
 
-/// exp([q]) with its angular velocity and acceleration, from q and its derivatives (SHAPES, section 5). With g = |q|^2:
+/// exp([q]) with its angular velocity and acceleration, from q and its derivatives. With g = |q|^2:
 /// R = cos + a [q] + b q q^T, w = q' + b q x q' + c q x (q x q'), a = sin/theta, b = (1 - cos)/g, c = (1 - a)/g.
 inline void turnFactor(const VariableLanes* x, FactorLanes& f) {
   const Lanes q[3] = {x[0].q, x[1].q, x[2].q}, q1[3] = {x[0].q1, x[1].q1, x[2].q1},

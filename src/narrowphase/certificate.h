@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof that anything is free (SHAPES, section 1): a direction n, fixed in one body's frame, keeps two convex pieces
+// The proof that anything is free (doc/NUMERICS.md, section 4): a direction n, fixed in one body's frame, keeps two convex pieces
 // apart over a whole time interval. Where n comes from needs no trust; this file and lane_motion.h carry all of it.
 #pragma once
 

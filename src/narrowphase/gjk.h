@@ -276,7 +276,7 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
       out.lower = lower;
       for (int k = 0; k < 3; ++k) out.n[k] = n[k];
     }
-    // Relative to the gap, not to the core distance (SHAPES, trap 7.1).
+    // Relative to the gap, not to the core distance.
     if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
     bool known = false;
     for (int i = 0; i < s.n; ++i) {
@@ -293,7 +293,7 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
     if (dot(next, next) >= vv * (1 - 1e-15)) break;
     for (int k = 0; k < 3; ++k) v[k] = next[k];
   }
-  // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane (SHAPES, trap 7.2).
+  // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane.
   if (out.overlap && out.lower > radii) {
     out.overlap = false;
     out.distance = max(out.lower, radii);

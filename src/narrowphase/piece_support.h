@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Support of convex pieces (SHAPES, section 1.3). The core's support function h(u) = max p.u is positively homogeneous
+// Support of convex pieces. The core's support function h(u) = max p.u is positively homogeneous
 // and convex, for any u; the rounding radius is added by the caller. One row here is all that a kind of geometry needs.
 #pragma once
 
