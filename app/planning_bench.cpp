@@ -156,8 +156,10 @@ class Bench {
     if (!example_.problem) return false;
     const CertifiedContact& contact = example_.contact.contacts.at(0);
     render::PictureOptions picture;
-    picture.title = fmt::format("{} {}: a plan that sampling accepts; {} - {} at t = {:.3f}", options_.robot,
-                                example_.environment, contact.body1.name, contact.body2.name, example_.contact.t_lower);
+    picture.width = 1200;
+    picture.height = 750;
+    picture.title = fmt::format("accepted by sampling: {} - {} at t = {:.3f}", contact.body1.name, contact.body2.name,
+                                example_.contact.t_lower);
     const auto way = [&](double t) -> Eigen::VectorXd { return example_.from + t * (example_.to - example_.from); };
     render::writePicture(path, robot_, example_.problem->scene.obstacles, way, example_.contact, picture);
     return true;
