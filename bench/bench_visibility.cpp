@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2, culling by visibility: what it takes out and what it costs, on an arm of six capsules amid 500 pipes, 1,500 thin
-// pipes and 125 chains of four pipes; the joint that turns most turns by 5 to 30 degrees. Robot against itself off.
+// Stage 2, culling by visibility: what it takes out and what it costs, on an arm of six capsules amid 500 pipes, 1,500
+// thin pipes and 125 chains of four pipes; the joint that turns most turns by 5 to 30 degrees. Robot against itself
+// off.
 
 #include <algorithm>
 #include <chrono>
@@ -50,8 +51,10 @@ std::vector<Way> ways() {
   };
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
   for (const auto& [name, backend] : {std::pair("osmesa", OffscreenBackend::osmesa), {"egl", OffscreenBackend::egl}}) {
-    for (const auto& [suffix, rule] : {std::pair("", VisibilityRule::intervals), {" occlusion", VisibilityRule::occlusion}}) {
-      all.push_back({fmt::format("{} 32{}", name, suffix), VisibilityMode::on, makeOffscreenCuller(backend, options(32, rule))});
+    for (const auto& [suffix, rule] :
+         {std::pair("", VisibilityRule::intervals), {" occlusion", VisibilityRule::occlusion}}) {
+      all.push_back(
+          {fmt::format("{} 32{}", name, suffix), VisibilityMode::on, makeOffscreenCuller(backend, options(32, rule))});
     }
   }
 #endif
@@ -130,9 +133,12 @@ int main(int argc, char** argv) {
   std::vector<double> steps = {5, 10, 20, 30};
   app.add_option("--queries", count, "motions per scene and step")->capture_default_str();
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--steps", steps, "degrees, the joint that turns most")->capture_default_str();
-  app.add_option("--scale", scale, "times the scenes' numbers of objects")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--scale", scale, "times the scenes' numbers of objects")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
 
   const struct {
@@ -142,9 +148,9 @@ int main(int argc, char** argv) {
   const std::vector<Way> all = ways();
   std::deque<PipeScene> kept_scenes;
   std::deque<std::vector<JointMotion>> kept_motions;
-  report.note(fmt::format("\n{:<16} {:>3} {:>6} {:>8} {:>7} {:>6}  {:<20} {:>7} {:>8} {:>10} {:>9} {:>10} {:>9}", "scene", "deg",
-                          "boxes", "touching", "stage 1", "pieces", "method", "culled", "with 1", "us/pair in", "stage us",
-                          "break-even", "saves us"));
+  report.note(fmt::format("\n{:<16} {:>3} {:>6} {:>8} {:>7} {:>6}  {:<20} {:>7} {:>8} {:>10} {:>9} {:>10} {:>9}",
+                          "scene", "deg", "boxes", "touching", "stage 1", "pieces", "method", "culled", "with 1",
+                          "us/pair in", "stage us", "break-even", "saves us"));
   for (const auto& entry : scenes) {
     PipeSceneOptions options = entry.options;
     options.objects = std::max(1, static_cast<int>(options.objects * scale));
@@ -155,68 +161,70 @@ int main(int argc, char** argv) {
       const Truth truth = findTruth(scene, motions);
       const auto off_us = std::make_shared<double>(0);
       for (const Way& method : all) {
-        report.add(entry.name, fmt::format("{:g}", step), method.name, [&scene, &motions, &method, &report, passes, truth, off_us,
-                                                                       name = entry.name, step] {
-          scene.manager().setVisibility(method.culler);
-          CertifiedRequest request = baseRequest();
-          request.visibility = method.mode;
-          CertifiedResult result;
-          const auto ask = [&](const JointMotion& m) {
-            scene.manager().continuousCollide(m, request, result);
-            return toAnswer(result);
-          };
-          if (method.mode == VisibilityMode::automatic) {  // until it knows
-            for (int i = 0; i < 100; ++i) {
-              for (const JointMotion& m : motions) ask(m);
-            }
-          }
-          std::vector<double> stage_least(motions.size(), HUGE_VAL), narrow_least(motions.size(), HUGE_VAL);
-          request.measure_times = true;
-          Measured measured = measure(motions.size(), passes, [&](std::size_t i) {
-            const Answer answer = ask(motions[i]);
-            stage_least[i] = std::min(stage_least[i], result.statistics.visibility_us);
-            narrow_least[i] = std::min(narrow_least[i], result.statistics.narrowphase_us);
-            return answer;
-          });
-          Row& row = measured.row;
-          double pairs = 0, culled = 0, pieces = 0, after = 0, stage_us = 0, narrow_us = 0;
-          for (std::size_t i = 0; i < motions.size(); ++i) {
-            ask(motions[i]);
-            const QueryStatistics& s = result.statistics;
-            if (!s.visibility_fallback.empty()) throw std::runtime_error(s.visibility_fallback);
-            addCounters(row, s);
-            after += static_cast<double>(s.pairs_after_culling);
-            pairs += static_cast<double>(s.visibility_pairs);
-            culled += static_cast<double>(s.visibility_culled);
-            pieces += static_cast<double>(s.visibility_pieces);
-            stage_us += stage_least[i];
-            narrow_us += narrow_least[i];
-          }
-          const auto n = static_cast<double>(motions.size());
-          const Truth& t = truth;
-          row.per_query.insert(row.per_query.end(), {{"boxes_meet", t.boxes_meet},
-                                                     {"touching", t.touching},
-                                                     {"visibility_pairs", pairs / n},
-                                                     {"visibility_culled", culled / n},
-                                                     {"visibility_pieces", pieces / n},
-                                                     {"visibility_us", stage_us / n},
-                                                     {"narrowphase_us", narrow_us / n}});
-          const std::string head = fmt::format("{:<16} {:>3} {:>6.1f} {:>8.1f} {:>7.1f} {:>6.1f}  {:<20}", name, step,
-                                               t.boxes_meet, t.touching, after / n, pieces / n, method.name);
-          if (method.mode == VisibilityMode::off) {
-            *off_us = row.mean_us;
-            report.note(fmt::format("{} {:>7} {:>7.1f}%   the rest costs {:.2f} us a pair", head, "",
-                                    100 * (t.boxes_meet - after / n) / (t.boxes_meet - t.touching), narrow_us / after));
-          } else if (method.mode == VisibilityMode::on) {
-            report.note(fmt::format("{} {:>6.1f}% {:>7.1f}% {:>10.2f} {:>9.1f} {:>10.1f} {:>9.1f}", head,
-                                    100 * culled / (after - n * t.touching),
-                                    100 * (t.boxes_meet - (after - culled) / n) / (t.boxes_meet - t.touching),
-                                    stage_us / pairs, stage_us / n, stage_us / culled, *off_us - row.mean_us));
-          } else {
-            report.note(fmt::format("{}   {}", head, automaticBesideOff(scene.manager(), motions)));
-          }
-          return measured;
-        });
+        report.add(
+            entry.name, fmt::format("{:g}", step), method.name,
+            [&scene, &motions, &method, &report, passes, truth, off_us, name = entry.name, step] {
+              scene.manager().setVisibility(method.culler);
+              CertifiedRequest request = baseRequest();
+              request.visibility = method.mode;
+              CertifiedResult result;
+              const auto ask = [&](const JointMotion& m) {
+                scene.manager().continuousCollide(m, request, result);
+                return toAnswer(result);
+              };
+              if (method.mode == VisibilityMode::automatic) {  // until it knows
+                for (int i = 0; i < 100; ++i) {
+                  for (const JointMotion& m : motions) ask(m);
+                }
+              }
+              std::vector<double> stage_least(motions.size(), HUGE_VAL), narrow_least(motions.size(), HUGE_VAL);
+              request.measure_times = true;
+              Measured measured = measure(motions.size(), passes, [&](std::size_t i) {
+                const Answer answer = ask(motions[i]);
+                stage_least[i] = std::min(stage_least[i], result.statistics.visibility_us);
+                narrow_least[i] = std::min(narrow_least[i], result.statistics.narrowphase_us);
+                return answer;
+              });
+              Row& row = measured.row;
+              double pairs = 0, culled = 0, pieces = 0, after = 0, stage_us = 0, narrow_us = 0;
+              for (std::size_t i = 0; i < motions.size(); ++i) {
+                ask(motions[i]);
+                const QueryStatistics& s = result.statistics;
+                if (!s.visibility_fallback.empty()) throw std::runtime_error(s.visibility_fallback);
+                addCounters(row, s);
+                after += static_cast<double>(s.pairs_after_culling);
+                pairs += static_cast<double>(s.visibility_pairs);
+                culled += static_cast<double>(s.visibility_culled);
+                pieces += static_cast<double>(s.visibility_pieces);
+                stage_us += stage_least[i];
+                narrow_us += narrow_least[i];
+              }
+              const auto n = static_cast<double>(motions.size());
+              const Truth& t = truth;
+              row.per_query.insert(row.per_query.end(), {{"boxes_meet", t.boxes_meet},
+                                                         {"touching", t.touching},
+                                                         {"visibility_pairs", pairs / n},
+                                                         {"visibility_culled", culled / n},
+                                                         {"visibility_pieces", pieces / n},
+                                                         {"visibility_us", stage_us / n},
+                                                         {"narrowphase_us", narrow_us / n}});
+              const std::string head = fmt::format("{:<16} {:>3} {:>6.1f} {:>8.1f} {:>7.1f} {:>6.1f}  {:<20}", name,
+                                                   step, t.boxes_meet, t.touching, after / n, pieces / n, method.name);
+              if (method.mode == VisibilityMode::off) {
+                *off_us = row.mean_us;
+                report.note(fmt::format("{} {:>7} {:>7.1f}%   the rest costs {:.2f} us a pair", head, "",
+                                        100 * (t.boxes_meet - after / n) / (t.boxes_meet - t.touching),
+                                        narrow_us / after));
+              } else if (method.mode == VisibilityMode::on) {
+                report.note(fmt::format("{} {:>6.1f}% {:>7.1f}% {:>10.2f} {:>9.1f} {:>10.1f} {:>9.1f}", head,
+                                        100 * culled / (after - n * t.touching),
+                                        100 * (t.boxes_meet - (after - culled) / n) / (t.boxes_meet - t.touching),
+                                        stage_us / pairs, stage_us / n, stage_us / culled, *off_us - row.mean_us));
+              } else {
+                report.note(fmt::format("{}   {}", head, automaticBesideOff(scene.manager(), motions)));
+              }
+              return measured;
+            });
       }
     }
   }

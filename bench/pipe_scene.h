@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A seeded arm of six capsules amid pipes: single ones, or chains of four that make concave objects. Each pipe is a mesh of
-// 120 triangles, each chain one object.
+// A seeded arm of six capsules amid pipes: single ones, or chains of four that make concave objects. Each pipe is a
+// mesh of 120 triangles, each chain one object.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
 #include <fcl/geometry/shape/capsule.h>
+#include <Eigen/Geometry>
 
 #include "arm_scene.h"
 #include "fcl_artic/manager.h"
@@ -26,7 +26,8 @@ struct PipeSceneOptions {
 };
 
 /// Distance of two segments, by sampling one of them finely enough for keeping pipes off the base.
-inline double roughDistance(const fcl::Vector3d& a, const fcl::Vector3d& b, const fcl::Vector3d& c, const fcl::Vector3d& d) {
+inline double roughDistance(const fcl::Vector3d& a, const fcl::Vector3d& b, const fcl::Vector3d& c,
+                            const fcl::Vector3d& d) {
   double least = 1e9;
   for (int i = 0; i <= 32; ++i) {
     const fcl::Vector3d p = a + (b - a) * (i / 32.0), u = d - c;
@@ -45,7 +46,8 @@ inline void addPipe(const fcl::Vector3d& p, const fcl::Vector3d& q, double radiu
   for (std::size_t j = 0; j <= kRings; ++j) {
     for (std::size_t i = 0; i < kSides; ++i) {
       const double t = 2 * kPi * static_cast<double>(i) / kSides;
-      mesh.vertices.push_back(p + (q - p) * (static_cast<double>(j) / kRings) + radius * (std::cos(t) * u + std::sin(t) * w));
+      mesh.vertices.push_back(p + (q - p) * (static_cast<double>(j) / kRings) +
+                              radius * (std::cos(t) * u + std::sin(t) * w));
     }
   }
   mesh.vertices.push_back(p);
@@ -67,7 +69,8 @@ class PipeScene {
  public:
   explicit PipeScene(const PipeSceneOptions& options) : random_(options.seed), manager_(makeTree()) {
     for (std::size_t i = 0; i < kLinks; ++i) {
-      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Capsuled>(kRadius[i], kLength[i])));
+      objects_.push_back(
+          std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Capsuled>(kRadius[i], kLength[i])));
       manager_.bind("link" + std::to_string(i), objects_.back().get(),
                     Eigen::Isometry3d(Eigen::Translation3d(0, 0, kLength[i] / 2)));
     }

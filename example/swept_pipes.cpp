@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Culling by visibility, as a picture (after Figure 6 of Redon, Kim, Lin and Manocha 2004): the volume that the arm's last two
-// links sweep amid pipes. Grey pipes are told apart by boxes, green ones by visibility; red ones are left to the exact test.
+// Culling by visibility, as a picture (after Figure 6 of Redon, Kim, Lin and Manocha 2004): the volume that the arm's
+// last two links sweep amid pipes. Grey pipes are told apart by boxes, green ones by visibility; red ones are left to
+// the exact test.
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -91,7 +92,8 @@ int main(int argc, char** argv) {
 
   render::Stage stage;
   std::vector<Eigen::Isometry3d> M_0;
-  const auto draw = [](const fcl::CollisionGeometryd& geometry, const Eigen::Isometry3d& M, const Eigen::Vector3f& color) {
+  const auto draw = [](const fcl::CollisionGeometryd& geometry, const Eigen::Isometry3d& M,
+                       const Eigen::Vector3f& color) {
     render::Body body;
     body.surface = render::makeSurface(render::triangulate(geometry));
     body.M_0 = M;
@@ -107,15 +109,16 @@ int main(int argc, char** argv) {
   }
   robot.tree->forwardKinematics(q0, M_0);
   for (const LinkGeometry& body : robot.geometry) {
-    stage.solid.push_back(draw(*body.object->collisionGeometry(), M_0[static_cast<std::size_t>(body.link)] * body.offset,
-                               {0.80f, 0.62f, 0.25f}));
+    stage.solid.push_back(draw(*body.object->collisionGeometry(),
+                               M_0[static_cast<std::size_t>(body.link)] * body.offset, {0.80f, 0.62f, 0.25f}));
   }
   constexpr int kPoses = 96;
   render::Ghost swept;
   swept.opacity = 0.55f;
   Eigen::AlignedBox3d box;
   for (const LinkGeometry& body : links) {
-    const render::Body link = draw(*body.object->collisionGeometry(), Eigen::Isometry3d::Identity(), {0.08f, 0.28f, 0.75f});
+    const render::Body link =
+        draw(*body.object->collisionGeometry(), Eigen::Isometry3d::Identity(), {0.08f, 0.28f, 0.75f});
     for (int i = 0; i <= kPoses; ++i) {
       robot.tree->forwardKinematics(motion.configuration(static_cast<double>(i) / kPoses), M_0);
       swept.bodies.push_back(link);
@@ -131,6 +134,6 @@ int main(int argc, char** argv) {
   camera.eye = camera.target + Eigen::Vector3d(2.6, -2.9, 1.9);
   render::Renderer renderer;
   render::writePng(file, renderer.draw(stage, camera, 1200, 800));
-  std::cout << count[0] << " pipes told apart by boxes, " << count[1] << " by visibility, " << count[2] << " left: " << file
-            << "\n";
+  std::cout << count[0] << " pipes told apart by boxes, " << count[1] << " by visibility, " << count[2]
+            << " left: " << file << "\n";
 }

@@ -42,7 +42,8 @@ std::unique_ptr<OffscreenContext> openContext() {
 
 class Program {
  public:
-  Program(const std::string& vertex, const std::string& fragment) : id_(api().program(vertex.c_str(), fragment.c_str())) {}
+  Program(const std::string& vertex, const std::string& fragment)
+      : id_(api().program(vertex.c_str(), fragment.c_str())) {}
   void use() const { api().UseProgram(id_); }
   void set(const char* name, float x) const { api().Uniform1f(at(name), x); }
   void set(const char* name, int x) const { api().Uniform1i(at(name), x); }

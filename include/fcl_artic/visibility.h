@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2: culling by visibility (doc/VISIBILITY.md). A pair that it takes out is proven free; answers never depend on it.
+// Stage 2: culling by visibility (doc/VISIBILITY.md). A pair that it takes out is proven free; answers never depend on
+// it.
 #pragma once
 
 #include <functional>
@@ -29,15 +30,15 @@ class ExecutorLoan;
 using ExecutorFactory = std::function<std::unique_ptr<Executor>()>;
 }  // namespace visibility
 
-/// Culls by visibility. Safe to use from many threads and by many managers: each query at work has an executor of its own,
-/// made when first needed and kept.
+/// Culls by visibility. Safe to use from many threads and by many managers: each query at work has an executor of its
+/// own, made when first needed and kept.
 class FCL_ARTIC_EXPORT VisibilityCuller {
  public:
   /// The executor `cpu`: own scan conversion, without OpenGL.
   /// @throws std::invalid_argument for a resolution out of range.
   explicit VisibilityCuller(const VisibilityOptions& options = {});
-  /// Another executor, as the component `visibility` makes them (fcl_artic/visibility/offscreen.h). Where one can't be made
-  /// or fails its self-test, the executor `cpu` takes over.
+  /// Another executor, as the component `visibility` makes them (fcl_artic/visibility/offscreen.h). Where one can't be
+  /// made or fails its self-test, the executor `cpu` takes over.
   VisibilityCuller(const VisibilityOptions& options, const std::string& executor, visibility::ExecutorFactory factory);
   ~VisibilityCuller();
   VisibilityCuller(const VisibilityCuller&) = delete;

@@ -64,7 +64,9 @@ Volume addVolume(const Vector3d* points, int n, double radius, Batch& batch) {
 
 }  // namespace
 
-double AdversaryRandom::logUniform(double lo, double hi) { return std::exp(uniform(std::log(lo), std::log(hi))); }
+double AdversaryRandom::logUniform(double lo, double hi) {
+  return std::exp(uniform(std::log(lo), std::log(hi)));
+}
 
 void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch) {
   Maker make{AdversaryRandom(seed * 0x2545f4914f6cdd1du + i)};
@@ -85,7 +87,8 @@ void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch)
     make.triangle(d, make.across(d), swept_size, swept);
     on_swept = make.pointOf(swept);
   } else {
-    // The hull of two segments or of two segments' ways, grown by a ball; and a point at most the radius from a point of it.
+    // The hull of two segments or of two segments' ways, grown by a ball; and a point at most the radius from a point
+    // of it.
     radius = swept_size * (random.uniform() < 0.3 ? random.logUniform(1e-4, 0.05) : random.uniform(0.05, 0.4));
     swept[0].setZero();
     swept[1] = make.someDirection() * (swept_size * random.uniform());
@@ -109,8 +112,9 @@ void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch)
     if (gap > 0) depth = 1 + gap * pixel / radius;
     if (kind == AdversaryKind::insideSolid) {
       // A box around the swept volume or around a part of it.
-      const Eigen::Quaterniond turn = random.below(2) ? Eigen::Quaterniond::Identity()
-                                                      : Eigen::Quaterniond(Eigen::AngleAxisd(random.uniform(0, 6), make.direction()));
+      const Eigen::Quaterniond turn =
+          random.below(2) ? Eigen::Quaterniond::Identity()
+                          : Eigen::Quaterniond(Eigen::AngleAxisd(random.uniform(0, 6), make.direction()));
       const Vector3d half(random.logUniform(0.1, 20), random.logUniform(0.1, 20), random.logUniform(0.1, 20));
       object_count = 8;
       Vector3d inside;
@@ -150,8 +154,8 @@ void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch)
   batch.objects.push_back({addVolume(object, object_count, 0, batch), w, batch.num_groups++});
 }
 
-std::uint64_t countWrongCulls(Executor& executor, Batch& batch, std::uint64_t seed, std::uint64_t begin, std::uint64_t end,
-                              double gap, std::uint64_t* by_kind) {
+std::uint64_t countWrongCulls(Executor& executor, Batch& batch, std::uint64_t seed, std::uint64_t begin,
+                              std::uint64_t end, double gap, std::uint64_t* by_kind) {
   constexpr std::uint64_t kAtOnce = 256;
   std::uint64_t culled = 0;
   std::vector<std::uint8_t> may;

@@ -11,8 +11,8 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// A convex solid: the hull of `count` points (xyz in Batch::points, from point `first` on) grown by a ball. A triangle is
-/// one, and so is a link's line swept sphere over one part of its motion.
+/// A convex solid: the hull of `count` points (xyz in Batch::points, from point `first` on) grown by a ball. A triangle
+/// is one, and so is a link's line swept sphere over one part of its motion.
 struct Volume {
   std::int32_t first = 0, count = 0;
   double radius = 0;  ///< m
@@ -48,7 +48,8 @@ struct Batch {
   bool groups_only = false;
   Growth growth;
   std::vector<double> points;
-  /// A point that a swept volume of a window and an object of this window share lies in the window, or the window is wrong.
+  /// A point that a swept volume of a window and an object of this window share lies in the window, or the window is
+  /// wrong.
   std::vector<Window> windows;
   std::vector<Swept> swept;
   std::vector<Object> objects;  ///< those of a group lie together and share a window; groups are numbered from 0

@@ -9,7 +9,8 @@ namespace {
 
 /// Of all queries' time, for trials.
 constexpr double kTrialShare = 0.01;
-/// How fast old trials are forgotten; the least advantage that counts (the second of two runs finds its data in the caches).
+/// How fast old trials are forgotten; the least advantage that counts (the second of two runs finds its data in the
+/// caches).
 constexpr double kForget = 0.9, kAdvantage = 0.8;
 
 }  // namespace

@@ -18,8 +18,8 @@ class Choice {
   explicit Choice(double first_trial_us) : trial_us_(first_trial_us) {}
 
   bool pays() const { return pays_.load(std::memory_order_relaxed); }
-  /// Time for a trial, a query that is answered both ways: trials take at most 1 % of all queries' time, the present one's
-  /// own included.
+  /// Time for a trial, a query that is answered both ways: trials take at most 1 % of all queries' time, the present
+  /// one's own included.
   bool mayTry();
   /// Adds a query's time, of a trial that of the way chosen.
   void addQuery(double us) { query_ns_.fetch_add(static_cast<std::uint64_t>(1e3 * us), std::memory_order_relaxed); }
@@ -31,8 +31,8 @@ class Choice {
   std::atomic<bool> pays_{false};
   std::atomic<std::uint64_t> query_ns_{0};
   std::mutex mutex_;
-  double spent_us_ = 0, trial_us_;     ///< all trials; what one takes
-  double on_us_ = 0, off_us_ = 0;      ///< sums that forget
+  double spent_us_ = 0, trial_us_;  ///< all trials; what one takes
+  double on_us_ = 0, off_us_ = 0;   ///< sums that forget
 };
 
 }  // namespace visibility

@@ -68,7 +68,8 @@ void CpuExecutor::drawSwept(const Batch& batch) {
       const auto outcome = projector_.project(batch, swept.volume, batch.windows[w], view, footprint_);
       if (outcome == Projector::Outcome::unusable) unusable_[w] = 1;
       if (outcome != Projector::Outcome::covers) continue;
-      const std::size_t tile = tileBegin(batch, swept.window, view), index = kViews * w + static_cast<std::size_t>(view);
+      const std::size_t tile = tileBegin(batch, swept.window, view),
+                        index = kViews * w + static_cast<std::size_t>(view);
       tile_nearest_[index] = std::min(tile_nearest_[index], footprint_.bounds[0].lower);
       tile_farthest_[index] = std::max(tile_farthest_[index], footprint_.bounds[0].upper);
       for (int row = footprint_.y0; row <= footprint_.y1; ++row) {
@@ -93,7 +94,8 @@ CpuExecutor::Seen CpuExecutor::look(const Batch& batch, const Footprint& f, int 
   const std::size_t index = static_cast<std::size_t>(kViews * window + view);
   const bool intervals = batch.rule == VisibilityRule::intervals;
   // As a whole before or behind all of the swept volumes.
-  if (intervals && !(f.bounds[0].upper >= tile_nearest_[index] && f.bounds[0].lower <= tile_farthest_[index])) return seen;
+  if (intervals && !(f.bounds[0].upper >= tile_nearest_[index] && f.bounds[0].lower <= tile_farthest_[index]))
+    return seen;
   const std::size_t tile = tileBegin(batch, window, view), side = static_cast<std::size_t>(batch.resolution);
   float lower[kLargestResolution], upper[kLargestResolution];
   for (int row = f.y0; row <= f.y1; ++row) {
@@ -135,8 +137,8 @@ bool CpuExecutor::groupMayOverlap(const Batch& batch, std::size_t begin, std::si
     Seen all;
     for (std::size_t i = begin; i < end && !all.all(); ++i) {
       const Batch::Object& object = batch.objects[i];
-      const auto outcome = projector_.project(batch, object.volume, batch.windows[static_cast<std::size_t>(object.window)],
-                                              view, footprint_);
+      const auto outcome = projector_.project(batch, object.volume,
+                                              batch.windows[static_cast<std::size_t>(object.window)], view, footprint_);
       if (outcome == Projector::Outcome::unusable) return true;
       if (outcome == Projector::Outcome::misses) continue;
       const Seen seen = look(batch, footprint_, object.window, view);
@@ -158,8 +160,8 @@ void CpuExecutor::run(const Batch& batch, std::vector<std::uint8_t>& may) {
     for (end = begin; end < batch.objects.size() && batch.objects[end].group == first.group;) ++end;
     if (unusable_[static_cast<std::size_t>(first.window)]) continue;
     if (batch.rule == VisibilityRule::occlusion) {
-      if (!groupMayOverlap(batch, begin, end)) std::fill(may.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                         may.begin() + static_cast<std::ptrdiff_t>(end), 0);
+      if (!groupMayOverlap(batch, begin, end))
+        std::fill(may.begin() + static_cast<std::ptrdiff_t>(begin), may.begin() + static_cast<std::ptrdiff_t>(end), 0);
       continue;
     }
     for (std::size_t i = begin; i < end; ++i) {

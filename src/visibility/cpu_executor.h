@@ -9,7 +9,8 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// Scan conversion of the footprints: no OpenGL, the same bits each time, and no more of a batch drawn than its answer needs.
+/// Scan conversion of the footprints: no OpenGL, the same bits each time, and no more of a batch drawn than its answer
+/// needs.
 class FCL_ARTIC_EXPORT CpuExecutor : public Executor {
  public:
   void run(const Batch& batch, std::vector<std::uint8_t>& may) override;

@@ -32,8 +32,8 @@ struct VisibilityCuller::Impl {
 namespace visibility {
 namespace {
 
-/// Pairs of the self-test: of each kind a hundred or two, which shows a broken executor, not a missing snapping margin. That
-/// one is set by its argument.
+/// Pairs of the self-test: of each kind a hundred or two, which shows a broken executor, not a missing snapping margin.
+/// That one is set by its argument.
 constexpr std::uint64_t kSelfTestPairs = 1024;
 
 void requireSoundness(Executor& executor, Slot& slot, const VisibilityOptions& options) {
@@ -86,7 +86,9 @@ void ExecutorLoan::giveUp(const std::string& reason) {
   slot_->name = "cpu";
 }
 
-double ExecutorLoan::firstUse(const VisibilityCuller& culler) { return culler.impl_->factory ? 2e5 : 1e3; }
+double ExecutorLoan::firstUse(const VisibilityCuller& culler) {
+  return culler.impl_->factory ? 2e5 : 1e3;
+}
 
 }  // namespace visibility
 
@@ -96,8 +98,8 @@ VisibilityCuller::VisibilityCuller(const VisibilityOptions& options, const std::
                                    visibility::ExecutorFactory factory)
     : impl_(std::make_unique<Impl>()) {
   if (options.resolution < 4 || options.resolution > visibility::kLargestResolution) {
-    throw std::invalid_argument("VisibilityOptions.resolution is " + std::to_string(options.resolution) + ", not in [4, " +
-                                std::to_string(visibility::kLargestResolution) + "]");
+    throw std::invalid_argument("VisibilityOptions.resolution is " + std::to_string(options.resolution) +
+                                ", not in [4, " + std::to_string(visibility::kLargestResolution) + "]");
   }
   impl_->options = options;
   impl_->name = executor;
@@ -106,9 +108,13 @@ VisibilityCuller::VisibilityCuller(const VisibilityOptions& options, const std::
 
 VisibilityCuller::~VisibilityCuller() = default;
 
-const VisibilityOptions& VisibilityCuller::options() const { return impl_->options; }
+const VisibilityOptions& VisibilityCuller::options() const {
+  return impl_->options;
+}
 
-std::string VisibilityCuller::executor() const { return visibility::ExecutorLoan(*this)->name; }
+std::string VisibilityCuller::executor() const {
+  return visibility::ExecutorLoan(*this)->name;
+}
 
 std::string VisibilityCuller::fallbackReason() const {
   const std::lock_guard<std::mutex> lock(impl_->mutex);

@@ -79,8 +79,9 @@ class EglContext : public OffscreenContext {
   EglContext(int major, int minor) {
     const EGLenum api = egl_.queryApi();
     egl_.bindApi(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
-                             EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint wanted[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           major,   EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = egl_.createContext(egl_.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
     egl_.bindApi(api);
     if (context_ == EGL_NO_CONTEXT) {

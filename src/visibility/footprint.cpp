@@ -25,8 +25,12 @@ int pixelAtOrBefore(double x, int resolution) {
   return static_cast<int>(std::floor(std::min(std::max(x - 0.5, -1.0), resolution - 1.0)));
 }
 
-float down(double x) { return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity()); }
-float up(double x) { return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity()); }
+float down(double x) {
+  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+}
+float up(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
 
 }  // namespace
 
@@ -63,8 +67,8 @@ void Projector::addBounds(double a, double b, Footprint& f) const {
                               up(upper + evaluation + kFloat * std::abs(upper))};
 }
 
-/// Slopes worth trying: those of the plane through three far points, and, for what is round, those along the longest edge
-/// and tilted about it.
+/// Slopes worth trying: those of the plane through three far points, and, for what is round, those along the longest
+/// edge and tilted about it.
 void Projector::addSlopes(Footprint& f) const {
   addBounds(0, 0, f);
   if (count_ < 2) return;
@@ -151,8 +155,8 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
       for (const double b : {M_SQRT1_2, -M_SQRT1_2}) addSide(a, b, f);
     }
   }
-  // Sides along the edges of the points' hull. (The sum of convex polygons has the sides of each; the corners of the round
-  // part stick out, up to the box and the diagonals.)
+  // Sides along the edges of the points' hull. (The sum of convex polygons has the sides of each; the corners of the
+  // round part stick out, up to the box and the diagonals.)
   if (count_ <= kFewPoints) {
     for (int i = 0; i < count_; ++i) {
       for (int j = 0; j < i; ++j) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A convex volume as one tile sees it: the pixels that it may cover, and how deep it may lie in each (doc/VISIBILITY.md,
-// "The rule"). Everything is computed in double and rounded outward.
+// A convex volume as one tile sees it: the pixels that it may cover, and how deep it may lie in each
+// (doc/VISIBILITY.md, "The rule"). Everything is computed in double and rounded outward.
 //
 // Symbols: view along axis k; pixel (i, j) is the square [i, i+1] x [j, j+1] of the tile, its centre at +1/2;
 //   (X, Y) a point in pixels, Z its depth, 0 to 1 over the window; eta: see Growth.
@@ -20,7 +20,8 @@ struct Side {
   double a, b, c;
 };
 
-/// In the pixel with the centre (x, y) the volume's depth lies in [a x + b y + lower, a x + b y + upper], evaluated in float.
+/// In the pixel with the centre (x, y) the volume's depth lies in [a x + b y + lower, a x + b y + upper], evaluated in
+/// float.
 struct DepthBounds {
   float a, b, lower, upper;
 };
@@ -28,7 +29,7 @@ struct DepthBounds {
 /// The convex region that holds the centre of every pixel whose square the volume meets, by eta inside.
 struct Footprint {
   static constexpr int kMostSides = 20, kMostBounds = 7;
-  int x0, x1, y0, y1;  ///< pixels, ends included; at least one
+  int x0, x1, y0, y1;   ///< pixels, ends included; at least one
   double lo[2], hi[2];  ///< the same box, not rounded to pixels
   int num_sides, num_bounds;
   Side sides[kMostSides];

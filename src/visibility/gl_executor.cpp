@@ -17,7 +17,9 @@ namespace {
 constexpr int kLargestAtlas = 4096;
 constexpr float kNothing = 3e38f;
 
-const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+const void* offset(std::size_t bytes) {
+  return reinterpret_cast<const void*>(bytes);
+}
 
 }  // namespace
 
@@ -99,7 +101,8 @@ void GlExecutor::resizeAtlas(int columns, int rows, int resolution) {
     gl.DrawBuffer(buffer);
     gl.ReadBuffer(buffer);
     if (gl.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-      throw std::runtime_error("OpenGL can't draw to buffers of " + std::to_string(width_) + " x " + std::to_string(height_));
+      throw std::runtime_error("OpenGL can't draw to buffers of " + std::to_string(width_) + " x " +
+                               std::to_string(height_));
     }
   };
   attach(target_, GL_COLOR_ATTACHMENT0, intervals_, GL_COLOR_ATTACHMENT0);
@@ -223,8 +226,8 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
   for (const Batch::Swept& swept : batch.swept) {
     if (!within(swept.window)) continue;
     for (int view = 0; view < kViews; ++view) {
-      const auto outcome = projector_.project(batch, swept.volume, batch.windows[static_cast<std::size_t>(swept.window)], view,
-                                              footprint_);
+      const auto outcome = projector_.project(batch, swept.volume,
+                                              batch.windows[static_cast<std::size_t>(swept.window)], view, footprint_);
       if (outcome == Projector::Outcome::unusable) unusable[static_cast<std::size_t>(swept.window - begin)] = 1;
       if (outcome != Projector::Outcome::covers) continue;
       place(batch, footprint_, kViews * (swept.window - begin) + view, 0, swept_);
@@ -258,10 +261,11 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
       Range range;
       range.first = static_cast<std::int32_t>(objects_.size());
       for (std::size_t i = first; i <= last && !kept[unit]; ++i) {
-        const auto outcome = projector_.project(batch, batch.objects[i].volume, batch.windows[static_cast<std::size_t>(window)],
-                                                view, footprint_);
+        const auto outcome = projector_.project(batch, batch.objects[i].volume,
+                                                batch.windows[static_cast<std::size_t>(window)], view, footprint_);
         if (outcome == Projector::Outcome::unusable) kept[unit] = 1;
-        if (outcome == Projector::Outcome::covers) place(batch, footprint_, kViews * (window - begin) + view, id, objects_);
+        if (outcome == Projector::Outcome::covers)
+          place(batch, footprint_, kViews * (window - begin) + view, id, objects_);
       }
       range.count = static_cast<std::int32_t>(objects_.size()) - range.first;
       ranges_.push_back(range);

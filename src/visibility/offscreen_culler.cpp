@@ -4,7 +4,8 @@
 
 namespace fcl_artic {
 
-std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend, const VisibilityOptions& options) {
+std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend,
+                                                            const VisibilityOptions& options) {
   const std::string name = backend == OffscreenBackend::osmesa ? "osmesa" : "egl";
   return std::make_shared<VisibilityCuller>(options, name, [backend] {
     return std::unique_ptr<visibility::Executor>(

@@ -37,8 +37,17 @@ struct Osmesa {
 class OsmesaContext : public OffscreenContext {
  public:
   OsmesaContext(int major, int minor) {
-    const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                          OSMESA_CONTEXT_MAJOR_VERSION, major, OSMESA_CONTEXT_MINOR_VERSION, minor, 0};
+    const int wanted[] = {OSMESA_FORMAT,
+                          OSMESA_RGBA,
+                          OSMESA_DEPTH_BITS,
+                          0,
+                          OSMESA_PROFILE,
+                          OSMESA_CORE_PROFILE,
+                          OSMESA_CONTEXT_MAJOR_VERSION,
+                          major,
+                          OSMESA_CONTEXT_MINOR_VERSION,
+                          minor,
+                          0};
     context_ = osmesa_.create(wanted, nullptr);
     if (!context_) {
       throw std::runtime_error("OSMesa offers no OpenGL " + std::to_string(major) + "." + std::to_string(minor));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GLSL 4.30 sources of the executors osmesa and egl. Bounds of depth come as flat attributes and are evaluated at the pixel's
-// centre, relative to its tile: the rasteriser interpolates nothing, and all numbers are those that footprint.h bounds.
+// GLSL 4.30 sources of the executors osmesa and egl. Bounds of depth come as flat attributes and are evaluated at the
+// pixel's centre, relative to its tile: the rasteriser interpolates nothing, and all numbers are those that footprint.h
+// bounds.
 #pragma once
 
 namespace fcl_artic {
@@ -57,8 +58,8 @@ void main() {
   if (d.y >= s.x && d.x <= -s.y) flags[object] = 1u;
 })";
 
-/// Depth for occlusion queries: the near bound of swept volumes and the far one of objects, or the other way round. Into
-/// [0.1, 0.9], monotone, so that nothing equals a cleared pixel.
+/// Depth for occlusion queries: the near bound of swept volumes and the far one of objects, or the other way round.
+/// Into [0.1, 0.9], monotone, so that nothing equals a cleared pixel.
 constexpr const char* kNearDepthFragment = FCL_ARTIC_DEPTHS R"(
 void main() { gl_FragDepth = clamp(0.25 + 0.5 * depths().x, 0.1, 0.9); })";
 constexpr const char* kFarDepthFragment = FCL_ARTIC_DEPTHS R"(

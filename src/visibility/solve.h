@@ -21,8 +21,8 @@ struct Report {
   std::string fallback;
 };
 
-/// engine::Engine::solve, with stage 2 or without, as `mode` says. With a work budget `automatic` is off: what fits into it
-/// would depend on the clock.
+/// engine::Engine::solve, with stage 2 or without, as `mode` says. With a work budget `automatic` is off: what fits
+/// into it would depend on the clock.
 /// @param query  must outlive the use of the workspace (engine::Engine::pairMotion).
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, void* workspace,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report);

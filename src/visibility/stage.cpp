@@ -20,8 +20,8 @@ constexpr std::size_t kMostObjects = 20000;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 
-/// The part of the link's box that the pieces' boxes leave, a little larger, so that a point on its border is well within by
-/// the rounding of its pixel coordinates.
+/// The part of the link's box that the pieces' boxes leave, a little larger, so that a point on its border is well
+/// within by the rounding of its pixel coordinates.
 Window windowOf(const Bounds& link, const Bounds& pieces) {
   Window window;
   double longest = 0;
@@ -40,7 +40,8 @@ Window windowOf(const Bounds& link, const Bounds& pieces) {
 
 }  // namespace
 
-/// One window per link, its swept parts, and per pair a group of those pieces of the obstacle whose bounds meet a part's.
+/// One window per link, its swept parts, and per pair a group of those pieces of the obstacle whose bounds meet a
+/// part's.
 void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates, std::int32_t n,
                 ExecutorLoan& loan) {
   Batch& batch = loan->batch;
@@ -71,7 +72,8 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
       const CullCandidate& c = candidates[i];
       const std::size_t objects = batch.objects.size();
       std::uint32_t met = c.lanes;
-      if (!BodyPieces(problem.bodies[c.obstacle], c.margin).add(parts, met, least, kMostObjects, window, i, batch, reach)) {
+      if (!BodyPieces(problem.bodies[c.obstacle], c.margin)
+               .add(parts, met, least, kMostObjects, window, i, batch, reach)) {
         batch.objects.resize(objects);
         batch.objects.push_back({Volume(), window, i});  // without a point: unusable, so that the pair stays
       }
@@ -92,7 +94,8 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
     bool touching = false;
     for (; i < batch.objects.size() && batch.objects[i].group == group; ++i) touching = touching || may[i];
     if (touching) continue;
-    candidates[group].lanes = 0;  // Single lanes are left as they are: the solver would find the same, by other roundings.
+    candidates[group].lanes =
+        0;  // Single lanes are left as they are: the solver would find the same, by other roundings.
     ++culled;
   }
 }

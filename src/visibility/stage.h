@@ -24,7 +24,7 @@ class Stage {
   std::uint64_t pairs = 0, culled = 0, pieces = 0;
   double elapsed_us = 0;
   std::string executor;  ///< empty: nothing was asked of one
-  std::string failure;        ///< it gave up in the midst of its work
+  std::string failure;   ///< it gave up in the midst of its work
 
  private:
   void run(const engine::Problem& problem, const engine::SweptLink* links, engine::CullCandidate* pairs,

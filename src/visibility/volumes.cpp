@@ -23,8 +23,8 @@ constexpr double kOctagon[8][2] = {{kOctagonLong, kOctagonShort},   {kOctagonSho
 constexpr double kSqrt2 = 1.41421356237310, kSqrt3 = 1.73205080756888;
 constexpr double kLengths[Bounds::kDirections] = {1,      1,      1,      kSqrt2, kSqrt2, kSqrt2, kSqrt2,
                                                   kSqrt2, kSqrt2, kSqrt3, kSqrt3, kSqrt3, kSqrt3};
-/// Corners of an icosahedron around the unit ball: (0, +-a, +-b) and its cyclic shifts, b / a the golden section. Its faces
-/// are at a phi^2 / sqrt(3) from the middle.
+/// Corners of an icosahedron around the unit ball: (0, +-a, +-b) and its cyclic shifts, b / a the golden section. Its
+/// faces are at a phi^2 / sqrt(3) from the middle.
 constexpr double kIcosahedronA = 0.66158453886, kIcosahedronB = 1.07046626935;
 
 }  // namespace
@@ -66,7 +66,9 @@ Bounds boundsOf(const double* points, int count, double radius) {
   return b;
 }
 
-Bounds boundsOf(const engine::SweptLink& link) { return boundsOf(&link.points[0][0], 6, link.radius); }
+Bounds boundsOf(const engine::SweptLink& link) {
+  return boundsOf(&link.points[0][0], 6, link.radius);
+}
 
 Volume addVolume(const engine::SweptLink& link, Batch& batch) {
   Volume volume;
@@ -91,7 +93,8 @@ void BodyPieces::toWorld(const double* p, double* x) const {
 Bounds BodyPieces::boundsOf(const Node& node) const {
   double corners[8][3];
   for (int c = 0; c < 8; ++c) {
-    const double p[3] = {c & 1 ? node.hi[0] : node.lo[0], c & 2 ? node.hi[1] : node.lo[1], c & 4 ? node.hi[2] : node.lo[2]};
+    const double p[3] = {c & 1 ? node.hi[0] : node.lo[0], c & 2 ? node.hi[1] : node.lo[1],
+                         c & 4 ? node.hi[2] : node.lo[2]};
     toWorld(p, corners[c]);
   }
   return visibility::boundsOf(&corners[0][0], 8, pad_);

@@ -39,8 +39,8 @@ class BodyPieces {
  public:
   /// @param margin  that all of it is grown by, m.
   BodyPieces(const engine::Body& body, double margin);
-  /// Adds those whose bounds meet one of the parts, as objects of a group: triangles and other convex pieces; a node smaller
-  /// than `least` (m) as the ball around its box, with all that is in it.
+  /// Adds those whose bounds meet one of the parts, as objects of a group: triangles and other convex pieces; a node
+  /// smaller than `least` (m) as the ball around its box, with all that is in it.
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param most  of all objects of the batch.

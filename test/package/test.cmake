@@ -59,7 +59,6 @@ elseif(CASE STREQUAL "cmake")
   if(WITH_OMPL)
     run(COMMAND "${WORK}/build/planner" "${stage}/share/fcl_artic")
   endif()
-
   if(WITH_VISIBILITY)
     run(COMMAND "${WORK}/build/culler")
   endif()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The executors osmesa and egl: the rule on each, what they cull beside cpu, threads, leaks, and what happens without them.
+// The executors osmesa and egl: the rule on each, what they cull beside cpu, threads, leaks, and what happens without
+// them.
 #include <unistd.h>
 
 #include <atomic>
@@ -132,7 +133,9 @@ class AnyExecutor : public testing::TestWithParam<std::tuple<std::string, Visibi
   Batch batch_;
 };
 
-TEST_P(AnyExecutor, BallsThatAreApartAreCulled) { EXPECT_FALSE(mayOverlap()); }
+TEST_P(AnyExecutor, BallsThatAreApartAreCulled) {
+  EXPECT_FALSE(mayOverlap());
+}
 
 TEST_P(AnyExecutor, WhatIsNotFiniteMayOverlap) {
   const Batch good = batch_;
@@ -267,7 +270,8 @@ struct Useless : Executor {
 };
 
 TEST(Culler, MissingDriverFallsBackWithAReason) {
-  const VisibilityCuller culler({}, "egl", []() -> std::unique_ptr<Executor> { throw std::runtime_error("no such library"); });
+  const VisibilityCuller culler({}, "egl",
+                                []() -> std::unique_ptr<Executor> { throw std::runtime_error("no such library"); });
   EXPECT_EQ(culler.fallbackReason(), "");
   EXPECT_EQ(culler.executor(), "cpu");
   EXPECT_EQ(culler.fallbackReason(), "egl: no such library");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rule on the executor cpu: no wrong cull among pairs that touch by construction, and proof that the test would see one.
+// The rule on the executor cpu: no wrong cull among pairs that touch by construction, and proof that the test would see
+// one.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -43,7 +44,8 @@ TEST_P(CpuRule, WeakenedRulesAreSeen) {
     const char* name;
     bool footprint, depth;
     double least;  ///< part of the pairs that it culls wrongly
-  } rules[] = {{"no dilation", false, false, 0.5}, {"depth only", false, true, 0.5}, {"footprint only", true, false, 0.01}};
+  } rules[] = {
+      {"no dilation", false, false, 0.5}, {"depth only", false, true, 0.5}, {"footprint only", true, false, 0.01}};
   for (const auto& rule : rules) {
     Batch b = batch();
     b.growth = {rule.footprint, rule.depth, -1};
@@ -66,7 +68,8 @@ INSTANTIATE_TEST_SUITE_P(Resolutions, CpuRule,
                          testing::Combine(testing::Values(8, 16, 32, 64),
                                           testing::Values(VisibilityRule::intervals, VisibilityRule::occlusion)),
                          [](const auto& info) {
-                           return std::string(std::get<1>(info.param) == VisibilityRule::intervals ? "intervals" : "occlusion") +
+                           return std::string(std::get<1>(info.param) == VisibilityRule::intervals ? "intervals"
+                                                                                                   : "occlusion") +
                                   std::to_string(std::get<0>(info.param));
                          });
 

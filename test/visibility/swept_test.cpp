@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the stage hands to an executor: swept volumes that hold the link, pieces that hold the obstacle, windows that hold what
-// they share.
+// What the stage hands to an executor: swept volumes that hold the link, pieces that hold the obstacle, windows that
+// hold what they share.
 #include <cmath>
 #include <random>
 
@@ -64,15 +64,15 @@ class Swept : public testing::Test {
     return Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
   }
   /// Asks once; what the executor saw is in batch_.
-  void ask(const JointMotion& motion, const std::shared_ptr<fcl::CollisionGeometryd>& obstacle, const Eigen::Isometry3d& at,
-           double margin) {
+  void ask(const JointMotion& motion, const std::shared_ptr<fcl::CollisionGeometryd>& obstacle,
+           const Eigen::Isometry3d& at, double margin) {
     fcl::CollisionObjectd link(capsule_), object(obstacle, at);
     ArticulatedCollisionManager manager(tree_);
     manager.bind("link3", &link);
     manager.registerObject(&object);
     manager.setup();
-    manager.setVisibility(std::make_shared<VisibilityCuller>(
-        VisibilityOptions(), "recorder", [this] { return std::make_unique<Recorder>(batch_); }));
+    manager.setVisibility(std::make_shared<VisibilityCuller>(VisibilityOptions(), "recorder",
+                                                             [this] { return std::make_unique<Recorder>(batch_); }));
     CertifiedRequest request;
     request.visibility = VisibilityMode::on;
     request.margin = margin;
@@ -126,7 +126,9 @@ TEST_F(Swept, PiecesHoldTheObstacle) {
   } cases[] = {
       {std::make_shared<fcl::Sphered>(0.7), [](const Vector3d& n) -> Vector3d { return 0.7 * n; }, 1e-9},
       {std::make_shared<fcl::Boxd>(1, 2, 3),
-       [](const Vector3d& n) { return Vector3d(std::copysign(0.5, n.x()), std::copysign(1, n.y()), std::copysign(1.5, n.z())); },
+       [](const Vector3d& n) {
+         return Vector3d(std::copysign(0.5, n.x()), std::copysign(1, n.y()), std::copysign(1.5, n.z()));
+       },
        1e-9},
       {std::make_shared<fcl::Capsuled>(0.5, 2),
        [](const Vector3d& n) -> Vector3d { return 0.5 * n + Vector3d(0, 0, std::copysign(1, n.z())); }, 1e-9},

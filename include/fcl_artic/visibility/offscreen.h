@@ -16,8 +16,8 @@ enum class OffscreenBackend {
   egl,     ///< a surfaceless EGL context: Mesa in software or on a graphics processor, else the first EGL device
 };
 
-/// An OpenGL core context that draws to buffers of its own. It is made on one thread and may be used by another, one at a
-/// time.
+/// An OpenGL core context that draws to buffers of its own. It is made on one thread and may be used by another, one at
+/// a time.
 class FCL_ARTIC_EXPORT OffscreenContext {
  public:
   /// @throws std::runtime_error saying what is missing: the library, the version.
@@ -37,8 +37,8 @@ class FCL_ARTIC_EXPORT OffscreenContext {
   OffscreenContext() = default;
 };
 
-/// A culler that draws with OpenGL 4.3. Nothing is opened before the first query; where the driver is missing or fails its
-/// self-test, the executor cpu takes over, and VisibilityCuller::fallbackReason() says why.
+/// A culler that draws with OpenGL 4.3. Nothing is opened before the first query; where the driver is missing or fails
+/// its self-test, the executor cpu takes over, and VisibilityCuller::fallbackReason() says why.
 FCL_ARTIC_EXPORT std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend,
                                                                              const VisibilityOptions& options = {});
 
