@@ -70,7 +70,8 @@ struct CertifiedRequest {
   /// Pairs that touch at t = 0 may separate; they are watched from the moment they have.
   bool ignore_initial_contact = false;
   /// Method::Redon2004 solves pairs of meshes and boxes without a margin; other pairs, and what touches at t = 0, are left
-  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard).
+  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard). It has no stage 2: `visibility` has no effect on
+  /// it. ContactMode::any is answered with the first contact.
   Method method = Method::standard;
   RedonOptions redon;
   /// Measure the time of each stage too (counts are always there).
