@@ -29,13 +29,18 @@ inline void addRedonOptions(CLI::App& verb, RedonOptions& o) {
       ->capture_default_str()
       ->group(group)
       ->type_name("LEVEL");
-  verb.add_flag_callback("--independent", [&o] { o.simultaneous = false; }, "Solve every equation by itself")->group(group);
-  verb.add_flag_callback("--no-newton", [&o] { o.newton = false; }, "No interval Newton: divide only")->group(group);
-  verb.add_flag_callback("--late-validity", [&o] { o.early_validity = false; },
-                         "Ask whether features touch only in the last interval")
+  verb.add_flag_callback(
+          "--independent", [&o] { o.simultaneous = false; }, "Solve every equation by itself")
       ->group(group);
-  verb.add_flag_callback("--boxes-first", [&o] { o.in_time_order = false; },
-                         "All boxes over the whole motion, then all equations; else both in the order of time")
+  verb.add_flag_callback(
+          "--no-newton", [&o] { o.newton = false; }, "No interval Newton: divide only")
+      ->group(group);
+  verb.add_flag_callback(
+          "--late-validity", [&o] { o.early_validity = false; }, "Ask whether features touch only in the last interval")
+      ->group(group);
+  verb.add_flag_callback(
+          "--boxes-first", [&o] { o.in_time_order = false; },
+          "All boxes over the whole motion, then all equations; else both in the order of time")
       ->group(group);
 }
 

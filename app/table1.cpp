@@ -48,8 +48,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// Table 1 as printed in the paper (Redon, Kim, Lin, Manocha 2004), in ms: dynamic BVH culling, dynamic SV culling, exact
-/// contact, total; colliding first. (At 5 degrees, colliding, the printed parts don't sum to the printed total.)
+/// Table 1 as printed in the paper (Redon, Kim, Lin, Manocha 2004), in ms: dynamic BVH culling, dynamic SV culling,
+/// exact contact, total; colliding first. (At 5 degrees, colliding, the printed parts don't sum to the printed total.)
 struct Printed {
   double degrees;
   double colliding[4], free[4];
@@ -103,7 +103,8 @@ std::unique_ptr<Scenery> pumaInPipes(std::size_t triangles, std::uint64_t seed) 
 
 /// Random steps from free configurations within the joints' limits: every joint by the angle, up or down.
 /// @return colliding ones, free ones.
-std::array<std::vector<JointMotion>, 2> makeSteps(const Scenery& s, double angle, std::size_t count, std::uint64_t seed) {
+std::array<std::vector<JointMotion>, 2> makeSteps(const Scenery& s, double angle, std::size_t count,
+                                                  std::uint64_t seed) {
   const KinematicTree& tree = *s.robot.tree;
   Random random(seed);
   std::array<std::vector<JointMotion>, 2> sets;
@@ -131,7 +132,7 @@ std::array<std::vector<JointMotion>, 2> makeSteps(const Scenery& s, double angle
 struct Cell {
   double bvh = 0, exact = 0, total = 0;
   double solving = 0;  ///< part of `exact`: the equations
-  double sv = -1;  ///< below 0: the stage is off
+  double sv = -1;      ///< below 0: the stage is off
   std::vector<double> totals;
   double box_tests = 0, leaf_pairs = 0, equations = 0, intervals = 0, evaluations = 0, steps = 0;
   double median() const { return at(0.5); }
@@ -146,8 +147,8 @@ struct Cell {
 };
 
 /// @param[out] differ  queries whose verdict is not `contact`.
-Cell measure(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions, CertifiedRequest request,
-             int passes, bool contact, std::size_t& differ) {
+Cell measure(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
+             CertifiedRequest request, int passes, bool contact, std::size_t& differ) {
   request.measure_times = true;
   Cell cell;
   CertifiedResult result;
@@ -176,8 +177,8 @@ Cell measure(const ArticulatedCollisionManager& manager, const std::vector<Joint
     cell.steps += static_cast<double>(best.redon.steps_bounded);
   }
   const double n = static_cast<double>(std::max<std::size_t>(1, motions.size()));
-  for (double* x : {&cell.bvh, &cell.exact, &cell.total, &cell.solving, &cell.box_tests, &cell.leaf_pairs, &cell.equations, &cell.intervals,
-                    &cell.evaluations, &cell.steps}) {
+  for (double* x : {&cell.bvh, &cell.exact, &cell.total, &cell.solving, &cell.box_tests, &cell.leaf_pairs,
+                    &cell.equations, &cell.intervals, &cell.evaluations, &cell.steps}) {
     *x /= n;
   }
   if (cell.sv >= 0) cell.sv /= n;
@@ -213,7 +214,9 @@ const Printed* printedAt(double degrees) {
   return nullptr;
 }
 
-std::string ms(double us) { return us < 0 ? "-" : fmt::format("{:.4f}", us * 1e-3); }
+std::string ms(double us) {
+  return us < 0 ? "-" : fmt::format("{:.4f}", us * 1e-3);
+}
 
 std::string textOf(const std::vector<Row>& rows) {
   std::string out = fmt::format("{:>5}  {:<8} {:<22}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "angle", "steps", "method",
@@ -227,9 +230,11 @@ std::string textOf(const std::vector<Row>& rows) {
         out += fmt::format("{:>5}  {:<8} {:<22}{:>12.4f}{:>12.4f}{:>12.4f}{:>12.4f}\n", row.degrees, kind,
                            "paper, as printed", p[0], p[1], p[2], p[3]);
       }
-      for (const auto& [name, cell] : {std::pair<const char*, const Cell*>{"redon2004", &row.paper[c]}, {"standard", &row.own[c]}}) {
+      for (const auto& [name, cell] :
+           {std::pair<const char*, const Cell*>{"redon2004", &row.paper[c]}, {"standard", &row.own[c]}}) {
         out += fmt::format("{:>5}  {:<8} {:<22}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", row.degrees, kind, name,
-                           ms(cell->bvh), ms(cell->sv), ms(cell->exact), ms(cell->total), ms(cell->median()), ms(cell->p95()));
+                           ms(cell->bvh), ms(cell->sv), ms(cell->exact), ms(cell->total), ms(cell->median()),
+                           ms(cell->p95()));
       }
     }
   }
@@ -239,10 +244,11 @@ std::string textOf(const std::vector<Row>& rows) {
     const Printed* printed = printedAt(row.degrees);
     for (int c = 0; c < 2; ++c) {
       const Cell& p = row.paper[c];
-      out += fmt::format("{:>5}  {:<8}{:>12.0f}{:>12.0f}{:>12.0f}{:>12.1f}{:>12.0f}{:>12.0f}{:>14}{:>14.1f}\n", row.degrees,
-                         c ? "NO-COL" : "COL", p.box_tests, p.leaf_pairs, p.equations, p.intervals, p.evaluations, p.steps,
-                         printed ? fmt::format("{:.1f}", 1e3 * (c ? printed->free : printed->colliding)[3] / p.total) : "-",
-                         p.total / row.own[c].total);
+      out += fmt::format(
+          "{:>5}  {:<8}{:>12.0f}{:>12.0f}{:>12.0f}{:>12.1f}{:>12.0f}{:>12.0f}{:>14}{:>14.1f}\n", row.degrees,
+          c ? "NO-COL" : "COL", p.box_tests, p.leaf_pairs, p.equations, p.intervals, p.evaluations, p.steps,
+          printed ? fmt::format("{:.1f}", 1e3 * (c ? printed->free : printed->colliding)[3] / p.total) : "-",
+          p.total / row.own[c].total);
     }
   }
   return out;
@@ -250,7 +256,8 @@ std::string textOf(const std::vector<Row>& rows) {
 
 std::string csvOf(const std::vector<Row>& rows) {
   std::string out =
-      "degrees,steps,method,bvh_ms,sv_ms,exact_ms,total_ms,median_ms,p95_ms,box_tests,leaf_pairs,equations,s_max,a_ne,chain_steps\n";
+      "degrees,steps,method,bvh_ms,sv_ms,exact_ms,total_ms,median_ms,p95_ms,box_tests,leaf_pairs,equations,s_max,a_ne,"
+      "chain_steps\n";
   for (const Row& row : rows) {
     const Printed* printed = printedAt(row.degrees);
     for (int c = 0; c < 2; ++c) {
@@ -259,11 +266,12 @@ std::string csvOf(const std::vector<Row>& rows) {
         const double* p = c ? printed->free : printed->colliding;
         out += fmt::format("{},{},printed,{},{},{},{},,,,,,,,\n", row.degrees, kind, p[0], p[1], p[2], p[3]);
       }
-      for (const auto& [name, cell] : {std::pair<const char*, const Cell*>{"redon2004", &row.paper[c]}, {"standard", &row.own[c]}}) {
+      for (const auto& [name, cell] :
+           {std::pair<const char*, const Cell*>{"redon2004", &row.paper[c]}, {"standard", &row.own[c]}}) {
         const bool paper = cell == &row.paper[c];
         out += fmt::format("{},{},{},{:.6f},{},{:.6f},{:.6f},{:.6f},{:.6f}", row.degrees, kind, name, cell->bvh * 1e-3,
-                           cell->sv < 0 ? "" : fmt::format("{:.6f}", cell->sv * 1e-3), cell->exact * 1e-3, cell->total * 1e-3,
-                           cell->median() * 1e-3, cell->p95() * 1e-3);
+                           cell->sv < 0 ? "" : fmt::format("{:.6f}", cell->sv * 1e-3), cell->exact * 1e-3,
+                           cell->total * 1e-3, cell->median() * 1e-3, cell->p95() * 1e-3);
         out += paper ? fmt::format(",{:.1f},{:.1f},{:.1f},{:.2f},{:.1f},{:.1f}\n", cell->box_tests, cell->leaf_pairs,
                                    cell->equations, cell->intervals, cell->evaluations, cell->steps)
                      : ",,,,,,\n";
@@ -299,7 +307,9 @@ int runTable1(const Table1Options& o) {
   {
     ProgressBar bar;
     for (std::size_t i = 0; i < o.angles.size(); ++i) {
-      const auto share = [&](double part) { bar.show((static_cast<double>(i) + part) / static_cast<double>(o.angles.size())); };
+      const auto share = [&](double part) {
+        bar.show((static_cast<double>(i) + part) / static_cast<double>(o.angles.size()));
+      };
       const auto sets = makeSteps(*scenery, o.angles[i] * kRadiansPerDegree, o.queries, o.seed + 100 * i);
       share(0.2);
       Row row;
@@ -316,9 +326,11 @@ int runTable1(const Table1Options& o) {
       rows.push_back(row);
     }
   }
-  fmt::print("PUMA 560 in Pipes of {} triangles, every joint by the angle up or down; {} colliding and {} free steps each, the "
-             "fastest of {} runs.\nThe paper's own scene of that name is another one; its size isn't known.\n\n{}",
-             o.triangles, o.queries, o.queries, o.passes, textOf(rows));
+  fmt::print(
+      "PUMA 560 in Pipes of {} triangles, every joint by the angle up or down; {} colliding and {} free steps each, "
+      "the "
+      "fastest of {} runs.\nThe paper's own scene of that name is another one; its size isn't known.\n\n{}",
+      o.triangles, o.queries, o.queries, o.passes, textOf(rows));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) writeFile(o.csv, csvOf(rows));
   if (!o.svg.empty()) writeFile(o.svg, svgOf(rows));
@@ -336,8 +348,8 @@ struct DepthOptions {
   std::string csv, svg;
 };
 
-/// An arm of n joints and 1.2 m whose last link carries a mesh, amid a mesh of pipes; the same path of the last link's kind for
-/// all n: each joint turns by 10 degrees / n, up or down.
+/// An arm of n joints and 1.2 m whose last link carries a mesh, amid a mesh of pipes; the same path of the last link's
+/// kind for all n: each joint turns by 10 degrees / n, up or down.
 struct Snake {
   std::shared_ptr<KinematicTree> tree;
   std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> tip, pipes;
@@ -345,7 +357,8 @@ struct Snake {
   std::unique_ptr<ArticulatedCollisionManager> manager;
 };
 
-std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> modelOf(const generator::Mesh& mesh, const Eigen::Vector3d& shift, double scale) {
+std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> modelOf(const generator::Mesh& mesh, const Eigen::Vector3d& shift,
+                                                     double scale) {
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   std::vector<Eigen::Vector3d> vertices;
   for (const Eigen::Vector3d& v : mesh.vertices) vertices.push_back(scale * (v - shift));
@@ -418,8 +431,8 @@ int runDepth(const DepthOptions& o) {
     line.independent = measure(*s.manager, motions, request, o.passes, true, differ);
     lines.push_back(line);
   }
-  fmt::print("{:>6}  {:<13}{:>12}{:>12}{:>14}{:>14}{:>14}{:>14}\n", "joints", "equations", "n_e", "intervals", "evaluations",
-             "chain steps", "equations ms", "factor");
+  fmt::print("{:>6}  {:<13}{:>12}{:>12}{:>14}{:>14}{:>14}{:>14}\n", "joints", "equations", "n_e", "intervals",
+             "evaluations", "chain steps", "equations ms", "factor");
   std::string csv = "joints,solver,equations,intervals,evaluations,chain_steps,equations_ms\n";
   BarChart chart;
   chart.title = "Equations solved all at once and one by one";
@@ -428,12 +441,14 @@ int runDepth(const DepthOptions& o) {
   chart.series = {{"simultaneous", {}}, {"independent", {}}};
   for (const Line& line : lines) {
     chart.groups.push_back(std::to_string(line.joints));
-    for (const auto& [name, cell] : {std::pair<const char*, const Cell*>{"simultaneous", &line.simultaneous}, {"independent", &line.independent}}) {
+    for (const auto& [name, cell] : {std::pair<const char*, const Cell*>{"simultaneous", &line.simultaneous},
+                                     {"independent", &line.independent}}) {
       const bool alone = cell == &line.independent;
-      fmt::print("{:>6}  {:<13}{:>12.0f}{:>12.1f}{:>14.0f}{:>14.0f}{:>14.3f}{:>14}\n", line.joints, name, cell->equations, cell->intervals,
-                 cell->evaluations, cell->steps, cell->solving * 1e-3,
+      fmt::print("{:>6}  {:<13}{:>12.0f}{:>12.1f}{:>14.0f}{:>14.0f}{:>14.3f}{:>14}\n", line.joints, name,
+                 cell->equations, cell->intervals, cell->evaluations, cell->steps, cell->solving * 1e-3,
                  alone ? fmt::format("{:.1f}", line.independent.solving / line.simultaneous.solving) : "");
-      csv += fmt::format("{},{},{:.1f},{:.2f},{:.1f},{:.1f},{:.6f}\n", line.joints, name, cell->equations, cell->intervals, cell->evaluations, cell->steps, cell->solving * 1e-3);
+      csv += fmt::format("{},{},{:.1f},{:.2f},{:.1f},{:.1f},{:.6f}\n", line.joints, name, cell->equations,
+                         cell->intervals, cell->evaluations, cell->steps, cell->solving * 1e-3);
       chart.series[alone].values.push_back(cell->solving * 1e-3);
     }
   }
@@ -448,14 +463,25 @@ int runDepth(const DepthOptions& o) {
 void addTable1(CLI::App& bench, int& exit_status) {
   auto options = std::make_shared<Table1Options>();
   Table1Options& o = *options;
-  CLI::App* verb = bench.add_subcommand("table1", "Table 1 of Redon et al. 2004: the paper's method, and the library's own, beside the printed times");
+  CLI::App* verb = bench.add_subcommand(
+      "table1", "Table 1 of Redon et al. 2004: the paper's method, and the library's own, beside the printed times");
   verb->footer("Exit status: 0 both methods agree on all verdicts, 1 they don't, 2 error.");
-  verb->add_option("--angles", o.angles, "Angle by which every joint moves, degrees")->capture_default_str()->type_name("DEG...");
-  verb->add_option("--queries", o.queries, "Colliding steps and free steps for each angle")->check(CLI::PositiveNumber)->capture_default_str();
-  verb->add_option("--triangles", o.triangles, "Triangles of the pipes")->check(CLI::Range(1000, 1000000))->capture_default_str();
+  verb->add_option("--angles", o.angles, "Angle by which every joint moves, degrees")
+      ->capture_default_str()
+      ->type_name("DEG...");
+  verb->add_option("--queries", o.queries, "Colliding steps and free steps for each angle")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--triangles", o.triangles, "Triangles of the pipes")
+      ->check(CLI::Range(1000, 1000000))
+      ->capture_default_str();
   verb->add_option("--seed", o.seed, "The same seed asks the same queries")->capture_default_str();
-  verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")->check(CLI::PositiveNumber)->capture_default_str();
-  verb->add_option("--tolerance-time", o.tolerance, "Wanted width of the bracket of the contact time")->check(CLI::PositiveNumber)->capture_default_str();
+  verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--tolerance-time", o.tolerance, "Wanted width of the bracket of the contact time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->add_option("--svg", o.svg, "Draw the totals")->type_name("FILE");
   addRedonOptions(*verb, o.redon);
@@ -465,11 +491,19 @@ void addTable1(CLI::App& bench, int& exit_status) {
 void addDepth(CLI::App& bench, int& exit_status) {
   auto options = std::make_shared<DepthOptions>();
   DepthOptions& o = *options;
-  CLI::App* verb = bench.add_subcommand("depth", "Equations solved all at once and one by one, as the chain gets deeper");
-  verb->add_option("--joints", o.joints, "Joints of the chain")->check(CLI::Range(1, 200))->capture_default_str()->type_name("N...");
-  verb->add_option("--queries", o.queries, "Colliding steps for each chain")->check(CLI::PositiveNumber)->capture_default_str();
+  CLI::App* verb =
+      bench.add_subcommand("depth", "Equations solved all at once and one by one, as the chain gets deeper");
+  verb->add_option("--joints", o.joints, "Joints of the chain")
+      ->check(CLI::Range(1, 200))
+      ->capture_default_str()
+      ->type_name("N...");
+  verb->add_option("--queries", o.queries, "Colliding steps for each chain")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   verb->add_option("--seed", o.seed, "The same seed asks the same queries")->capture_default_str();
-  verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")->check(CLI::PositiveNumber)->capture_default_str();
+  verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->add_option("--svg", o.svg, "Draw the times")->type_name("FILE");
   addRedonOptions(*verb, o.redon);

@@ -5,8 +5,8 @@
 
 namespace fcl_artic::app {
 
-/// The verbs `bench table1`, the paper's Table 1 measured anew, and `bench depth`: its two ways to solve equations as chains
-/// get deeper.
+/// The verbs `bench table1`, the paper's Table 1 measured anew, and `bench depth`: its two ways to solve equations as
+/// chains get deeper.
 void addTable1(CLI::App& bench, int& exit_status);
 void addDepth(CLI::App& bench, int& exit_status);
 

@@ -14,16 +14,17 @@
 namespace fcl_artic {
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
 using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
-/// What a half size is longer than its points need, as a part of the coordinates and of the box: the axes are off by single
-/// precision's rounding, 2^-24 an entry, so that e_j . e_k differs from 0 or 1 by less than 2^-21. The test takes the box for the
-/// parallelepiped along its axes as well as for the slabs across them; each holds the other when the half sizes grow by
-/// this part of their sum. Rounding of the center and of the half sizes to float is less than it, too.
+/// What a half size is longer than its points need, as a part of the coordinates and of the box: the axes are off by
+/// single precision's rounding, 2^-24 an entry, so that e_j . e_k differs from 0 or 1 by less than 2^-21. The test
+/// takes the box for the parallelepiped along its axes as well as for the slabs across them; each holds the other when
+/// the half sizes grow by this part of their sum. Rounding of the center and of the half sizes to float is less than
+/// it, too.
 constexpr double kSlack = 0x1p-20;
 
 /// Gives equal points and equal edges one number each. Open addressing over the tables of who asks.
@@ -76,7 +77,8 @@ Matrix3d principalAxes(const Vector3d* first, const std::uint32_t* order, std::s
     const double a = 0.5 * (v[1] - v[0]).cross(v[2] - v[0]).norm() + 1e-30;
     area += a;
     mean += a * m;
-    second += a / 12 * (9 * m * m.transpose() + v[0] * v[0].transpose() + v[1] * v[1].transpose() + v[2] * v[2].transpose());
+    second +=
+        a / 12 * (9 * m * m.transpose() + v[0] * v[0].transpose() + v[1] * v[1].transpose() + v[2] * v[2].transpose());
   }
   mean /= area;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(second / area - mean * mean.transpose());

@@ -47,7 +47,8 @@ JointMotion inBetweenMotion(const KinematicTree& tree, const std::vector<Eigen::
   const int links = tree.numLinks() - 1;
   bool ours = links >= 0 && tree.numJoints() == links && tree.dof() == 7 * links && tree.parentLink(links) < 0;
   for (JointId j = 0; ours && j < links; ++j) ours = tree.joint(j).type == JointType::floating;
-  if (!ours) throw std::invalid_argument("inBetweenMotion: the tree '" + tree.name() + "' was not made by inBetweenTree()");
+  if (!ours)
+    throw std::invalid_argument("inBetweenMotion: the tree '" + tree.name() + "' was not made by inBetweenTree()");
   requirePoses(M_0_begin, links, "M_0_begin");
   requirePoses(M_0_end, links, "M_0_end");
   const auto configuration = [&](const std::vector<Eigen::Isometry3d>& M_0) {

@@ -18,7 +18,8 @@ using engine::Node;
 
 }  // namespace
 
-void Culling::begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts) {
+void Culling::begin(const engine::Problem& problem, const engine::Query& query, const Options& options,
+                    Counts& counts) {
   problem_ = &problem;
   query_ = &query;
   options_ = &options;
@@ -103,7 +104,8 @@ void Culling::moverBoxes() {
   }
 }
 
-void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out) {
+void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
+                        std::vector<BodyPair>& out) {
   out.clear();
   masks_.clear();
   const auto add = [&](std::int32_t index, std::uint64_t mask) {
@@ -225,15 +227,16 @@ const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
   return s.box;
 }
 
-/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait for
-/// the next one.
+/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait
+/// for the next one.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
   std::vector<Entry>& stack = waiting_[slot];
   while (!stack.empty()) {
     Entry e = stack.back();
     stack.pop_back();
     const BodyPair& pair = pairs[static_cast<std::size_t>(e.pair)];
-    const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)], &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
+    const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)],
+                  &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
     const int k = __builtin_ctzll(e.mask);
     ++counts_->box_tests;
     if (certainlyDisjoint(x, swept(pair, e, k), y.half)) {
@@ -245,7 +248,8 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
     if (x.isLeaf() && y.isLeaf()) {
       ++counts_->leaf_pairs;
       const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
-      out.push_back({e.pair, x.triangle(), y.triangle(), timeOf(level, k), options_->in_time_order ? timeOf(level, k + 1) : 1});
+      out.push_back(
+          {e.pair, x.triangle(), y.triangle(), timeOf(level, k), options_->in_time_order ? timeOf(level, k + 1) : 1});
       e.mask &= e.mask - 1;
       if (e.mask && options_->in_time_order) wait(e);
     } else if (y.isLeaf() || (!x.isLeaf() && x.size() > y.size())) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What may touch in a window of time: links by their swept line swept spheres (Redon 2004, Section 4), then triangles by
-// their trees of oriented boxes (Section 5.1), both over the sub-intervals that each link's refinement level asks for.
+// What may touch in a window of time: links by their swept line swept spheres (Redon 2004, Section 4), then triangles
+// by their trees of oriented boxes (Section 5.1), both over the sub-intervals that each link's refinement level asks
+// for.
 #pragma once
 
 #include <functional>
@@ -81,18 +82,18 @@ class Culling {
   Counts* counts_ = nullptr;
   std::vector<SweepChains> chains_[kFinest + 1];  ///< by level and sub-interval
   std::vector<bool> chains_set_[kFinest + 1];
-  std::vector<std::vector<Motion>> motions_;      ///< by sweep and step
+  std::vector<std::vector<Motion>> motions_;  ///< by sweep and step
   struct Box {
     double lo[3], hi[3];
   };
   std::vector<std::vector<Box>> mover_boxes_;  ///< by mover and sub-interval
   std::vector<int> mover_levels_;
-  std::vector<std::uint64_t> masks_;           ///< of the body pairs found
-  std::vector<Traversal> traversals_;          ///< of the body pairs
+  std::vector<std::uint64_t> masks_;   ///< of the body pairs found
+  std::vector<Traversal> traversals_;  ///< of the body pairs
   int finest_ = 0;
-  std::vector<Entry> waiting_[1 << kFinest];   ///< by slot
+  std::vector<Entry> waiting_[1 << kFinest];  ///< by slot
   std::vector<Swept> cache_;
-  std::int64_t stamp_ = 0;                     ///< of the present pair and sub-interval
+  std::int64_t stamp_ = 0;  ///< of the present pair and sub-interval
   std::int32_t stamp_pair_ = -1, stamp_part_ = -1;
 };
 

@@ -12,8 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-IntervalVec3 at(const double* p) { return IntervalVec3(p); }
-Vector3d middleOf(const IntervalVec3& v) { return {v[0].middle(), v[1].middle(), v[2].middle()}; }
+IntervalVec3 at(const double* p) {
+  return IntervalVec3(p);
+}
+Vector3d middleOf(const IntervalVec3& v) {
+  return {v[0].middle(), v[1].middle(), v[2].middle()};
+}
 
 /// Takes the part along u out of v.
 void removeAlong(const Vector3d& u, Vector3d& v) {
@@ -111,9 +115,12 @@ struct Vertices {
 Vertices verticesOf(const Equation& q, const Element* e) {
   const auto at = [&](int i) { return e + q.element[i]; };
   switch (q.kind) {
-    case EquationKind::faceVertex: return {{at(1), at(2), at(3)}, {at(4)}, 3, 1};
-    case EquationKind::vertexFace: return {{at(0)}, {at(2), at(3), at(4)}, 1, 3};
-    default: return {{at(1), at(2)}, {at(4), at(5)}, 2, 2};
+    case EquationKind::faceVertex:
+      return {{at(1), at(2), at(3)}, {at(4)}, 3, 1};
+    case EquationKind::vertexFace:
+      return {{at(0)}, {at(2), at(3), at(4)}, 1, 3};
+    default:
+      return {{at(1), at(2)}, {at(4), at(5)}, 2, 2};
   }
 }
 
@@ -168,7 +175,8 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
         e.own = at(tree.vertex(d.to)) - at(tree.vertex(d.from));
       } else {
         const ObbTriangle& t = tree.triangles()[static_cast<std::size_t>(feature)];
-        const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])), at(tree.vertex(t.vertex[2]))};
+        const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])),
+                                   at(tree.vertex(t.vertex[2]))};
         e.own = cross(v[1] - v[0], v[2] - v[1]);
       }
       e.over = e.middle = e.own;
@@ -188,15 +196,17 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
       for (int k = 0; k < 3; ++k) {
         if (y.owns_vertex >> k & 1) {
           q.kind = EquationKind::faceVertex;
-          const std::int32_t all[6] = {element(0, face, leaf.a), element(0, vertex, x.vertex[0]), element(0, vertex, x.vertex[1]),
-                                       element(0, vertex, x.vertex[2]), element(1, vertex, y.vertex[k]), -1};
+          const std::int32_t all[6] = {element(0, face, leaf.a),        element(0, vertex, x.vertex[0]),
+                                       element(0, vertex, x.vertex[1]), element(0, vertex, x.vertex[2]),
+                                       element(1, vertex, y.vertex[k]), -1};
           std::copy(all, all + 6, q.element);
           equations_.push_back(q);
         }
         if (x.owns_vertex >> k & 1) {
           q.kind = EquationKind::vertexFace;
-          const std::int32_t all[6] = {element(0, vertex, x.vertex[k]), element(1, face, leaf.b), element(1, vertex, y.vertex[0]),
-                                       element(1, vertex, y.vertex[1]), element(1, vertex, y.vertex[2]), -1};
+          const std::int32_t all[6] = {element(0, vertex, x.vertex[k]), element(1, face, leaf.b),
+                                       element(1, vertex, y.vertex[0]), element(1, vertex, y.vertex[1]),
+                                       element(1, vertex, y.vertex[2]), -1};
           std::copy(all, all + 6, q.element);
           equations_.push_back(q);
         }
@@ -206,8 +216,9 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
           q.kind = EquationKind::edgeEdge;
           const ObbEdge& d = trees[0]->edges()[static_cast<std::size_t>(x.edge[k])];
           const ObbEdge& e = trees[1]->edges()[static_cast<std::size_t>(y.edge[j])];
-          const std::int32_t all[6] = {element(0, edge, x.edge[k]), element(0, vertex, d.from), element(0, vertex, d.to),
-                                       element(1, edge, y.edge[j]), element(1, vertex, e.from), element(1, vertex, e.to)};
+          const std::int32_t all[6] = {element(0, edge, x.edge[k]), element(0, vertex, d.from),
+                                       element(0, vertex, d.to),    element(1, edge, y.edge[j]),
+                                       element(1, vertex, e.from),  element(1, vertex, e.to)};
           std::copy(all, all + 6, q.element);
           equations_.push_back(q);
         }
@@ -233,18 +244,24 @@ void bound(Element& e, const PairBounds& motion) {
 Interval valueOver(const Equation& q, const Element* e) {
   const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].over; };
   switch (q.kind) {
-    case EquationKind::faceVertex: return dot(v(0), v(4) - v(1));
-    case EquationKind::vertexFace: return dot(v(1), v(0) - v(2));
-    default: return dot(v(4) - v(1), cross(v(0), v(3)));
+    case EquationKind::faceVertex:
+      return dot(v(0), v(4) - v(1));
+    case EquationKind::vertexFace:
+      return dot(v(1), v(0) - v(2));
+    default:
+      return dot(v(4) - v(1), cross(v(0), v(3)));
   }
 }
 
 Interval valueInMiddle(const Equation& q, const Element* e) {
   const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].middle; };
   switch (q.kind) {
-    case EquationKind::faceVertex: return dot(v(0), v(4) - v(1));
-    case EquationKind::vertexFace: return dot(v(1), v(0) - v(2));
-    default: return dot(v(4) - v(1), cross(v(0), v(3)));
+    case EquationKind::faceVertex:
+      return dot(v(0), v(4) - v(1));
+    case EquationKind::vertexFace:
+      return dot(v(1), v(0) - v(2));
+    default:
+      return dot(v(4) - v(1), cross(v(0), v(3)));
   }
 }
 
@@ -252,9 +269,12 @@ Interval derivativeOver(const Equation& q, const Element* e) {
   const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].over; };
   const auto w = [&](int i) -> const IntervalVec3& { return e[q.element[i]].rate; };
   switch (q.kind) {
-    case EquationKind::faceVertex: return dot(v(0), w(4));
-    case EquationKind::vertexFace: return dot(w(1), v(0) - v(2)) - dot(v(1), w(2));
-    default: return dot(w(4), cross(v(0), v(3))) + dot(v(4) - v(1), cross(v(0), w(3)));
+    case EquationKind::faceVertex:
+      return dot(v(0), w(4));
+    case EquationKind::vertexFace:
+      return dot(w(1), v(0) - v(2)) - dot(v(1), w(2));
+    default:
+      return dot(w(4), cross(v(0), v(3))) + dot(v(4) - v(1), cross(v(0), w(3)));
   }
 }
 
@@ -290,7 +310,8 @@ bool certainlyInside(const Equation& q, const Element* e) {
   }
   // A point a + u e_a = x + w e_x of both lines has u m.m = U and w m.m = W, m = e_a x e_x.
   const IntervalVec3 m = cross(v(0), v(3)), d = v(4) - v(1);
-  const Interval m2 = (square(m[0]) + square(m[1])) + square(m[2]), U = dot(m, cross(d, v(3))), W = dot(m, cross(d, v(0)));
+  const Interval m2 = (square(m[0]) + square(m[1])) + square(m[2]), U = dot(m, cross(d, v(3))),
+                 W = dot(m, cross(d, v(0)));
   return U.certainlyPositive() && W.certainlyPositive() && (m2 - U).certainlyPositive() && (m2 - W).certainlyPositive();
 }
 
@@ -299,9 +320,15 @@ void describe(const Equation& q, const Element* e, double before, double* point,
   const Nearest nearest = nearestInMiddle(q, e);
   Vector3d n;
   switch (q.kind) {
-    case EquationKind::faceVertex: n = v(0); break;
-    case EquationKind::vertexFace: n = -v(1); break;
-    default: n = v(0).cross(v(3)); break;
+    case EquationKind::faceVertex:
+      n = v(0);
+      break;
+    case EquationKind::vertexFace:
+      n = -v(1);
+      break;
+    default:
+      n = v(0).cross(v(3));
+      break;
   }
   if (before < 0) n = -n;
   if (!(n.norm() > 0)) n = nearest.direction();

@@ -24,8 +24,8 @@ IntervalTransform relateRate(const IntervalTransform& inverse_a, const IntervalT
   return {turned * placement_b.R, turned * placement_b.t + inverse_a.R * rate.t};
 }
 
-void SweepChains::begin(const engine::Problem& problem, const engine::Query& query, Enclosure enclosure, bool only_paths,
-                        Counts& counts) {
+void SweepChains::begin(const engine::Problem& problem, const engine::Query& query, Enclosure enclosure,
+                        bool only_paths, Counts& counts) {
   problem_ = &problem;
   query_ = &query;
   counts_ = &counts;

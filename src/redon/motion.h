@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bounds on the motion of a pair over a time interval: B's tree frame in A's, along the path that the problem gives (the
-// world's sweep for a link and an obstacle; the joints between them for two links). A chain is bounded once per sweep and
-// interval, whatever number of pairs and features ask (Redon 2004, eq. 17).
+// Bounds on the motion of a pair over a time interval: B's tree frame in A's, along the path that the problem gives
+// (the world's sweep for a link and an obstacle; the joints between them for two links). A chain is bounded once per
+// sweep and interval, whatever number of pairs and features ask (Redon 2004, eq. 17).
 #pragma once
 
 #include <vector>
@@ -35,7 +35,8 @@ IntervalTransform relateRate(const IntervalTransform& inverse_a, const IntervalT
 /// The chains of all sweeps over one time interval after another, each bounded when first asked for.
 class SweepChains {
  public:
-  /// @param only_paths  each time that a step is asked for, the path to it is bounded anew: what an equation on its own pays
+  /// @param only_paths  each time that a step is asked for, the path to it is bounded anew: what an equation on its own
+  /// pays
   ///   (Redon 2004, eq. 15).
   void begin(const engine::Problem& problem, const engine::Query& query, Enclosure enclosure, bool only_paths,
              Counts& counts);

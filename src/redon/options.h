@@ -11,7 +11,9 @@ using Options = RedonOptions;
 using Counts = RedonStatistics;
 
 /// What a work budget counts.
-inline std::uint64_t workOf(const Counts& counts) { return counts.box_tests + counts.evaluations; }
+inline std::uint64_t workOf(const Counts& counts) {
+  return counts.box_tests + counts.evaluations;
+}
 
 }  // namespace redon
 }  // namespace fcl_artic

@@ -62,7 +62,13 @@ class Run {
  public:
   Run(Workspace::Impl& w, void* engine_workspace, const Problem& problem, const Query& query, const Options& options,
       const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
-      : w_(w), engine_(engine_workspace), problem_(problem), query_(query), options_(options), treeOf_(treeOf), counts_(counts) {}
+      : w_(w),
+        engine_(engine_workspace),
+        problem_(problem),
+        query_(query),
+        options_(options),
+        treeOf_(treeOf),
+        counts_(counts) {}
 
   void solve(Answer& answer);
 
@@ -113,8 +119,8 @@ bool Run::choosePairs() {
   return any;
 }
 
-/// The paper starts without contact. Whether that is so, the certificate tells, at rest at t = 0: surfaces that cross, and
-/// solids that hold others. A pair of which it can't be proven is the engine's.
+/// The paper starts without contact. Whether that is so, the certificate tells, at rest at t = 0: surfaces that cross,
+/// and solids that hold others. A pair of which it can't be proven is the engine's.
 /// @return true when the answer is contact at t = 0.
 bool Run::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
@@ -153,8 +159,8 @@ void Run::solveRest(Answer& answer) {
   engine::engine().solve(engine_, w_.rest, query_, answer);
 }
 
-/// The paper's pairs: all triangles that may touch, and then all their equations on [0, 1]; or, in the order of time, one
-/// sub-interval after the other.
+/// The paper's pairs: all triangles that may touch, and then all their equations on [0, 1]; or, in the order of time,
+/// one sub-interval after the other.
 Found Run::search(const std::function<bool(std::int32_t)>& wanted, double limit) {
   StageClock clock(query_.measure_times);
   Found found;
@@ -179,8 +185,9 @@ Found Run::search(const std::function<bool(std::int32_t)>& wanted, double limit)
     found = w_.solver.solve(w_.pairs, w_.equations, options_.in_time_order ? begin : 0, end, limit, w_.contacts);
     clock.lap(counts_.equations_us);
     if (found.contact || found.out_of_budget || end > limit) return found;
-    w_.leaves.erase(std::remove_if(w_.leaves.begin(), w_.leaves.end(), [&](const LeafPair& l) { return l.until <= end; }),
-                    w_.leaves.end());
+    w_.leaves.erase(
+        std::remove_if(w_.leaves.begin(), w_.leaves.end(), [&](const LeafPair& l) { return l.until <= end; }),
+        w_.leaves.end());
   }
   return found;
 }
@@ -206,7 +213,8 @@ void Run::solve(Answer& answer) {
     return;
   }
   solveRest(answer);
-  double limit = answer.verdict == Verdict::contact && !query_.every_pair ? (answer.certain ? answer.t_upper : answer.t_lower) : 2;
+  double limit =
+      answer.verdict == Verdict::contact && !query_.every_pair ? (answer.certain ? answer.t_upper : answer.t_lower) : 2;
   double t_lower = answer.verdict == Verdict::free ? 2 : answer.t_lower;
   double t_upper = answer.verdict == Verdict::contact && answer.t_upper < 1 ? answer.t_upper : 2;
   if (answer.certain) t_upper = answer.t_upper;
@@ -246,8 +254,9 @@ void Run::solve(Answer& answer) {
 
 }  // namespace
 
-void solve(Workspace& workspace, void* engine_workspace, const Problem& problem, const Query& query, const Options& options,
-           const std::function<const ObbTree*(std::int32_t body)>& treeOf, Answer& answer, Counts& counts) {
+void solve(Workspace& workspace, void* engine_workspace, const Problem& problem, const Query& query,
+           const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf, Answer& answer,
+           Counts& counts) {
   Run(workspace.impl(), engine_workspace, problem, query, options, treeOf, counts).solve(answer);
 }
 

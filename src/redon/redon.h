@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The method of the paper (Redon, Kim, Lin, Manocha 2004) on the engine's own problem, query and answer (doc/REDON2004.md).
+// The method of the paper (Redon, Kim, Lin, Manocha 2004) on the engine's own problem, query and answer
+// (doc/REDON2004.md).
 #pragma once
 
 #include <functional>
@@ -34,8 +35,8 @@ class Workspace {
 /// @param treeOf  a body's tree of oriented boxes, null where it has none.
 /// @param[out] counts  work; the answer's own statistics count what the engine did.
 void solve(Workspace& workspace, void* engine_workspace, const engine::Problem& problem, const engine::Query& query,
-           const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf, engine::Answer& answer,
-           Counts& counts);
+           const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf,
+           engine::Answer& answer, Counts& counts);
 
 }  // namespace redon
 }  // namespace fcl_artic

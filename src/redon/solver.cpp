@@ -230,7 +230,8 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
     first_lo = std::min(first_lo, active.lo);
     for (const std::int32_t e : q.element) {
       if (e < 0 || set_->elements()[static_cast<std::size_t>(e)].direction) continue;
-      for (const Interval& x : set_->elements()[static_cast<std::size_t>(e)].middle.v) known = std::max(known, x.width());
+      for (const Interval& x : set_->elements()[static_cast<std::size_t>(e)].middle.v)
+        known = std::max(known, x.width());
     }
     Root root{active, false, 2};
     root.certain = certify(q, active.lo, active.hi, root.t_upper);
@@ -243,8 +244,8 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
   found.t_lower = first_lo;  // of those that are no contact, too: they are not decided
   for (const Root& root : roots) {
     if (root.certain) found.t_upper = std::min(found.t_upper, root.t_upper);
-    report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo), root.certain,
-           root.t_upper, contacts);
+    report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo),
+           root.certain, root.t_upper, contacts);
   }
   return true;
 }

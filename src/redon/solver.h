@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The first root of all elementary equations at once (Redon 2004, Sections 5.2.2 to 5.2.4), or of each by itself. Runs under
-// RoundUpward.
+// The first root of all elementary equations at once (Redon 2004, Sections 5.2.2 to 5.2.4), or of each by itself. Runs
+// under RoundUpward.
 #pragma once
 
 #include <vector>
@@ -44,7 +44,8 @@ class Solver {
   bool mayHaveRoot(Active& active, double begin, double end, bool validity);
   bool settle(const Task& task, std::size_t end, Found& found, std::vector<engine::LeafContact>& contacts);
   bool certify(const Equation& q, double begin, double end, double& t_upper);
-  void report(const Equation& q, double begin, bool certain, double t_upper, std::vector<engine::LeafContact>& contacts);
+  void report(const Equation& q, double begin, bool certain, double t_upper,
+              std::vector<engine::LeafContact>& contacts);
   Interval valueAt(const Equation& q, double t);
 
   const engine::Problem* problem_ = nullptr;

@@ -38,8 +38,8 @@ struct Count {
   std::vector<std::string> faults;
 };
 
-/// Two answers to one query: the same verdict and time, or a graze that one of them can't tell from contact, which is then
-/// a contact that is not certain.
+/// Two answers to one query: the same verdict and time, or a graze that one of them can't tell from contact, which is
+/// then a contact that is not certain.
 template <class Result>
 void compare(const Result& own, const Result& other, double tolerance_time, const std::string& name, Count& count) {
   count.by_standard += other.statistics.redon.pairs_by_standard > 0;
@@ -80,8 +80,9 @@ Count overThreads(const std::function<void(std::uint64_t, Count&)>& query) {
 
 void expectAgreement(const Count& count) {
   std::cout << queries() << " queries: " << count.contacts << " contacts, " << count.free << " free, " << count.doubtful
-            << " not certain in one method or told apart by one only; " << count.hits << " sampled contacts, none missed; in "
-            << count.by_standard << " some pairs or all were left to the standard method\n";
+            << " not certain in one method or told apart by one only; " << count.hits
+            << " sampled contacts, none missed; in " << count.by_standard
+            << " some pairs or all were left to the standard method\n";
   for (std::size_t i = 0; i < count.faults.size() && i < 20; ++i) ADD_FAILURE() << count.faults[i];
   EXPECT_EQ(count.faults.size(), 0u);
   EXPECT_LE(count.doubtful, queries() / 50);
@@ -126,8 +127,8 @@ TEST(Redon2004, FreeBodiesAgreeWithTheStandardMethodAndWithSampling) {
     const auto motion1 = query.path1->motion(), motion2 = query.path2->motion();
     const auto ask = [&](const CertifiedRequest& request) {
       fcl_artic::CertifiedPairResult result;
-      fcl_artic::continuousCollide(query.body1->geometry.get(), motion1.get(), query.body2->geometry.get(), motion2.get(),
-                                   request, result);
+      fcl_artic::continuousCollide(query.body1->geometry.get(), motion1.get(), query.body2->geometry.get(),
+                                   motion2.get(), request, result);
       return result;
     };
     const fcl_artic::CertifiedPairResult own = ask({}), other = ask(paper());
@@ -165,7 +166,8 @@ TEST(Redon2004, EveryPairHasItsOwnFirstContact) {
       for (const auto& [pair, t] : own) {
         ++pairs;
         ASSERT_TRUE(other.count(pair)) << family << " seed " << seed;
-        EXPECT_NEAR(other.at(pair), t, 2 * scene.tolerance_time) << family << " seed " << seed << " bodies " << pair.first << ", " << pair.second;
+        EXPECT_NEAR(other.at(pair), t, 2 * scene.tolerance_time)
+            << family << " seed " << seed << " bodies " << pair.first << ", " << pair.second;
       }
     }
   }

@@ -20,7 +20,9 @@ using redon_test::triangle;
 
 constexpr double kPi = 3.14159265358979323846;
 
-Isometry3d at(double x, double y, double z) { return Isometry3d(Eigen::Translation3d(x, y, z)); }
+Isometry3d at(double x, double y, double z) {
+  return Isometry3d(Eigen::Translation3d(x, y, z));
+}
 
 CertifiedRequest paper() {
   CertifiedRequest request;
@@ -31,7 +33,8 @@ CertifiedRequest paper() {
 
 /// Body 1 goes straight from tf1 to end1; body 2 stands still.
 CertifiedPairResult slide(const fcl::CollisionGeometryd& body1, const Isometry3d& begin1, const Isometry3d& end1,
-                          const fcl::CollisionGeometryd& body2, const Isometry3d& tf2, CertifiedRequest request = paper()) {
+                          const fcl::CollisionGeometryd& body2, const Isometry3d& tf2,
+                          CertifiedRequest request = paper()) {
   CertifiedPairResult result;
   fcl_artic::continuousCollide(&body1, begin1, end1, &body2, tf2, tf2, fcl::CCDM_TRANS, request, result);
   return result;
@@ -104,7 +107,8 @@ TEST(ClosedForm, TurningEdgeMeetsEdge) {
 }
 
 TEST(ClosedForm, ArmMeetsWallByTheAngleOfItsTip) {
-  // Two links of 1 m; the second joint alone turns; its tip, at height sin q, meets a ceiling at 0.5 m when q = 30 degrees.
+  // Two links of 1 m; the second joint alone turns; its tip, at height sin q, meets a ceiling at 0.5 m when q = 30
+  // degrees.
   auto tree = std::make_shared<fcl_artic::KinematicTree>("arm");
   for (const char* name : {"base", "upper", "fore"}) tree->addLink(name);
   fcl_artic::Joint joint;
@@ -215,7 +219,8 @@ TEST(ClosedForm, WhatThePaperHasNoMethodForIsTheLibrarysOwn) {
   EXPECT_EQ(result.statistics.redon.pairs_by_standard, 1u);
   CertifiedRequest request = paper();
   request.margin = 0.25;
-  const CertifiedPairResult near = slide(*boxMesh(1, 1, 1), at(0, 0, 4), at(0, 0, 2), *boxMesh(1, 1, 1), at(0, 0, 0), request);
+  const CertifiedPairResult near =
+      slide(*boxMesh(1, 1, 1), at(0, 0, 4), at(0, 0, 2), *boxMesh(1, 1, 1), at(0, 0, 0), request);
   ASSERT_EQ(near.status, Status::contact);
   EXPECT_NEAR(near.t_lower, 0.875, 1e-6);
 }
@@ -233,7 +238,8 @@ TEST(ClosedForm, OptionsOutOfRangeAreRefused) {
   CertifiedRequest request = paper();
   request.redon.refinement_level = 7;
   CertifiedPairResult result;
-  EXPECT_THROW(slide(*boxMesh(1, 1, 1), at(0, 0, 4), at(0, 0, 0), *boxMesh(1, 1, 1), at(0, 0, 0), request), std::invalid_argument);
+  EXPECT_THROW(slide(*boxMesh(1, 1, 1), at(0, 0, 4), at(0, 0, 0), *boxMesh(1, 1, 1), at(0, 0, 0), request),
+               std::invalid_argument);
 }
 
 }  // namespace

@@ -40,8 +40,10 @@ Isometry3d pose(double x, double y, double z, double angle, const Vector3d& axis
 TEST(InBetween, MeetsBothEndsAndMovesEvenlyBetweenThem) {
   const auto tree = fcl_artic::inBetweenTree(*twoHinges());
   EXPECT_EQ(tree->link("hand"), 2);
-  const std::vector<Isometry3d> begin{pose(0, 0, 0, 0.3, {1, 2, 3}), pose(1, 2, 3, -1, {0, 1, 0}), pose(2, 2, 2, 2, {1, 0, 1})};
-  const std::vector<Isometry3d> end{pose(1, 0, 0.5, 1.3, {1, -2, 3}), pose(-1, 1, 3, 1, {0, 1, 1}), pose(0, 3, 1, 0.2, {1, 1, 1})};
+  const std::vector<Isometry3d> begin{pose(0, 0, 0, 0.3, {1, 2, 3}), pose(1, 2, 3, -1, {0, 1, 0}),
+                                      pose(2, 2, 2, 2, {1, 0, 1})};
+  const std::vector<Isometry3d> end{pose(1, 0, 0.5, 1.3, {1, -2, 3}), pose(-1, 1, 3, 1, {0, 1, 1}),
+                                    pose(0, 3, 1, 0.2, {1, 1, 1})};
   const JointMotion motion = fcl_artic::inBetweenMotion(*tree, begin, end);
   std::vector<Isometry3d> at0, at1;
   tree->forwardKinematics(motion.configuration(0), at0);
@@ -69,13 +71,15 @@ TEST(InBetween, MeetsBothEndsAndMovesEvenlyBetweenThem) {
 }
 
 TEST(InBetween, BothMethodsFindTheContactOfTheInBetweenMotion) {
-  // The arm turns from 0 to 90 degrees while the hand's origin, seen from it, goes straight from (1, 0, 0) to (2, 0, 0): at t
-  // the tip is at radius 1 + t under t 90 degrees. A post under 45 degrees, between the radii 1.4 and 1.7, is met at t = 1/2.
+  // The arm turns from 0 to 90 degrees while the hand's origin, seen from it, goes straight from (1, 0, 0) to (2, 0,
+  // 0): at t the tip is at radius 1 + t under t 90 degrees. A post under 45 degrees, between the radii 1.4 and 1.7, is
+  // met at t = 1/2.
   const auto hinges = twoHinges();
   const auto tree = fcl_artic::inBetweenTree(*hinges);
   const Isometry3d turned(AngleAxisd(kPi / 2, Vector3d::UnitZ()));
   const Isometry3d I = Isometry3d::Identity();
-  const std::vector<Isometry3d> begin{I, I, I * Eigen::Translation3d(1, 0, 0)}, end{I, turned, turned * Eigen::Translation3d(2, 0, 0)};
+  const std::vector<Isometry3d> begin{I, I, I * Eigen::Translation3d(1, 0, 0)},
+      end{I, turned, turned * Eigen::Translation3d(2, 0, 0)};
   const JointMotion motion = fcl_artic::inBetweenMotion(*tree, begin, end);
   fcl::CollisionObjectd hand(redon_test::triangle({0, 0, -0.1}, {0, 0, 0.1}, {-0.2, 0, 0}));
   const Vector3d u = Vector3d(1, 1, 0).normalized();
@@ -104,7 +108,8 @@ TEST(InBetween, BothMethodsFindTheContactOfTheInBetweenMotion) {
   by_joints.registerObject(&post, "post");
   by_joints.setup();
   fcl_artic::CertifiedResult result;
-  by_joints.continuousCollide(JointMotion::linear(*hinges, Eigen::Vector2d(0, 0), Eigen::Vector2d(kPi / 2, 0)), {}, result);
+  by_joints.continuousCollide(JointMotion::linear(*hinges, Eigen::Vector2d(0, 0), Eigen::Vector2d(kPi / 2, 0)), {},
+                              result);
   EXPECT_TRUE(result.isFree());
 }
 

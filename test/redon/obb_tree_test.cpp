@@ -2,13 +2,13 @@
 #include <map>
 #include <set>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
+#include "adapters/fcl/fcl_geometry.h"
 #include "generator.h"
 #include "geometry/obb_tree.h"
 #include "geometry/shape_tree.h"
-#include "adapters/fcl/fcl_geometry.h"
 #include "meshes.h"
 
 namespace {
