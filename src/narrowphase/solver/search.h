@@ -180,8 +180,9 @@ inline void Solver::solvePairs() {
     t_upper_ = limit_ = 2;
     front_ = 0;
     const int from = entries_.size();
-    if (end - begin == 1) {
-      // One pair alone needs no order among pairs: it is followed from its first open lane to its last.
+    if (problem_->num_movers == 0 && end - begin == 1) {
+      // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where stage 1
+      // or 2 has left one of many, it goes the way of the others: what they discard is not to change an answer's bits.)
       const Entry& e = entries_[begin];
       setupPair(e.pair);
       if (isLeafPair(e) || (side_[0].still->outer && side_[1].still->outer && movesFar())) {
