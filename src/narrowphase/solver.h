@@ -202,7 +202,7 @@ constexpr double kLaneSlack = 8 * kUlp;
 /// Hulls that overlap in so many lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;
 /// So many leaf pairs in a lane are followed one by one; more are split in time first.
-constexpr int kFewLeaves = 6;
+constexpr int kFewLeaves = 12;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
 /// in it.
 constexpr double kFirstWindow = 0.4;
