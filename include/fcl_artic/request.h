@@ -35,7 +35,8 @@ enum class MotionEnclosure {
   taylor,         ///< a quadratic with a bounded remainder
 };
 
-/// Each idea of the paper's method by itself (doc/REDON2004.md). The defaults are the paper's.
+/// Each idea of the paper's method by itself (doc/REDON2004.md). The defaults are the paper's, but for the last two: with
+/// both false the method is as the paper has it.
 struct RedonOptions {
   MotionEnclosure enclosure = MotionEnclosure::intervalChain;
   /// A link's bounds are kept on 2^level parts of the motion (Section 5.1.1). -1: by the link's motion; 0: undivided; at
@@ -70,8 +71,8 @@ struct CertifiedRequest {
   /// Pairs that touch at t = 0 may separate; they are watched from the moment they have.
   bool ignore_initial_contact = false;
   /// Method::Redon2004 solves pairs of meshes and boxes without a margin; other pairs, and what touches at t = 0, are left
-  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard). It has no stage 2: `visibility` has no effect on
-  /// it. ContactMode::any is answered with the first contact.
+  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard). ContactMode::any is answered with the first
+  /// contact.
   Method method = Method::standard;
   RedonOptions redon;
   /// Measure the time of each stage too (counts are always there).

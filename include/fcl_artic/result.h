@@ -67,6 +67,7 @@ struct RedonStatistics {
   std::uint64_t evaluations = 0;     ///< equations bounded over an interval: a n_e
   std::uint64_t steps_bounded = 0;   ///< moving joints of chains, bounded over an interval each
   double culling_us = 0, boxes_us = 0, equations_us = 0;
+  double visibility_us = 0;  ///< stage 2, the bounds on what links sweep included
 };
 
 /// Work of a query, by stage. Times only with CertifiedRequest::measure_times.

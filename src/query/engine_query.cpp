@@ -101,6 +101,7 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.redon.culling_us += s.redon.culling_us;
   sum.redon.boxes_us += s.redon.boxes_us;
   sum.redon.equations_us += s.redon.equations_us;
+  sum.redon.visibility_us += s.redon.visibility_us;
 }
 
 Status statusOf(engine::Verdict verdict) {

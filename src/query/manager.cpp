@@ -120,6 +120,8 @@ struct ArticulatedCollisionManager::Impl {
   std::shared_ptr<const VisibilityCuller> visibility = std::make_shared<VisibilityCuller>();
   std::unique_ptr<visibility::Choice> choice =
       std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*visibility));  ///< measured times
+  std::unique_ptr<visibility::Choice> redon_choice =
+      std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*visibility));  ///< of the paper's method
 
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
   Eigen::MatrixXd moving_coefficients;
@@ -751,7 +753,9 @@ void ArticulatedCollisionManager::resetMargins() {
 
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
   impl_->visibility = culler ? std::move(culler) : std::make_shared<VisibilityCuller>();
-  impl_->choice = std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*impl_->visibility));
+  for (auto* choice : {&impl_->choice, &impl_->redon_choice}) {
+    *choice = std::make_unique<visibility::Choice>(visibility::ExecutorLoan::firstUse(*impl_->visibility));
+  }
 }
 
 void ArticulatedCollisionManager::setup() {
@@ -871,9 +875,15 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   RedonStatistics redon_work;
   if (request.method == Method::Redon2004) {
     const auto treeOf = [&m](std::int32_t body) { return m.item(body).shape->obbTree(); };
-    redon::solve(workspace->redon(), workspace->engine(), problem, query, request.redon, treeOf, answer, redon_work);
+    const auto method = [&](const engine::Query& asked, engine::Answer& out) {
+      redon::solve(workspace->redon(), workspace->engine(), problem, asked, request.redon, treeOf, out, redon_work);
+    };
+    visibility::solve(*m.visibility, *m.redon_choice, request.visibility, method, problem, query, answer, stage);
   } else {
-    visibility::solve(*m.visibility, *m.choice, request.visibility, workspace->engine(), problem, query, answer, stage);
+    const auto method = [&workspace, &problem](const engine::Query& asked, engine::Answer& out) {
+      engine::engine().solve(workspace->engine(), problem, asked, out);
+    };
+    visibility::solve(*m.visibility, *m.choice, request.visibility, method, problem, query, answer, stage);
   }
   const Clock::time_point solved = request.measure_times ? Clock::now() : Clock::time_point();
 

@@ -107,8 +107,7 @@ void Culling::moverBoxes() {
 void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
                         std::vector<BodyPair>& out) {
   out.clear();
-  masks_.clear();
-  const auto add = [&](std::int32_t index, std::uint64_t mask) {
+  const auto add = [&](std::int32_t index, int level, std::uint64_t mask) {
     BodyPair pair;
     pair.index = index;
     pair.parts = partsOf(*problem_, index);
@@ -116,8 +115,9 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
     pair.b = treeOf(pair.parts.b);
     pair.inverse_a = enclose(*pair.parts.inverse_a);
     pair.placement_b = enclose(*pair.parts.placement_b);
+    pair.level = level;
+    pair.mask = mask;
     out.push_back(pair);
-    masks_.push_back(mask);
   };
   if (query_->check_scene && problem_->obstacle_tree) {
     std::vector<std::pair<std::int32_t, std::uint64_t>> stack;
@@ -144,7 +144,7 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
         }
         const std::int32_t pair = m * problem_->num_obstacles + node.piece();
         if (problem_->scene_allowed && problem_->scene_allowed[pair]) continue;
-        if (wanted(pair)) add(pair, mask);
+        if (wanted(pair)) add(pair, mover_levels_[static_cast<std::size_t>(m)], mask);
       }
     }
   }
@@ -167,7 +167,7 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
       }
       if (!meet) continue;
     }
-    add(index, ~0ull);
+    add(index, 0, ~0ull);
   }
 }
 
@@ -196,7 +196,7 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
       t.level = motion.level;
       for (const FrameBounds& f : motion.frames) t.relative.push_back(relate(pair.inverse_a, f.pose, pair.placement_b));
     }
-    t.mask = masks_[i];
+    t.mask = pair.mask;
     if (t.level < kFinest) t.mask &= (1ull << (1 << t.level)) - 1;
     finest_ = std::max(finest_, t.level);
   }

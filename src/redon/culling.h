@@ -21,6 +21,8 @@ struct BodyPair {
   PairParts parts;
   const ObbTree *a = nullptr, *b = nullptr;
   IntervalTransform inverse_a, placement_b;
+  int level = 0;               ///< of a link and an obstacle: their line swept spheres' boxes meet in these parts of
+  std::uint64_t mask = ~0ull;  ///< the 2^level that the time is in; two links: not asked
 };
 
 /// Two triangles whose boxes meet in some sub-interval.
@@ -88,7 +90,6 @@ class Culling {
   };
   std::vector<std::vector<Box>> mover_boxes_;  ///< by mover and sub-interval
   std::vector<int> mover_levels_;
-  std::vector<std::uint64_t> masks_;   ///< of the body pairs found
   std::vector<Traversal> traversals_;  ///< of the body pairs
   int finest_ = 0;
   std::vector<Entry> waiting_[1 << kFinest];  ///< by slot

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "redon/solver.h"
+#include "redon/swept_volumes.h"
 
 namespace fcl_artic {
 namespace redon {
@@ -39,8 +40,9 @@ class StageClock {
 
 struct Workspace::Impl {
   Culling culling;
+  SweptVolumes volumes;
   Solver solver;
-  std::vector<BodyPair> pairs;
+  std::vector<BodyPair> pairs, one;  ///< that may touch; the one of them that is looked at
   std::vector<LeafPair> leaves;
   EquationSet equations;
   std::vector<LeafContact> contacts;
@@ -79,7 +81,8 @@ class Run {
   bool choosePairs();
   bool touchesAtStart(Answer& answer);
   void solveRest(Answer& answer);
-  Found search(const std::function<bool(std::int32_t)>& wanted, double limit);
+  void findPairs();
+  Found search(const std::vector<BodyPair>& pairs, double limit);
   void keepFirst(std::size_t begin, double bracket);
 
   Workspace::Impl& w_;
@@ -134,6 +137,7 @@ bool Run::touchesAtStart(Answer& answer) {
   still.any = false;
   still.max_contacts = 1;
   still.progress = nullptr;
+  still.refine = nullptr;
   engine::engine().solve(engine_, problem_, still, answer);
   if (answer.verdict == Verdict::free) return false;
   if (answer.verdict == Verdict::undecided || !still.every_pair) return true;
@@ -159,19 +163,29 @@ void Run::solveRest(Answer& answer) {
   engine::engine().solve(engine_, w_.rest, query_, answer);
 }
 
-/// The paper's pairs: all triangles that may touch, and then all their equations on [0, 1]; or, in the order of time,
-/// one sub-interval after the other.
-Found Run::search(const std::function<bool(std::int32_t)>& wanted, double limit) {
+/// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
+void Run::findPairs() {
+  StageClock clock(query_.measure_times);
+  w_.culling.begin(problem_, query_, options_, counts_);
+  w_.culling.bodyPairs([this](std::int32_t p) { return asked(p) && !w_.by_engine[static_cast<std::size_t>(p)]; },
+                       treeOf_, w_.pairs);
+  clock.lap(counts_.culling_us);
+  if (!query_.refine) return;
+  w_.volumes.refine(problem_, query_, options_, w_.pairs, counts_);
+  clock.lap(counts_.visibility_us);
+}
+
+/// All triangles of these pairs that may touch, and then all their equations on [0, 1]; or, in the order of time, one
+/// sub-interval after the other.
+Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
   StageClock clock(query_.measure_times);
   Found found;
-  w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
-  clock.lap(counts_.culling_us);
-  w_.culling.start(w_.pairs);
+  w_.culling.start(pairs);
   w_.leaves.clear();
   for (int slot = 0; slot < w_.culling.numSlots(); ++slot) {
     const double begin = w_.culling.slotBegin(slot), end = w_.culling.slotBegin(slot + 1);
     if (begin > limit) break;
-    const bool in_budget = w_.culling.leafPairs(w_.pairs, slot, w_.leaves);
+    const bool in_budget = w_.culling.leafPairs(pairs, slot, w_.leaves);
     clock.lap(counts_.boxes_us);
     if (!in_budget) {
       found.out_of_budget = true;
@@ -181,8 +195,8 @@ Found Run::search(const std::function<bool(std::int32_t)>& wanted, double limit)
     const bool last = slot + 1 == w_.culling.numSlots();
     if (w_.leaves.empty() || (!options_.in_time_order && !last)) continue;
     w_.equations.clear();
-    w_.equations.add(w_.pairs, w_.leaves);
-    found = w_.solver.solve(w_.pairs, w_.equations, options_.in_time_order ? begin : 0, end, limit, w_.contacts);
+    w_.equations.add(pairs, w_.leaves);
+    found = w_.solver.solve(pairs, w_.equations, options_.in_time_order ? begin : 0, end, limit, w_.contacts);
     clock.lap(counts_.equations_us);
     if (found.contact || found.out_of_budget || end > limit) return found;
     w_.leaves.erase(
@@ -222,7 +236,6 @@ void Run::solve(Answer& answer) {
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
   const RoundUpward upward;
-  w_.culling.begin(problem_, query_, options_, counts_);
   w_.solver.begin(problem_, query_, options_, counts_);
   const auto take = [&](const Found& found) {
     if (found.contact || found.out_of_budget) t_lower = std::min(t_lower, found.t_lower);
@@ -230,14 +243,15 @@ void Run::solve(Answer& answer) {
     contact = contact || found.contact;
     out_of_budget = out_of_budget || found.out_of_budget;
   };
-  const auto own = [&](std::int32_t p) { return !w_.by_engine[static_cast<std::size_t>(p)]; };
+  findPairs();
   if (!query_.every_pair) {
-    take(search(own, limit));
+    take(search(w_.pairs, limit));
   } else {
-    for (std::int32_t p = 0; p < numPairs() && !out_of_budget; ++p) {
-      if (!asked(p) || !own(p)) continue;
+    std::sort(w_.pairs.begin(), w_.pairs.end(), [](const BodyPair& x, const BodyPair& y) { return x.index < y.index; });
+    for (std::size_t i = 0; i < w_.pairs.size() && !out_of_budget; ++i) {
       const std::size_t before = w_.contacts.size();
-      const Found found = search([p](std::int32_t q) { return q == p; }, 2);
+      w_.one.assign(1, w_.pairs[i]);
+      const Found found = search(w_.one, 2);
       take(found);
       keepFirst(before, found.t_upper < 2 ? found.t_upper : found.t_lower + query_.tolerance_time);
     }

@@ -12,17 +12,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// @return time taken, us.
-double solveOnce(const VisibilityCuller* culler, void* workspace, const engine::Problem& problem, engine::Query& query,
-                 engine::Answer& answer, Report& report) {
+double solveOnce(const VisibilityCuller* culler, const Solver& solver, engine::Query& query, engine::Answer& answer,
+                 Report& report) {
   const Clock::time_point begin = Clock::now();
   if (!culler) {
     query.refine = nullptr;
-    engine::engine().solve(workspace, problem, query, answer);
+    solver(query, answer);
   } else {
     Stage stage(*culler);
     query.refine = &Stage::refine;
     query.refine_context = &stage;
-    engine::engine().solve(workspace, problem, query, answer);
+    solver(query, answer);
     report.pairs += stage.pairs;
     report.culled += stage.culled;
     report.pieces += stage.pieces;
@@ -35,15 +35,15 @@ double solveOnce(const VisibilityCuller* culler, void* workspace, const engine::
 
 }  // namespace
 
-void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, void* workspace,
+void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report) {
   const bool nothing = !query.check_scene || problem.num_obstacles == 0;
   if (mode == VisibilityMode::off || nothing || (mode == VisibilityMode::automatic && query.work_budget)) {
-    engine::engine().solve(workspace, problem, query, answer);
+    solver(query, answer);
     return;
   }
   if (mode == VisibilityMode::on) {
-    solveOnce(&culler, workspace, problem, query, answer, report);
+    solveOnce(&culler, solver, query, answer, report);
     return;
   }
   const bool on = choice.pays();
@@ -53,9 +53,9 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
   if (trial) {  // the other way first, unseen: the answer lives in the workspace until the next
     engine::Query other = query;
     other.progress = nullptr;
-    trial_us = solveOnce(on ? nullptr : &culler, workspace, problem, other, answer, tried);
+    trial_us = solveOnce(on ? nullptr : &culler, solver, other, answer, tried);
   }
-  const double us = solveOnce(on ? &culler : nullptr, workspace, problem, query, answer, report);
+  const double us = solveOnce(on ? &culler : nullptr, solver, query, answer, report);
   choice.addQuery(us);
   if (!trial) return;
   report.trials = 1;

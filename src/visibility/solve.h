@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "fcl_artic/request.h"
@@ -21,10 +22,14 @@ struct Report {
   std::string fallback;
 };
 
-/// engine::Engine::solve, with stage 2 or without, as `mode` says. With a work budget `automatic` is off: what fits
-/// into it would depend on the clock.
-/// @param query  must outlive the use of the workspace (engine::Engine::pairMotion).
-void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, void* workspace,
+/// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Query::refine).
+using Solver = std::function<void(const engine::Query& query, engine::Answer& answer)>;
+
+/// The solver's answer, with stage 2 or without, as `mode` says. With a work budget `automatic` is off: what fits into
+/// it would depend on the clock.
+/// @param choice  of this solver: what stage 2 is worth depends on it.
+/// @param query  must outlive the use of the solver's workspace (engine::Engine::pairMotion).
+void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report);
 
 }  // namespace visibility

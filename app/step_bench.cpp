@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "step_bench.h"
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace fcl_artic::app {
+
+std::uint64_t Random::next() {
+  std::uint64_t z = state_ += 0x9e3779b97f4a7c15ull;
+  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
+  return z ^ z >> 31;
+}
+
+StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
+                       CertifiedRequest request, int passes, bool contact, std::size_t& differ) {
+  request.measure_times = true;
+  const bool paper = request.method == Method::Redon2004, stage2 = request.visibility != VisibilityMode::off;
+  StepCosts sum;
+  std::vector<double> totals;
+  CertifiedResult result;
+  for (const JointMotion& motion : motions) {
+    QueryStatistics best;
+    best.total_us = 1e300;
+    for (int pass = 0; pass < passes; ++pass) {
+      manager.continuousCollide(motion, request, result);
+      if (result.statistics.total_us < best.total_us) best = result.statistics;
+    }
+    differ += (result.status == Status::contact) != contact;
+    const double sv = paper && stage2 ? best.redon.visibility_us : best.visibility_us;
+    const double bvh = paper ? best.redon.culling_us : best.culling_us;
+    sum.bvh += bvh;
+    sum.sv += sv;
+    sum.exact += best.total_us - bvh - sv;
+    sum.total += best.total_us;
+    sum.solving += best.redon.equations_us;
+    totals.push_back(best.total_us);
+    sum.sv_pairs += static_cast<double>(best.visibility_pairs);
+    sum.sv_culled += static_cast<double>(best.visibility_culled);
+    sum.box_tests += static_cast<double>(best.redon.box_tests);
+    sum.leaf_pairs += static_cast<double>(best.redon.leaf_pairs);
+    sum.equations += static_cast<double>(best.redon.equations);
+    sum.intervals += static_cast<double>(best.redon.intervals);
+    sum.evaluations += static_cast<double>(best.redon.evaluations);
+    sum.steps += static_cast<double>(best.redon.steps_bounded);
+  }
+  const double n = static_cast<double>(std::max<std::size_t>(1, motions.size()));
+  for (double* x : {&sum.bvh, &sum.sv, &sum.exact, &sum.total, &sum.solving, &sum.sv_pairs, &sum.sv_culled,
+                    &sum.box_tests, &sum.leaf_pairs, &sum.equations, &sum.intervals, &sum.evaluations, &sum.steps}) {
+    *x /= n;
+  }
+  if (!stage2) sum.sv = -1;
+  std::sort(totals.begin(), totals.end());
+  const auto at = [&](double part) {
+    return totals.empty() ? 0 : totals[static_cast<std::size_t>(part * static_cast<double>(totals.size() - 1))];
+  };
+  sum.median = at(0.5);
+  sum.p95 = at(0.95);
+  return sum;
+}
+
+std::string textOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> wanted, widths;
+  const auto telling = [&](const std::vector<std::string>& row) {
+    for (std::size_t c = begin; c < end; ++c) {
+      if (!row[c].empty()) return true;
+    }
+    return false;
+  };
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (c >= names && (c < begin || c >= end)) continue;
+    std::size_t width = table.columns[c].title.size();
+    for (const auto& row : table.rows) width = std::max(width, row[c].size());
+    wanted.push_back(c);
+    widths.push_back(width);
+  }
+  std::string out;
+  const auto add = [&](const auto& cellOf) {
+    std::string line;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const std::string cell = cellOf(wanted[i]);
+      line += i < names ? fmt::format("{:<{}}", cell, widths[i] + 2) : fmt::format("{:>{}}", cell, widths[i] + 2);
+    }
+    out += line + '\n';
+  };
+  add([&](std::size_t c) { return table.columns[c].title; });
+  for (const auto& row : table.rows) {
+    if (telling(row)) add([&](std::size_t c) { return row[c].empty() ? std::string("-") : row[c]; });
+  }
+  return out;
+}
+
+std::string csvOf(const Table& table) {
+  std::string out;
+  const auto add = [&](std::size_t c, const std::string& cell) {
+    out += cell;
+    out += c + 1 < table.columns.size() ? ',' : '\n';
+  };
+  for (std::size_t c = 0; c < table.columns.size(); ++c) add(c, table.columns[c].key);
+  for (const auto& row : table.rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) add(c, row[c]);
+  }
+  return out;
+}
+
+void writeFile(const std::string& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("can't write '" + path + "'");
+}
+
+}  // namespace fcl_artic::app

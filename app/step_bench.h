@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What `bench table1` and `bench depth` share: random steps, their mean times and counts, tables as text and as CSV.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fcl_artic/fcl_artic.h"
+
+namespace fcl_artic::app {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+
+/// Numbers that are the same on every machine (splitmix64).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  double uniform(double a, double b) { return a + (b - a) * static_cast<double>(next() >> 11) * 0x1p-53; }
+  double sign() { return next() & 1 ? 1 : -1; }
+
+ private:
+  std::uint64_t next();
+  std::uint64_t state_;
+};
+
+/// Means over queries, us and counts; those of a query are of its fastest run.
+struct StepCosts {
+  double bvh = 0, exact = 0, total = 0;
+  double solving = 0;  ///< part of `exact`: the equations
+  double sv = 0;       ///< stage 2; below 0: it is off
+  double sv_pairs = 0, sv_culled = 0;
+  double box_tests = 0, leaf_pairs = 0, equations = 0, intervals = 0, evaluations = 0, steps = 0;
+  double median = 0, p95 = 0;  ///< of totals
+};
+
+/// @param[out] differ  queries whose verdict is not `contact`.
+StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
+                       CertifiedRequest request, int passes, bool contact, std::size_t& differ);
+
+/// A column's name in the text and in the CSV.
+struct Column {
+  std::string title, key;
+};
+struct Table {
+  std::vector<Column> columns;
+  std::vector<std::vector<std::string>> rows;  ///< a cell per column; empty: nothing is known
+};
+/// @param begin, end  columns to print behind the first `names`; rows without a cell in them are left out.
+std::string textOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end);
+std::string csvOf(const Table& table);
+/// @throws std::runtime_error naming the file.
+void writeFile(const std::string& path, const std::string& text);
+
+}  // namespace fcl_artic::app

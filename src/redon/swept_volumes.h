@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What links sweep, for stage 2 (Redon 2004, Section 4: dynamic culling of swept volumes), which the query brings. Runs
+// under RoundUpward.
+//
+// An end p of a link's line swept sphere moves twice differentiably. Over [a, b] it stays within (b - a)^2 / 8 sup
+// |p''| of the chord from p(a) to p(b): the error e = p - chord vanishes at both ends, and along e's direction where
+// |e| is largest this is the bound on linear interpolation. So over an eighth of the time, halved, both ends' places at
+// its begin, middle and end span a solid that, grown by this bound over half of it and by the sphere's radius, holds
+// the link.
+#pragma once
+
+#include <vector>
+
+#include "redon/culling.h"
+
+namespace fcl_artic {
+namespace redon {
+
+class SweptVolumes {
+ public:
+  /// Takes pairs of links and still obstacles out that stage 2 proves free, and sub-intervals in which it does.
+  /// @param pairs  those of a link lie together, pairs of two links behind them: as Culling::bodyPairs() gives them.
+  void refine(const engine::Problem& problem, const engine::Query& query, const Options& options,
+              std::vector<BodyPair>& pairs, Counts& counts);
+
+ private:
+  static constexpr int kParts = 8;  ///< engine::Query::refine's
+  void sweep(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
+
+  SweepChains chains_;
+  std::vector<engine::CullCandidate> candidates_;
+  std::vector<engine::SweptLink> links_;
+};
+
+}  // namespace redon
+}  // namespace fcl_artic

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage 2 in the paper's method: the volumes that it hands over hold the links, and answers are the same with it.
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <set>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <gtest/gtest.h>
+
+#include "engine.h"
+#include "generator.h"
+#include "redon/parts.h"
+#include "visibility/cpu_executor.h"
+
+namespace {
+
+using namespace fcl_artic;
+using Eigen::Vector3d;
+
+/// The executor cpu, with what it was asked last.
+struct Recorder : visibility::Executor {
+  explicit Recorder(visibility::Batch& kept) : last(kept) {}
+  void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
+    last = batch;
+    cpu.run(batch, may);
+  }
+  visibility::Batch& last;
+  visibility::CpuExecutor cpu;
+};
+
+double support(const visibility::Batch& batch, const visibility::Volume& volume, const Vector3d& n) {
+  double most = -HUGE_VAL;
+  for (int i = 0; i < volume.count; ++i) {
+    most = std::max(most, n.dot(Vector3d::Map(batch.points.data() + 3 * (volume.first + i))));
+  }
+  return most + volume.radius * n.norm();
+}
+
+std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> meshOf(const std::vector<Vector3d>& corners) {
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  mesh->beginModel();
+  for (std::size_t i = 0; i < corners.size(); i += 3) mesh->addTriangle(corners[i], corners[i + 1], corners[i + 2]);
+  mesh->endModel();
+  return mesh;
+}
+
+/// An arm whose last link is a needle of one triangle, and a small triangle in the middle of its path over each eighth.
+TEST(RedonVisibility, VolumesHoldTheLink) {
+  auto tree = std::make_shared<KinematicTree>("chain");
+  tree->addLink("base");
+  for (int i = 0; i < 4; ++i) {
+    Joint joint;
+    joint.name = "joint" + std::to_string(i);
+    joint.type = i == 2 ? JointType::prismatic : JointType::revolute;
+    joint.parent = i ? "link" + std::to_string(i - 1) : "base";
+    joint.child = "link" + std::to_string(i);
+    joint.axis = Vector3d::Unit(i % 3);
+    joint.origin.translation() << 0.1, 0.2 * i, 0.3;
+    tree->addLink(joint.child);
+    tree->addJoint(joint);
+  }
+  const std::vector<Vector3d> needle{{-1e-4, 0, -0.2}, {1e-4, 0, -0.2}, {0, 0, 0.2}};
+  const auto link = meshOf(needle);
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  double least_room = HUGE_VAL;
+  int telling = 0;
+  std::vector<Eigen::Isometry3d> M_0;
+  const auto poseAt = [&](const JointMotion& motion, double t) {
+    tree->forwardKinematics(motion.configuration(t), M_0);
+    return M_0[static_cast<std::size_t>(tree->link("link3"))];
+  };
+  for (int trial = 0; trial < 24; ++trial) {
+    const Eigen::VectorXd q0 = Eigen::VectorXd::Random(4) * 2, dq = Eigen::VectorXd::Random(4) * (trial % 4 ? 0.5 : 2);
+    const JointMotion motion = JointMotion::linear(*tree, q0, q0 + dq);
+    std::vector<Vector3d> corners;
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d p = poseAt(motion, (k + 0.5) / 8).translation();
+      for (int i = 0; i < 3; ++i)
+        corners.push_back(p + 1e-3 * Vector3d(normal(random), normal(random), normal(random)));
+    }
+    fcl::CollisionObjectd link_object(link), obstacle(meshOf(corners));
+    ArticulatedCollisionManager manager(tree);
+    manager.bind("link3", &link_object);
+    manager.registerObject(&obstacle);
+    manager.setup();
+    visibility::Batch batch;
+    manager.setVisibility(std::make_shared<VisibilityCuller>(VisibilityOptions(), "recorder",
+                                                             [&] { return std::make_unique<Recorder>(batch); }));
+    for (const MotionEnclosure enclosure :
+         {MotionEnclosure::intervalChain, MotionEnclosure::meanValue, MotionEnclosure::taylor}) {
+      CertifiedRequest request;
+      request.method = Method::Redon2004;
+      request.redon.enclosure = enclosure;
+      request.visibility = VisibilityMode::on;
+      CertifiedResult result;
+      batch.clear();
+      manager.continuousCollide(motion, request, result);
+      if (result.statistics.redon.pairs_by_standard || batch.swept.size() != 8) continue;
+      ++telling;
+      for (int part = 0; part < 8; ++part) {
+        for (int k = 0; k < 40; ++k) {
+          const Vector3d n = Vector3d(normal(random), normal(random), normal(random)).normalized();
+          const double held = support(batch, batch.swept[static_cast<std::size_t>(part)].volume, n);
+          for (int i = 0; i <= 16; ++i) {
+            const Eigen::Isometry3d M = poseAt(motion, (part + i / 16.0) / 8);
+            for (const Vector3d& x : needle) {
+              const double reached = n.dot(M * x);
+              ASSERT_LE(reached, held + 1e-13) << trial << " part " << part << " " << i;
+              least_room = std::min(least_room, held - reached);
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GE(telling, 30);
+  EXPECT_LT(least_room, 3e-4) << "not just large";
+}
+
+TEST(RedonVisibility, PartsOfTimeAreThoseThatOverlap) {
+  std::mt19937_64 random(2);
+  for (int level = 0; level <= 6; ++level) {
+    for (int from = 0; from <= 6; ++from) {
+      for (int trial = 0; trial < 20; ++trial) {
+        const std::uint64_t parts = random() & random() & (from == 6 ? ~0ull : (1ull << (1 << from)) - 1);
+        std::uint64_t expected = 0;
+        for (int k = 0; k < 1 << level; ++k) {
+          for (int j = 0; j < 1 << from; ++j) {
+            const bool overlap = std::ldexp(k, -level) < std::ldexp(j + 1, -from) &&
+                                 std::ldexp(j, -from) < std::ldexp(k + 1, -level);
+            if (overlap && parts >> j & 1) expected |= 1ull << k;
+          }
+        }
+        ASSERT_EQ(redon::partsAt(level, parts, from), expected) << level << " " << from;
+      }
+    }
+  }
+}
+
+/// FCL_ARTIC_REDON_QUERIES=10000 in the environment makes it a campaign.
+TEST(RedonVisibility, SameAnswersWithTheStageAndWithout) {
+  const char* wanted = std::getenv("FCL_ARTIC_REDON_QUERIES");
+  const std::uint64_t n = wanted ? std::strtoull(wanted, nullptr, 10) : 240;
+  std::uint64_t contacts = 0, pairs = 0, culled = 0, cut = 0;
+  for (std::uint64_t i = 0; i < n; ++i) {
+    const std::uint64_t seed = 1000003 * 11 + i;
+    const std::string& family = campaign::familyOf(11, i);
+    campaign::Scene scene = campaign::makeScene(family, seed);
+    scene.margin = 0;
+    campaign::Question question = campaign::prepare(scene);
+    const JointMotion motion = campaign::motionOf(scene, *question.tree);
+    question.request.method = Method::Redon2004;
+    question.request.redon.in_time_order = i % 4 != 0;
+    CertifiedResult off, on;
+    question.manager->continuousCollide(motion, question.request, off);
+    contacts += off.status == Status::contact;
+    for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
+      question.request.visibility = mode;
+      question.manager->continuousCollide(motion, question.request, on);
+      ASSERT_EQ(on.status, off.status) << family << " " << seed;
+      EXPECT_LE(std::abs(on.t_lower - off.t_lower), question.request.tolerance_time) << family << " " << seed;
+      EXPECT_LE(std::abs(on.t_upper - off.t_upper), question.request.tolerance_time) << family << " " << seed;
+      const auto bodies = [](const CertifiedResult& r) {
+        std::multiset<std::pair<std::string, std::string>> all;
+        for (const CertifiedContact& c : r.contacts) all.insert({c.body1.name, c.body2.name});
+        return all;
+      };
+      EXPECT_EQ(bodies(on), bodies(off)) << family << " " << seed;
+      if (mode != VisibilityMode::on) continue;
+      pairs += on.statistics.visibility_pairs;
+      culled += on.statistics.visibility_culled;
+      cut += on.statistics.redon.box_tests < off.statistics.redon.box_tests;
+    }
+  }
+  std::cout << n << " queries, " << contacts << " with contact, " << pairs << " pairs seen, " << culled << " culled; "
+            << cut << " queries with fewer tests of boxes\n";
+  EXPECT_GT(contacts, n / 10);
+  EXPECT_GT(culled, n / 10);
+  EXPECT_GT(cut, n / 50);
+}
+
+}  // namespace
