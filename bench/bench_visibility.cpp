@@ -144,7 +144,10 @@ int main(int argc, char** argv) {
   const struct {
     std::string name;
     PipeSceneOptions options;
-  } scenes[] = {{"500 pipes", {500, 1, 1.0}}, {"1500 thin pipes", {1500, 1, 0.5}}, {"125 chains", {125, 4, 1.0}}};
+  } scenes[] = {{"500 pipes", {500, 1, 1.0}},
+                {"1500 thin pipes", {1500, 1, 0.5}},
+                {"125 chains", {125, 4, 1.0}},
+                {"500 in one mesh", {500, 1, 1.0, true}}};
   const std::vector<Way> all = ways();
   std::deque<PipeScene> kept_scenes;
   std::deque<std::vector<JointMotion>> kept_motions;

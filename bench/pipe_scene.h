@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ namespace fcl_artic::bench {
 struct PipeSceneOptions {
   int objects = 500, chain = 1;  ///< pipes of an object
   double thickness = 1;          ///< times radii of 15 to 50 mm
+  bool merged = false;           ///< all objects in one mesh
   std::uint64_t seed = 77;
 };
 
@@ -74,7 +76,13 @@ class PipeScene {
       manager_.bind("link" + std::to_string(i), objects_.back().get(),
                     Eigen::Isometry3d(Eigen::Translation3d(0, 0, kLength[i] / 2)));
     }
-    while (manager_.size() < static_cast<std::size_t>(options.objects)) addObject(options);
+    while (boxes_.size() < static_cast<std::size_t>(options.objects)) addObject(options);
+    if (options.merged) {
+      const Eigen::AlignedBox3d all = std::accumulate(boxes_.begin(), boxes_.end(), Eigen::AlignedBox3d(),
+                                                      [](auto a, const auto& b) { return a.merged(b); });
+      boxes_.assign(1, all);
+      registerMesh(merged_);
+    }
     manager_.setup();
   }
 
@@ -182,6 +190,13 @@ class PipeScene {
     triangles_ += mesh.triangles.size();
     boxes_.emplace_back();
     for (const fcl::Vector3d& v : mesh.vertices) boxes_.back().extend(v);
+    if (!options.merged) return registerMesh(mesh);
+    const std::size_t base = merged_.vertices.size();
+    merged_.vertices.insert(merged_.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const fcl::Triangle& t : mesh.triangles) merged_.triangles.emplace_back(base + t[0], base + t[1], base + t[2]);
+  }
+
+  void registerMesh(const TriangleMesh& mesh) {
     objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(mesh)));
     manager_.registerObject(objects_.back().get());
   }
@@ -190,6 +205,7 @@ class PipeScene {
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< of the obstacles
   ArticulatedCollisionManager manager_;
+  TriangleMesh merged_;
   std::size_t triangles_ = 0;
 };
 

@@ -27,6 +27,13 @@ constexpr double kLengths[Bounds::kDirections] = {1,      1,      1,      kSqrt2
 /// faces are at a phi^2 / sqrt(3) from the middle.
 constexpr double kIcosahedronA = 0.66158453886, kIcosahedronB = 1.07046626935;
 
+/// A vector along the directions of Bounds.
+void along(double x, double y, double z, double* at) {
+  const double values[Bounds::kDirections] = {x,     y,     z,         x + y,     x - y,     y + z,    y - z,
+                                              z + x, z - x, x + y + z, x + y - z, x - y + z, x - y - z};
+  std::copy(values, values + Bounds::kDirections, at);
+}
+
 }  // namespace
 
 Bounds Bounds::none() {
@@ -49,14 +56,14 @@ Bounds boundsOf(const double* points, int count, double radius) {
   Bounds b;
   double size = radius;
   for (int i = 0; i < count; ++i) {
-    const double *p = points + 3 * i, x = p[0], y = p[1], z = p[2];
-    const double at[Bounds::kDirections] = {x,     y,     z,         x + y,     x - y,     y + z,    y - z,
-                                            z + x, z - x, x + y + z, x + y - z, x - y + z, x - y - z};
+    const double* p = points + 3 * i;
+    double at[Bounds::kDirections];
+    along(p[0], p[1], p[2], at);
     for (int d = 0; d < Bounds::kDirections; ++d) {
       b.lo[d] = i ? std::min(b.lo[d], at[d]) : at[d];
       b.hi[d] = i ? std::max(b.hi[d], at[d]) : at[d];
     }
-    size += std::abs(x) + std::abs(y) + std::abs(z);
+    size += std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
   }
   for (int d = 0; d < Bounds::kDirections; ++d) {
     const double grow = kLengths[d] * radius + 0x1p-48 * size;
@@ -82,22 +89,34 @@ Volume addVolume(const engine::SweptLink& link, Batch& batch) {
 BodyPieces::BodyPieces(const engine::Body& body, double margin)
     : body_(body),
       // The placement's own error and a dozen roundings of numbers no larger than these.
-      pad_(margin + 0x1p-52 * (body.placement.ulps + 64) * (2 * body.tree->extent + body.placement.length + margin)) {}
+      pad_(margin + 0x1p-52 * (body.placement.ulps + 64) * (2 * body.tree->extent + body.placement.length + margin)) {
+  const double *R = body.placement.R, *t = body.placement.t;
+  for (int k = 0; k < 3; ++k) along(R[k], R[3 + k], R[6 + k], axes_[k]);
+  along(t[0], t[1], t[2], origin_);
+}
 
 void BodyPieces::toWorld(const double* p, double* x) const {
   const double *R = body_.placement.R, *t = body_.placement.t;
   for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
 }
 
-/// Of the node's box, turned into the world.
+/// Of the node's box: where its middle is, and how far its half sides reach, along each direction. A direction is no
+/// longer than sqrt(3), and roundings are some twenty: within its length times pad_.
 Bounds BodyPieces::boundsOf(const Node& node) const {
-  double corners[8][3];
-  for (int c = 0; c < 8; ++c) {
-    const double p[3] = {c & 1 ? node.hi[0] : node.lo[0], c & 2 ? node.hi[1] : node.lo[1],
-                         c & 4 ? node.hi[2] : node.lo[2]};
-    toWorld(p, corners[c]);
+  double c[3], h[3];
+  for (int k = 0; k < 3; ++k) {
+    c[k] = 0.5 * (static_cast<double>(node.hi[k]) + static_cast<double>(node.lo[k]));
+    h[k] = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
   }
-  return visibility::boundsOf(&corners[0][0], 8, pad_);
+  Bounds b;
+  for (int d = 0; d < Bounds::kDirections; ++d) {
+    const double x = axes_[0][d], y = axes_[1][d], z = axes_[2][d];
+    const double middle = x * c[0] + y * c[1] + z * c[2] + origin_[d];
+    const double reach = std::abs(x) * h[0] + std::abs(y) * h[1] + std::abs(z) * h[2] + kLengths[d] * pad_;
+    b.lo[d] = middle - reach;
+    b.hi[d] = middle + reach;
+  }
+  return b;
 }
 
 Volume BodyPieces::ballAround(const Node& node, Batch& batch) const {

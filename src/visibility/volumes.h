@@ -57,6 +57,7 @@ class BodyPieces {
 
   const engine::Body& body_;
   double pad_;  ///< rounding of a point's way to the world, and the margin
+  double axes_[3][Bounds::kDirections], origin_[Bounds::kDirections];  ///< of the body's frame, along the directions
 };
 
 }  // namespace visibility

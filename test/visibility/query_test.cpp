@@ -187,6 +187,38 @@ TEST_F(ArmAmidBalls, UnboundedObstacleStays) {
   EXPECT_EQ(result_.statistics.visibility_culled, 0u);
 }
 
+/// A mesh of boxes all around the arm's way, one object: its triangles are told apart, not only its whole.
+TEST_F(ArmAmidBalls, MeshAllAroundIsCulledUntilOneOfItsBoxesIsInTheWay) {
+  for (const bool in_the_way : {false, true}) {
+    auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    mesh->beginModel();
+    const auto addBox = [&](const Eigen::Vector3d& at) {
+      for (int face = 0; face < 6; ++face) {
+        const int k = face / 2;
+        const Eigen::Vector3d n = 0.05 * (face % 2 ? 1 : -1) * Eigen::Vector3d::Unit(k),
+                              u = 0.05 * Eigen::Vector3d::Unit((k + 1) % 3),
+                              v = 0.05 * Eigen::Vector3d::Unit((k + 2) % 3);
+        mesh->addTriangle(at + n + u + v, at + n - u + v, at + n - u - v);
+        mesh->addTriangle(at + n + u + v, at + n - u - v, at + n + u - v);
+      }
+    };
+    for (int i = 0; i < 40; ++i) {
+      const double a = 0.16 * i;
+      addBox({1.3 * std::cos(a), 1.3 * std::sin(a), 0});
+      addBox({0.7 * std::cos(a), 0.7 * std::sin(a), i % 2 ? 0.3 : -0.3});
+    }
+    if (in_the_way) addBox({0.7 * std::cos(0.4), 0.7 * std::sin(0.4), 0});
+    mesh->endModel();
+    add(mesh, Eigen::Vector3d::Zero());
+    manager_->setup();
+    request_.visibility = VisibilityMode::on;
+    manager_->continuousCollide(motion(0, 0.8), request_, result_);
+    EXPECT_EQ(result_.status, in_the_way ? fcl_artic::Status::contact : fcl_artic::Status::free);
+    EXPECT_EQ(result_.statistics.visibility_pairs, in_the_way ? 2u : 1u);
+    EXPECT_EQ(result_.statistics.visibility_culled, 1u);
+  }
+}
+
 /// A margin brings a ball near that is culled without.
 TEST_F(ArmAmidBalls, MarginCounts) {
   add(std::make_shared<fcl::Sphered>(0.05), {0.6, 0.0, 0.2});
