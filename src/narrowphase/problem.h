@@ -146,6 +146,8 @@ struct Problem {
   const LinkPair* link_pairs = nullptr;
   std::int32_t num_link_pairs = 0;
   const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
+  /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this query's motion; null: nothing is known.
+  const std::uint8_t* link_free = nullptr;
   std::int32_t num_scene_pairs = 0;
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   const std::int32_t* obstacles = nullptr;  ///< body of obstacle o

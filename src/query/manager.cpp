@@ -19,6 +19,7 @@
 #include "query/aspects.h"
 #include "query/engine_query.h"
 #include "query/motion_variables.h"
+#include "query/pair_table.h"
 #include "visibility/solve.h"
 
 namespace fcl_artic {
@@ -74,6 +75,23 @@ void worldBox(const ShapeTree& shape, const Eigen::Isometry3d& M, const Placemen
   }
 }
 
+/// The table of two links, and what it was made from.
+struct TabledPair {
+  std::shared_ptr<const ShapeTree> shape_a, shape_b;
+  LinkId link_a, link_b;
+  Eigen::Matrix4d offset_a, offset_b;
+  double margin;
+  std::shared_ptr<const PairTable> table;  ///< null: none to be had
+
+  TabledPair(const Item& a, const Item& b, double margin)
+      : shape_a(a.shape), shape_b(b.shape), link_a(a.link), link_b(b.link), offset_a(a.offset.matrix()),
+        offset_b(b.offset.matrix()), margin(margin) {}
+  bool sameMaking(const TabledPair& o) const {
+    return shape_a == o.shape_a && shape_b == o.shape_b && link_a == o.link_a && link_b == o.link_b &&
+           offset_a == o.offset_a && offset_b == o.offset_b && margin == o.margin;
+  }
+};
+
 void requireMargin(double margin, const std::string& what) {
   if (std::isfinite(margin) && margin >= 0) return;
   throw std::invalid_argument(what + " is " + std::to_string(margin) + ", not a number >= 0");
@@ -113,6 +131,8 @@ struct ArticulatedCollisionManager::Impl {
   std::vector<std::uint8_t> scene_allowed;  ///< empty when all pairs of link and obstacle are checked
   std::vector<engine::LinkPair> link_pairs;  ///< of two links first, then of moving obstacles and links
   std::vector<engine::Node> obstacle_tree;
+  std::vector<TabledPair> tabled;  ///< of self pairs, of this set-up and of the one before where they are the same
+  std::vector<std::pair<std::size_t, std::shared_ptr<const PairTable>>> tables;  ///< by link pair
   std::vector<double> scene_margins, link_margins;  ///< of pairs, -1: not their own; empty: none has its own
   double largest_margin = 0;
   std::size_t num_link_sweeps = 0, num_self_pairs = 0;
@@ -144,6 +164,9 @@ struct ArticulatedCollisionManager::Impl {
   void buildScene();
   void buildMoving();
   void buildMargins();
+  void buildTables();
+  const std::uint8_t* freeByTables(const engine::Problem& problem, const JointMotion& motion, double margin,
+                                   std::vector<std::uint8_t>& memory) const;
   void requireBody(const std::string& name) const;
   engine::Problem problem() const;
   void setVariables(const JointMotion& motion, const TimePart& time, std::vector<double>& memory,
@@ -447,6 +470,7 @@ void ArticulatedCollisionManager::Impl::buildScene() {
 
   sweep_views.clear();
   for (const FrameSweep& sweep : sweeps) sweep_views.push_back(sweep.view());
+  buildTables();
   ready = true;
 }
 
@@ -493,6 +517,38 @@ void ArticulatedCollisionManager::Impl::buildMargins() {
   for (const std::vector<double>* margins : {&scene_margins, &link_margins}) {
     for (const double margin : *margins) largest_margin = std::max(largest_margin, margin);
   }
+}
+
+/// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.)
+void ArticulatedCollisionManager::Impl::buildTables() {
+  std::vector<TabledPair> before;
+  std::swap(tabled, before);
+  tables.clear();
+  for (std::size_t i = 0; i < num_self_pairs; ++i) {
+    const engine::LinkPair& pair = link_pairs[i];
+    const Item &a = item(pair.a), &b = item(pair.b);
+    if (a.attached || b.attached) continue;
+    TabledPair made(a, b, link_margins.empty() ? 0 : std::max(0.0, link_margins[i]));
+    const auto known = std::find_if(before.begin(), before.end(), [&](const TabledPair& t) { return t.sameMaking(made); });
+    made.table = known != before.end() ? known->table
+                                       : PairTable::build(*tree, sweep_views[static_cast<std::size_t>(pair.sweep)],
+                                                          bodies.data(), pair, made.margin);
+    if (made.table) tables.emplace_back(i, made.table);
+    tabled.push_back(std::move(made));
+  }
+}
+
+/// What tables tell of a motion, as engine::Problem::link_free.
+/// @param margin  the query's, of pairs that have none of their own.
+const std::uint8_t* ArticulatedCollisionManager::Impl::freeByTables(const engine::Problem& problem,
+                                                                    const JointMotion& motion, double margin,
+                                                                    std::vector<std::uint8_t>& memory) const {
+  memory.assign(link_pairs.size(), 0);
+  for (const auto& [pair, table] : tables) {
+    if (engine::marginOf(problem, margin, problem.num_scene_pairs + static_cast<std::int32_t>(pair)) > table->margin()) continue;
+    memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
+  }
+  return memory.data();
 }
 
 /// The motion's variables, then those of the moving obstacles.
@@ -868,6 +924,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     problem.link_pairs += self_pairs;
     if (problem.link_margins) problem.link_margins += self_pairs;
     problem.num_link_pairs -= self_pairs;
+  }
+  if (request.check_self && request.method == Method::standard && !m.tables.empty()) {
+    problem.link_free = m.freeByTables(problem, motion, request.margin, workspace->link_free);
   }
   query.check_self = problem.num_link_pairs > 0;
   engine::Answer answer;

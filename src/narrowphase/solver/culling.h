@@ -63,13 +63,14 @@ inline void Solver::cull() {
   } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
     for (int p = 0; p < problem_->num_link_pairs; ++p) {
-      if (linkAllowed(p)) continue;
+      const unsigned open = linkAllowed(p) ? 0 : problem_->link_free ? kAllLanes & ~problem_->link_free[p] : kAllLanes;
+      if (!open) continue;
       const LinkPair& pair = problem_->link_pairs[p];
       const SweptBox& a = mover_box_[problem_->bodies[pair.a].mover];
       const SweptBox& b = mover_box_[problem_->bodies[pair.b].mover];
       FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
       for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
-      const unsigned mask = kAllLanes & ~lanesOf(out);
+      const unsigned mask = open & ~lanesOf(out);
       if (mask) entries_.push({problem_->num_scene_pairs + p, 0, 0, mask});
     }
   }
