@@ -27,8 +27,8 @@ double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Plac
       reach += rate * (multiplier * size(s.variable) + std::abs(s.offset)) + (moves ? multiplier : 0);
     }
   }
-  // A point p of the body in the last frame goes another rate |p|, or as Lemma 2 splits it: convex in p, so that the corners
-  // of a box around the body say it all.
+  // A point p of the body in the last frame goes another rate |p|, or as Lemma 2 splits it: convex in p, so that the
+  // corners of a box around the body say it all.
   const bool turns = !path.empty() && path.front()->kind == StepKind::revolute;
   const engine::Node& root = body.nodes[0];
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fcl_artic/joint_motion.h"
 #include "motion/variable_reach.h"
 #include "query/engine_query.h"
 
@@ -13,21 +12,22 @@ namespace {
 
 constexpr double kUlp = 0x1p-52;
 constexpr double kTurn = 6.283185307179586;  // 2 pi, off by less than kUlp
-/// Cells along the variable that the engine moves; and at most along the one that is paid for by a margin, where they are
-/// cut so fine that this margin is kRowMargin.
+/// Cells along the variable that the engine moves; and at most along the one that is paid for by a margin, where they
+/// are cut so fine that this margin is kRowMargin.
 constexpr int kColumns = 96, kMostRows = 96;
 constexpr double kRowMargin = 0.002;
 /// Joints may stand at their limits: cells go on behind them by this part of the range.
 constexpr double kBeyondLimits = 1e-3;
-/// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint values.
+/// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint
+/// values.
 constexpr double kCellSlack = 1e-6;
-/// Tests of nodes and leaves for one box of cells; what needs more counts as not proven. Measured on the Panda and the UR5:
-/// 400 prove 0.6 % of the cells more in three times the time.
+/// Tests of nodes and leaves for one box of cells; what needs more counts as not proven. Measured on the Panda and the
+/// UR5: 400 prove 0.6 % of the cells more in three times the time.
 constexpr std::uint64_t kWork = 60;
 /// Joints with limits beyond, rad or m, or that follow others by larger factors, are left alone.
 constexpr double kMostValue = 100;
 /// Of a row's cells neither of whose ends is proven, fewer than these are not looked into.
-constexpr int kIsland = 16;
+constexpr int kIsland = 40;
 constexpr double kToleranceTime = 1.0 / 64, kToleranceDistance = 1e-4;
 
 }  // namespace
@@ -35,12 +35,18 @@ constexpr double kToleranceTime = 1.0 / 64, kToleranceDistance = 1e-4;
 /// Proves cells: the first axis's by motions, the second one's by margins.
 class PairTable::Builder {
  public:
-  Builder(const KinematicTree& tree, const engine::SweepView& sweep, const engine::Body* bodies,
-          const engine::LinkPair& pair, PairTable& table)
-      : table_(table), moved_(table.axes_[0]), paid_(table.axes_[1]),
-        neutral_(JointMotion::linear(tree, tree.neutralConfiguration(), tree.neutralConfiguration())),
-        variables_(neutral_.variables()), sweep_(sweep), pair_(pair) {
+  /// @param path  steps from the one link to the other.
+  Builder(const std::vector<engine::SweepStep>& path, const engine::Body* bodies, const engine::LinkPair& pair,
+          PairTable& table)
+      : table_(table), moved_(table.axes_[0]), paid_(table.axes_[1]), path_(path), pair_(pair) {
+    for (std::size_t i = 0; i < path_.size(); ++i) {
+      path_[i].parent = static_cast<std::int32_t>(i) - 1;
+      path_[i].variable = path_[i].variable == moved_.variable ? 0 : 1;
+    }
+    sweep_.steps = path_.data();
+    sweep_.num_steps = static_cast<std::int32_t>(path_.size());
     pair_.sweep = 0;
+    pair_.step_b = sweep_.num_steps - 1;
     problem_.bodies = bodies;
     problem_.num_bodies = std::max(pair.a, pair.b) + 1;
     problem_.sweeps = &sweep_;
@@ -48,9 +54,7 @@ class PairTable::Builder {
     problem_.link_pairs = &pair_;
     problem_.num_link_pairs = 1;
     query_.coefficients = variables_.data();
-    query_.num_variables = static_cast<std::int32_t>(variables_.rows());
-    query_.degree = static_cast<std::int32_t>(variables_.cols()) - 1;
-    query_.orientations = neutral_.orientations().data();
+    query_.num_variables = 2;
     query_.check_scene = false;
     query_.work_budget = kWork;
     query_.tolerance_time = kToleranceTime;
@@ -71,7 +75,7 @@ class PairTable::Builder {
   void proveRows(int j, int j_end) {
     query_.margin = table_.margin_;
     if (table_.num_axes_ > 1) {
-      variables_(paid_.variable, 0) = paid_.lower + 0.5 * (j + j_end) * paid_.width;
+      variables_(1, 0) = paid_.lower + 0.5 * (j + j_end) * paid_.width;
       query_.margin += reach_ * (0.5 * (j_end - j) + 2 * kCellSlack) * paid_.width;
     }
     if (j_end - j == 1) return proveRow(j, 0, moved_.cells);
@@ -112,8 +116,8 @@ class PairTable::Builder {
     if (table_.num_axes_ > 0) {
       const double slack = end > begin ? kCellSlack : -kCellSlack;
       const double from = moved_.lower + (begin - slack) * moved_.width;
-      variables_(moved_.variable, 0) = from;
-      variables_(moved_.variable, 1) = moved_.lower + (end + slack) * moved_.width - from;
+      variables_(0, 0) = from;
+      variables_(0, 1) = moved_.lower + (end + slack) * moved_.width - from;
     }
     engine::Answer answer;
     engine::engine().solve(workspace_->engine(), problem_, query_, answer);
@@ -125,9 +129,9 @@ class PairTable::Builder {
 
   PairTable& table_;
   const Axis &moved_, &paid_;
-  const JointMotion neutral_;
-  Eigen::MatrixXd variables_;
-  const engine::SweepView sweep_;
+  Eigen::Matrix2d variables_ = Eigen::Matrix2d::Zero();  ///< a row for each axis
+  std::vector<engine::SweepStep> path_;
+  engine::SweepView sweep_;
   engine::LinkPair pair_;
   engine::Problem problem_;
   engine::Query query_;
@@ -139,23 +143,24 @@ class PairTable::Builder {
 std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, const engine::SweepView& sweep,
                                                   const engine::Body* bodies, const engine::LinkPair& pair,
                                                   double margin) {
-  std::vector<const engine::SweepStep*> path;
-  for (int s = pair.step_b; s >= 0; s = sweep.steps[s].parent) path.push_back(&sweep.steps[s]);
+  std::vector<engine::SweepStep> path;
+  for (int s = pair.step_b; s >= 0; s = sweep.steps[s].parent) path.push_back(sweep.steps[s]);
+  std::reverse(path.begin(), path.end());
   auto table = std::make_shared<PairTable>();
   table->margin_ = margin;
-  for (const engine::SweepStep* step : path) {
-    if (step->kind != engine::StepKind::revolute && step->kind != engine::StepKind::prismatic) return nullptr;
+  for (const engine::SweepStep& step : path) {
+    if (step.kind != engine::StepKind::revolute && step.kind != engine::StepKind::prismatic) return nullptr;
     const auto end = table->axes_ + table->num_axes_;
-    if (!(std::abs(step->multiplier) <= kMostValue && std::abs(step->offset) <= kMostValue)) return nullptr;
-    if (std::any_of(table->axes_, end, [&](const Axis& a) { return a.variable == step->variable; })) continue;
+    if (!(std::abs(step.multiplier) <= kMostValue && std::abs(step.offset) <= kMostValue)) return nullptr;
+    if (std::any_of(table->axes_, end, [&](const Axis& a) { return a.variable == step.variable; })) continue;
     if (table->num_axes_ == 2) return nullptr;
-    table->axes_[table->num_axes_++].variable = step->variable;
+    table->axes_[table->num_axes_++].variable = step.variable;
   }
   for (int a = 0; a < table->num_axes_; ++a) {
     Axis& axis = table->axes_[a];
-    const bool whole_turns = std::all_of(path.begin(), path.end(), [&](const engine::SweepStep* step) {
-      return step->variable != axis.variable ||
-             (step->kind == engine::StepKind::revolute && step->multiplier == std::round(step->multiplier));
+    const bool whole_turns = std::all_of(path.begin(), path.end(), [&](const engine::SweepStep& step) {
+      return step.variable != axis.variable ||
+             (step.kind == engine::StepKind::revolute && step.multiplier == std::round(step.multiplier));
     });
     const Joint& joint = tree.joint(tree.variableJoint(axis.variable));
     const bool limited = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous &&
@@ -191,7 +196,7 @@ std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, con
     paid.cells = static_cast<int>(std::clamp(std::ceil(reach * range / (2 * kRowMargin)), 1.0, 1.0 * kMostRows));
     paid.width = range / paid.cells;
   }
-  const std::vector<std::uint8_t> proven = Builder(tree, sweep, bodies, pair, *table).run(reach);
+  const std::vector<std::uint8_t> proven = Builder(path, bodies, pair, *table).run(reach);
   if (std::none_of(proven.begin(), proven.end(), [](std::uint8_t cell) { return cell != 0; })) return nullptr;
   table->sum(proven);
   return table;
@@ -213,7 +218,8 @@ void PairTable::sum(const std::vector<std::uint8_t>& proven) {
 }
 
 double PairTable::provenShare() const {
-  const auto open = sums_[static_cast<std::size_t>(axes_[0].cells) * stride_ + static_cast<std::size_t>(axes_[1].cells)];
+  const auto open =
+      sums_[static_cast<std::size_t>(axes_[0].cells) * stride_ + static_cast<std::size_t>(axes_[1].cells)];
   return 1 - open / (1.0 * axes_[0].cells * axes_[1].cells);
 }
 
@@ -259,8 +265,8 @@ unsigned PairTable::freeParts(const Eigen::MatrixXd& variables) const {
     double size = 0;
     for (Eigen::Index k = 0; k <= degree; ++k) size += std::abs(row[k]);
     for (int part = 0; part < kParts; ++part) {
-      // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few dozen
-      // ulp of `size` (doc/NUMERICS.md, "Parts of a motion").
+      // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few
+      // dozen ulp of `size` (doc/NUMERICS.md, "Parts of a motion").
       constexpr double kHalf = 0.5 / kParts;
       const double middle = (2 * part + 1) * kHalf;
       double c[engine::kMaxDegree + 1];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links whose relative pose depends on two joint variables at most: where among these the links are apart, proven once
-// per robot. A query whose motion stays there need not look at the pair.
+// Two links whose relative pose depends on two joint variables at most: where among these the links are apart, proven
+// once per robot. A query whose motion stays there need not look at the pair.
 //
-// The variables' range is cut into cells; a cell counts as proven when the engine has proven the links more than the margin
-// apart for all values in it (doc/NUMERICS.md, section 10). A summed-area table answers for any box of cells by four look-ups.
+// The variables' range is cut into cells; a cell counts as proven when the engine has proven the links more than the
+// margin apart for all values in it (doc/NUMERICS.md, section 10). A summed-area table answers for any box of cells by
+// four look-ups.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +23,12 @@ class PairTable {
  public:
   /// @param sweep  that the pair refers to.
   /// @param margin  that the links are proven to keep.
-  /// @return null where there is nothing to look up: more than two variables, joints of other kinds than turns about and slides
+  /// @return null where there is nothing to look up: more than two variables, joints of other kinds than turns about
+  /// and slides
   ///   along an axis, a slide without limits, or no cell that could be proven.
   static std::shared_ptr<const PairTable> build(const KinematicTree& tree, const engine::SweepView& sweep,
-                                                const engine::Body* bodies, const engine::LinkPair& pair, double margin);
+                                                const engine::Body* bodies, const engine::LinkPair& pair,
+                                                double margin);
 
   double margin() const { return margin_; }
 
@@ -33,7 +36,8 @@ class PairTable {
   /// @param variables  of the motion: a row each, column k for t^k.
   unsigned freeParts(const Eigen::MatrixXd& variables) const;
 
-  /// Whether the links are proven more than margin() apart for all values in a box: `lower[i]` to `upper[i]` of variable(i).
+  /// Whether the links are proven more than margin() apart for all values in a box: `lower[i]` to `upper[i]` of
+  /// variable(i).
   bool free(const double* lower, const double* upper) const;
   int numVariables() const { return num_axes_; }
   int variable(int i) const { return axes_[i].variable; }
@@ -56,8 +60,8 @@ class PairTable {
   double margin_ = 0;
   int num_axes_ = 0;
   Axis axes_[2];
-  /// sums_[i * stride_ + j]: cells (i', j') with i' < i, j' < j that are not proven, modulo 2^16. An axis that wraps is there
-  /// twice, so that every box of less than a turn is one piece.
+  /// sums_[i * stride_ + j]: cells (i', j') with i' < i, j' < j that are not proven, modulo 2^16. An axis that wraps is
+  /// there twice, so that every box of less than a turn is one piece.
   std::vector<std::uint16_t> sums_;
   std::size_t stride_ = 1;
 };

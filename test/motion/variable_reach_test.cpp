@@ -49,7 +49,9 @@ Chain randomChain(std::mt19937& random, int joints, bool only_in_line = false) {
   return chain;
 }
 
-double size(int) { return kMost; }
+double size(int) {
+  return kMost;
+}
 
 struct Box {
   engine::Node node;
@@ -76,7 +78,8 @@ TEST(VariableReach, NoPointGoesFarther) {
     const Carrier carrier = sweep.carrier(chain.tip);
     const Vector3d c(u(random), u(random), u(random));
     const Box box(c - Vector3d::Constant(0.1), c + Vector3d::Constant(0.1));
-    const Eigen::Isometry3d offset = Eigen::Translation3d(u(random), 0, 0) * Eigen::AngleAxisd(u(random), Vector3d::UnitZ());
+    const Eigen::Isometry3d offset =
+        Eigen::Translation3d(u(random), 0, 0) * Eigen::AngleAxisd(u(random), Vector3d::UnitZ());
     for (int v = 0; v < chain.tree.dof(); ++v) {
       const double bound = reachPerUnit(sweep.view(), carrier.step, makePlacement(carrier, offset), box.view, v, size);
       for (int k = 0; k < 50; ++k) {

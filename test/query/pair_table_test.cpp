@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables of two links over two joint variables. A ball, carried by two joints, beside a slanted plate that is the robot's base: the
-// ball never leaves the plate's box in the world, so that a pair which is left out is left out by the table.
-// Distances in closed form.
+// Tables of two links over two joint variables. A ball, carried by two joints, beside a slanted plate that is the
+// robot's base: the ball never leaves the plate's box in the world, so that a pair which is left out is left out by the
+// table. Distances in closed form.
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -73,7 +73,9 @@ struct Arm {
 Joint turn(double lower, double upper, const Vector3d& axis) {
   return limited(makeJoint("", JointType::revolute, "", "", axis), lower, upper);
 }
-Joint endless(const Vector3d& axis) { return makeJoint("", JointType::continuous, "", "", axis); }
+Joint endless(const Vector3d& axis) {
+  return makeJoint("", JointType::continuous, "", "", axis);
+}
 Joint slide(double lower, double upper, const Vector3d& axis) {
   return limited(makeJoint("", JointType::prismatic, "", "", axis), lower, upper);
 }
@@ -121,8 +123,8 @@ Shares check(const Arm& arm, const Vector3d& lower, const Vector3d& upper, doubl
     if (result.isFree()) EXPECT_GT(least, margin) << q0.transpose() << " to " << q1.transpose();
   }
   EXPECT_GT(free, 30);
-  std::cout << "left out " << shares.left_out << ", meets " << shares.meets << "; free motions " << free << ", of them not by the table "
-            << open << '\n';
+  std::cout << "left out " << shares.left_out << ", meets " << shares.meets << "; free motions " << free
+            << ", of them not by the table " << open << '\n';
   return shares;
 }
 
@@ -142,8 +144,9 @@ TEST(PairTable, AtTheLimitsAndBeyond) {
     for (int i = 0; i <= 10; ++i) {
       at += arm.leftOut(Eigen::Vector2d(q, -2 + 0.3 * i));
       EXPECT_FALSE(arm.leftOut(Eigen::Vector2d(q * 1.1, -2 + 0.3 * i)));
-      EXPECT_EQ(ask(*arm.manager, Eigen::Vector2d(q * 1.1, -2 + 0.3 * i), Eigen::Vector2d(q * 1.1, -2 + 0.3 * i)).isFree(),
-                arm.distance(Eigen::Vector2d(q * 1.1, -2 + 0.3 * i)) > 0);
+      EXPECT_EQ(
+          ask(*arm.manager, Eigen::Vector2d(q * 1.1, -2 + 0.3 * i), Eigen::Vector2d(q * 1.1, -2 + 0.3 * i)).isFree(),
+          arm.distance(Eigen::Vector2d(q * 1.1, -2 + 0.3 * i)) > 0);
     }
   }
   EXPECT_GT(at, 5);
@@ -292,8 +295,8 @@ TEST(PairTable, PolynomialsAreBounded) {
   EXPECT_GT(meets, 30);
 }
 
-/// Random arms, at the very border between free and touching: no state on the wrong side of it is left out, nor a motion
-/// that begins there.
+/// Random arms, at the very border between free and touching: no state on the wrong side of it is left out, nor a
+/// motion that begins there.
 TEST(PairTable, NothingAtTheBorderIsLeftOut) {
   std::mt19937 random(23);
   std::uniform_real_distribution<double> u(-1, 1);
