@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Interval kernels alone and in batches per instruction set, and bounds down a PUMA's chain. Times are of one element: a
-// product, an equation, one interval of time for all six links.
+// Interval kernels, the test of oriented boxes alone and in batches per instruction set, and bounds down a PUMA's chain.
+// Times are of one element: a product, a pair of boxes, one interval of time for all six links.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "motion/frame_sweep.h"
 #include "options.h"
 #include "random.h"
+#include "redon/box_batch.h"
+#include "redon/overlap.h"
 
 namespace {
 
@@ -32,9 +35,10 @@ struct Operands {
   std::vector<IntervalTransform> a, b, product;
   std::vector<IntervalVec3> x, y;
   std::vector<Interval> angle, value, rate;
-  std::vector<double> xyz, column[12];
-  const double* columns[12];
-  FrameBounds frame[2];
+  std::vector<double> xyz;
+  std::vector<ObbNode> boxes[2];
+  std::vector<const ObbNode*> pointers[2];
+  IntervalTransform motion;  ///< of the second boxes, by a few hundredths
 
   explicit Operands(Random& random) : a(kElements), b(kElements), product(kElements), x(kElements + 3), y(kElements + 3),
                                       angle(kElements), value(kElements), rate(kElements) {
@@ -46,14 +50,24 @@ struct Operands {
     }
     for (Interval& e : angle) e = randomInterval(random) * 3.0;
     for (int i = 0; i < 3 * kElements; ++i) xyz.push_back(random.uniform(-1, 1));
-    for (int c = 0; c < 12; ++c) {
-      for (int i = 0; i < kElements; ++i) column[c].push_back(random.uniform(-1, 1));
-      columns[c] = column[c].data();
+    motion = IntervalTransform::identity();
+    for (Interval& e : motion.R.m) e = e + Interval(-0.02, 0.02);
+    for (Interval& e : motion.t.v) e = Interval(-0.01, 0.01);
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; i < kElements; ++i) boxes[side].push_back(randomBox(random));
     }
-    for (FrameBounds& f : frame) {
-      fill(random, f.pose);
-      fill(random, f.rate);
+  }
+  /// Two of them are apart as often as not.
+  static ObbNode randomBox(Random& random) {
+    ObbNode box = {};
+    const Eigen::Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1));
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(random.uniform(-3, 3), axis.normalized()).toRotationMatrix();
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) box.axis[i][k] = static_cast<float>(R(i, k));
+      box.center[i] = static_cast<float>(random.uniform(-0.3, 0.3));
+      box.half[i] = static_cast<float>(random.uniform(0.02, 0.2));
     }
+    return box;
   }
   static void fill(Random& random, IntervalTransform& M) {
     for (Interval& e : M.R.m) e = randomInterval(random);
@@ -77,7 +91,7 @@ Measured perElement(int elements, int passes, const std::function<Answer(std::si
 
 int main(int argc, char** argv) {
   Report report("bench_interval");
-  CLI::App app("Interval kernels, batches per instruction set, and bounds down a chain");
+  CLI::App app("Interval kernels, box tests per instruction set, and bounds down a chain");
   int passes = 5;
   std::uint64_t seed = 3;
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
@@ -91,7 +105,9 @@ int main(int argc, char** argv) {
     const RoundUpward upward;
     for (std::size_t i = 0; i < kQueries; ++i) sets.emplace_back(random);
     for (Operands& o : sets) {
-      for (int c = 0; c < 12; ++c) o.columns[c] = o.column[c].data();
+      for (int side = 0; side < 2; ++side) {
+        for (const ObbNode& box : o.boxes[side]) o.pointers[side].push_back(&box);
+      }
     }
   }
   const auto kernel = [&](const char* name, std::function<Answer(Operands&)> run) {
@@ -124,26 +140,31 @@ int main(int argc, char** argv) {
     for (std::size_t i = 0; i < kElements; ++i) encloseSineCosine(o.angle[i], o.value[i], o.rate[i]);
     return o.value[kElements / 2].upper() + o.rate[0].upper();
   });
-
+  kernel("pair of boxes", [](Operands& o) {
+    Answer apart = 0;
+    redon::SweptObb swept;
+    for (std::size_t i = 0; i < kElements; ++i) {
+      redon::sweep(o.motion, o.boxes[1][i], swept);
+      apart += redon::certainlyDisjoint(o.boxes[0][i], swept, o.boxes[1][i].half);
+    }
+    return apart;
+  });
   for (const char* name : {"portable", "sse2", "avx2", "avx512"}) {
-    const IntervalBatch* batch = intervalBatchNamed(name);
+    const redon::BoxBatch* batch = redon::boxBatchNamed(name);
     if (!batch) continue;
-    const auto row = [&](const char* what, std::function<Answer(Operands&)> run) {
-      report.add(what, "batch", name,
-                 [&, run] { return perElement(kElements, passes, [&](std::size_t i) { return run(sets[i]); }); });
-    };
-    row("transform * point", [batch](Operands& o) {
-      batch->boundPoints(o.frame[0].pose, o.xyz.data(), kElements, o.y.data());
-      return o.y[kElements / 2][1].upper();
-    });
-    row("equation (14)", [batch](Operands& o) {
-      batch->vertexFace(o.frame[0], o.frame[1], o.columns, kElements, o.value.data(), nullptr);
-      return o.value[kElements / 2].upper();
-    });
-    row("equation (14) and rate", [batch](Operands& o) {
-      batch->vertexFace(o.frame[0], o.frame[1], o.columns, kElements, o.value.data(), o.rate.data());
-      return o.value[kElements / 2].upper() + o.rate[0].upper();
-    });
+    for (const int n : {1, 3, redon::BoxBatch::kPairs}) {
+      report.add("pair of boxes", fmt::format("batches of {}", n), name, [&, batch, n] {
+        return perElement(kElements, passes, [&](std::size_t q) {
+          Answer apart = 0;
+          for (int i = 0; i < kElements; i += n) {
+            const auto at = static_cast<std::size_t>(i);
+            apart += __builtin_popcount(batch->apart(sets[q].motion, &sets[q].pointers[0][at], &sets[q].pointers[1][at],
+                                                     std::min(n, kElements - i)));
+          }
+          return apart;
+        });
+      });
+    }
   }
 
   constexpr int kJoints = 6;

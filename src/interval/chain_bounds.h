@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "interval/batch.h"
+#include "interval/matrix.h"
 #include "narrowphase/problem.h"
 
 namespace fcl_artic {
@@ -16,6 +16,11 @@ enum class Enclosure {
   intervalChain,  ///< interval matrix products down the chain: the paper's
   meanValue,      ///< X(tm) + X'(T) (T - tm), cut with the former
   taylor,         ///< quadratic at tm with a constant remainder, cut with the chain's where the motion is large
+};
+
+/// Bounds on a frame over a time interval: its pose, and the derivatives of that by time.
+struct FrameBounds {
+  IntervalTransform pose, rate, second;  ///< rate.R, rate.t: R'(t), o'(t); second: R''(t), o''(t)
 };
 
 /// What of FrameBounds is asked for; each includes the ones before it.

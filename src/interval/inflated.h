@@ -14,17 +14,18 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Nothing to set.
-struct Scope {
-  ~Scope() {}
-};
+/// Results hold in any mode; this is for numbers that are read as floats, of which subnormal ones could be taken for 0.
+using Scope = RoundToNearest;
 
 using Ends = double;
-FCL_ARTIC_INLINE Ends load(const double* x) {
-  return *x;
+FCL_ARTIC_INLINE Ends load(const float* x) {
+  return static_cast<double>(*x);
 }
-FCL_ARTIC_INLINE Ends everyThird(const double* x) {
-  return *x;
+FCL_ARTIC_INLINE Ends spread(double x) {
+  return x;
+}
+FCL_ARTIC_INLINE unsigned above(Ends a, Ends b) {
+  return a > b;
 }
 
 /// One interval: the batches' code takes it for lanes, of which it has one.
@@ -38,11 +39,14 @@ struct Intervals {
       : lower(x.lower() - kVanishing * isTiny(x.lower())), upper(x.upper() + kVanishing * isTiny(x.upper())) {}
   explicit FCL_ARTIC_INLINE Intervals(double x)
       : lower(x - kVanishing * isTiny(x)), upper(x + kVanishing * isTiny(x)) {}
-  FCL_ARTIC_INLINE void write(Interval* out, int = 1) const { *out = Interval(lower, upper); }
 
   static constexpr double kVanishing = 0x1p-1000;
   static FCL_ARTIC_INLINE bool isTiny(double x) { return __builtin_fabs(x) < kVanishing; }
 };
+
+FCL_ARTIC_INLINE Intervals eachNumber(double x) {
+  return Intervals(x);
+}
 
 /// What overflows is infinite in some modes and the largest number in others: ends beyond 2^1022, and NaN, are no
 /// bounds.
@@ -64,9 +68,6 @@ FCL_ARTIC_INLINE Intervals operator+(Intervals a, Intervals b) {
 FCL_ARTIC_INLINE Intervals operator-(Intervals a, Intervals b) {
   return inflated(a.lower - b.upper, a.upper - b.lower);
 }
-FCL_ARTIC_INLINE Intervals operator-(Intervals a) {
-  return {-a.upper, -a.lower};
-}
 FCL_ARTIC_INLINE Intervals operator*(Intervals a, Intervals b) {
   const double p = a.lower * b.lower, q = a.lower * b.upper, r = a.upper * b.lower, s = a.upper * b.upper;
   const double sum = (p + q) + (r + s);  // NaN or infinite where one of them is
@@ -75,6 +76,19 @@ FCL_ARTIC_INLINE Intervals operator*(Intervals a, Intervals b) {
 }
 FCL_ARTIC_INLINE Intervals operator*(Intervals a, double b) {
   return a * Intervals(b);
+}
+FCL_ARTIC_INLINE double magnitude(Intervals a) {
+  return larger(-a.lower, a.upper);
+}
+FCL_ARTIC_INLINE double mignitude(Intervals a) {
+  return larger(a.lower, -a.upper);
+}
+/// Upper bounds.
+FCL_ARTIC_INLINE double addUp(double a, double b) {
+  return inflated(0, a + b).upper;
+}
+FCL_ARTIC_INLINE double mulUp(double a, double b) {
+  return inflated(0, a * b).upper;
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -227,37 +227,66 @@ const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
   return s.box;
 }
 
+/// A bit for each pair of boxes that is apart in the pair's sub-interval: in lanes where there are enough of them.
+unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int part) {
+  const ObbNode *a[BoxBatch::kPairs], *b[BoxBatch::kPairs];
+  for (int i = 0; i < n; ++i) {
+    a[i] = &pair.a->nodes()[static_cast<std::size_t>(entries[i].a)];
+    b[i] = &pair.b->nodes()[static_cast<std::size_t>(entries[i].b)];
+  }
+  const BoxBatch& lanes = boxBatch();
+  if (n >= lanes.fewest) {
+    const Traversal& t = traversals_[static_cast<std::size_t>(entries[0].pair)];
+    return lanes.apart(t.relative[static_cast<std::size_t>(part)], a, b, n);
+  }
+  unsigned out = 0;
+  for (int i = 0; i < n; ++i) {
+    if (certainlyDisjoint(*a[i], swept(pair, entries[i], part), b[i]->half)) out |= 1u << i;
+  }
+  return out;
+}
+
 /// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait
 /// for the next one.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
   std::vector<Entry>& stack = waiting_[slot];
   while (!stack.empty()) {
-    Entry e = stack.back();
-    stack.pop_back();
-    const BodyPair& pair = pairs[static_cast<std::size_t>(e.pair)];
-    const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)],
-                  &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
-    const int k = __builtin_ctzll(e.mask);
-    ++counts_->box_tests;
-    if (certainlyDisjoint(x, swept(pair, e, k), y.half)) {
-      e.mask &= e.mask - 1;
-      if (e.mask) wait(e);
-      continue;
+    Entry batch[BoxBatch::kPairs];
+    const std::int32_t number = stack.back().pair;
+    const int k = __builtin_ctzll(stack.back().mask);
+    int n = 0;
+    while (n < BoxBatch::kPairs && !stack.empty() && stack.back().pair == number &&
+           __builtin_ctzll(stack.back().mask) == k) {
+      batch[n++] = stack.back();
+      stack.pop_back();
     }
-    if (query_->work_budget && workOf(*counts_) > query_->work_budget) return false;
-    if (x.isLeaf() && y.isLeaf()) {
-      ++counts_->leaf_pairs;
-      const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
-      out.push_back(
-          {e.pair, x.triangle(), y.triangle(), timeOf(level, k), options_->in_time_order ? timeOf(level, k + 1) : 1});
-      e.mask &= e.mask - 1;
-      if (e.mask && options_->in_time_order) wait(e);
-    } else if (y.isLeaf() || (!x.isLeaf() && x.size() > y.size())) {
-      stack.push_back({e.pair, x.child + 1, e.b, e.mask});
-      stack.push_back({e.pair, x.child, e.b, e.mask});
-    } else {
-      stack.push_back({e.pair, e.a, y.child + 1, e.mask});
-      stack.push_back({e.pair, e.a, y.child, e.mask});
+    const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
+    const int level = traversals_[static_cast<std::size_t>(number)].level;
+    const unsigned apart = this->apart(pair, batch, n, k);
+    counts_->box_tests += static_cast<std::uint64_t>(n);
+    for (int i = 0; i < n; ++i) {
+      Entry& e = batch[i];
+      if (apart >> i & 1) {
+        e.mask &= e.mask - 1;
+        if (e.mask) wait(e);
+        continue;
+      }
+      if (query_->work_budget && workOf(*counts_) > query_->work_budget) return false;
+      const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)],
+                    &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
+      if (x.isLeaf() && y.isLeaf()) {
+        ++counts_->leaf_pairs;
+        out.push_back(
+            {number, x.triangle(), y.triangle(), timeOf(level, k), options_->in_time_order ? timeOf(level, k + 1) : 1});
+        e.mask &= e.mask - 1;
+        if (e.mask && options_->in_time_order) wait(e);
+      } else if (y.isLeaf() || (!x.isLeaf() && x.size() > y.size())) {
+        stack.push_back({number, x.child + 1, e.b, e.mask});
+        stack.push_back({number, x.child, e.b, e.mask});
+      } else {
+        stack.push_back({number, e.a, y.child + 1, e.mask});
+        stack.push_back({number, e.a, y.child, e.mask});
+      }
     }
   }
   return true;

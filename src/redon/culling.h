@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "redon/box_batch.h"
 #include "redon/motion.h"
 #include "redon/options.h"
 #include "redon/overlap.h"
@@ -77,6 +78,7 @@ class Culling {
   void moverBoxes();
   void wait(const Entry& e);
   const SweptObb& swept(const BodyPair& pair, const Entry& e, int k);
+  unsigned apart(const BodyPair& pair, const Entry* entries, int n, int part);
 
   const engine::Problem* problem_ = nullptr;
   const engine::Query* query_ = nullptr;

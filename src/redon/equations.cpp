@@ -241,20 +241,8 @@ void bound(Element& e, const PairBounds& motion) {
   }
 }
 
-Interval valueOver(const Equation& q, const Element* e) {
-  const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].over; };
-  switch (q.kind) {
-    case EquationKind::faceVertex:
-      return dot(v(0), v(4) - v(1));
-    case EquationKind::vertexFace:
-      return dot(v(1), v(0) - v(2));
-    default:
-      return dot(v(4) - v(1), cross(v(0), v(3)));
-  }
-}
-
-Interval valueInMiddle(const Equation& q, const Element* e) {
-  const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].middle; };
+Interval value(const Equation& q, const Element* e, Bounds when) {
+  const auto v = [&](int i) -> const IntervalVec3& { return e[q.element[i]].*when; };
   switch (q.kind) {
     case EquationKind::faceVertex:
       return dot(v(0), v(4) - v(1));

@@ -61,9 +61,10 @@ class EquationSet {
 /// Bounds a moving element.
 void bound(Element& element, const PairBounds& motion);
 
-/// Function and derivative over T, function in the middle. The elements must have been bounded.
-Interval valueOver(const Equation& equation, const Element* elements);
-Interval valueInMiddle(const Equation& equation, const Element* elements);
+/// Which of an element's bounds: &Element::over or &Element::middle.
+using Bounds = IntervalVec3 Element::*;
+/// Function over T or in the middle, derivative over T. The elements must have been bounded.
+Interval value(const Equation& equation, const Element* elements, Bounds when);
 Interval derivativeOver(const Equation& equation, const Element* elements);
 
 /// A direction keeps the two features apart all over T: no root there is a contact. Where the function vanishes for

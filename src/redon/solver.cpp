@@ -71,14 +71,14 @@ bool Solver::mayHaveRoot(Active& active, double begin, double end, bool validity
   ++counts_->evaluations;
   boundElements(q);
   const Element* elements = set_->elements().data();
-  if (!valueOver(q, elements).containsZero()) return false;
+  if (!value(q, elements, &Element::over).containsZero()) return false;
   const Interval h = Interval(begin, end) - Interval(mid_);
   double gap;
   if (validity && certainlyApart(q, elements, h, gap)) return false;
   if (!options_->newton) return true;
   const Interval slope = derivativeOver(q, elements);
   if (slope.containsZero()) return true;
-  const Interval roots = Interval(mid_) - valueInMiddle(q, elements) / slope;  // eq. (18)
+  const Interval roots = Interval(mid_) - value(q, elements, &Element::middle) / slope;  // eq. (18)
   active.lo = std::max(active.lo, roots.lower());
   active.hi = std::min(active.hi, roots.upper());
   return active.lo <= active.hi;
@@ -186,7 +186,7 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
 Interval Solver::valueAt(const Equation& q, double t) {
   setInterval(t, t);
   boundElements(q);
-  return valueOver(q, set_->elements().data());
+  return value(q, set_->elements().data(), &Element::over);
 }
 
 /// A window round [begin, end] in which the function changes its sign, its features meeting all the while.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstring>
+
 #include "arithmetic.h"
 #include "interval/sine_cosine.h"
 
@@ -52,14 +54,27 @@ void apply(Operation operation, const Interval* a, const Interval* b, int n, Int
   }
 }
 
+Ends endsOf(const double* x) {
+  Ends ends;
+  std::memcpy(&ends, x, sizeof ends);
+  return ends;
+}
 /// A group of lanes from intervals that lie one behind the other.
 Intervals gather(const Interval* x) {
   double lower[Intervals::kLanes], upper[Intervals::kLanes];
   for (int k = 0; k < Intervals::kLanes; ++k) {
-    lower[k] = FCL_ARTIC_ARITHMETIC_LOWER(x[k]);
+    lower[k] = FCL_ARTIC_ARITHMETIC_LOWER(x[k].lower());
     upper[k] = x[k].upper();
   }
-  return {load(lower), load(upper)};
+  return {endsOf(lower), endsOf(upper)};
+}
+void scatter(const Intervals& x, Interval* out) {
+  double ends[2 * Intervals::kLanes];
+  static_assert(sizeof ends == sizeof x);
+  std::memcpy(ends, &x, sizeof x);
+  for (int k = 0; k < Intervals::kLanes; ++k) {
+    out[k] = Interval(FCL_ARTIC_ARITHMETIC_LOWER(ends[k]), ends[Intervals::kLanes + k]);
+  }
 }
 
 /// @param n  a multiple of 8.
@@ -77,17 +92,14 @@ void applyLanes(Operation operation, const Interval* a, const Interval* b, int n
       case Operation::subtract:
         o = x - y;
         break;
-      case Operation::negate:
-        o = -x;
-        break;
       case Operation::multiply:
         o = x * y;
         break;
       default:
-        o = x * load(number);
+        o = x * endsOf(number);
         break;
     }
-    o.write(out + i);
+    scatter(o, out + i);
   }
 }
 

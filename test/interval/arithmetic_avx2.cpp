@@ -3,7 +3,7 @@
 #define FCL_ARTIC_ISA_BITS 256
 #define FCL_ARTIC_ISA_ARITHMETIC kArithmeticAvx2
 #define FCL_ARTIC_ARITHMETIC_DIRECTED true
-#define FCL_ARTIC_ARITHMETIC_LOWER(x) (-(x).lower())
+#define FCL_ARTIC_ARITHMETIC_LOWER(x) (-(x))
 #include "interval/interval_lanes.h"
 
 #include "arithmetic.inl"

@@ -10,7 +10,7 @@
 #include <mpfr.h>
 
 #include "arithmetic.h"
-#include "interval/batch.h"
+#include "redon/box_batch.h"
 #include "interval/sine_cosine.h"
 #include "operands.h"
 
@@ -20,7 +20,7 @@ namespace numerics_test {
 std::vector<const Arithmetic*> arithmetics() {
   std::vector<const Arithmetic*> all;
   for (const Arithmetic* s : {&kArithmeticPortable, &kArithmeticSse2, &kArithmeticAvx2, &kArithmeticAvx512}) {
-    if (intervalBatchNamed(s->name)) all.push_back(s);
+    if (redon::boxBatchNamed(s->name)) all.push_back(s);
   }
   return all;
 }

@@ -1,8 +1,0 @@
-// SPDX-License-Identifier: BSD-3-Clause
-// Batches of intervals for one instruction set, chosen at run time by batch.cpp.
-#define FCL_ARTIC_ISA avx512
-#define FCL_ARTIC_ISA_BITS 512
-#define FCL_ARTIC_ISA_BATCH kIntervalBatchAvx512
-#include "interval/interval_lanes.h"
-
-#include "interval/batch.inl"
