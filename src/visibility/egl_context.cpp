@@ -33,24 +33,19 @@ struct Egl {
   }
 
  private:
-  template <class F>
-  void load(void* library, const char* name, F& f) {
-    f = reinterpret_cast<F>(functionOf(library, name));
-  }
   Egl() {
-    void* library = openLibrary({"libEGL.so.1", "libEGL.so"});
-    if (!library) throw std::runtime_error("libEGL is not found");
-    load(library, "eglGetProcAddress", function);
-    load(library, "eglQueryString", queryString);
-    load(library, "eglInitialize", initialize);
-    load(library, "eglBindAPI", bindApi);
-    load(library, "eglQueryAPI", queryApi);
-    load(library, "eglCreateContext", createContext);
-    load(library, "eglDestroyContext", destroyContext);
-    load(library, "eglMakeCurrent", makeCurrent);
-    load(library, "eglGetCurrentContext", currentContext);
-    load(library, "eglGetCurrentDisplay", currentDisplay);
-    load(library, "eglGetCurrentSurface", currentSurface);
+    const SharedLibrary library({"libEGL.so.1", "libEGL.so"});
+    library.load("eglGetProcAddress", function);
+    library.load("eglQueryString", queryString);
+    library.load("eglInitialize", initialize);
+    library.load("eglBindAPI", bindApi);
+    library.load("eglQueryAPI", queryApi);
+    library.load("eglCreateContext", createContext);
+    library.load("eglDestroyContext", destroyContext);
+    library.load("eglMakeCurrent", makeCurrent);
+    library.load("eglGetCurrentContext", currentContext);
+    library.load("eglGetCurrentDisplay", currentDisplay);
+    library.load("eglGetCurrentSurface", currentSurface);
     const char* extensions = queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const auto offers = [&](const char* name) { return extensions && std::strstr(extensions, name); };
     const auto platformDisplay =
@@ -88,7 +83,10 @@ class EglContext : public OffscreenContext {
       throw std::runtime_error("EGL offers no OpenGL " + std::to_string(major) + "." + std::to_string(minor));
     }
   }
-  ~EglContext() override { egl_.destroyContext(egl_.display, context_); }
+  ~EglContext() override {
+    const std::lock_guard<std::mutex> turn(openGlTurn());
+    egl_.destroyContext(egl_.display, context_);
+  }
 
   void makeCurrent() override {
     before_.api = egl_.queryApi();

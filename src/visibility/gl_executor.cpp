@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "visibility/offscreen_context.h"
 #include "visibility/shaders.h"
 
 namespace fcl_artic {
@@ -28,6 +29,7 @@ struct GlExecutor::Current {
   ~Current() { context_.release(); }
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
+  const std::lock_guard<std::mutex> turn_{openGlTurn()};
   OffscreenContext& context_;
 };
 

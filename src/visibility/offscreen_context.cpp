@@ -9,15 +9,21 @@
 namespace fcl_artic {
 namespace visibility {
 
-void* openLibrary(std::initializer_list<const char*> names) {
-  for (const char* name : names) {
-    if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL)) return library;
-  }
-  return nullptr;
+std::mutex& openGlTurn() {
+  static std::mutex mutex;
+  return mutex;
 }
 
-void* functionOf(void* library, const char* name) {
-  void* found = dlsym(library, name);
+SharedLibrary::SharedLibrary(std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    library_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (library_) return;
+  }
+  throw std::runtime_error(std::string(*names.begin()) + " is not found");
+}
+
+void* SharedLibrary::address(const char* name) const {
+  void* found = dlsym(library_, name);
   if (!found) throw std::runtime_error(std::string("the library lacks ") + name);
   return found;
 }
@@ -25,6 +31,7 @@ void* functionOf(void* library, const char* name) {
 }  // namespace visibility
 
 std::unique_ptr<OffscreenContext> OffscreenContext::create(OffscreenBackend backend, int major, int minor) {
+  const std::lock_guard<std::mutex> turn(visibility::openGlTurn());
   return backend == OffscreenBackend::osmesa ? visibility::createOsmesaContext(major, minor)
                                              : visibility::createEglContext(major, minor);
 }

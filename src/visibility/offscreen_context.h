@@ -3,6 +3,7 @@
 
 #include <initializer_list>
 #include <memory>
+#include <mutex>
 
 #include "fcl_artic/visibility/offscreen.h"
 
@@ -12,10 +13,25 @@ namespace visibility {
 std::unique_ptr<OffscreenContext> createOsmesaContext(int major, int minor);
 std::unique_ptr<OffscreenContext> createEglContext(int major, int minor);
 
-/// The first of the libraries that can be opened; it stays open. Null: none.
-void* openLibrary(std::initializer_list<const char*> names);
-/// @throws std::runtime_error when the library has no such function.
-void* functionOf(void* library, const char* name);
+/// Held by who makes, uses or destroys a context. Mesa's software rasteriser looks through what the other contexts of
+/// a display are drawing without a lock (doc/VISIBILITY.md, "Contexts"): of ours one is at work at a time.
+std::mutex& openGlTurn();
+
+/// A library that is opened at run time, and stays open.
+class SharedLibrary {
+ public:
+  /// Opens the first of these that can be. @throws std::runtime_error when none can.
+  explicit SharedLibrary(std::initializer_list<const char*> names);
+  /// @throws std::runtime_error when there is no such function.
+  template <class F>
+  void load(const char* name, F& function) const {
+    function = reinterpret_cast<F>(address(name));
+  }
+
+ private:
+  void* address(const char* name) const;
+  void* library_ = nullptr;
+};
 
 }  // namespace visibility
 }  // namespace fcl_artic

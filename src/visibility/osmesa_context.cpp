@@ -24,13 +24,12 @@ struct Osmesa {
 
  private:
   Osmesa() {
-    void* library = openLibrary({"libOSMesa.so.8", "libOSMesa.so"});
-    if (!library) throw std::runtime_error("libOSMesa is not found");
-    create = reinterpret_cast<decltype(create)>(functionOf(library, "OSMesaCreateContextAttribs"));
-    destroy = reinterpret_cast<decltype(destroy)>(functionOf(library, "OSMesaDestroyContext"));
-    makeCurrent = reinterpret_cast<decltype(makeCurrent)>(functionOf(library, "OSMesaMakeCurrent"));
-    current = reinterpret_cast<decltype(current)>(functionOf(library, "OSMesaGetCurrentContext"));
-    function = reinterpret_cast<decltype(function)>(functionOf(library, "OSMesaGetProcAddress"));
+    const SharedLibrary library({"libOSMesa.so.8", "libOSMesa.so"});
+    library.load("OSMesaCreateContextAttribs", create);
+    library.load("OSMesaDestroyContext", destroy);
+    library.load("OSMesaMakeCurrent", makeCurrent);
+    library.load("OSMesaGetCurrentContext", current);
+    library.load("OSMesaGetProcAddress", function);
   }
 };
 
@@ -53,7 +52,10 @@ class OsmesaContext : public OffscreenContext {
       throw std::runtime_error("OSMesa offers no OpenGL " + std::to_string(major) + "." + std::to_string(minor));
     }
   }
-  ~OsmesaContext() override { osmesa_.destroy(context_); }
+  ~OsmesaContext() override {
+    const std::lock_guard<std::mutex> turn(openGlTurn());
+    osmesa_.destroy(context_);
+  }
 
   void makeCurrent() override {
     // Whose buffer a context draws to can't be asked: another one could not be given back.

@@ -3,6 +3,7 @@
 // them.
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
@@ -214,6 +215,38 @@ TEST_P(Contexts, FourThreadsWithFourContexts) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(wrong, 0u);
   EXPECT_GT(culled, 3500u);
+}
+
+/// A context that counts how many of its kind are current.
+struct CountedContext : OffscreenContext {
+  CountedContext(OffscreenBackend backend, std::atomic<int>& now, std::atomic<int>& most)
+      : inner(OffscreenContext::create(backend, 4, 3)), now_(now), most_(most) {}
+  void makeCurrent() override {
+    inner->makeCurrent();
+    most_ = std::max(most_.load(), ++now_);
+  }
+  void release() override {
+    --now_;
+    inner->release();
+  }
+  void* function(const char* name) const override { return inner->function(name); }
+  std::unique_ptr<OffscreenContext> inner;
+  std::atomic<int>&now_, &most_;
+};
+
+/// Mesa's llvmpipe crashes now and then where two are (doc/VISIBILITY.md, "Contexts").
+TEST_P(Contexts, OneIsAtWorkAtATime) {
+  std::atomic<int> now{0}, most{0};
+  std::vector<std::thread> threads;
+  for (std::uint64_t t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      GlExecutor executor(std::make_unique<CountedContext>(GetParam(), now, most));
+      Batch batch = batchOf(16, VisibilityRule::intervals);
+      countWrongCulls(executor, batch, 10 + t, 0, 4000);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(most, 1);
 }
 
 /// One executor goes from thread to thread, as a culler lends it.

@@ -37,8 +37,9 @@ class FCL_ARTIC_EXPORT OffscreenContext {
   OffscreenContext() = default;
 };
 
-/// A culler that draws with OpenGL 4.3. Nothing is opened before the first query; where the driver is missing or fails
-/// its self-test, the executor cpu takes over, and VisibilityCuller::fallbackReason() says why.
+/// A culler that draws with OpenGL 4.3, one query at a time in a process (doc/VISIBILITY.md, "Contexts"). Nothing is
+/// opened before the first query; where the driver is missing or fails its self-test, the executor cpu takes over, and
+/// VisibilityCuller::fallbackReason() says why.
 FCL_ARTIC_EXPORT std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend,
                                                                              const VisibilityOptions& options = {});
 
