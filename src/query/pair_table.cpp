@@ -16,6 +16,10 @@ constexpr double kTurn = 6.283185307179586;  // 2 pi, off by less than kUlp
 /// are cut so fine that this margin is kRowMargin.
 constexpr int kColumns = 96, kMostRows = 96;
 constexpr double kRowMargin = 0.002;
+/// A third variable (a gripper's fingers) has three cells, its range and as much below and above, where that takes no
+/// larger margin. (Fingers are held apart beyond their limits in more than one description of a scene.)
+constexpr double kMostMargin = 0.03;
+constexpr int kPlanes = 3;
 /// Joints may stand at their limits: cells go on behind them by this part of the range.
 constexpr double kBeyondLimits = 1e-3;
 /// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint
@@ -41,7 +45,9 @@ class PairTable::Builder {
       : table_(table), moved_(table.axes_[0]), paid_(table.axes_[1]), path_(path), pair_(pair) {
     for (std::size_t i = 0; i < path_.size(); ++i) {
       path_[i].parent = static_cast<std::int32_t>(i) - 1;
-      path_[i].variable = path_[i].variable == moved_.variable ? 0 : 1;
+      for (int a = 0; a < table.num_axes_; ++a) {
+        if (path[i].variable == table.axes_[a].variable) path_[i].variable = a;
+      }
     }
     sweep_.steps = path_.data();
     sweep_.num_steps = static_cast<std::int32_t>(path_.size());
@@ -54,19 +60,19 @@ class PairTable::Builder {
     problem_.link_pairs = &pair_;
     problem_.num_link_pairs = 1;
     query_.coefficients = variables_.data();
-    query_.num_variables = 2;
+    query_.num_variables = 3;
     query_.check_scene = false;
     query_.work_budget = kWork;
     query_.tolerance_time = kToleranceTime;
     query_.tolerance_distance = kToleranceDistance;
   }
 
-  /// @param reach  as reachPerUnit() says, of the second axis's variable.
-  /// @return 1 for each cell that is proven, the first axis's index before the second one's.
-  std::vector<std::uint8_t> run(double reach) {
+  /// @param reach  as reachPerUnit() says, of the axes' variables.
+  /// @return 1 for each cell that is proven, by the third axis's index, then the first one's, then the second one's.
+  std::vector<std::uint8_t> run(const double* reach) {
     reach_ = reach;
-    proven_.assign(static_cast<std::size_t>(moved_.cells * paid_.cells), 0);
-    proveRows(0, paid_.cells);
+    proven_.assign(static_cast<std::size_t>(moved_.cells * paid_.cells * table_.axes_[2].cells), 0);
+    for (plane_ = 0; plane_ < table_.axes_[2].cells; ++plane_) proveRows(0, paid_.cells);
     return std::move(proven_);
   }
 
@@ -74,9 +80,11 @@ class PairTable::Builder {
   /// Rows [j, j_end) together, else in halves, else one row in parts.
   void proveRows(int j, int j_end) {
     query_.margin = table_.margin_;
-    if (table_.num_axes_ > 1) {
-      variables_(1, 0) = paid_.lower + 0.5 * (j + j_end) * paid_.width;
-      query_.margin += reach_ * (0.5 * (j_end - j) + 2 * kCellSlack) * paid_.width;
+    for (int a = 1; a < table_.num_axes_; ++a) {
+      const Axis& paid = table_.axes_[a];
+      const int begin = a == 1 ? j : plane_, end = a == 1 ? j_end : plane_ + 1;
+      variables_(a, 0) = paid.lower + 0.5 * (begin + end) * paid.width;
+      query_.margin += reach_[a] * (0.5 * (end - begin) + 2 * kCellSlack) * paid.width;
     }
     if (j_end - j == 1) return proveRow(j, 0, moved_.cells);
     query_.any = true;
@@ -106,7 +114,7 @@ class PairTable::Builder {
   }
 
   void mark(int j, int i, int i_end) {
-    for (; i < i_end; ++i) proven_[static_cast<std::size_t>(i * paid_.cells + j)] = 1;
+    for (; i < i_end; ++i) proven_[static_cast<std::size_t>((plane_ * moved_.cells + i) * paid_.cells + j)] = 1;
   }
 
   /// Moves the first axis's variable from one border of cells to another one, upwards or downwards.
@@ -129,14 +137,15 @@ class PairTable::Builder {
 
   PairTable& table_;
   const Axis &moved_, &paid_;
-  Eigen::Matrix2d variables_ = Eigen::Matrix2d::Zero();  ///< a row for each axis
+  Eigen::Matrix<double, 3, 2> variables_ = Eigen::Matrix<double, 3, 2>::Zero();  ///< a row for each axis
   std::vector<engine::SweepStep> path_;
   engine::SweepView sweep_;
   engine::LinkPair pair_;
   engine::Problem problem_;
   engine::Query query_;
   const WorkspaceLoan workspace_;
-  double reach_ = 0;
+  const double* reach_ = nullptr;
+  int plane_ = 0;  ///< cell of the third axis
   std::vector<std::uint8_t> proven_;
 };
 
@@ -153,7 +162,7 @@ std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, con
     const auto end = table->axes_ + table->num_axes_;
     if (!(std::abs(step.multiplier) <= kMostValue && std::abs(step.offset) <= kMostValue)) return nullptr;
     if (std::any_of(table->axes_, end, [&](const Axis& a) { return a.variable == step.variable; })) continue;
-    if (table->num_axes_ == 2) return nullptr;
+    if (table->num_axes_ == 3) return nullptr;
     table->axes_[table->num_axes_++].variable = step.variable;
   }
   for (int a = 0; a < table->num_axes_; ++a) {
@@ -175,26 +184,33 @@ std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, con
     // Rounding of values near the cells' is far below the slack.
     if (!(axis.width * kCellSlack > 64 * kUlp * std::max(std::abs(axis.lower), std::abs(axis.upper())))) return nullptr;
   }
-  double reach = 0;
-  if (table->num_axes_ == 2) {
-    const auto size = [&](int variable) {
-      const Axis& axis = table->axes_[table->axes_[0].variable == variable ? 0 : 1];
-      return std::max(std::abs(axis.lower), std::abs(axis.upper())) + axis.width;
-    };
-    const auto reachOf = [&](int a) {
-      return reachPerUnit(sweep, pair.step_b, pair.placement_b, *bodies[pair.b].tree, table->axes_[a].variable, size);
-    };
-    reach = reachOf(1);
-    const double other = reachOf(0);
-    // The engine moves the variable that takes the link farther.
-    if (other * table->axes_[0].width < reach * table->axes_[1].width) {
-      std::swap(table->axes_[0], table->axes_[1]);
-      reach = other;
+  // The engine moves the variable that takes the link farthest, rows are of the next one, and a third one must be of
+  // little effect.
+  Axis* const axes = table->axes_;
+  const auto size = [&](int variable) {
+    const Axis& axis =
+        *std::find_if(axes, axes + table->num_axes_, [&](const Axis& a) { return a.variable == variable; });
+    return std::max(std::abs(axis.lower), std::abs(axis.upper())) + axis.width;
+  };
+  const auto reachOf = [&](const Axis& axis) {
+    return reachPerUnit(sweep, pair.step_b, pair.placement_b, *bodies[pair.b].tree, axis.variable, size);
+  };
+  const auto way = [&](const Axis& axis) { return reachOf(axis) * axis.width * axis.cells; };
+  std::stable_sort(axes, axes + table->num_axes_, [&](const Axis& a, const Axis& b) { return way(a) > way(b); });
+  double reach[3] = {0, 0, 0};
+  for (int a = 1; a < table->num_axes_; ++a) {
+    Axis& axis = axes[a];
+    const double range = axis.width * axis.cells, margin = 0.5 * way(axis);
+    reach[a] = reachOf(axis);
+    if (a == 1) {
+      axis.cells = static_cast<int>(std::clamp(std::ceil(margin / kRowMargin), 1.0, 1.0 * kMostRows));
+      axis.width = range / axis.cells;
+    } else {
+      if (axis.wraps || margin > kMostMargin) return nullptr;
+      axis.cells = kPlanes;
+      axis.width = range;
+      axis.lower -= (kPlanes - 1) / 2 * range;
     }
-    Axis& paid = table->axes_[1];
-    const double range = paid.width * paid.cells;
-    paid.cells = static_cast<int>(std::clamp(std::ceil(reach * range / (2 * kRowMargin)), 1.0, 1.0 * kMostRows));
-    paid.width = range / paid.cells;
   }
   const std::vector<std::uint8_t> proven = Builder(path, bodies, pair, *table).run(reach);
   if (std::none_of(proven.begin(), proven.end(), [](std::uint8_t cell) { return cell != 0; })) return nullptr;
@@ -206,21 +222,20 @@ void PairTable::sum(const std::vector<std::uint8_t>& proven) {
   const Axis &x = axes_[0], &y = axes_[1];
   const int rows = x.wraps ? 2 * x.cells : x.cells, columns = y.wraps ? 2 * y.cells : y.cells;
   stride_ = static_cast<std::size_t>(columns) + 1;
-  sums_.assign((static_cast<std::size_t>(rows) + 1) * stride_, 0);
-  for (int i = 0; i < rows; ++i) {
-    std::uint16_t row = 0;
-    for (int j = 0; j < columns; ++j) {
-      row = static_cast<std::uint16_t>(row + !proven[static_cast<std::size_t>(i % x.cells * y.cells + j % y.cells)]);
-      const std::size_t at = (static_cast<std::size_t>(i) + 1) * stride_ + static_cast<std::size_t>(j) + 1;
-      sums_[at] = static_cast<std::uint16_t>(sums_[at - stride_] + row);
+  plane_ = (static_cast<std::size_t>(rows) + 1) * stride_;
+  sums_.assign(plane_ * static_cast<std::size_t>(axes_[2].cells), 0);
+  for (int p = 0; p < axes_[2].cells; ++p) {
+    for (int i = 0; i < rows; ++i) {
+      std::uint16_t row = 0;
+      for (int j = 0; j < columns; ++j) {
+        row = static_cast<std::uint16_t>(
+            row + !proven[static_cast<std::size_t>((p * x.cells + i % x.cells) * y.cells + j % y.cells)]);
+        const std::size_t at = static_cast<std::size_t>(p) * plane_ + (static_cast<std::size_t>(i) + 1) * stride_ +
+                               static_cast<std::size_t>(j) + 1;
+        sums_[at] = static_cast<std::uint16_t>(sums_[at - stride_] + row);
+      }
     }
   }
-}
-
-double PairTable::provenShare() const {
-  const auto open =
-      sums_[static_cast<std::size_t>(axes_[0].cells) * stride_ + static_cast<std::size_t>(axes_[1].cells)];
-  return 1 - open / (1.0 * axes_[0].cells * axes_[1].cells);
 }
 
 /// Cells that hold [lower, upper], as many as the axis has at most.
@@ -247,48 +262,45 @@ bool PairTable::cellsOf(const Axis& axis, double lower, double upper, int& first
 }
 
 bool PairTable::free(const double* lower, const double* upper) const {
-  int first[2] = {0, 0}, last[2] = {0, 0};
+  int first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
   for (int a = 0; a < num_axes_; ++a) {
     if (!cellsOf(axes_[a], lower[a], upper[a], first[a], last[a])) return false;
   }
-  const std::uint16_t* top = sums_.data() + static_cast<std::size_t>(first[0]) * stride_;
-  const std::uint16_t* bottom = sums_.data() + (static_cast<std::size_t>(last[0]) + 1) * stride_;
-  return static_cast<std::uint16_t>(bottom[last[1] + 1] - bottom[first[1]] - top[last[1] + 1] + top[first[1]]) == 0;
+  for (int p = first[2]; p <= last[2]; ++p) {
+    const std::uint16_t* plane = sums_.data() + static_cast<std::size_t>(p) * plane_;
+    const std::uint16_t* top = plane + static_cast<std::size_t>(first[0]) * stride_;
+    const std::uint16_t* bottom = plane + (static_cast<std::size_t>(last[0]) + 1) * stride_;
+    const int open = bottom[last[1] + 1] - bottom[first[1]] - top[last[1] + 1] + top[first[1]];
+    if (static_cast<std::uint16_t>(open) != 0) return false;
+  }
+  return true;
 }
 
 unsigned PairTable::freeParts(const Eigen::MatrixXd& variables) const {
   constexpr int kParts = 8;
-  double lower[kParts][2], upper[kParts][2], least[2], most[2];
-  const auto degree = variables.cols() - 1;
-  for (int a = 0; a < num_axes_; ++a) {
-    const auto row = variables.row(axes_[a].variable);
-    double size = 0;
-    for (Eigen::Index k = 0; k <= degree; ++k) size += std::abs(row[k]);
-    for (int part = 0; part < kParts; ++part) {
-      // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few
-      // dozen ulp of `size` (doc/NUMERICS.md, "Parts of a motion").
-      constexpr double kHalf = 0.5 / kParts;
-      const double middle = (2 * part + 1) * kHalf;
-      double c[engine::kMaxDegree + 1];
-      for (Eigen::Index k = 0; k <= degree; ++k) c[k] = row[k];
+  const Eigen::Index degree = variables.cols() - 1;
+  // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few dozen
+  // ulp of `size` (doc/NUMERICS.md, "Parts of a motion").
+  const auto freeOver = [&](double middle, double half) {
+    double lower[3], upper[3];
+    for (int a = 0; a < num_axes_; ++a) {
+      double c[engine::kMaxDegree + 1], size = 0;
+      for (Eigen::Index k = 0; k <= degree; ++k) size += std::abs(c[k] = variables(axes_[a].variable, k));
       for (Eigen::Index i = 0; i < degree; ++i) {
         for (Eigen::Index k = degree - 1; k >= i; --k) c[k] += middle * c[k + 1];
       }
-      double half = 64 * kUlp * size, power = 1;
-      for (Eigen::Index k = 1; k <= degree; ++k) half += std::abs(c[k]) * (power *= kHalf);
-      lower[part][a] = c[0] - half;
-      upper[part][a] = c[0] + half;
+      double way = 64 * kUlp * size, power = 1;
+      for (Eigen::Index k = 1; k <= degree; ++k) way += std::abs(c[k]) * (power *= half);
+      lower[a] = c[0] - way;
+      upper[a] = c[0] + way;
     }
-    least[a] = lower[0][a];
-    most[a] = upper[0][a];
-    for (int part = 1; part < kParts; ++part) {
-      least[a] = std::min(least[a], lower[part][a]);
-      most[a] = std::max(most[a], upper[part][a]);
-    }
-  }
-  if (free(least, most)) return (1u << kParts) - 1;
+    return free(lower, upper);
+  };
+  if (freeOver(0.5, 0.5)) return (1u << kParts) - 1;
   unsigned parts = 0;
-  for (int part = 0; part < kParts; ++part) parts |= static_cast<unsigned>(free(lower[part], upper[part])) << part;
+  for (int part = 0; part < kParts; ++part) {
+    parts |= static_cast<unsigned>(freeOver((part + 0.5) / kParts, 0.5 / kParts)) << part;
+  }
   return parts;
 }
 

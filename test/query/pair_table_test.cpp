@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kBall = 0.01, kPi = 3.14159265358979323846;
 const Vector3d kHalf(1, 1, 0.1);
+const Eigen::Isometry3d kElbow = pose({0.2, 0.05, 0}, 0.4, {1, 2, 3});
 const Eigen::Isometry3d kPlate = pose({0, 0, 0}, kPi / 4, Vector3d::UnitX());
 
 Joint limited(Joint joint, double lower, double upper) {
@@ -43,7 +44,7 @@ struct Arm {
     first.name = "first", first.parent = "plate", first.child = "upper";
     first.origin = pose({0, -0.25, 0.25});
     second.name = "second", second.parent = "upper", second.child = "elbow";
-    second.origin = pose({0.2, 0.05, 0}, 0.4, {1, 2, 3});
+    second.origin = kElbow;
     tree->addJoint(first);
     tree->addJoint(second);
     tree->addJoint(further ? *further : makeJoint("fixed", JointType::fixed, "elbow", "tip", Vector3d::UnitX()));
@@ -213,6 +214,18 @@ TEST(PairTable, AFollowerByHalfDoesNotWrap) {
   EXPECT_GT(check(wraps, {-9, -2, 0}, {9, 1, 0}, 0).left_out, 0.3);
 }
 
+/// A short slide behind two turns, within its limits and beyond them.
+TEST(PairTable, AThirdVariableOfLittleEffect) {
+  Joint third = makeJoint("third", JointType::prismatic, "elbow", "tip", {0.3, 1, 0.2});
+  third = limited(third, 0, 0.03);
+  const Arm arm(turn(-1.5, 2.5, kAxis1), turn(-2, 1, kAxis2), &third);
+  const Shares shares = check(arm, {-1.5, -2, -0.03}, {2.5, 1, 0.06}, 0);
+  EXPECT_GT(shares.meets, 0.05);
+  EXPECT_GT(shares.left_out, 0.7 * (1 - shares.meets));
+  EXPECT_FALSE(arm.leftOut(Vector3d(0.1, -1.8, 0.07)));
+  EXPECT_FALSE(arm.leftOut(Vector3d(0.1, -1.8, -0.04)));
+}
+
 TEST(PairTable, ThreeVariablesAreLeftToTheQuery) {
   Joint third = makeJoint("third", JointType::revolute, "elbow", "tip", Vector3d::UnitY());
   const Joint with_limits = limited(third, -1, 1);
@@ -307,13 +320,23 @@ TEST(PairTable, NothingAtTheBorderIsLeftOut) {
     const bool straight = a % 2;  // one of the variables takes the ball straight at the plate
     Joint first = a % 4 < 2 ? turn(-2, 2, axis()) : slide(-0.2, 0.2, straight ? normal : axis());
     if (a % 8 == 3) first = slide(-2, 2, normal);
-    const Joint second = a % 5 ? turn(-2, 2, axis()) : endless(axis());
+    Joint second = a % 5 ? turn(-2, 2, axis()) : endless(axis());
     Joint third = follower(JointType::revolute, 2 * u(random), u(random));
     third.axis = axis();
-    const Arm arm(first, second, a % 3 ? nullptr : &third);
+    Joint finger = limited(makeJoint("finger", JointType::prismatic, "elbow", "tip", axis()), 0, 0.03);
+    bool with_finger = a % 3 == 1;
+    if (a % 8 == 6) {  // the finger goes straight at the plate, too
+      first = slide(-0.4, 0, normal);
+      second.axis = finger.axis = kElbow.linear().transpose() * normal;
+      with_finger = true;
+    }
+    const Arm arm(first, second, with_finger ? &finger : a % 3 == 0 ? &third : nullptr);
     const auto draw = [&] {
-      const double x = u(random);
-      return Eigen::Vector2d(first.type == JointType::prismatic ? 0.2 * x : 2 * x, 2 * u(random));
+      const double x = 0.5 * (1 + u(random));
+      VectorXd q(arm.tree->dof());
+      q.tail(1)[0] = 0.03 * u(random);
+      q.head(2) << std::max(-2.0, first.lower) + x * std::min(4.0, first.upper - first.lower), 2 * u(random);
+      return q;
     };
     for (int i = 0; i < 500; ++i) {
       VectorXd touching = draw(), free = draw();
@@ -327,7 +350,7 @@ TEST(PairTable, NothingAtTheBorderIsLeftOut) {
       EXPECT_FALSE(arm.leftOut(touching)) << "arm " << a << " at " << touching.transpose();
       left_out_before += arm.leftOut(touching + 0.1 * (beyond - touching).normalized());
       // Away from there by a polynomial.
-      Eigen::MatrixXd c = Eigen::MatrixXd::Zero(2, 6);
+      Eigen::MatrixXd c = Eigen::MatrixXd::Zero(touching.size(), 6);
       c.col(0) = touching;
       for (int k = 1; k <= 1 + i % 5; ++k) c.col(k) = (k == 1 ? 1 : 0.4 * u(random)) * (beyond - touching);
       CertifiedResult result;
