@@ -529,7 +529,8 @@ void ArticulatedCollisionManager::Impl::buildTables() {
     const Item &a = item(pair.a), &b = item(pair.b);
     if (a.attached || b.attached) continue;
     TabledPair made(a, b, link_margins.empty() ? 0 : std::max(0.0, link_margins[i]));
-    const auto known = std::find_if(before.begin(), before.end(), [&](const TabledPair& t) { return t.sameMaking(made); });
+    const auto known =
+        std::find_if(before.begin(), before.end(), [&](const TabledPair& t) { return t.sameMaking(made); });
     made.table = known != before.end() ? known->table
                                        : PairTable::build(*tree, sweep_views[static_cast<std::size_t>(pair.sweep)],
                                                           bodies.data(), pair, made.margin);
@@ -545,7 +546,8 @@ const std::uint8_t* ArticulatedCollisionManager::Impl::freeByTables(const engine
                                                                     std::vector<std::uint8_t>& memory) const {
   memory.assign(link_pairs.size(), 0);
   for (const auto& [pair, table] : tables) {
-    if (engine::marginOf(problem, margin, problem.num_scene_pairs + static_cast<std::int32_t>(pair)) > table->margin()) continue;
+    const auto number = problem.num_scene_pairs + static_cast<std::int32_t>(pair);
+    if (engine::marginOf(problem, margin, number) > table->margin()) continue;
     memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
   }
   return memory.data();
