@@ -19,7 +19,7 @@ TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
   EXPECT_EQ(run.status, 0) << run.out << run.err;  // the verdicts agree
   expectContains(run.out, "32.3713");  // Redon 2004, Table 1: 5 degrees, colliding, total
   expectContains(run.out, "8.0184");
-  expectContains(run.out, "redon2004 as written");
+  expectContains(run.out, "redon2004-as-written");
   expectContains(run.out, "standard");
   std::ifstream csv(path("table1.csv"));
   int rows = 0;
