@@ -120,6 +120,7 @@ struct ArticulatedCollisionManager::Impl {
   std::map<std::string, double> body_margins;  ///< by name
   std::map<std::pair<std::string, std::string>, double> pair_margins;  ///< by names, the lesser one first
   bool robot_ready = false;  ///< what buildRobot() makes is up to date
+  bool tables_ready = false;  ///< so are the tables of two links
   bool ready = false;        ///< all is
   std::size_t named = 0;     ///< obstacles that were given a name so far
 
@@ -353,6 +354,7 @@ void ArticulatedCollisionManager::Impl::buildRobot() {
   }
   num_link_sweeps = sweeps.size();
   num_self_pairs = link_pairs.size();
+  tables_ready = false;
   robot_ready = true;
 }
 
@@ -521,6 +523,7 @@ void ArticulatedCollisionManager::Impl::buildMargins() {
 
 /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.)
 void ArticulatedCollisionManager::Impl::buildTables() {
+  if (tables_ready) return;
   std::vector<TabledPair> before;
   std::swap(tabled, before);
   tables.clear();
@@ -537,6 +540,7 @@ void ArticulatedCollisionManager::Impl::buildTables() {
     if (made.table) tables.emplace_back(i, made.table);
     tabled.push_back(std::move(made));
   }
+  tables_ready = true;
 }
 
 /// What tables tell of a motion, as engine::Problem::link_free.
@@ -792,7 +796,7 @@ void ArticulatedCollisionManager::setMargin(const std::string& body, double marg
   impl_->requireBody(body);
   requireMargin(margin, "setMargin: the margin of '" + body + "'");
   impl_->body_margins[body] = margin;
-  impl_->ready = false;
+  impl_->tables_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::setMargin(const std::string& a, const std::string& b, double margin) {
@@ -800,13 +804,13 @@ void ArticulatedCollisionManager::setMargin(const std::string& a, const std::str
   impl_->requireBody(b);
   requireMargin(margin, "setMargin: the margin of '" + a + "' and '" + b + "'");
   impl_->pair_margins[std::minmax(a, b)] = margin;
-  impl_->ready = false;
+  impl_->tables_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::resetMargins() {
   impl_->body_margins.clear();
   impl_->pair_margins.clear();
-  impl_->ready = false;
+  impl_->tables_ready = impl_->ready = false;
 }
 
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
