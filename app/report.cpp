@@ -180,8 +180,10 @@ Json contactJson(const CertifiedContact& c) {
 
 Json posesJson(const Report& r) {
   Json out = Json::object();
-  for (LinkId link = 0; link < r.tree.numLinks() && link < static_cast<LinkId>(r.result.M_0_at_lower.size()); ++link) {
-    const Eigen::Isometry3d& M_0 = r.result.M_0_at_lower[static_cast<std::size_t>(link)];
+  std::vector<Eigen::Isometry3d> at_lower;
+  r.tree.forwardKinematics(r.configuration(r.result.t_lower), at_lower);
+  for (LinkId link = 0; link < r.tree.numLinks(); ++link) {
+    const Eigen::Isometry3d& M_0 = at_lower[static_cast<std::size_t>(link)];
     const Eigen::Quaterniond rotation(M_0.linear());
     out[r.tree.linkName(link)] = {
         {"position", vectorJson(M_0.translation())},

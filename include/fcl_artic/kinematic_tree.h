@@ -91,7 +91,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// Parent link, -1 for a root.
   LinkId parentLink(LinkId link) const;
   /// Links in an order in which parents come before children.
-  std::vector<LinkId> topologicalOrder() const;
+  const std::vector<LinkId>& topologicalOrder() const { return order_; }
 
   /// @throws std::out_of_range naming the link and the robot.
   LinkId link(std::string_view name) const;
@@ -122,6 +122,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
 
  private:
   int findLink(std::string_view name) const;
+  void sortLinks();
   std::string name_;
   std::vector<std::string> link_names_;
   std::vector<JointId> parent_joint_;
@@ -129,6 +130,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<int> joint_parent_, joint_child_, joint_variable_;
   std::vector<JointId> variables_;
   std::vector<std::string> variable_names_;
+  std::vector<LinkId> order_;  ///< topological
 };
 
 }  // namespace fcl_artic

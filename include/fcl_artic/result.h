@@ -103,7 +103,7 @@ struct CertifiedResult {
   /// Contact is proven, not only undecidable within the tolerances.
   bool certain = false;
   std::vector<CertifiedContact> contacts;
-  /// Pose of every link in the world at t_lower.
+  /// Pose of every link in the world at t_lower; empty when the motion is free.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
   /// Pairs that touch at t = 0 and were ignored (ignore_initial_contact).
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;

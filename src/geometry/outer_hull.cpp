@@ -13,6 +13,8 @@ namespace fcl_artic {
 namespace {
 
 constexpr std::size_t kMaxVertices = 64, kMaxPoints = 60000;
+/// So few different points make the hull themselves: it is the body's own then, and a convex body touches where its hull does.
+constexpr std::size_t kAllVertices = 160;
 constexpr int kDirections = 256;
 /// Directions in which the chosen vertices are nearer than this part of the body's size to its surface need no more.
 constexpr double kGoodEnough = 0.002;
@@ -28,6 +30,16 @@ std::vector<Eigen::Vector3d> spreadDirections() {
     directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
   }
   return directions;
+}
+
+/// The points, each once; none when they are more than `most`.
+std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points, std::size_t most) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (points.size() > most) points.clear();
+  return points;
 }
 
 /// Points eight by eight, to find those farthest along directions.
@@ -140,6 +152,8 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points) {
     lo = lo.cwiseMin(p);
     hi = hi.cwiseMax(p);
   }
+  hull.vertices = differentPoints(points, kAllVertices);
+  if (!hull.vertices.empty()) return hull;
   const double size = 0.5 * (hi - lo).norm();
   static const std::vector<Eigen::Vector3d> kSpread = spreadDirections();
   const PointLanes lanes(points);

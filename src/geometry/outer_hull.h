@@ -13,7 +13,7 @@ struct OuterHull {
   double radius = 0;
 };
 
-/// A hull of at most 64 of the points. Empty for fewer than 4 points, and for so many that the body must be a scene.
+/// A hull of all points where they are at most 160 different ones, its radius 0; else of at most 64 of them. Empty for fewer than 4 points, and for so many that the body must be a scene.
 OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace fcl_artic

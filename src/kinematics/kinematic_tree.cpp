@@ -62,6 +62,7 @@ LinkId KinematicTree::addLink(const std::string& name) {
   if (findLink(name) >= 0) throw std::invalid_argument("robot '" + name_ + "': two links are named '" + name + "'");
   link_names_.push_back(name);
   parent_joint_.push_back(-1);
+  sortLinks();
   return numLinks() - 1;
 }
 
@@ -122,6 +123,7 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
   }
   parent_joint_[child] = id;
+  sortLinks();
   return id;
 }
 
@@ -153,22 +155,20 @@ LinkId KinematicTree::parentLink(LinkId link) const {
   return joint < 0 ? -1 : joint_parent_[joint];
 }
 
-std::vector<LinkId> KinematicTree::topologicalOrder() const {
+void KinematicTree::sortLinks() {
   std::vector<std::vector<LinkId>> children(link_names_.size());
-  std::vector<LinkId> order;
-  order.reserve(link_names_.size());
+  order_.clear();
   for (LinkId link = 0; link < numLinks(); ++link) {
     if (const LinkId parent = parentLink(link); parent < 0) {
-      order.push_back(link);
+      order_.push_back(link);
     } else {
       children[parent].push_back(link);
     }
   }
-  for (std::size_t i = 0; i < order.size(); ++i) {  // grows while it runs: breadth first
-    const auto& next = children[order[i]];
-    order.insert(order.end(), next.begin(), next.end());
+  for (std::size_t i = 0; i < order_.size(); ++i) {  // grows while it runs: breadth first
+    const auto& next = children[order_[i]];
+    order_.insert(order_.end(), next.begin(), next.end());
   }
-  return order;
 }
 
 LinkId KinematicTree::link(std::string_view name) const {

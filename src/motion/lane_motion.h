@@ -676,17 +676,5 @@ inline double sweepCenter(const FrameLanes& f, const StepBounds& b, bool first_o
   return radius + remainder.c + remainder.R * reach + roundingPart(b.ulps, b.rounding_rate * d) * sizes + kLeastLength;
 }
 
-/// Box of such a ball.
-inline void sweepBall(const FrameLanes& f, const StepBounds& b, bool first_order, const double* p, double radius, double d,
-                      Lanes* lo, Lanes* hi) {
-  Lanes c[3][3];
-  const Lanes slack(sweepCenter(f, b, first_order, p, radius, d, c));
-  for (int k = 0; k < 3; ++k) {
-    const Lanes sum = c[0][k] + c[2][k], middle = c[0][k] - c[2][k], reach1 = abs(c[1][k]);
-    lo[k] = min(sum - reach1, middle) - slack;
-    hi[k] = max(sum + reach1, middle) + slack;
-  }
-}
-
 }  // namespace FCL_ARTIC_ISA
 }  // namespace fcl_artic

@@ -44,10 +44,8 @@ inline int hullSupport(const double* x, int n, const double* u) {
   Lanes most = hullValues(x, n, 0, u), block(0.0);  // lane by lane the largest value, and the block it stands in
   for (int i = kLanes; i < n; i += kLanes) {
     const Lanes value = hullValues(x, n, i, u);
-    const unsigned larger = greater(value, most);
-    if (!larger) continue;
+    block = whereGreater(value, most, Lanes(i), block);
     most = max(most, value);
-    for (unsigned m = larger; m; m &= m - 1) block.set(__builtin_ctz(m), i);
   }
   const unsigned reached = kAllLanes & ~greater(Lanes(maxLane(most)), most);
   const int lane = reached ? __builtin_ctz(reached) : 0;

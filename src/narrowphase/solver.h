@@ -22,6 +22,7 @@
 #include "narrowphase/certificate.h"
 #include "narrowphase/contact_proof.h"
 #include "narrowphase/solver/swept_box.h"
+#include "narrowphase/solver/swept_lss.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -43,9 +44,12 @@ FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) { return piece.kind == Pi
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
   std::int32_t pair, a, b;
-  unsigned mask;  ///< with kPutOff: not looked at, as contact was claimed before these lanes
+  unsigned mask;  ///< and the flags below
 };
+/// Not looked at, as contact was claimed before these lanes.
 constexpr unsigned kPutOff = 0x100;
+/// The one body is within the bounds of the other, a large mesh: hulls tell nothing.
+constexpr unsigned kWithin = 0x200;
 
 class Solver {
  public:
@@ -76,7 +80,9 @@ class Solver {
 
   // Stages.
   void cull();
-  void sweptLss(int mover, SweptBox& box);
+  bool isLink(int mover) const { return mover < problem_->num_scene_movers; }
+  void sweepMover(int mover);
+  unsigned lssMayTouch(int pair, unsigned mask);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void refine();
   void collectInitialContacts(int begin, int end);
@@ -90,6 +96,9 @@ class Solver {
   Step solveInterval(double start, double width, int begin, int end, int parent_lane);
   Step finishLane(double start, double width, int begin, int end, int lane, bool* refine);
   void piecesOf(const Final& f, const Piece*& a, const Piece*& b) const;
+  Final leafPair(const Entry& e, double start) const;
+  static int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a);
+  void proveBelowHulls(Final& f);
   bool advance(Final& f, double stop, bool patient, unsigned first_lanes = 0);
   bool settle(Final& f, double stop);
   bool prove(Final& f);
@@ -102,6 +111,7 @@ class Solver {
   template <class F>
   unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
   void claimOverlap(int lane);
+  bool isWithin();
   unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
   bool proveVertexInside(int pair, int lane);
   bool proveLeaves(int pair, int piece_a, int piece_b, int lane);
@@ -160,6 +170,7 @@ class Solver {
   std::int32_t pair_epoch_ = 0;
 
   Buffer<SweptBox> mover_box_;
+  Buffer<SweptLss> mover_lss_;  ///< of links
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidate_pairs_;
   Buffer<Entry> entries_;
@@ -169,6 +180,7 @@ class Solver {
   /// What is followed by itself: a leaf pair, the hulls around a pair of bodies, or parts of these.
   struct Final {
     Entry entry;
+    std::int32_t piece_a, piece_b;  ///< of a leaf pair
     bool hulls;        ///< the hulls, not a leaf pair
     bool pieces;       ///< neither: the entries only
     std::int32_t first, count;  ///< of a lane of the first batch: its entries
@@ -203,6 +215,8 @@ constexpr double kLaneSlack = 8 * kUlp;
 constexpr int kMostHullOverlaps = 2;
 /// So many leaf pairs in a lane are followed one by one; more are split in time first.
 constexpr int kFewLeaves = 12;
+/// Of more pieces none is looked for by the vertices where hulls meet.
+constexpr int kFewPieces = 2048;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
 /// in it.
 constexpr double kFirstWindow = 0.4;
@@ -261,9 +275,9 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   const double time0 = now();
   cull();
   statistics_.culling_us = now() - time0;
-  if (query.refine) refine();
+  if (query.refine && !finished()) refine();
   const double time1 = now();
-  if (query.ignore_initial) {
+  if (query.ignore_initial && !finished()) {
     collectInitialContacts(0, entries_.size());
     beginBatch(0, 1);
   }

@@ -48,6 +48,15 @@ FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm512_abs_pd(a); }
 FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm512_sqrt_pd(a); }
 FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm512_fmadd_pd(a, b, c); }
 FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) { return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ); }
+FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
+  return _mm512_mask_mov_pd(y, _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ), x);
+}
+using Integers = __m256i;
+FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm512_cvttpd_epi32(a); }
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm256_add_epi32(a, _mm256_set1_epi32(b)); }
+FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
+  return _mm512_cvtepi32_pd(_mm256_and_si256(a, _mm256_set1_epi32(bits)));
+}
 #elif FCL_ARTIC_ISA_BITS == 256
 using Register = __m256d;
 FCL_ARTIC_INLINE Register regSet(double x) { return _mm256_set1_pd(x); }
@@ -59,6 +68,13 @@ FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return
 FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
   return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)));
 }
+FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
+  return _mm256_blendv_pd(y, x, _mm256_cmp_pd(a, b, _CMP_GT_OQ));
+}
+using Integers = __m128i;
+FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm256_cvttpd_epi32(a); }
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
+FCL_ARTIC_INLINE Register regBits(Integers a, int bits) { return _mm256_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits))); }
 #else
 using Register = __m128d;
 FCL_ARTIC_INLINE Register regSet(double x) { return _mm_set1_pd(x); }
@@ -70,6 +86,14 @@ FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return
 FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
   return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(a, b)));
 }
+FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
+  const Register which = _mm_cmpgt_pd(a, b);
+  return _mm_or_pd(_mm_and_pd(which, x), _mm_andnot_pd(which, y));
+}
+using Integers = __m128i;
+FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm_cvttpd_epi32(a); }
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
+FCL_ARTIC_INLINE Register regBits(Integers a, int bits) { return _mm_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits))); }
 #endif
 constexpr int kRegisterLanes = sizeof(Register) / sizeof(double);
 constexpr int kRegisters = kLanes / kRegisterLanes;
@@ -92,6 +116,7 @@ FCL_ARTIC_INLINE Lanes operator+(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] + b.r
 FCL_ARTIC_INLINE Lanes operator-(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] - b.r[i]); }
 FCL_ARTIC_INLINE Lanes operator-(Lanes a) { FCL_ARTIC_EACH(-a.r[i]); }
 FCL_ARTIC_INLINE Lanes operator*(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] * b.r[i]); }
+FCL_ARTIC_INLINE Lanes operator/(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] / b.r[i]); }
 FCL_ARTIC_INLINE Lanes min(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMin(a.r[i], b.r[i])); }
 FCL_ARTIC_INLINE Lanes max(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMax(a.r[i], b.r[i])); }
 FCL_ARTIC_INLINE Lanes abs(Lanes a) { FCL_ARTIC_EACH(regAbs(a.r[i])); }
@@ -150,16 +175,27 @@ FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) { return static_cast<unsi
 FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) { return narrow(a - mulAdd(abs(a), 0x1p-22, 1e-37)); }
 FCL_ARTIC_INLINE FloatLanes narrowUp(Lanes a) { return narrow(a + mulAdd(abs(a), 0x1p-22, 1e-37)); }
 
+/// Where a > b lanes of x, else of y.
+FCL_ARTIC_INLINE Lanes whereGreater(Lanes a, Lanes b, Lanes x, Lanes y) {
+  Lanes o;
+  for (int i = 0; i < kRegisters; ++i) o.r[i] = regWhereGreater(a.r[i], b.r[i], x.r[i], y.r[i]);
+  return o;
+}
+
 FCL_ARTIC_INLINE double maxLane(Lanes a) {
-  double m = a[0];
-  for (int i = 1; i < kLanes; ++i) m = a[i] > m ? a[i] : m;
-  return m;
+#if FCL_ARTIC_ISA_BITS == 128
+  const Register m = regMax(regMax(a.r[0], a.r[1]), regMax(a.r[2], a.r[3]));
+#else
+#if FCL_ARTIC_ISA_BITS == 512
+  const __m256d half = _mm256_max_pd(_mm512_castpd512_pd256(a.r[0]), _mm512_extractf64x4_pd(a.r[0], 1));
+#else
+  const __m256d half = regMax(a.r[0], a.r[1]);
+#endif
+  const __m128d m = _mm_max_pd(_mm256_castpd256_pd128(half), _mm256_extractf128_pd(half, 1));
+#endif
+  return m[0] > m[1] ? m[0] : m[1];
 }
-FCL_ARTIC_INLINE double minLane(Lanes a) {
-  double m = a[0];
-  for (int i = 1; i < kLanes; ++i) m = a[i] < m ? a[i] : m;
-  return m;
-}
+FCL_ARTIC_INLINE double minLane(Lanes a) { return -maxLane(-a); }
 
 FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const Lanes* b) {
   return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * b[0]));
@@ -180,20 +216,16 @@ FCL_ARTIC_INLINE void cross(const Lanes* a, const Lanes* b, Lanes* o) {
 /// depend on the rounding mode.
 constexpr double kMaxAngle = 1e6;
 FCL_ARTIC_INLINE void sineCosine(Lanes x, Lanes& sine, Lanes& cosine) {
-  alignas(64) double quotient[kLanes], odd[kLanes], sign_sine[kLanes], sign_cosine[kLanes];
-  for (int i = 0; i < kLanes; ++i) {
-    const double t = x[i] * 0.63661977236758134308;
-    const int k = static_cast<int>(t + (t < 0 ? -0.5 : 0.5));
-    quotient[i] = k;
-    odd[i] = (k & 1) ? 1.0 : 0.0;
-    sign_sine[i] = (k & 2) ? -1.0 : 1.0;
-    sign_cosine[i] = ((k + 1) & 2) ? -1.0 : 1.0;
-  }
   Lanes k, o, ss, sc;
-  __builtin_memcpy(&k, quotient, sizeof k);
-  __builtin_memcpy(&o, odd, sizeof o);
-  __builtin_memcpy(&ss, sign_sine, sizeof ss);
-  __builtin_memcpy(&sc, sign_cosine, sizeof sc);
+  for (int i = 0; i < kRegisters; ++i) {
+    const Register t = x.r[i] * regSet(0.63661977236758134308);
+    const Register half = regMax(regMin(t * regSet(1e300), regSet(0.5)), regSet(-0.5));  // with t's sign
+    const Integers n = regTruncate(t + half);
+    k.r[i] = regBits(n, -1);
+    o.r[i] = regBits(n, 1);
+    ss.r[i] = regSet(1.0) - regBits(n, 2);
+    sc.r[i] = regSet(1.0) - regBits(regPlus(n, 1), 2);
+  }
   const Lanes r = ((x - k * Lanes(1.57079632673412561417e+00)) - k * Lanes(6.07710050630396597660e-11)) -
                   k * Lanes(2.02226624879595063154e-21);
   const Lanes z = r * r;

@@ -612,9 +612,12 @@ CertifiedContact ArticulatedCollisionManager::Impl::report(void* workspace, cons
   if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
     refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
   }
-  std::vector<Eigen::Isometry3d> M_0;
-  tree->forwardKinematics(motion.configuration(leaf.t), M_0);
-  const Eigen::Isometry3d M_0a = a.link >= 0 ? M_0[static_cast<std::size_t>(a.link)] * a.offset : a.pose(time.at(leaf.t));
+  const auto carried = [&] {
+    std::vector<Eigen::Isometry3d> M_0;
+    tree->forwardKinematics(motion.configuration(leaf.t), M_0);
+    return M_0[static_cast<std::size_t>(a.link)] * a.offset;
+  };
+  const Eigen::Isometry3d M_0a = a.link >= 0 ? carried() : a.pose(time.at(leaf.t));
   contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
   contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
   contact.body1 = reference(a);
@@ -965,7 +968,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
       result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
     }
   }
-  m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
+  result.M_0_at_lower.clear();
+  if (!result.isFree()) m.tree->forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
     result.ignored_initial_contacts.emplace_back(m.reference(m.item(answer.ignored[i].body_a)),

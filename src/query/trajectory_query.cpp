@@ -167,7 +167,6 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       sum.status = Status::free;
       sum.t_lower = sum.t_upper = trajectory.endTime();
       sum.certain = part.certain;
-      sum.M_0_at_lower = part.M_0_at_lower;
       continue;
     }
     if (!contact_found) {

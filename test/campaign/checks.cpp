@@ -55,11 +55,12 @@ class Examination {
   }
 
   void poses() {
-    if (result_.M_0_at_lower.size() != scene_.links.size()) {
-      add(Fault::poses, "%zu poses for %zu links", result_.M_0_at_lower.size(), scene_.links.size());
+    const std::size_t expected = result_.isFree() ? 0 : scene_.links.size();
+    if (result_.M_0_at_lower.size() != expected) {
+      add(Fault::poses, "%zu poses instead of %zu", result_.M_0_at_lower.size(), expected);
       return;
     }
-    for (std::size_t i = 0; i < scene_.links.size(); ++i) {
+    for (std::size_t i = 0; i < expected; ++i) {
       const Pose own = oracle_.kinematics().linkPose(static_cast<int>(i), result_.t_lower);
       const Eigen::Isometry3d& M = result_.M_0_at_lower[i];
       const double off =
@@ -188,17 +189,13 @@ class Examination {
   std::vector<Finding> findings_;
 };
 
-void makeFree(const Oracle& oracle, Answer& answer) {
+void makeFree(Answer& answer) {
   CertifiedResult& r = answer.result;
   r.status = Status::free;
   r.certain = false;
   r.t_lower = r.t_upper = 1;
   r.contacts.clear();
-  for (std::size_t i = 0; i < r.M_0_at_lower.size(); ++i) {
-    const Pose M = oracle.kinematics().linkPose(static_cast<int>(i), 1);
-    r.M_0_at_lower[i].linear() = M.R;
-    r.M_0_at_lower[i].translation() = M.p;
-  }
+  r.M_0_at_lower.clear();
 }
 
 /// A contact between the bodies that come nearest at mid-time, there.
@@ -224,6 +221,7 @@ void inventContact(const Oracle& oracle, const Scene& scene, Answer& answer) {
   r.status = Status::contact;
   r.t_lower = c.t_lower, r.t_upper = c.t_upper;
   r.contacts = {c};
+  r.M_0_at_lower.resize(scene.links.size());
   for (std::size_t i = 0; i < r.M_0_at_lower.size(); ++i) {
     const Pose M = oracle.kinematics().linkPose(static_cast<int>(i), 0.5);
     r.M_0_at_lower[i].linear() = M.R;
@@ -273,7 +271,7 @@ bool corrupt(Corruption corruption, std::uint64_t seed, const Scene& scene, Answ
       if (hit) shift(1e-5);
       return hit;
     case Corruption::drop:
-      if (hit && one_percent) makeFree(Oracle(scene), answer);
+      if (hit && one_percent) makeFree(answer);
       return hit && one_percent;
     case Corruption::invent: {
       const Oracle oracle(scene);

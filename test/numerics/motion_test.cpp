@@ -147,44 +147,6 @@ TEST(Motion, SweptNodesHoldExactPoints) {
   EXPECT_LT(least, 1e-4) << "the boxes are never nearly filled: the test tells little";
 }
 
-TEST(Motion, SweptBallsAreHeld) {
-  Random random(seedOf("SweptBalls"));
-  const std::vector<const Subject*> tested = subjects();
-  const int cases = scaled(10000) / 8;
-  int checks = 0;
-  double least = 1;
-  for (int i = 0; i < cases; ++i) {
-    const int mode = kRoundingModes[random.below(4)];
-    const PairCase c(random, mode);
-    if (c.link_a >= 0 || c.carrier.step < 0) continue;
-    const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
-    const Eigen::Vector3d on_link = pointWithin(random, c.extent_b);
-    const double radius = random.size(1e-3, 1);
-    BoxOutput box;
-    {
-      const ScopedRounding scope(mode);
-      const Eigen::Vector3d p = c.carrier.offset * on_link;
-      const double error = 0x1p-52 * (c.carrier.ulps + 16) * (on_link.norm() + c.carrier.length);
-      subject.sweepBall(c.in, p.data(), radius + error, box);
-    }
-    for (int lane = 0; lane < 8; ++lane) {
-      const double tau = tauOf(random);
-      const Real3 x = c.pose(c.link_b, Real(c.in.tm[lane]) + Real(tau) * Real(c.in.d)) * exactly(on_link);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Real below = x[k] - Real(radius) - Real(box.lo[lane][k]),
-                   above = Real(box.hi[lane][k]) - x[k] - Real(radius);
-        ASSERT_GE(below.toDouble(), 0) << "case " << i << " lane " << lane << " " << subject.name << " mode " << mode;
-        ASSERT_GE(above.toDouble(), 0) << "case " << i << " lane " << lane << " " << subject.name << " mode " << mode;
-        least = std::min({least, below.toDouble() / radius, above.toDouble() / radius});
-      }
-      ++checks;
-    }
-  }
-  std::printf("%d checks; nearest a ball came to a wall: %.2g of its radius\n", checks, least);
-  EXPECT_GT(checks, cases);
-  EXPECT_LT(least, 1e-9) << "the boxes are never filled: the test tells little";
-}
-
 }  // namespace
 }  // namespace numerics_test
 }  // namespace fcl_artic

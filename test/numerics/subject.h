@@ -48,6 +48,17 @@ struct BoxOutput {
   double lo[8][3], hi[8][3];
 };
 
+/// A line swept sphere that a step carries.
+struct LssInput {
+  std::int32_t step = -1;  ///< -1: it stands in the base frame
+  double lss[7];           ///< in the step's frame
+};
+/// A box, grown by a ball, that stands still.
+struct StillBox {
+  double lo[3], hi[3], radius = 0;
+  engine::Placement inverse;  ///< the base frame in the box's
+};
+
 struct TouchInput {
   engine::TreeView a, b;  ///< of one piece each
   double R[9], c[3];      ///< B in A's frame
@@ -61,8 +72,11 @@ struct Subject {
   void (*certify)(const CertificateInput& in, CertificateOutput& out, PairOutput& motion);
   /// The moving node's box on the given side.
   void (*sweepNode)(const PairInput& in, int side, const engine::Node& node, BoxOutput& out);
-  /// A ball in the frame of step_b, seen from the base frame.
-  void (*sweepBall)(const PairInput& in, const double* p, double radius, BoxOutput& out);
+  /// Box of a line swept sphere, seen from the base frame.
+  void (*boundLss)(const PairInput& in, const LssInput& lss, BoxOutput& out);
+  /// Lanes in which it is certainly apart from a box, and from another one of the sweep; margin: in.margin.
+  unsigned (*apartFromBox)(const PairInput& in, const LssInput& lss, const StillBox& box);
+  unsigned (*apartFromLss)(const PairInput& in, const LssInput& a, const LssInput& b);
   double (*positivePrefix)(const double* G);
   bool (*certainlyTouching)(const TouchInput& in);
 };

@@ -13,6 +13,7 @@ using numerics_test::BoxOutput;
 using numerics_test::CertificateInput;
 using numerics_test::CertificateOutput;
 using numerics_test::kSides;
+using numerics_test::LssInput;
 using numerics_test::PairInput;
 using numerics_test::PairOutput;
 using numerics_test::Subject;
@@ -112,16 +113,46 @@ void sweepNodeOf(const PairInput& in, int side, const engine::Node& node, BoxOut
   }
 }
 
-void sweepBallOf(const PairInput& in, const double* p, double radius, BoxOutput& out) {
+void sweepLssOf(const Chain& chain, const PairInput& in, const LssInput& lss, SweptLss& out) {
+  Body body;
+  for (int i = 0; i < 7; ++i) body.lss[i] = lss.lss[i];
+  const int step = max(lss.step, 0);
+  sweepLss(lss.step < 0 ? nullptr : &chain.frames[step], chain.bounds[step], in.sweep.first_order, body, in.d, out);
+}
+
+void boundLssOf(const PairInput& in, const LssInput& lss, BoxOutput& out) {
   const Chain chain(in);
+  SweptLss swept;
+  sweepLssOf(chain, in, lss, swept);
   Lanes lo[3], hi[3];
-  sweepBall(chain.frames[in.step_b], chain.bounds[in.step_b], in.sweep.first_order, p, radius, in.d, lo, hi);
+  boundLss(swept, 0, lo, hi);
   for (int k = 0; k < 3; ++k) {
     for (int lane = 0; lane < kLanes; ++lane) {
       out.lo[lane][k] = lo[k][lane];
       out.hi[lane][k] = hi[k][lane];
     }
   }
+}
+
+unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_test::StillBox& still) {
+  SweptLss swept;
+  sweepLssOf(Chain(in), in, lss, swept);
+  CoreBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = still.lo[k];
+    box.hi[k] = still.hi[k];
+  }
+  box.radius = still.radius;
+  unsigned meet = 0;
+  return certainlyApart(swept, box, still.inverse, in.margin, meet);
+}
+
+unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {
+  const Chain chain(in);
+  SweptLss swept[2];
+  sweepLssOf(chain, in, a, swept[0]);
+  sweepLssOf(chain, in, b, swept[1]);
+  return certainlyApart(swept[0], swept[1], in.margin);
 }
 
 void sineCosineOf(const double* x, double* sine, double* cosine) {
@@ -156,7 +187,8 @@ bool certainlyTouchingOf(const TouchInput& in) {
 namespace numerics_test {
 const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),  &FCL_ARTIC_ISA::sineCosineOf,
                                        &FCL_ARTIC_ISA::relate,           &FCL_ARTIC_ISA::certify,
-                                       &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::sweepBallOf,
+                                       &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::boundLssOf,
+                                       &FCL_ARTIC_ISA::apartFromBox,     &FCL_ARTIC_ISA::apartFromLss,
                                        &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic

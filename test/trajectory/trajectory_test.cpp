@@ -92,7 +92,7 @@ TEST(Trajectory, FirstContactIsInTheTimeOfTheTrajectory) {
   EXPECT_EQ(free.t_upper, 10);
   EXPECT_TRUE(free.contacts.empty());
   EXPECT_EQ(free.statistics.pairs, 3u) << "of three pieces";
-  EXPECT_NEAR(free.M_0_at_lower[1].translation().x(), 0.39, 1e-15);
+  EXPECT_TRUE(free.M_0_at_lower.empty());
 }
 
 /// Contact exactly where two pieces meet, q = 0.375 = 0.5 - 0.125 without rounding: coming to touch and going back, and
@@ -197,8 +197,8 @@ TEST(Trajectory, WhatHasSeparatedIsNotIgnoredAgain) {
 }
 
 TEST(Trajectory, BudgetIsForAllPieces) {
-  Slider slider;  // nearly touches a ball whose box it meets
-  slider.obstacle("ball", std::make_shared<fcl::Sphered>(0.1), translation({0.53, 0.15, 0}));
+  Slider slider;  // nearly touches a cylinder whose box it meets
+  slider.obstacle("cylinder", std::make_shared<fcl::Cylinderd>(0.1, 1), translation({0.54, 0.15, 0}));
   std::vector<double> times, q;
   for (int i = 0; i <= 200; ++i) {
     times.push_back(i);

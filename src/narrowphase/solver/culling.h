@@ -6,54 +6,83 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Swept box of a body's line swept sphere in the world, one per lane (Redon 2004, Section 4).
-inline void Solver::sweptLss(int mover, SweptBox& box) {
+/// A mover's line swept sphere over the present batch, and its box in the world (Redon 2004, Section 4). Of a moving obstacle
+/// only the box of its whole path is known.
+inline void Solver::sweepMover(int mover) {
   const Body& body = problem_->bodies[problem_->movers[mover]];
   const double margin = max(query_->margin, problem_->largest_margin);  // whatever the partner
-  if (body.step < 0) {
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = narrowDown(Lanes(body.lo[k] - margin));
-      box.hi[k] = narrowUp(Lanes(body.hi[k] + margin));
+  SweptBox& box = mover_box_[mover];
+  if (isLink(mover)) {
+    const bool still = body.step < 0;
+    sweepLss(still ? nullptr : &frames(0)[body.step], bounds_[first_step_[0] + max(body.step, 0)],
+             problem_->sweeps[0].first_order, body, d_, mover_lss_[mover]);
+    if (!still) {
+      Lanes lo[3], hi[3];
+      boundLss(mover_lss_[mover], margin, lo, hi);
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = narrowDown(lo[k]);
+        box.hi[k] = narrowUp(hi[k]);
+      }
+      return;
     }
-    return;
   }
-  const FrameLanes& f = frames(0)[body.step];
-  const StepBounds& b = bounds_[first_step_[0] + body.step];
-  const double radius = (body.lss[6] + margin) * (1 + 4 * kUlp);
-  const bool first_order = problem_->sweeps[0].first_order;
-  Lanes lo[2][3], hi[2][3];
-  for (int end = 0; end < 2; ++end) sweepBall(f, b, first_order, body.lss + 3 * end, radius, d_, lo[end], hi[end]);
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = narrowDown(min(lo[0][k], lo[1][k]));
-    box.hi[k] = narrowUp(max(hi[0][k], hi[1][k]));
+    box.lo[k] = narrowDown(Lanes(body.lo[k] - margin));
+    box.hi[k] = narrowUp(Lanes(body.hi[k] + margin));
   }
+}
+
+/// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept sphere. Where
+/// that is deep in a solid contact is expected: proven at once, as may be, where any will do; else it puts later lanes off.
+inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
+  const TreeView& tree = *problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]].tree;
+  unsigned meet = 0;
+  mask &= ~certainlyApart(mover_lss_[pair / problem_->num_obstacles], coreBox(tree),
+                          problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]].inverse,
+                          engine::marginOf(*problem_, query_->margin, pair), meet);
+  meet &= mask;
+  const bool solid = tree.num_pieces == 1 && tree.pieces[0].kind != PieceKind::vertices && !unbounded(tree.pieces[0]);
+  if (!meet || !solid || query_->every_pair || query_->ignore_initial) return mask;
+  const int lane = __builtin_ctz(meet);
+  if (query_->any) {
+    setupPair(pair);
+    proveVertexInside(pair, lane);
+  } else {
+    claimOverlap(lane);
+  }
+  return mask;
 }
 
 /// Stage 1: pairs whose swept bounds meet, with the lanes in which they do, to entries_.
 inline void Solver::cull() {
   beginBatch(0, 1);
   mover_box_.resize(problem_->num_movers);
-  for (int m = 0; m < problem_->num_movers; ++m) sweptLss(m, mover_box_[m]);
-  if (query_->check_scene && problem_->obstacle_tree) {
-    statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
-    for (int m = 0; m < problem_->num_scene_movers; ++m) {
-      const SweptBox& box = mover_box_[m];
-      Buffer<Entry>& stack = stack_[0];
-      stack.push({0, 0, 0, 0});
-      while (stack.size()) {
-        const Node& node = problem_->obstacle_tree[stack[stack.size() - 1].a];
-        stack.truncate(stack.size() - 1);
-        const unsigned mask = kAllLanes & ~apart(box, node);
-        if (!mask) continue;
-        if (!node.isLeaf()) {
-          stack.push({0, node.right(), 0, 0});
-          stack.push({0, node.left(), 0, 0});
-          continue;
-        }
-        const int pair = m * problem_->num_obstacles + node.piece();
-        if (!problem_->scene_allowed || !problem_->scene_allowed[pair]) entries_.push({pair, 0, 0, mask});
-      }
+  mover_lss_.resize(problem_->num_scene_movers);
+  const bool check_scene = query_->check_scene && problem_->obstacle_tree;
+  if (check_scene) statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
+  for (int m = 0; m < problem_->num_movers; ++m) {
+    sweepMover(m);
+    if (!check_scene || !isLink(m)) continue;
+    const SweptBox& box = mover_box_[m];
+    Buffer<Entry>& stack = stack_[0];  // of nodes that the box meets
+    const auto meet = [&](int index) {
+      const Node& node = problem_->obstacle_tree[index];
+      const unsigned mask = kAllLanes & ~apart(box, node);
+      if (!mask) return;
+      if (!node.isLeaf()) return stack.push({0, node.left(), 0, 0});
+      const int pair = m * problem_->num_obstacles + node.piece();
+      if (problem_->scene_allowed && problem_->scene_allowed[pair]) return;
+      if (const unsigned left = lssMayTouch(pair, mask)) entries_.push({pair, 0, 0, left});
+    };
+    meet(0);
+    while (stack.size() && !finished()) {
+      const int left = stack[stack.size() - 1].a;
+      stack.truncate(stack.size() - 1);
+      meet(left);
+      meet(left + 1);
     }
+    stack.clear();
+    if (finished()) return;
   }
   if (query_->check_self && !problem_->num_movers) {  // no stage 1: pairs of free bodies
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
@@ -66,44 +95,35 @@ inline void Solver::cull() {
       const unsigned open = linkAllowed(p) ? 0 : problem_->link_free ? kAllLanes & ~problem_->link_free[p] : kAllLanes;
       if (!open) continue;
       const LinkPair& pair = problem_->link_pairs[p];
-      const SweptBox& a = mover_box_[problem_->bodies[pair.a].mover];
-      const SweptBox& b = mover_box_[problem_->bodies[pair.b].mover];
+      const int mover_a = problem_->bodies[pair.a].mover, mover_b = problem_->bodies[pair.b].mover;
+      const SweptBox &a = mover_box_[mover_a], &b = mover_box_[mover_b];
       FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
       for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
-      const unsigned mask = open & ~lanesOf(out);
+      unsigned mask = open & ~lanesOf(out);
+      if (mask && isLink(mover_a) && isLink(mover_b)) {
+        const double margin = engine::marginOf(*problem_, query_->margin, problem_->num_scene_pairs + p);
+        mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], margin);
+      }
       if (mask) entries_.push({problem_->num_scene_pairs + p, 0, 0, mask});
     }
   }
   statistics_.pairs_after_culling += static_cast<std::uint64_t>(entries_.size());
 }
 
-/// A body's line swept sphere in each lane of [0, 1]: both ends' Bernstein points, and the larger of their radii.
+/// A link's line swept sphere in each lane of [0, 1]: both ends' Bernstein points, and its radius.
 inline void Solver::sweptSegments(int mover, engine::SweptLink* parts) {
-  const Body& body = problem_->bodies[problem_->movers[mover]];
-  const double radius = body.lss[6];
-  double slack = radius;
-  for (int end = 0; end < 2; ++end) {
-    const double* p = body.lss + 3 * end;
-    Lanes c[3][3];
-    if (body.step < 0) {
+  const SweptLss& s = mover_lss_[mover];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int end = 0; end < 2; ++end) {
       for (int k = 0; k < 3; ++k) {
-        c[0][k] = Lanes(p[k]);
-        c[1][k] = c[2][k] = Lanes(0.0);
-      }
-    } else {
-      const StepBounds& b = bounds_[first_step_[0] + body.step];
-      slack = max(slack, sweepCenter(frames(0)[body.step], b, problem_->sweeps[0].first_order, p, radius, d_, c));
-    }
-    for (int lane = 0; lane < kLanes; ++lane) {
-      for (int k = 0; k < 3; ++k) {
-        const double c0 = c[0][k][lane], c1 = c[1][k][lane], c2 = c[2][k][lane];
+        const double c0 = s.end[end][0][k][lane], c1 = s.end[end][1][k][lane], c2 = s.end[end][2][k][lane];
         parts[lane].points[end][k] = c0 - c1 + c2;
         parts[lane].points[2 + end][k] = c0 + c1 + c2;
         parts[lane].points[4 + end][k] = c0 - c2;
       }
     }
+    parts[lane].radius = s.radius * (1 + 4 * kUlp);
   }
-  for (int lane = 0; lane < kLanes; ++lane) parts[lane].radius = slack * (1 + 4 * kUlp);
 }
 
 /// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out. (Pairs that are

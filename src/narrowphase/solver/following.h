@@ -108,8 +108,19 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
 
 inline void Solver::piecesOf(const Final& f, const Piece*& a, const Piece*& b) const {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  a = f.hulls ? A.outer : &A.pieces[A.nodes[f.entry.a].piece()];
-  b = f.hulls ? B.outer : &B.pieces[B.nodes[f.entry.b].piece()];
+  a = f.hulls ? A.outer : &A.pieces[f.piece_a];
+  b = f.hulls ? B.outer : &B.pieces[f.piece_b];
+}
+
+/// What an entry stands for, to be followed from `start`: two leaves, or more than that.
+inline Solver::Final Solver::leafPair(const Entry& e, double start) const {
+  const PairParts pair = parts(e.pair);
+  Final f = {};
+  f.entry = e;
+  f.t_lower = max(start, watchFrom(e.pair));
+  f.piece_a = problem_->bodies[pair.a].tree->nodes[e.a].piece();
+  f.piece_b = problem_->bodies[pair.b].tree->nodes[e.b].piece();
+  return f;
 }
 
 /// Decides a leaf pair that is stuck, as far as can be: true when it is free after all; else f.certain tells.
@@ -128,8 +139,7 @@ inline bool Solver::prove(Final& f) {
   for (int k = 0; k < kLanes; ++k) tm[k] = min(1.0, f.t_lower + kOffsets[k] * query_->tolerance_time);
   evaluateAt(tm, 0);
   setupPair(f.entry.pair);
-  const Piece& a = side_[0].still->pieces[side_[0].still->nodes[f.entry.a].piece()];
-  const Piece& b = side_[0].moving->pieces[side_[0].moving->nodes[f.entry.b].piece()];
+  const Piece &a = side_[0].still->pieces[f.piece_a], &b = side_[0].moving->pieces[f.piece_b];
   const int head = f.have_normal ? 0 : kLanes - 1;  // never seen apart: in contact at t_lower itself
   for (int i = 0; i < kLanes; ++i) {
     const int k = (head + i) % kLanes;
@@ -145,6 +155,44 @@ inline bool Solver::prove(Final& f) {
     }
   }
   return false;
+}
+
+/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body; -1 where
+/// that is not worth looking for.
+inline int Solver::pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
+  if (tree.num_pieces == 1) return 0;
+  if (tree.num_pieces > kFewPieces || tree.pieces[0].kind != PieceKind::vertices) return -1;
+  int piece = -1;
+  double most = 0;
+  for (int i = 0; i < tree.num_pieces; ++i) {
+    const double* v = tree.vertices + 3 * static_cast<std::ptrdiff_t>(tree.pieces[i].first_vertex);
+    double weight = 0;
+    for (int j = 0; j < tree.pieces[i].num_vertices; ++j, v += 3) {
+      for (int k = 0; k < simplex.n; ++k) {
+        const double* x = of_a ? simplex.v[k].a : simplex.v[k].b;
+        if (x[0] == v[0] && x[1] == v[1] && x[2] == v[2]) weight += simplex.weight[k];
+      }
+    }
+    if (weight <= most) continue;
+    most = weight;
+    piece = i;
+  }
+  return piece;
+}
+
+/// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time. Where that is
+/// proven, f becomes these two pieces' contact, and is no hulls' any more.
+inline void Solver::proveBelowHulls(Final& f) {
+  if (!f.have_normal || query_->max_contacts > 1) return;
+  setupPair(f.entry.pair);
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  if (A.outer->radius + B.outer->radius > f.speed * query_->tolerance_time) return;
+  Final below = f;
+  below.hulls = false;
+  below.piece_a = pieceAtWitness(A, f.simplex, true);
+  below.piece_b = pieceAtWitness(B, f.simplex, false);
+  below.simplex.n = 0;  // its points are the hulls', not the pieces'
+  if (below.piece_a >= 0 && below.piece_b >= 0 && prove(below)) f = below;
 }
 
 /// A pair that was never seen apart, as it touches where its window begins: looks back, ever farther, to where it was.
@@ -182,8 +230,8 @@ inline void Solver::describe(Final& f, LeafContact& contact) {
   contact.pair = f.entry.pair;
   contact.body_a = bodies.a;
   contact.body_b = bodies.b;
-  contact.piece_a = side_[0].still->nodes[f.entry.a].piece();
-  contact.piece_b = side_[0].moving->nodes[f.entry.b].piece();
+  contact.piece_a = f.piece_a;
+  contact.piece_b = f.piece_b;
   contact.t_lower = f.t_lower;
   contact.certain = f.certain;
   contact.t_upper = f.certain ? f.t_upper : 1;
@@ -254,10 +302,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   for (int i = begin; i < end; ++i) {
     const Entry& e = entries_[i];
     if (!(e.mask >> lane & 1)) continue;
-    Final f = {};
-    f.entry = e;
-    f.t_lower = max(start, watchFrom(e.pair));
-    finals_.push(f);
+    finals_.push(leafPair(e, start));
   }
   *refine = false;
   for (int i = 0; i < finals_.size(); ++i) {

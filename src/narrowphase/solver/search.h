@@ -94,9 +94,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     }
     const int count = entries_.size() - first;
     if (count == 0) continue;
-    Final f = {};
-    f.entry = entries_[first];
-    f.t_lower = max(start, watchFrom(pair_index));
+    Final f = leafPair(entries_[first], start);
     f.first = first;
     f.count = count;
     // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or parts of
@@ -121,12 +119,11 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     candidates_[first] = candidates_[done];
     front_ = max(front_, f.t_lower);
     if (f.t_lower >= limit_) break;
-    if (!f.hulls && !f.pieces) {
-      if (settle(f, stop)) continue;
-      if (f.certain) {
-        describe(f, contacts_.grow());
-        continue;
-      }
+    if (f.hulls) proveBelowHulls(f);
+    if (!f.hulls && !f.pieces && !f.certain && settle(f, stop)) continue;
+    if (f.certain) {
+      describe(f, contacts_.grow());
+      continue;
     }
     claimed_ = 2;
     solvePieces(f, stop, f.first, f.first + f.count, lane);
@@ -147,7 +144,7 @@ inline void Solver::descend(int begin, int end, unsigned mask) {
     const Entry e = entries_[i];
     if (!(e.mask & mask)) continue;
     if (e.pair != present) setupPair(present = e.pair);
-    if (movesFar()) {
+    if (movesFar() && !(e.mask & kWithin)) {
       entries_.push({e.pair, e.a, e.b, e.mask & mask});
     } else {
       traverse(e.pair, e.a, e.b, e.mask & mask);
@@ -162,6 +159,7 @@ inline void Solver::solvePairs() {
   overlapping_.clear();
   for (int i = 0; i < roots && !finished(); ++i) {
     Entry& e = entries_[i];
+    if (!(e.mask & live_)) continue;  // put off
     setupPair(e.pair);
     overlaps_ = 0;
     e.mask = nodesMayTouch(0, 0, e.mask);
@@ -186,8 +184,9 @@ inline void Solver::solvePairs() {
       const Entry& e = entries_[begin];
       setupPair(e.pair);
       if (isLeafPair(e) || (side_[0].still->outer && side_[1].still->outer && movesFar())) {
-        const double start = 0.125 * __builtin_ctz(e.mask), stop = 0.125 * (32 - __builtin_clz(e.mask));
-        return solveLane(start, stop, -1, begin, end, watchFrom(e.pair) > 0 ? 0 : e.mask);
+        const unsigned lanes = e.mask & kAllLanes;
+        const double start = 0.125 * __builtin_ctz(lanes), stop = 0.125 * (32 - __builtin_clz(lanes));
+        return solveLane(start, stop, -1, begin, end, watchFrom(e.pair) > 0 ? 0 : lanes);
       }
     }
     descend(begin, end, kAllLanes);

@@ -130,14 +130,9 @@ inline void Solver::claimOverlap(int lane) {
   updateLive();
 }
 
-/// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
-/// before any of their triangles is looked at.
-/// @param claim  overlapping hulls count as a claim of contact.
-inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
-  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
-  if (!A.outer || !B.outer) return mask;
-  for (int s = 0; s < 2; ++s) {  // a small body within the bounds of a large mesh: its hull would say nothing
+/// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
+inline bool Solver::isWithin() {
+  for (int s = 0; s < 2; ++s) {
     const Node &large = side_[s].still->nodes[0], &small = side_[s].moving->nodes[0];
     if (side_[s].still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
     const Side& side = this->side(s);
@@ -148,8 +143,26 @@ inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
       const double x = dot(side.m.R[0] + 3 * k, center)[kLanes / 2] + side.m.c[0][k][kLanes / 2];
       inside = inside && x > large.lo[k] && x < large.hi[k];
     }
-    if (inside) return mask;
+    if (!inside) continue;
+    const Piece &a = *side_[0].still->outer, &b = *side_[0].moving->outer;
+    const DifferenceBody body = differenceAt(a, b, kLanes / 2);
+    GjkResult g;
+    gjk(body, body.pose.c, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g);
+    ++statistics_.gjk;
+    return g.overlap;
   }
+  return false;
+}
+
+/// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
+/// before any of their triangles is looked at.
+/// @param claim  overlapping hulls count as a claim of contact.
+/// @return with kWithin where hulls tell nothing.
+inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
+  if (!A.outer || !B.outer) return mask;
+  if (isWithin()) return mask | kWithin;
   return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [&](int lane) {
     overlaps_ |= 1u << lane;
     if (query_->any && tm_at_[lane] >= watchFrom(pair) && proveVertexInside(pair, lane)) return;
@@ -191,7 +204,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   if (decide_only_ && a == 0 && b == 0) {
     mask = nodesMayTouch(0, 0, mask);
-    if (mask) mask = hullsMayTouch(mask, pair, false);
+    if (mask) mask = hullsMayTouch(mask, pair, false) & kAllLanes;
     if (!mask) return;
   }
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Links' line swept spheres over eight time intervals (Redon 2004, Section 4): certificates between them, and with boxes, along a
+// direction per interval. Most pairs whose boxes in the world meet are told apart here, before any hull is looked at.
+#pragma once
+
+#include "motion/lane_motion.h"
+#include "narrowphase/problem.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+using engine::Body;
+using engine::TreeView;
+
+/// Squared length below which a difference is no direction: far above underflow.
+constexpr double kLeastSquare = 1e-200;
+
+/// A segment in the world, each end a quadratic, grown by a ball.
+struct SweptLss {
+  Lanes end[2][3][3];  ///< end, order, coordinate
+  Lanes per_square;    ///< one over the segment's squared length
+  double radius;       ///< remainder and rounding in it
+  double sizes;        ///< of all numbers that the ends are made of
+  double ulps, rate;   ///< what a difference with something else rounds by: roundingPart(ulps, rate)
+};
+
+/// @param f  frame of the step that carries the body, seen from the world; null where it stands still.
+FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const StepBounds& b, bool first_order, const Body& body, double d,
+                               SweptLss& s) {
+  s.radius = 0;
+  double reach = 0;
+  for (int end = 0; end < 2; ++end) {
+    const double* p = body.lss + 3 * end;
+    reach = max(reach, norm(p) * (1 + 8 * kUlp));
+    if (f) {
+      s.radius = max(s.radius, sweepCenter(*f, b, first_order, p, body.lss[6], d, s.end[end]));
+      continue;
+    }
+    s.radius = body.lss[6];
+    for (int k = 0; k < 3; ++k) {
+      s.end[end][0][k] = Lanes(p[k]);
+      s.end[end][1][k] = s.end[end][2][k] = Lanes(0.0);
+    }
+  }
+  Lanes e[3];
+  for (int k = 0; k < 3; ++k) e[k] = s.end[1][0][k] - s.end[0][0][k];
+  s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
+  s.sizes = (f ? b.length + b.D1 * d : 0) + reach + s.radius;
+  s.ulps = f ? b.ulps : 0;
+  s.rate = f ? b.rounding_rate * d : 0;
+}
+
+/// Box in the world, `margin` wider.
+FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Lanes* lo, Lanes* hi) {
+  const Lanes slack((s.radius + margin) * (1 + 4 * kUlp));
+  for (int k = 0; k < 3; ++k) {
+    for (int end = 0; end < 2; ++end) {
+      const Lanes *c0 = s.end[end][0], *c1 = s.end[end][1], *c2 = s.end[end][2];
+      const Lanes sum = c0[k] + c2[k], middle = c0[k] - c2[k], reach1 = abs(c1[k]);
+      const Lanes low = min(sum - reach1, middle), high = max(sum + reach1, middle);
+      lo[k] = end ? min(lo[k], low) : low;
+      hi[k] = end ? max(hi[k], high) : high;
+    }
+    lo[k] = lo[k] - slack;
+    hi[k] = hi[k] + slack;
+  }
+}
+
+/// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
+FCL_ARTIC_INLINE Lanes leastPoint(Lanes g0, Lanes g1, Lanes g2) { return min((g0 + g2) - abs(g1), g0 - g2); }
+
+/// A box in a body's tree frame, grown by a ball, that holds the body: exact for boxes, balls and capsules.
+struct CoreBox {
+  double lo[3], hi[3], radius;
+};
+FCL_ARTIC_INLINE CoreBox coreBox(const TreeView& tree) {
+  CoreBox box;
+  const engine::Piece& piece = tree.pieces[0];
+  if (tree.num_pieces == 1 && (piece.kind == PieceKind::point || piece.kind == PieceKind::segment)) {
+    const double half = piece.kind == PieceKind::segment ? piece.size[2] : 0;
+    for (int k = 0; k < 3; ++k) {
+      box.lo[k] = piece.center[k] - (k == 2 ? half : 0);
+      box.hi[k] = piece.center[k] + (k == 2 ? half : 0);
+    }
+    box.radius = piece.radius;
+    return box;
+  }
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = tree.nodes[0].lo[k];
+    box.hi[k] = tree.nodes[0].hi[k];
+  }
+  box.radius = 0;
+  return box;
+}
+
+/// Lanes with a > b sqrt(square), for b >= 0, up to 8 kUlp of either side.
+FCL_ARTIC_INLINE unsigned greaterThanRoot(Lanes a, double b, Lanes square) {
+  return greater(a, Lanes(0.0)) & greater(a * a, square * Lanes(b * b));
+}
+
+/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius. Measured: from 0.7 on
+/// to 1 it makes no difference, below contacts are found later.
+constexpr double kDeep = 0.7;
+/// Steps by which a nearest point of a segment is looked for. Nothing rests on it.
+constexpr int kNearestSteps = 3;
+
+/// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
+///
+/// In each lane the direction l goes from the box to the segment as they stand in its middle, in the body's tree frame; nothing
+/// is assumed of it. Points of the box have l.y <= sum_k max(l_k lo_k, l_k hi_k) = h. The ends seen from there,
+/// y(tau) = R x(tau) + t, have l.y(tau) = (R^T l).x(tau) + l.t, a quadratic that lies above its least Bernstein point; a point of the
+/// segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both balls (doc/NUMERICS.md,
+/// "Line swept spheres").
+/// @param inverse  the world in the body's tree frame.
+/// @param[out] meet  lanes in whose middles the line swept sphere is so deep in the box that what it bounds is expected to touch.
+inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
+                               unsigned& meet) {
+  Lanes y[2][3], e[3], l[3], u[3];
+  for (int k = 0; k < 3; ++k) {
+    const double* R = inverse.R + 3 * k;
+    for (int end = 0; end < 2; ++end) y[end][k] = dot(s.end[end][0], R) + Lanes(inverse.t[k]);
+    e[k] = y[1][k] - y[0][k];
+  }
+  Lanes part(0.5);
+  for (int step = 0;; ++step) {
+    Lanes p[3];
+    for (int k = 0; k < 3; ++k) {
+      const Lanes q = mulAdd(part, e[k], y[0][k]);
+      p[k] = min(max(q, Lanes(box.lo[k])), Lanes(box.hi[k]));
+      l[k] = q - p[k];
+      p[k] = p[k] - y[0][k];
+    }
+    if (step == kNearestSteps) break;
+    part = min(max(dot(p, e) * s.per_square, Lanes(0.0)), Lanes(1.0));
+  }
+  Lanes h(0.0), at(0.0);
+  for (int k = 0; k < 3; ++k) {
+    h = h + max(l[k] * Lanes(box.lo[k]), l[k] * Lanes(box.hi[k]));
+    at = mulAdd(l[k], inverse.t[k], at);
+    u[k] = mulAdd(l[0], inverse.R[k], mulAdd(l[1], inverse.R[3 + k], l[2] * Lanes(inverse.R[6 + k])));
+  }
+  Lanes least[2];
+  for (int end = 0; end < 2; ++end) {
+    const auto* c = s.end[end];
+    least[end] = leastPoint(dot(u, c[0]), dot(u, c[1]), dot(u, c[2]));
+  }
+  double extent = box.radius + margin;
+  for (int k = 0; k < 3; ++k) extent += max(abs(box.lo[k]), abs(box.hi[k]));
+  const double pad = roundingPart(s.ulps + inverse.ulps, s.rate) * (s.sizes + inverse.length + extent) + kLeastLength;
+  const Lanes square = dot(l, l);
+  const unsigned known = greater(square, Lanes(kLeastSquare));
+  meet = kAllLanes & ~greater(square, Lanes(kDeep * kDeep * s.radius * s.radius));
+  return known & greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, square);
+}
+
+/// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction between the
+/// segments' nearest points, with the four differences of their ends.
+inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin) {
+  // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.
+  Lanes x[3], y[3], r[3], l[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = a.end[1][0][k] - a.end[0][0][k];
+    y[k] = b.end[1][0][k] - b.end[0][0][k];
+    r[k] = b.end[0][0][k] - a.end[0][0][k];
+  }
+  const Lanes zero(0.0), one(1.0), tiny(kLeastSquare);
+  const Lanes xx = max(dot(x, x), tiny), yy = max(dot(y, y), tiny), xy = dot(x, y), xr = dot(x, r), yr = dot(y, r);
+  Lanes s = min(max((xr * yy - yr * xy) / max(xx * yy - xy * xy, tiny), zero), one);
+  const Lanes t = min(max((s * xy - yr) / yy, zero), one);
+  s = min(max(mulAdd(t, xy, xr) / xx, zero), one);
+  for (int k = 0; k < 3; ++k) l[k] = mulAdd(t, y[k], r[k]) - s * x[k];
+
+  Lanes of_a[2][3], of_b[2][3], least;
+  for (int end = 0; end < 2; ++end) {
+    for (int order = 0; order < 3; ++order) {
+      of_a[end][order] = dot(l, a.end[end][order]);
+      of_b[end][order] = dot(l, b.end[end][order]);
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    const Lanes *p = of_a[i & 1], *q = of_b[i >> 1];
+    const Lanes low = leastPoint(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+    least = i ? min(least, low) : low;
+  }
+  const double pad = roundingPart(a.ulps + b.ulps, max(a.rate, b.rate)) * (a.sizes + b.sizes + margin) + kLeastLength;
+  const Lanes square = dot(l, l);
+  return greaterThanRoot(least, a.radius + b.radius + margin + pad, square) & greater(square, tiny);
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic
