@@ -92,6 +92,17 @@ Truth findTruth(PipeScene& scene, const std::vector<JointMotion>& motions) {
   return truth;
 }
 
+/// Those of the motions that are free, or not.
+std::vector<JointMotion> withVerdict(PipeScene& scene, const std::vector<JointMotion>& motions, bool free) {
+  CertifiedResult result;
+  std::vector<JointMotion> kept;
+  for (const JointMotion& motion : motions) {
+    scene.manager().continuousCollide(motion, baseRequest(), result);
+    if ((result.status == Status::free) == free) kept.push_back(motion);
+  }
+  return kept;
+}
+
 /// `automatic` and `off` in turn, block by block, trials included: the median ratio of their times.
 std::string automaticBesideOff(ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions) {
   using Clock = std::chrono::steady_clock;
@@ -131,11 +142,15 @@ int main(int argc, char** argv) {
   int passes = 3;
   double scale = 1;
   std::vector<double> steps = {5, 10, 20, 30};
+  std::string only = "all";
   app.add_option("--queries", count, "motions per scene and step")->capture_default_str();
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--steps", steps, "degrees, the joint that turns most")->capture_default_str();
+  app.add_option("--only", only, "motions that are free, or in contact")
+      ->check(CLI::IsMember({"all", "free", "contact"}))
+      ->capture_default_str();
   app.add_option("--scale", scale, "times the scenes' numbers of objects")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -160,7 +175,9 @@ int main(int argc, char** argv) {
     PipeScene& scene = kept_scenes.emplace_back(options);
     std::cout << entry.name << ": " << scene.triangles() << " triangles\n";
     for (const double step : steps) {
-      const auto& motions = kept_motions.emplace_back(scene.motions(step * kPi / 180, count));
+      auto& motions = kept_motions.emplace_back(scene.motions(step * kPi / 180, count));
+      if (only != "all") motions = withVerdict(scene, motions, only == "free");
+      if (motions.empty()) continue;
       const Truth truth = findTruth(scene, motions);
       const auto off_us = std::make_shared<double>(0);
       for (const Way& method : all) {

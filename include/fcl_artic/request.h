@@ -15,11 +15,11 @@ enum class ContactMode {
 };
 
 /// Stage 2, culling by visibility (doc/VISIBILITY.md): in queries of an ArticulatedCollisionManager, of links against
-/// obstacles that stand still. No answer depends on it.
+/// obstacles that stand still. No answer depends on it. Off with a work budget.
 enum class VisibilityMode {
   off,
   on,
-  automatic,  ///< where it pays, as measured on the manager's own queries; off with a work budget
+  automatic,  ///< where it pays, as measured on the manager's own queries
 };
 
 /// How a query is solved. Both give the same promise.

@@ -83,8 +83,10 @@ struct QueryStatistics {
   std::uint64_t contact_proofs = 0;     ///< poses for which a proof of contact was tried
   std::uint64_t visibility_pairs = 0;   ///< pairs that stage 2 looked at (CertifiedRequest::visibility)
   std::uint64_t visibility_culled = 0;  ///< of these, proven free
+  std::uint64_t visibility_nodes = 0;   ///< of the others, nodes of obstacles' trees proven free
   std::uint64_t visibility_pieces = 0;  ///< pieces of obstacles that were drawn for it
   std::uint64_t visibility_trials = 0;  ///< 1: `automatic` answered the query both ways to compare
+  std::uint64_t visibility_repeated = 0;  ///< 1: solved again without stage 2, as the motion is not free
   double visibility_us = 0;             ///< always measured, trials included
   std::string visibility_executor;      ///< that did it: "cpu", "osmesa" or "egl"; empty: nothing was to be done
   std::string visibility_fallback;      ///< why it is "cpu" where another one was wanted

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2: culling by visibility (doc/VISIBILITY.md). A pair that it takes out is proven free; answers never depend on
-// it.
+// Stage 2: culling by visibility (doc/VISIBILITY.md). What it takes out is proven free. Answers do not depend on it, by
+// construction: it shortens proofs that a motion is free, and any other answer is found without it.
 #pragma once
 
 #include <functional>

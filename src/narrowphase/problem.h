@@ -177,6 +177,9 @@ struct CullCandidate {
   std::int32_t pair, mover, obstacle;  ///< mover: among Problem::movers; obstacle: a body
   std::uint32_t lanes;                 ///< parts of the motion in which their bounds meet
   double margin;                       ///< of the pair
+  /// Nodes of the obstacle's tree, a bit each, that are proven free of the mover over the whole motion; null: none. There
+  /// until the solver returns.
+  const std::uint64_t* free_nodes = nullptr;
 };
 
 struct Query {
@@ -191,8 +194,8 @@ struct Query {
   std::uint64_t work_budget = 0;
   void (*progress)(void* context, double t_lower) = nullptr;
   void* progress_context = nullptr;
-  /// A stage between stage 1 and the first batch: may clear lanes in which a pair is proven free, nothing else. The pairs of
-  /// a mover lie together; links[8 * mover + k] is set for movers that have pairs.
+  /// A stage between stage 1 and the first batch: may clear lanes in which a pair is proven free and set free_nodes,
+  /// nothing else. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
   void (*refine)(void* context, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
                  std::int32_t num_pairs) = nullptr;
   void* refine_context = nullptr;

@@ -158,6 +158,7 @@ class Solver {
   bool have_witness_ = false;
   std::int32_t witness_pair_ = -1;
   std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
+  const std::uint64_t* free_nodes_ = nullptr;  ///< of A, a bit each; null: none (engine::CullCandidate)
   std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
   /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
   /// processor's own; what is pushed out is made again.
@@ -173,6 +174,7 @@ class Solver {
   Buffer<SweptLss> mover_lss_;  ///< of links
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidate_pairs_;
+  Buffer<engine::CullCandidate> partly_free_;  ///< those left of which stage 2 has proven nodes free
   Buffer<Entry> entries_;
   Buffer<Entry> overlapping_;  ///< pairs whose hulls overlap in the middles of lanes of the first batch
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
@@ -249,6 +251,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   entries_.clear();
   contacts_.clear();
   ignored_.clear();
+  partly_free_.clear();
   front_ = 0;
   witness_pair_ = present_ = roots_batch_ = -1;
   t_upper_ = limit_ = claimed_ = 2;

@@ -83,8 +83,10 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.contact_proofs += s.contact_proofs;
   sum.visibility_pairs += s.visibility_pairs;
   sum.visibility_culled += s.visibility_culled;
+  sum.visibility_nodes += s.visibility_nodes;
   sum.visibility_pieces += s.visibility_pieces;
   sum.visibility_trials += s.visibility_trials;
+  sum.visibility_repeated += s.visibility_repeated;
   sum.visibility_us += s.visibility_us;
   if (!s.visibility_executor.empty()) sum.visibility_executor = s.visibility_executor;
   if (!s.visibility_fallback.empty()) sum.visibility_fallback = s.visibility_fallback;

@@ -984,8 +984,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.statistics = statisticsOf(answer.statistics);
   result.statistics.visibility_pairs = stage.pairs;
   result.statistics.visibility_culled = stage.culled;
+  result.statistics.visibility_nodes = stage.nodes;
   result.statistics.visibility_pieces = stage.pieces;
   result.statistics.visibility_trials = stage.trials;
+  result.statistics.visibility_repeated = stage.repeated;
   result.statistics.visibility_us = stage.elapsed_us;
   result.statistics.visibility_executor = stage.executor;
   result.statistics.visibility_fallback = stage.fallback;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "visibility/solve.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "visibility/stage.h"
@@ -11,26 +12,52 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// @return time taken, us.
-double solveOnce(const VisibilityCuller* culler, const Solver& solver, engine::Query& query, engine::Answer& answer,
-                 Report& report) {
-  const Clock::time_point begin = Clock::now();
-  if (!culler) {
-    query.refine = nullptr;
-    solver(query, answer);
-  } else {
-    Stage stage(*culler);
-    query.refine = &Stage::refine;
-    query.refine_context = &stage;
-    solver(query, answer);
-    report.pairs += stage.pairs;
-    report.culled += stage.culled;
-    report.pieces += stage.pieces;
-    report.elapsed_us += stage.elapsed_us;
-    report.executor = stage.executor;
-    report.fallback = culler->fallbackReason();
-  }
+double since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+}
+
+/// Passes progress on. A second solve begins at 0 again; what is proven stays proven.
+struct Progress {
+  void (*tell)(void* context, double t_lower);
+  void* context;
+  double proven = 0;
+  static void update(void* self, double t_lower) {
+    auto& progress = *static_cast<Progress*>(self);
+    progress.proven = std::max(progress.proven, t_lower);
+    progress.tell(progress.context, progress.proven);
+  }
+};
+
+/// With the stage.
+/// @return whether this is the answer without it too: the motion is free, or nothing was taken out.
+bool solveShortened(const VisibilityCuller& culler, const Solver& solver, engine::Query& query, engine::Answer& answer,
+                    Report& report) {
+  Stage stage(culler, query.tolerance_distance);
+  query.refine = &Stage::refine;
+  query.refine_context = &stage;
+  solver(query, answer);
+  query.refine = nullptr;
+  report.pairs = stage.pairs;
+  report.culled = stage.culled;
+  report.nodes = stage.nodes;
+  report.pieces = stage.pieces;
+  report.elapsed_us = stage.elapsed_us;
+  report.executor = stage.executor;
+  report.fallback = culler.fallbackReason();
+  const bool free = answer.verdict == engine::Verdict::free && answer.num_ignored == 0;
+  return free || (stage.culled == 0 && stage.nodes == 0);
+}
+
+void addWork(const engine::Statistics& s, engine::Statistics& sum) {
+  sum.batches += s.batches;
+  sum.motion_evaluations += s.motion_evaluations;
+  sum.node_tests += s.node_tests;
+  sum.leaf_tests += s.leaf_tests;
+  sum.certificates += s.certificates;
+  sum.gjk += s.gjk;
+  sum.contact_proofs += s.contact_proofs;
+  sum.culling_us += s.culling_us;
+  sum.narrowphase_us += s.narrowphase_us;
 }
 
 }  // namespace
@@ -38,30 +65,44 @@ double solveOnce(const VisibilityCuller* culler, const Solver& solver, engine::Q
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report) {
   const bool nothing = !query.check_scene || problem.num_obstacles == 0;
-  if (mode == VisibilityMode::off || nothing || (mode == VisibilityMode::automatic && query.work_budget)) {
+  if (mode == VisibilityMode::off || nothing || query.work_budget) {
     solver(query, answer);
     return;
   }
-  if (mode == VisibilityMode::on) {
-    solveOnce(&culler, solver, query, answer, report);
-    return;
+  const bool automatic = mode == VisibilityMode::automatic;
+  const bool on = !automatic || choice.pays();
+  const bool trial = automatic && choice.mayTry();  // answered both ways
+  Progress progress{query.progress, query.progress_context};
+  if (query.progress) {
+    query.progress = &Progress::update;
+    query.progress_context = &progress;
   }
-  const bool on = choice.pays();
-  double trial_us = 0;
-  const bool trial = choice.mayTry();
-  Report tried;
-  if (trial) {  // the other way first, unseen: the answer lives in the workspace until the next
-    engine::Query other = query;
-    other.progress = nullptr;
-    trial_us = solveOnce(on ? nullptr : &culler, solver, other, answer, tried);
+
+  double with_us = 0, without_us = 0;
+  bool stands = false;
+  engine::Statistics first;
+  if (on || trial) {
+    const Clock::time_point begin = Clock::now();
+    stands = solveShortened(culler, solver, query, answer, report);
+    with_us = since(begin);
+    first = answer.statistics;
   }
-  const double us = solveOnce(on ? &culler : nullptr, solver, query, answer, report);
-  choice.addQuery(us);
-  if (!trial) return;
-  report.trials = 1;
-  report.elapsed_us += tried.elapsed_us;
-  if (report.fallback.empty()) report.fallback = tried.fallback;
-  choice.addTrial(trial_us, on ? us : trial_us, on ? trial_us : us, (on ? report : tried).pairs > 0);
+  if (!stands || trial) {
+    const Clock::time_point begin = Clock::now();
+    solver(query, answer);
+    without_us = since(begin);
+    addWork(first, answer.statistics);
+  }
+  query.progress = progress.tell;
+  query.progress_context = progress.context;
+  report.repeated = on && !stands;
+  report.trials = trial;
+
+  if (!automatic) return;
+  const double on_us = stands ? with_us : with_us + without_us;  // with the second solve, where it takes one
+  const double own_us = on ? on_us : without_us;
+  choice.addQuery(own_us);
+  if (trial) choice.addTrial(with_us + without_us - own_us, on_us, without_us, report.pairs > 0);
 }
 
 }  // namespace visibility

@@ -19,6 +19,14 @@ constexpr int kParts = 8;
 constexpr std::size_t kMostObjects = 20000;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
+/// Size of clusters, as a part of the longest side of what is swept.
+constexpr double kCluster = 0.5;
+constexpr std::size_t kNone = ~std::size_t{0};
+
+/// Of a bit for each node.
+std::size_t wordsOf(const engine::TreeView& tree) {
+  return static_cast<std::size_t>(tree.num_nodes + 63) / 64;
+}
 
 /// The part of the link's box that the pieces' boxes leave, a little larger, so that a point on its border is well
 /// within by the rounding of its pixel coordinates.
@@ -40,8 +48,8 @@ Window windowOf(const Bounds& link, const Bounds& pieces) {
 
 }  // namespace
 
-/// One window per link, its swept parts, and per pair a group of those pieces of the obstacle whose bounds meet a
-/// part's.
+/// One window per link, its swept parts, and per pair those pieces of the obstacle whose bounds meet a part's, in
+/// groups by cluster.
 void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates, std::int32_t n,
                 ExecutorLoan& loan) {
   Batch& batch = loan->batch;
@@ -50,7 +58,8 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
   batch.rule = culler_.options().rule;
   batch.groups_only = true;
   batch.growth = Growth();
-  batch.num_groups = n;
+  Collection collection{batch, {}, {}};
+  std::vector<Cluster>& clusters = collection.clusters;
   std::int32_t end = 0;
   for (std::int32_t begin = 0; begin < n; begin = end) {
     const std::int32_t mover = candidates[begin].mover;
@@ -70,12 +79,14 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
     lanes = 0;
     for (std::int32_t i = begin; i < end; ++i) {
       const CullCandidate& c = candidates[i];
-      const std::size_t objects = batch.objects.size();
+      const std::size_t objects = batch.objects.size(), groups = clusters.size();
       std::uint32_t met = c.lanes;
-      if (!BodyPieces(problem.bodies[c.obstacle], c.margin)
-               .add(parts, met, least, kMostObjects, window, i, batch, reach)) {
+      if (!BodyPieces(problem.bodies[c.obstacle], c.margin + tolerance_distance_)
+               .add(parts, met, least, kCluster * size, kMostObjects, window, i, collection, reach)) {
         batch.objects.resize(objects);
-        batch.objects.push_back({Volume(), window, i});  // without a point: unusable, so that the pair stays
+        batch.objects.push_back({Volume(), window, static_cast<std::int32_t>(groups)});  // without a point: unusable
+        clusters.resize(groups);
+        clusters.push_back({i, 0});
       }
       lanes |= met;
     }
@@ -85,16 +96,39 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
       if (lanes >> lane & 1) batch.swept.push_back({addVolume(links[kParts * mover + lane], batch), window});
     }
   }
+  batch.num_groups = static_cast<std::int32_t>(clusters.size());
   pieces += batch.objects.size();
   executor = loan->name;
   loan->executor->run(batch, loan->may);
-  std::vector<std::uint8_t>& may = loan->may;
-  std::size_t i = 0;
-  for (std::int32_t group = 0; group < n; ++group) {
-    bool touching = false;
-    for (; i < batch.objects.size() && batch.objects[i].group == group; ++i) touching = touching || may[i];
-    if (touching) continue;
-    candidates[group].lanes =
+  std::vector<std::uint8_t> stays(clusters.size(), 0);
+  for (std::size_t i = 0; i < batch.objects.size(); ++i) {
+    if (loan->may[i]) stays[static_cast<std::size_t>(batch.objects[i].group)] = 1;
+  }
+  std::vector<std::size_t> first_word(static_cast<std::size_t>(n), kNone);
+  std::size_t words = 0;
+  for (std::size_t group = 0; group < clusters.size(); ++group) {
+    const std::int32_t pair = clusters[group].pair;
+    std::size_t& first = first_word[static_cast<std::size_t>(pair)];
+    if (!stays[group]) {
+      collection.free.push_back(clusters[group]);
+    } else if (first == kNone) {
+      first = words;
+      words += wordsOf(*problem.bodies[candidates[pair].obstacle].tree);
+    }
+  }
+  free_nodes_.assign(words, 0);
+  // From here on nothing fails.
+  for (const Cluster& c : collection.free) {
+    const std::size_t first = first_word[static_cast<std::size_t>(c.pair)];
+    if (first == kNone) continue;
+    const auto node = static_cast<std::size_t>(c.node);
+    free_nodes_[first + node / 64] |= std::uint64_t{1} << node % 64;
+    candidates[c.pair].free_nodes = free_nodes_.data() + first;
+    ++nodes;
+  }
+  for (std::int32_t pair = 0; pair < n; ++pair) {
+    if (first_word[static_cast<std::size_t>(pair)] != kNone) continue;
+    candidates[pair].lanes =
         0;  // Single lanes are left as they are: the solver would find the same, by other roundings.
     ++culled;
   }

@@ -191,8 +191,9 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
   return volume;
 }
 
-bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, std::size_t most, std::int32_t window,
-                     std::int32_t group, Batch& batch, Bounds& reach) const {
+bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::size_t most,
+                     std::int32_t window, std::int32_t pair, Collection& to, Bounds& reach) const {
+  Batch& batch = to.batch;
   const engine::TreeView& tree = *body_.tree;
   if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
   const auto met = [&](const Bounds& bounds, std::uint32_t asked) {
@@ -205,21 +206,31 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, st
   struct Open {
     std::int32_t node;
     std::uint32_t lanes;
+    std::int32_t group;  ///< -1: above all clusters
   };
   Open stack[128];
   int open = 0;
-  stack[open++] = {0, lanes};
+  stack[open++] = {0, lanes, -1};
   std::uint32_t touched = 0;
   while (open) {
-    const Open top = stack[--open];
+    Open top = stack[--open];
     const Node& node = tree.nodes[top.node];
     const bool small = static_cast<double>(node.radius) < least;
+    const auto openCluster = [&] {
+      if (top.group >= 0) return;
+      top.group = static_cast<std::int32_t>(to.clusters.size());
+      to.clusters.push_back({pair, top.node});
+    };
     if (!node.isLeaf() && !small) {
       const std::uint32_t mask = met(boundsOf(node), top.lanes);
-      if (!mask) continue;
+      if (!mask) {
+        to.free.push_back({pair, top.node});
+        continue;
+      }
       if (open + 2 > 128) return false;
-      stack[open++] = {node.right(), mask};
-      stack[open++] = {node.left(), mask};
+      if (static_cast<double>(node.radius) < cluster) openCluster();
+      stack[open++] = {node.right(), mask, top.group};
+      stack[open++] = {node.left(), mask, top.group};
       continue;
     }
     if (batch.objects.size() >= most) return false;
@@ -230,8 +241,10 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, st
     if (mask) {
       touched |= mask;
       reach.join(bounds);
-      batch.objects.push_back({volume, window, group});
+      openCluster();
+      batch.objects.push_back({volume, window, top.group});
     } else {
+      to.free.push_back({pair, top.node});
       batch.points.resize(points);
     }
   }

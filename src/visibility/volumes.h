@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "narrowphase/problem.h"
 #include "visibility/batch.h"
@@ -34,20 +35,32 @@ Bounds boundsOf(const double* points, int count, double radius);
 Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
+/// A subtree of the obstacle of a pair: what of it is drawn is one group.
+struct Cluster {
+  std::int32_t pair, node;
+};
+
+/// What is collected from the obstacles of a query.
+struct Collection {
+  Batch& batch;
+  std::vector<Cluster> clusters;  ///< of each group
+  std::vector<Cluster> free;      ///< proven free without being drawn
+};
+
 /// Pieces of a still body, in the world.
 class BodyPieces {
  public:
   /// @param margin  that all of it is grown by, m.
   BodyPieces(const engine::Body& body, double margin);
-  /// Adds those whose bounds meet one of the parts, as objects of a group: triangles and other convex pieces; a node
-  /// smaller than `least` (m) as the ball around its box, with all that is in it.
+  /// Adds those whose bounds meet one of the parts: triangles and other convex pieces; a node smaller than `least` (m)
+  /// as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make groups.
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param most  of all objects of the batch.
   /// @param[in,out] reach  joined with the bounds of what is added.
   /// @return false where that was too few, or the body is unbounded: nothing is known, lanes are as they were.
-  bool add(const Bounds* parts, std::uint32_t& lanes, double least, std::size_t most, std::int32_t window,
-           std::int32_t group, Batch& batch, Bounds& reach) const;
+  bool add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::size_t most,
+           std::int32_t window, std::int32_t pair, Collection& to, Bounds& reach) const;
 
  private:
   Bounds boundsOf(const engine::Node& node) const;

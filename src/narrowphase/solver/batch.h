@@ -135,6 +135,10 @@ inline void Solver::setupPair(int index) {
   amplitude_ = sqrt(maxLane(dot(v, v))) + b.rates.a * d_ * root.radius;
   ++pair_epoch_;
   pool_.clear();
+  free_nodes_ = nullptr;
+  for (int i = 0; i < partly_free_.size(); ++i) {
+    if (partly_free_[i].pair == index) free_nodes_ = partly_free_[i].free_nodes;
+  }
   if (witness_pair_ != index) have_witness_ = false;
   witness_pair_ = index;
 }

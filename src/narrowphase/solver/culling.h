@@ -146,7 +146,9 @@ inline void Solver::refine() {
   for (int i = 0; i < entries_.size(); ++i) {
     Entry e = entries_[i];
     if (i < asked) e.mask &= candidate_pairs_[i].lanes;
-    if (e.mask) entries_[kept++] = e;
+    if (!e.mask) continue;
+    if (i < asked && candidate_pairs_[i].free_nodes) partly_free_.push(candidate_pairs_[i]);
+    entries_[kept++] = e;
   }
   entries_.truncate(kept);
 }

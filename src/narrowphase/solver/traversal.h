@@ -225,6 +225,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       if (!e.mask) continue;
     }
     if (outOfBudget()) break;
+    if (free_nodes_ && (free_nodes_[e.a / 64] >> e.a % 64 & 1)) continue;
     if (e.a != 0 || e.b != 0 || roots_batch_ != batch_) e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
