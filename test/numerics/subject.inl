@@ -143,8 +143,8 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
     box.hi[k] = still.hi[k];
   }
   box.radius = still.radius;
-  unsigned meet = 0;
-  return certainlyApart(swept, box, still.inverse, in.margin, meet);
+  Lanes square;
+  return certainlyApart(swept, box, still.inverse, in.margin, square);
 }
 
 unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {

@@ -33,23 +33,25 @@ inline void Solver::sweepMover(int mover) {
 }
 
 /// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept sphere. Where
-/// that is deep in a solid contact is expected: proven at once, as may be, where any will do; else it puts later lanes off.
+/// that is deep in a solid contact is expected. Where any will do, a vertex is tried at once, and the pose is put down for
+/// proveAnywhere() where the link's axis is so near that a thin solid may cut it between its vertices. Else later lanes are put off.
 inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
-  const TreeView& tree = *problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]].tree;
-  unsigned meet = 0;
-  mask &= ~certainlyApart(mover_lss_[pair / problem_->num_obstacles], coreBox(tree),
-                          problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]].inverse,
-                          engine::marginOf(*problem_, query_->margin, pair), meet);
-  meet &= mask;
+  const Body& obstacle = problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]];
+  const TreeView& tree = *obstacle.tree;
+  const SweptLss& lss = mover_lss_[pair / problem_->num_obstacles];
+  Lanes square;
+  mask &= ~certainlyApart(lss, coreBox(tree), obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
+  const auto nearer = [&](double part) { return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius)); };
+  const unsigned deep = nearer(kDeep);
   const bool solid = tree.num_pieces == 1 && tree.pieces[0].kind != PieceKind::vertices && !unbounded(tree.pieces[0]);
-  if (!meet || !solid || query_->every_pair || query_->ignore_initial) return mask;
-  const int lane = __builtin_ctz(meet);
-  if (query_->any) {
-    setupPair(pair);
-    proveVertexInside(pair, lane);
-  } else {
-    claimOverlap(lane);
+  if (!deep || !solid || query_->every_pair || query_->ignore_initial) return mask;
+  if (!query_->any) {
+    claimOverlap(__builtin_ctz(deep));
+    return mask;
   }
+  setupPair(pair);
+  if (proveVertexInside(pair, __builtin_ctz(deep))) return mask;
+  if (const unsigned lanes = nearer(kVeryDeep)) overlapping_.push({pair, 0, 0, lanes});
   return mask;
 }
 

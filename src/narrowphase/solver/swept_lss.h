@@ -99,9 +99,6 @@ FCL_ARTIC_INLINE unsigned greaterThanRoot(Lanes a, double b, Lanes square) {
   return greater(a, Lanes(0.0)) & greater(a * a, square * Lanes(b * b));
 }
 
-/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius. Measured: from 0.7 on
-/// to 1 it makes no difference, below contacts are found later.
-constexpr double kDeep = 0.7;
 /// Steps by which a nearest point of a segment is looked for. Nothing rests on it.
 constexpr int kNearestSteps = 3;
 
@@ -113,9 +110,9 @@ constexpr int kNearestSteps = 3;
 /// segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both balls (doc/NUMERICS.md,
 /// "Line swept spheres").
 /// @param inverse  the world in the body's tree frame.
-/// @param[out] meet  lanes in whose middles the line swept sphere is so deep in the box that what it bounds is expected to touch.
+/// @param[out] square  of the segment's distance from the box in the middle of each lane, about.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
-                               unsigned& meet) {
+                               Lanes& square) {
   Lanes y[2][3], e[3], l[3], u[3];
   for (int k = 0; k < 3; ++k) {
     const double* R = inverse.R + 3 * k;
@@ -148,9 +145,8 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
   double extent = box.radius + margin;
   for (int k = 0; k < 3; ++k) extent += max(abs(box.lo[k]), abs(box.hi[k]));
   const double pad = roundingPart(s.ulps + inverse.ulps, s.rate) * (s.sizes + inverse.length + extent) + kLeastLength;
-  const Lanes square = dot(l, l);
+  square = dot(l, l);
   const unsigned known = greater(square, Lanes(kLeastSquare));
-  meet = kAllLanes & ~greater(square, Lanes(kDeep * kDeep * s.radius * s.radius));
   return known & greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, square);
 }
 
