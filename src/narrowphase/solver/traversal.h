@@ -25,7 +25,9 @@ inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   const auto box = [&](int s) { return apart(pool_[s ? sweptNode(1, a) : sweptNode(0, b)], s ? B : A); };
   mask &= ~box(known);
   if (!mask) return 0;
-  mask &= ~box(1 - known);
+  // A node that is larger than the other seldom tells more, and its box has to be made.
+  const int other = 1 - known;
+  if (isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius) mask &= ~box(other);
   if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
   return mask & ~apartFromUnbounded(a, b);
 }
