@@ -73,6 +73,20 @@ QueryStatistics statisticsOf(const engine::Statistics& s) {
   return out;
 }
 
+void addWork(const RedonStatistics& s, RedonStatistics& sum) {
+  sum.pairs_by_standard += s.pairs_by_standard;
+  sum.box_tests += s.box_tests;
+  sum.leaf_pairs += s.leaf_pairs;
+  sum.equations += s.equations;
+  sum.intervals += s.intervals;
+  sum.evaluations += s.evaluations;
+  sum.steps_bounded += s.steps_bounded;
+  sum.culling_us += s.culling_us;
+  sum.boxes_us += s.boxes_us;
+  sum.equations_us += s.equations_us;
+  sum.visibility_us += s.visibility_us;
+}
+
 void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.batches += s.batches;
   sum.motion_evaluations += s.motion_evaluations;
@@ -93,17 +107,7 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.culling_us += s.culling_us;
   sum.narrowphase_us += s.narrowphase_us;
   sum.report_us += s.report_us;
-  sum.redon.pairs_by_standard += s.redon.pairs_by_standard;
-  sum.redon.box_tests += s.redon.box_tests;
-  sum.redon.leaf_pairs += s.redon.leaf_pairs;
-  sum.redon.equations += s.redon.equations;
-  sum.redon.intervals += s.redon.intervals;
-  sum.redon.evaluations += s.redon.evaluations;
-  sum.redon.steps_bounded += s.redon.steps_bounded;
-  sum.redon.culling_us += s.redon.culling_us;
-  sum.redon.boxes_us += s.redon.boxes_us;
-  sum.redon.equations_us += s.redon.equations_us;
-  sum.redon.visibility_us += s.redon.visibility_us;
+  addWork(s.redon, sum.redon);
 }
 
 Status statusOf(engine::Verdict verdict) {

@@ -65,6 +65,7 @@ Status statusOf(engine::Verdict verdict);
 QueryStatistics statisticsOf(const engine::Statistics& statistics);
 /// Adds one query's work to a sum: all but the counts of pairs and the total time, which the asker knows better.
 void addWork(const QueryStatistics& s, QueryStatistics& sum);
+void addWork(const RedonStatistics& s, RedonStatistics& sum);
 
 /// FCL's own id of a piece, as in Contact::b1: a mesh's triangle, an OcTree's cell (OcTree::getNodeByQueryCellId), -1 for
 /// a shape.

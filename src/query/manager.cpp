@@ -944,7 +944,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   if (request.method == Method::Redon2004) {
     const auto treeOf = [&m](std::int32_t body) { return m.item(body).shape->obbTree(); };
     const auto method = [&](const engine::Query& asked, engine::Answer& out) {
-      redon::solve(workspace->redon(), workspace->engine(), problem, asked, request.redon, treeOf, out, redon_work);
+      RedonStatistics work;
+      redon::solve(workspace->redon(), workspace->engine(), problem, asked, request.redon, treeOf, out, work);
+      addWork(work, redon_work);  // of both solves, where there are two
+      redon_work.pairs_by_standard = work.pairs_by_standard;
     };
     visibility::solve(*m.visibility, *m.redon_choice, request.visibility, method, problem, query, answer, stage);
   } else {
