@@ -13,10 +13,11 @@ inline void Solver::sweepMover(int mover) {
   const double margin = max(query_->margin, problem_->largest_margin);  // whatever the partner
   SweptBox& box = mover_box_[mover];
   if (isLink(mover)) {
-    const bool still = body.step < 0;
-    sweepLss(still ? nullptr : &frames(0)[body.step], bounds_[first_step_[0] + max(body.step, 0)],
-             problem_->sweeps[0].first_order, body, d_, mover_lss_[mover]);
-    if (!still) {
+    static const StepBounds kStill = {};
+    const FrameLanes* frame = body.step < 0 ? nullptr : &frames(0)[body.step];
+    sweepLss(frame, frame ? bounds_[first_step_[0] + body.step] : kStill, problem_->sweeps[0].first_order, body, d_,
+             mover_lss_[mover]);
+    if (frame) {
       Lanes lo[3], hi[3];
       boundLss(mover_lss_[mover], margin, lo, hi);
       for (int k = 0; k < 3; ++k) {
