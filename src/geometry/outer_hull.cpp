@@ -13,7 +13,8 @@ namespace fcl_artic {
 namespace {
 
 constexpr std::size_t kMaxVertices = 64, kMaxPoints = 60000;
-/// So few different points make the hull themselves: it is the body's own then, and a convex body touches where its hull does.
+/// So few different points make the hull themselves: it is the body's own then, and a convex body touches where its
+/// hull does.
 constexpr std::size_t kAllVertices = 160;
 constexpr int kDirections = 256;
 /// Directions in which the chosen vertices are nearer than this part of the body's size to its surface need no more.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Line swept spheres over time intervals: boxes that hold them, and certificates between them and with boxes that stand still,
-// for bodies that are placed so that they touch at a random time of a random lane, to the last few digits.
+// Line swept spheres over time intervals: boxes that hold them, and certificates between them and with boxes that stand
+// still, for bodies that are placed so that they touch at a random time of a random lane, to the last few digits.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +14,9 @@ namespace fcl_artic {
 namespace numerics_test {
 namespace {
 
-double tauOf(Random& random) { return random.chance(0.3) ? (random.chance(0.5) ? 1 : -1) : random.in(-1, 1); }
+double tauOf(Random& random) {
+  return random.chance(0.3) ? (random.chance(0.5) ? 1 : -1) : random.in(-1, 1);
+}
 
 /// A line swept sphere on the link that a case moves, and a point of its segment at one time.
 struct Carried {
@@ -45,7 +47,9 @@ struct Carried {
   }
 };
 
-Eigen::Vector3d rounded(const Real3& x) { return {x[0].toDouble(), x[1].toDouble(), x[2].toDouble()}; }
+Eigen::Vector3d rounded(const Real3& x) {
+  return {x[0].toDouble(), x[1].toDouble(), x[2].toDouble()};
+}
 
 /// What a campaign of touching pairs counts.
 struct Touching {
@@ -60,8 +64,8 @@ struct Touching {
     told_apart += claims(0.5 * gap);
   }
   void report() const {
-    std::printf("%d touching pairs: %d told apart; 1e-7 nearer %d; at half their distance %d\n", checks, wrong, wrong_mutant,
-                told_apart);
+    std::printf("%d touching pairs: %d told apart; 1e-7 nearer %d; at half their distance %d\n", checks, wrong,
+                wrong_mutant, told_apart);
     EXPECT_EQ(wrong, 0);
     EXPECT_GT(wrong_mutant, checks / 100) << "an error of 1e-7 would not be seen: the test tells little";
     EXPECT_GT(told_apart, checks / 10) << "hardly a pair is told apart: the certificate does nothing";
@@ -83,7 +87,8 @@ TEST(LineSweptSphere, CertificateWithBoxIsNeverWrong) {
     Eigen::Vector3d y, out(0, 0, 0);
     const int face = random.below(3);
     for (int k = 0; k < 3; ++k) {
-      const double middle = random.in(-1, 1) * c.extent_b, half = random.chance(0.1) ? 0 : random.size(1e-3, 3) * c.extent_b;
+      const double middle = random.in(-1, 1) * c.extent_b,
+                   half = random.chance(0.1) ? 0 : random.size(1e-3, 3) * c.extent_b;
       box.lo[k] = middle - half;
       box.hi[k] = middle + half;
       const int side = k == face || random.chance(0.4) ? random.below(2) : 2;

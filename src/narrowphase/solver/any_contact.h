@@ -30,8 +30,8 @@ inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane) {
   return true;
 }
 
-/// Where any contact is asked for: a vertex of the one body's mesh that lies within the other, a single solid piece, at a
-/// lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
+/// Where any contact is asked for: a vertex of the one body's mesh that lies within the other, a single solid piece, at
+/// a lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
 inline bool Solver::proveVertexInside(int pair, int lane) {
   for (int s = 0; s < 2; ++s) {
     const Side& side = this->side(s);

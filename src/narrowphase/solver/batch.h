@@ -86,7 +86,8 @@ inline Solver::PairParts Solver::parts(int index) const {
     const LinkPair& pair = problem_->link_pairs[index - problem_->num_scene_pairs];
     return {pair.a, pair.b, pair.sweep, pair.step_b, &pair.inverse_a, &pair.placement_b};
   }
-  const int a = problem_->obstacles[index % problem_->num_obstacles], b = problem_->movers[index / problem_->num_obstacles];
+  const int a = problem_->obstacles[index % problem_->num_obstacles],
+            b = problem_->movers[index / problem_->num_obstacles];
   return {a, b, 0, problem_->bodies[b].step, &problem_->bodies[a].inverse, &problem_->bodies[b].placement};
 }
 
@@ -115,9 +116,9 @@ inline void Solver::setupPair(int index) {
   static const StepBounds kStill = {};
   const StepBounds& b = pair.step_b >= 0 ? bounds_[first_step_[pair.sweep] + pair.step_b] : kStill;
   RigidLanes& m = side_[0].m;
-  const PairPads pads = relateBodies(pair.step_b >= 0 ? frame + pair.step_b : nullptr, b,
-                                     problem_->sweeps[pair.sweep].first_order, *pair.inverse_a, *pair.placement_b,
-                                     A.tree->extent + B.tree->extent, margin_, d_, m, side_[1].m);
+  const PairPads pads =
+      relateBodies(pair.step_b >= 0 ? frame + pair.step_b : nullptr, b, problem_->sweeps[pair.sweep].first_order,
+                   *pair.inverse_a, *pair.placement_b, A.tree->extent + B.tree->extent, margin_, d_, m, side_[1].m);
   side_ready_[0] = side_ready_[1] = false;
   pad_ = pads.pad;
   pose_error_ = pads.pose;
@@ -153,7 +154,8 @@ inline const Side& Solver::side(int s) {
   return side_[s];
 }
 
-/// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be there.
+/// One pair's motion over one interval, for the report. The problem and the query of the last solve() must still be
+/// there.
 inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion& motion) {
   const double middles[kLanes] = {tm, tm, tm, tm, tm, tm, tm, tm};
   evaluateAt(middles, d);

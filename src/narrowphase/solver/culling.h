@@ -6,8 +6,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A mover's line swept sphere over the present batch, and its box in the world (Redon 2004, Section 4). Of a moving obstacle
-/// only the box of its whole path is known.
+/// A mover's line swept sphere over the present batch, and its box in the world (Redon 2004, Section 4). Of a moving
+/// obstacle only the box of its whole path is known.
 inline void Solver::sweepMover(int mover) {
   const Body& body = problem_->bodies[problem_->movers[mover]];
   const double margin = max(query_->margin, problem_->largest_margin);  // whatever the partner
@@ -33,16 +33,20 @@ inline void Solver::sweepMover(int mover) {
   }
 }
 
-/// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept sphere. Where
-/// that is deep in a solid contact is expected. Where any will do, a vertex is tried at once, and the pose is put down for
-/// proveAnywhere() where the link's axis is so near that a thin solid may cut it between its vertices. Else later lanes are put off.
+/// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept
+/// sphere. Where that is deep in a solid contact is expected. Where any will do, a vertex is tried at once, and the
+/// pose is put down for proveAnywhere() where the link's axis is so near that a thin solid may cut it between its
+/// vertices. Else later lanes are put off.
 inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
   const Body& obstacle = problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]];
   const TreeView& tree = *obstacle.tree;
   const SweptLss& lss = mover_lss_[pair / problem_->num_obstacles];
   Lanes square;
-  mask &= ~certainlyApart(lss, coreBox(tree), obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
-  const auto nearer = [&](double part) { return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius)); };
+  mask &=
+      ~certainlyApart(lss, coreBox(tree), obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
+  const auto nearer = [&](double part) {
+    return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
+  };
   const unsigned deep = nearer(kDeep);
   const bool solid = tree.num_pieces == 1 && tree.pieces[0].kind != PieceKind::vertices && !unbounded(tree.pieces[0]);
   if (!deep || !solid || query_->every_pair || query_->ignore_initial) return mask;
@@ -129,8 +133,8 @@ inline void Solver::sweptSegments(int mover, engine::SweptLink* parts) {
   }
 }
 
-/// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out. (Pairs that are
-/// not its business come behind them.)
+/// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out. (Pairs
+/// that are not its business come behind them.)
 inline void Solver::refine() {
   candidate_pairs_.clear();
   swept_links_.resize(kLanes * problem_->num_movers);

@@ -7,9 +7,10 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the first
-/// root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so far. Two
-/// directions tell how they turn: from then on the certificate's turns likewise, and the steps are a secant method's.
+/// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the
+/// first root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so
+/// far. Two directions tell how they turn: from then on the certificate's turns likewise, and the steps are a secant
+/// method's.
 /// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
 /// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
 /// @return false where it ended before `stop` (and before the earliest proven contact).
@@ -145,8 +146,7 @@ inline bool Solver::prove(Final& f) {
     const int k = (head + i) % kLanes;
     const DifferenceBody body = differenceAt(a, b, k);
     ++statistics_.contact_proofs;
-    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point,
-                          &f.simplex)) {
+    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point, &f.simplex)) {
       f.certain = true;
       f.t_upper = tm[k];
       t_upper_ = min(t_upper_, tm[k]);
@@ -157,8 +157,8 @@ inline bool Solver::prove(Final& f) {
   return false;
 }
 
-/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body; -1 where
-/// that is not worth looking for.
+/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body;
+/// -1 where that is not worth looking for.
 inline int Solver::pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
   if (tree.num_pieces == 1) return 0;
   if (tree.num_pieces > kFewPieces || tree.pieces[0].kind != PieceKind::vertices) return -1;
@@ -180,8 +180,8 @@ inline int Solver::pieceAtWitness(const TreeView& tree, const Simplex& simplex, 
   return piece;
 }
 
-/// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time. Where that is
-/// proven, f becomes these two pieces' contact, and is no hulls' any more.
+/// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time.
+/// Where that is proven, f becomes these two pieces' contact, and is no hulls' any more.
 inline void Solver::proveBelowHulls(Final& f) {
   if (!f.have_normal || query_->max_contacts > 1) return;
   setupPair(f.entry.pair);

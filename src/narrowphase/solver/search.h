@@ -6,8 +6,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A lane that entries_[begin, end) of one pair leave open, some of them: few leaf pairs are followed one by one, else the lane
-/// is split.
+/// A lane that entries_[begin, end) of one pair leave open, some of them: few leaf pairs are followed one by one, else
+/// the lane is split.
 inline Solver::Step Solver::solveOpenLane(double start, double width, int begin, int end, int lane, bool last) {
   int open = 0;
   bool leaves = true;
@@ -51,8 +51,8 @@ inline Solver::Step Solver::solveInterval(double start, double width, int begin,
   return Step::free;
 }
 
-/// The pieces of one pair, in a lane of the first batch, in windows that begin with how long the motion takes for a small
-/// part of the smaller body: where hulls meet, the surfaces are not far.
+/// The pieces of one pair, in a lane of the first batch, in windows that begin with how long the motion takes for a
+/// small part of the smaller body: where hulls meet, the surfaces are not far.
 inline void Solver::solvePieces(const Final& f, double stop, int begin, int end, int lane) {
   if (f.pieces) {
     const int roots = entries_.size();
@@ -97,8 +97,8 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     Final f = leafPair(entries_[first], start);
     f.first = first;
     f.count = count;
-    // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or parts of
-    // them that the first batch has come to already.
+    // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or
+    // parts of them that the first batch has come to already.
     const PairParts pair = parts(pair_index);
     const bool whole = f.entry.a == 0 && f.entry.b == 0;
     f.hulls = whole && !leaves && problem_->bodies[pair.a].tree->outer && problem_->bodies[pair.b].tree->outer;
@@ -132,12 +132,14 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
   if (!finished()) front_ = stop;
 }
 
-/// A lane takes the present pair so far that little can be told of its pieces before the lane is split; of its hulls can.
+/// A lane takes the present pair so far that little can be told of its pieces before the lane is split; of its hulls
+/// can.
 inline bool Solver::movesFar() const {
   return amplitude_ > kLongMotion * min(side_[0].still->nodes[0].radius, side_[0].moving->nodes[0].radius);
 }
 
-/// Goes down from entries_[begin, end) over the batch at hand, in the lanes of `mask`; what stays undecided is appended.
+/// Goes down from entries_[begin, end) over the batch at hand, in the lanes of `mask`; what stays undecided is
+/// appended.
 inline void Solver::descend(int begin, int end, unsigned mask) {
   int present = -1;
   for (int i = begin; i < end && !finished(); ++i) {
@@ -179,8 +181,9 @@ inline void Solver::solvePairs() {
     front_ = 0;
     const int from = entries_.size();
     if (problem_->num_movers == 0 && end - begin == 1) {
-      // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where stage 1
-      // or 2 has left one of many, it goes the way of the others: what they discard is not to change an answer's bits.)
+      // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where
+      // stage 1 or 2 has left one of many, it goes the way of the others: what they discard is not to change an
+      // answer's bits.)
       const Entry& e = entries_[begin];
       setupPair(e.pair);
       if (isLeafPair(e) || (side_[0].still->outer && side_[1].still->outer && movesFar())) {

@@ -49,7 +49,8 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
 /// Lanes in which a swept box and a still one are apart along an axis.
 FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
   FloatLanes out = greater(box.lo[0], spread(node.hi[0])) | greater(spread(node.lo[0]), box.hi[0]);
-  for (int i = 1; i < 3; ++i) out = out | greater(box.lo[i], spread(node.hi[i])) | greater(spread(node.lo[i]), box.hi[i]);
+  for (int i = 1; i < 3; ++i)
+    out = out | greater(box.lo[i], spread(node.hi[i])) | greater(spread(node.lo[i]), box.hi[i]);
   return lanesOf(out);
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links' line swept spheres over eight time intervals (Redon 2004, Section 4): certificates between them, and with boxes, along a
-// direction per interval. Most pairs whose boxes in the world meet are told apart here, before any hull is looked at.
+// Links' line swept spheres over eight time intervals (Redon 2004, Section 4): certificates between them, and with
+// boxes, along a direction per interval. Most pairs whose boxes in the world meet are told apart here, before any hull
+// is looked at.
 #pragma once
 
 #include "motion/lane_motion.h"
@@ -68,7 +69,9 @@ FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Lanes* lo, Lane
 }
 
 /// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
-FCL_ARTIC_INLINE Lanes leastPoint(Lanes g0, Lanes g1, Lanes g2) { return min((g0 + g2) - abs(g1), g0 - g2); }
+FCL_ARTIC_INLINE Lanes leastPoint(Lanes g0, Lanes g1, Lanes g2) {
+  return min((g0 + g2) - abs(g1), g0 - g2);
+}
 
 /// A box in a body's tree frame, grown by a ball, that holds the body: exact for boxes, balls and capsules.
 struct CoreBox {
@@ -104,11 +107,11 @@ constexpr int kNearestSteps = 3;
 
 /// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
 ///
-/// In each lane the direction l goes from the box to the segment as they stand in its middle, in the body's tree frame; nothing
-/// is assumed of it. Points of the box have l.y <= sum_k max(l_k lo_k, l_k hi_k) = h. The ends seen from there,
-/// y(tau) = R x(tau) + t, have l.y(tau) = (R^T l).x(tau) + l.t, a quadratic that lies above its least Bernstein point; a point of the
-/// segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both balls (doc/NUMERICS.md,
-/// "Line swept spheres").
+/// In each lane the direction l goes from the box to the segment as they stand in its middle, in the body's tree frame;
+/// nothing is assumed of it. Points of the box have l.y <= sum_k max(l_k lo_k, l_k hi_k) = h. The ends seen from there,
+/// y(tau) = R x(tau) + t, have l.y(tau) = (R^T l).x(tau) + l.t, a quadratic that lies above its least Bernstein point;
+/// a point of the segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both
+/// balls (doc/NUMERICS.md, "Line swept spheres").
 /// @param inverse  the world in the body's tree frame.
 /// @param[out] square  of the segment's distance from the box in the middle of each lane, about.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
@@ -150,8 +153,8 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
   return known & greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, square);
 }
 
-/// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction between the
-/// segments' nearest points, with the four differences of their ends.
+/// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction
+/// between the segments' nearest points, with the four differences of their ends.
 inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin) {
   // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.
   Lanes x[3], y[3], r[3], l[3];

@@ -6,7 +6,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this batch.
+/// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this
+/// batch.
 inline int Solver::sweptNode(int side, int index) {
   Cached& cached = cached_[side][index & (kCached - 1)];
   if (isSwept(side, index)) return cached.slot;
@@ -27,7 +28,8 @@ inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
   if (!mask) return 0;
   // A node that is larger than the other seldom tells more, and its box has to be made.
   const int other = 1 - known;
-  if (isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius) mask &= ~box(other);
+  if (isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
+    mask &= ~box(other);
   if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
   return mask & ~apartFromUnbounded(a, b);
 }
@@ -109,7 +111,8 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     }
     for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
     have_witness_ = true;
-    // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving one's 24.
+    // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving
+    // one's 24.
     double n[3];
     body.opposite(g.n, n);
     const int first = a.num_vertices > b.num_vertices ? 0 : 1;
