@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +37,7 @@ struct Options {
   bool every_pair = false, no_self = false, no_scene = false;
   bool shortest = false, json = false, clearance = false;
   ClearanceRequest clearance_request;
+  SceneOptions scene;
 };
 
 /// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
@@ -80,28 +80,6 @@ UrdfOptions urdfOptions(const Options& options) {
   return out;
 }
 
-/// The obstacles of all scene files in one scene. Names must differ from one another and from the links', since the
-/// allowed pairs go by name; a name that is taken gets a number.
-Scene loadScenes(const std::vector<std::string>& paths, const KinematicTree& tree) {
-  Scene all;
-  std::set<std::string> taken;
-  for (LinkId link = 0; link < tree.numLinks(); ++link) taken.insert(tree.linkName(link));
-  for (const std::string& path : paths) {
-    Scene scene = loadScene(path);
-    for (const std::string& note : scene.notes) all.notes.push_back(note);
-    for (Scene::Obstacle& obstacle : scene.obstacles) {
-      std::string name = obstacle.name;
-      for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}#{}", obstacle.name, number);
-      if (name != obstacle.name) {
-        all.notes.push_back(
-            fmt::format("{}: obstacle '{}' is called '{}' here, the name is taken", path, obstacle.name, name));
-      }
-      all.obstacles.push_back({name, std::move(obstacle.object)});
-    }
-  }
-  return all;
-}
-
 Robot loadRobot(const Options& options) {
   Robot robot = loadUrdf(options.robot, urdfOptions(options));
   if (!options.srdf.empty()) robot.allowed = loadSrdf(options.srdf, *robot.tree);
@@ -131,9 +109,9 @@ int run(const Options& options) {
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
-  std::vector<std::string> limit_notes;
+  std::vector<std::string> motion_notes;
   const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
-    for (const std::string& note : tree.limitNotes(q)) limit_notes.push_back(where + ": " + note);
+    for (const std::string& note : tree.limitNotes(q)) motion_notes.push_back(where + ": " + note);
   };
   if (options.trajectory.empty()) {
     const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
@@ -145,11 +123,17 @@ int run(const Options& options) {
     const Waypoints waypoints = readWaypoints(tree, options.trajectory);
     const auto interpolation = options.interpolation == "cubic" ? Interpolation::cubic : Interpolation::linear;
     trajectory = interpolate(tree, waypoints, interpolation, options.shortest);
+    if (!waypoints.unnamed.empty()) {
+      motion_notes.push_back(fmt::format("'{}' has no column for {}: at 0 all the time, a quaternion at no rotation",
+                                         options.trajectory, waypoints.unnamed));
+    }
     for (std::size_t k = 0; k < waypoints.times.size(); ++k) {
       noteLimits(waypoints.configurations[k], fmt::format("waypoint at t = {:g}", waypoints.times[k]));
     }
   }
-  const Scene scene = loadScenes(options.scenes, tree);
+  std::vector<Scene> scenes;
+  for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, options.scene));
+  const Scene scene = combineScenes(scenes, tree);
 
   ArticulatedCollisionManager manager(robot.tree);
   robot.addTo(manager);
@@ -186,7 +170,7 @@ int run(const Options& options) {
 
   std::vector<std::string> notes = robot.notes;
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  notes.insert(notes.end(), limit_notes.begin(), limit_notes.end());
+  notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
   const auto configuration = [&](double t) { return trajectory ? trajectory->configuration(t) : motion->configuration(t); };
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
   const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
@@ -233,6 +217,8 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->group("Robot and scene")->type_name("FILE")->excludes(srdf);
   check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
       ->group("Robot and scene")->type_name("FILE...");
+  check->add_flag("--unknown-cells", o.scene.unknown_cells, "OctoMap: unknown cells are obstacles too")
+      ->group("Robot and scene");
   check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");
 

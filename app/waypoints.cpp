@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "waypoints.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -96,6 +97,10 @@ Waypoints readWaypoints(const KinematicTree& tree, const std::string& path) {
     }
     tree.requireConfiguration(q, where);
     out.configurations.push_back(std::move(q));
+  }
+  for (int v = 0; v < tree.dof(); ++v) {
+    const bool named = std::find(columns.begin(), columns.end(), v) != columns.end();
+    if (!named) out.unnamed += (out.unnamed.empty() ? "" : ", ") + tree.variableName(v);
   }
   if (out.times.size() < 2) {
     throw std::invalid_argument(fmt::format("'{}' has {} waypoint{}, a trajectory needs two", path, out.times.size(),

@@ -16,6 +16,7 @@ enum class Interpolation { linear, cubic };
 struct Waypoints {
   std::vector<double> times;
   std::vector<Eigen::VectorXd> configurations;
+  std::string unnamed;  ///< variables without a column
 };
 
 /// @throws std::invalid_argument naming file, line and column.

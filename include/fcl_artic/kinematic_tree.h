@@ -44,10 +44,14 @@ struct Joint {
   /// Axis in the joint's frame, of a planar joint the plane's normal; normalised by addJoint(). Unused when fixed,
   /// spherical or floating.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  double lower = 0, upper = 0;  ///< limits, rad or m, of a joint with one variable; lower > upper or both 0: none
+  double lower = 0, upper = 0;  ///< rad or m; see hasLimits()
   bool mimics = false;
   Mimic mimic;
 };
+
+/// Whether the joint stays between lower and upper: those of one variable do, but continuous ones, and but for lower > upper,
+/// both 0 or an infinite one, which are no limits.
+FCL_ARTIC_EXPORT bool hasLimits(const Joint& joint);
 
 /// A forest of links carried by joints: one robot or several, each with its own root. Constant during
 /// queries and shared by threads.

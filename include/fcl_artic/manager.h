@@ -48,8 +48,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::shared_ptr<const KinematicTree> sharedTree() const;
 
   /// Adds an obstacle that stands still at its own transform. An empty name becomes "obstacle<N>".
-  /// @throws std::invalid_argument: null, registered or bound already, repeated name, geometry that is unsupported,
-  ///   empty, degenerate (no triangle) or not finite.
+  /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has, geometry
+  ///   that is unsupported, empty, degenerate (no triangle) or not finite.
   void registerObject(fcl::CollisionObjectd* object, const std::string& name = {});
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
   /// @throws std::invalid_argument when it is not registered.

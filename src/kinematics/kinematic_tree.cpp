@@ -25,10 +25,6 @@ bool isRotation(const Eigen::Matrix3d& R) {
 /// How far from 1 the length of a quaternion may be: numbers typed or printed with three digits.
 constexpr double kQuaternionLength = 1e-3;
 
-bool hasLimits(const Joint& joint) {
-  return KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
-}
-
 std::vector<const char*> variableEndings(JointType type) {
   switch (type) {
     case JointType::fixed: return {};
@@ -41,6 +37,12 @@ std::vector<const char*> variableEndings(JointType type) {
 }
 
 }  // namespace
+
+bool hasLimits(const Joint& joint) {
+  const bool could = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
+  const bool some = joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
+  return could && some && std::isfinite(joint.lower) && std::isfinite(joint.upper);
+}
 
 int KinematicTree::numVariables(JointType type) {
   switch (type) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "adapters/fcl/fcl_geometry.h"
+#include "narrowphase/add_work.h"
 #include "narrowphase/elementary.h"
 
 namespace fcl_artic {
@@ -61,15 +62,7 @@ QueryStatistics statisticsOf(const engine::Statistics& s) {
   QueryStatistics out;
   out.pairs = s.pairs;
   out.pairs_after_culling = s.pairs_after_culling;
-  out.batches = s.batches;
-  out.motion_evaluations = s.motion_evaluations;
-  out.node_tests = s.node_tests;
-  out.leaf_tests = s.leaf_tests;
-  out.certificates = s.certificates;
-  out.gjk = s.gjk;
-  out.contact_proofs = s.contact_proofs;
-  out.culling_us = s.culling_us;
-  out.narrowphase_us = s.narrowphase_us;
+  engine::addWork(s, out);
   return out;
 }
 
@@ -88,13 +81,7 @@ void addWork(const RedonStatistics& s, RedonStatistics& sum) {
 }
 
 void addWork(const QueryStatistics& s, QueryStatistics& sum) {
-  sum.batches += s.batches;
-  sum.motion_evaluations += s.motion_evaluations;
-  sum.node_tests += s.node_tests;
-  sum.leaf_tests += s.leaf_tests;
-  sum.certificates += s.certificates;
-  sum.gjk += s.gjk;
-  sum.contact_proofs += s.contact_proofs;
+  engine::addWork(s, sum);
   sum.visibility_pairs += s.visibility_pairs;
   sum.visibility_culled += s.visibility_culled;
   sum.visibility_nodes += s.visibility_nodes;
@@ -104,8 +91,6 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   sum.visibility_us += s.visibility_us;
   if (!s.visibility_executor.empty()) sum.visibility_executor = s.visibility_executor;
   if (!s.visibility_fallback.empty()) sum.visibility_fallback = s.visibility_fallback;
-  sum.culling_us += s.culling_us;
-  sum.narrowphase_us += s.narrowphase_us;
   sum.report_us += s.report_us;
   addWork(s.redon, sum.redon);
 }

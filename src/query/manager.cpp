@@ -203,10 +203,13 @@ Item ArticulatedCollisionManager::Impl::makeItem(fcl::CollisionObjectd* object, 
   return item;
 }
 
-/// The name as given or chosen.
+/// The name as given or chosen. (Allowed pairs and margins go by name: a link's would excuse the obstacle too.)
 std::string ArticulatedCollisionManager::Impl::obstacleName(const std::string& name) const {
   const std::string shown = name.empty() ? "obstacle" + std::to_string(named) : name;
   if (obstacle_names.count(shown)) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
+  if (tree->hasLink(shown)) {
+    throw std::invalid_argument("obstacle '" + shown + "': the name is that of a link of robot '" + tree->name() + "'");
+  }
   return shown;
 }
 

@@ -172,9 +172,7 @@ std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, con
              (step.kind == engine::StepKind::revolute && step.multiplier == std::round(step.multiplier));
     });
     const Joint& joint = tree.joint(tree.variableJoint(axis.variable));
-    const bool limited = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous &&
-                         joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0) &&
-                         std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kMostValue;
+    const bool limited = hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kMostValue;
     axis.wraps = whole_turns && !(limited && joint.upper - joint.lower < kTurn);
     if (!axis.wraps && !limited) return nullptr;
     const double range = axis.wraps ? kTurn : joint.upper - joint.lower;

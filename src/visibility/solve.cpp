@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "narrowphase/add_work.h"
 #include "visibility/stage.h"
 
 namespace fcl_artic {
@@ -48,18 +49,6 @@ bool solveShortened(const VisibilityCuller& culler, const Solver& solver, engine
   return free || (stage.culled == 0 && stage.nodes == 0);
 }
 
-void addWork(const engine::Statistics& s, engine::Statistics& sum) {
-  sum.batches += s.batches;
-  sum.motion_evaluations += s.motion_evaluations;
-  sum.node_tests += s.node_tests;
-  sum.leaf_tests += s.leaf_tests;
-  sum.certificates += s.certificates;
-  sum.gjk += s.gjk;
-  sum.contact_proofs += s.contact_proofs;
-  sum.culling_us += s.culling_us;
-  sum.narrowphase_us += s.narrowphase_us;
-}
-
 }  // namespace
 
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
@@ -91,7 +80,7 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
     const Clock::time_point begin = Clock::now();
     solver(query, answer);
     without_us = since(begin);
-    addWork(first, answer.statistics);
+    engine::addWork(first, answer.statistics);
   }
   query.progress = progress.tell;
   query.progress_context = progress.context;

@@ -50,6 +50,12 @@ TEST_F(TrajectoryProgramTest, CubicStartsAndEndsAtRest) {
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 12, 1e-5);  // std::to_string has six digits
 }
 
+TEST_F(TrajectoryProgramTest, NotesWhatHasNoColumn) {
+  const Outcome run = check("t,hinge\n0,0\n1,0.5\n");
+  EXPECT_NE(run.out.find("has no column for rail"), std::string::npos) << run.out;
+  EXPECT_EQ(check("t,hinge,rail\n0,0,0\n1,0.5,0\n").out.find("has no column"), std::string::npos);
+}
+
 TEST_F(TrajectoryProgramTest, RefusesWithLineAndColumn) {
   const auto refused = [&](const std::string& csv, const std::string& reason) {
     const Outcome run = check(csv);
@@ -83,6 +89,13 @@ TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
                                 write("fly.csv", "t,base/trans_x,base/trans_y,base/rot_z,base/rot_w\n0,0.3,0,0,1\n1,0.3,1,1,0\n"));
   ASSERT_EQ(run.status, 1) << run.err;
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 0.519615242270663 - 0.2, 1e-5);
+  // Of the cube of edge 2 at the origin octants 0, 1 and 7 are known, and 1 and 7 occupied.
+  const std::string cells = write("cells.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\n"
+                                                          "res 0.000030517578125\ndata\n\x09\x80"));
+  const std::string at = "base/trans_x=-0.5,base/trans_y=0.5,base/trans_z=-0.5";
+  const std::string still = "check --robot " + robot + " --scene " + cells + " --from " + at + " --to " + at;
+  EXPECT_EQ(this->run(still).status, 0);
+  EXPECT_EQ(this->run(still + " --unknown-cells").status, 1);
   const Outcome flat = this->run("check --robot " + robot + " --from base/rot_x=1 --to base/rot_x=1");
   EXPECT_EQ(flat.status, 2);
   EXPECT_NE(flat.err.find("quaternion of joint 'base'"), std::string::npos) << flat.err;

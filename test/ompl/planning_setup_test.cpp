@@ -119,6 +119,46 @@ TEST_F(PlanningSetupTest, FromFilesToAnswers) {
   EXPECT_THROW(setup.setState(s1.get(), {1}), std::invalid_argument);
 }
 
+/// What a link may touch says nothing of an obstacle with the name of the other link.
+TEST_F(PlanningSetupTest, AnObstacleWithALinksNameIsMet) {
+  std::string scene = kScene, srdf = kSrdf;
+  scene.replace(scene.find("box"), 3, "arm");
+  srdf.insert(srdf.find("</robot>"), "<disable_collisions link1=\"cart\" link2=\"arm\" reason=\"Never\"/>");
+  const PlanningSetup setup = setUpPlanning(urdf_, write("allowed.srdf", srdf), write("arm.scene", scene), "joints");
+  ob::ScopedState<> s1(setup.space), s2(setup.space);
+  setup.setState(s1.get(), {0, 1.5});
+  setup.setState(s2.get(), {4, 1.5});
+  std::pair<ob::State*, double> last{nullptr, 2};
+  EXPECT_FALSE(setup.si->checkMotion(s1.get(), s2.get(), last));
+  EXPECT_NEAR(last.second, 0.5, 3 * 0x1p-12);
+  ASSERT_EQ(setup.notes.size(), 1u);
+  expectContains(setup.notes[0], "'arm' is called 'arm#2'");
+}
+
+TEST_F(PlanningSetupTest, JointsWithoutRoomStandStill) {
+  std::string urdf = kUrdf;
+  urdf.replace(urdf.find("lower=\"1\" upper=\"2\""), 19, "lower=\"1.5\" upper=\"1.5\"");
+  const std::string file = write("stiff.urdf", urdf);
+  EXPECT_EQ(setUpPlanning(file, srdf_, scene_, "joints").joints, (Names{"slide"}));
+  EXPECT_EQ(setUpPlanning(file, srdf_, scene_, "over_the_top").joints, (Names{"turn"}));
+  const auto manager = std::make_shared<ArticulatedCollisionManager>(loadUrdf(file).tree);
+  manager->setup();
+  EXPECT_EQ(setUpPlanning(manager, {}).joints, (Names{"slide", "turn", "grip"}));
+  expectContains(messageOf<std::invalid_argument>([&] { setUpPlanning(manager, {"wave"}); }), "'wave' has no room");
+}
+
+TEST_F(PlanningSetupTest, UnknownCellsAreObstaclesOnRequest) {
+  // Of the cube of edge 2 at the origin octants 0, 1 and 7 are known, and 1 and 7 occupied.
+  const std::string cells = write("cells.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\n"
+                                                          "res 0.000030517578125\ndata\n\x09\x80"));
+  SetupOptions options;
+  options.fixed["turn"] = 0;
+  const auto obstacles = [&] { return setUpPlanning(urdf_, srdf_, cells, "joints", options).manager->size(); };
+  EXPECT_EQ(obstacles(), 2u);
+  options.scene.unknown_cells = true;
+  EXPECT_EQ(obstacles(), 7u);
+}
+
 TEST_F(PlanningSetupTest, LivesAsLongAsItsSpaceInformation) {
   const ob::SpaceInformationPtr si = setUpPlanning(urdf_, srdf_, scene_, "joints").si;
   ob::ScopedState<ob::RealVectorStateSpace> s1(si), s2(si);

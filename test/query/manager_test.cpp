@@ -480,6 +480,10 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
             std::string::npos);
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(static_cast<fcl::CollisionObjectd*>(nullptr), "none"); }).find("null"),
             std::string::npos);
+  // Allowed pairs go by name: those of the link would excuse the obstacle.
+  auto namesake = at(std::make_shared<fcl::Boxd>(1, 1, 1));
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(namesake.get(), "base"); }).find("'base'"),
+            std::string::npos);
   auto empty = at(std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>());
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(empty.get(), "empty"); }).find("'empty'"),
             std::string::npos);

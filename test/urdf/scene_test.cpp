@@ -53,6 +53,44 @@ TEST_F(SceneTest, UrdfLinksStandAtTheirZeroPose) {
   expectAt(scene.obstacles[1], {3, 0, 2});
 }
 
+TEST_F(SceneTest, UrdfQuaternionsStandAtNoRotation) {
+  const Scene scene = load("buoy.urdf", R"(<robot name="buoy"><link name="sea"/>
+<link name="buoy"><collision><geometry><sphere radius="0.25"/></geometry></collision></link>
+<joint name="swim" type="floating"><parent link="sea"/><child link="buoy"/><origin xyz="3 0 0"/></joint></robot>)");
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  expectAt(scene.obstacles[0], {3, 0, 0});
+}
+
+std::vector<std::string> namesOf(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Scene::Obstacle& obstacle : scene.obstacles) names.push_back(obstacle.name);
+  return names;
+}
+
+TEST_F(SceneTest, NamesAreGivenOnce) {
+  const std::string ball = "sphere\n0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n";
+  const Scene scene = load("balls.scene", "s\n* a#2\n1\n" + ball + "* a\n3\n" + ball + ball + ball + ".\n");
+  EXPECT_EQ(namesOf(scene), (std::vector<std::string>{"a#2", "a", "a#3", "a#4"}));
+  KinematicTree tree("arm");
+  tree.addLink("a");
+  const Scene both = combineScenes({scene, load("floor.obj", kTriangle), load("a.obj", kTriangle)}, tree);
+  EXPECT_EQ(namesOf(both), (std::vector<std::string>{"a#2", "a#3", "a#3#2", "a#4", "floor", "a#5"}));
+  ASSERT_EQ(both.notes.size(), 3u);
+  expectContains(both.notes[0], "obstacle 'a' is called 'a#3' here");
+}
+
+TEST_F(SceneTest, IsAddedAsAWholeOrNotAtAll) {
+  Scene scene = load("floor.obj", kTriangle);
+  scene.obstacles.push_back({"base", load("wall.obj", kTriangle).obstacles[0].object});
+  auto tree = std::make_shared<KinematicTree>("arm");
+  tree->addLink("base");
+  ArticulatedCollisionManager manager(tree);
+  expectContains(messageOf<std::invalid_argument>([&] { scene.addTo(manager); }), "'base'");
+  EXPECT_TRUE(manager.empty());
+  combineScenes({scene}, *tree).addTo(manager);
+  EXPECT_EQ(manager.size(), 2u);
+}
+
 TEST_F(SceneTest, MoveItTextWithoutObjectPoses) {
   const Scene scene = load("old.scene",
                            "(noname)+\n* my box\n1\nbox\n1 2 3\n0.5 0 -1\n0 0 0 1\n0 0 0 0\n"
@@ -107,6 +145,7 @@ TEST_F(SceneTest, MoveItErrorsNameFileObjectAndReason) {
   expectContains(error("* a\n1\nsphere\n-1\n" + pose + ".\n"), "object 'a': sphere radius -1");
   expectContains(error("* a\n1\noctree\n0 0 1 0\n" + pose + ".\n"), "object 'a': has a shape 'octree'");
   expectContains(error("* a\n1\nbox\n1 1 1\n0 0 0\n0 0 0 0\n0 0 0 0\n.\n"), "object 'a': has a zero quaternion");
+  expectContains(error("* a\n1\nbox\n1 1 1\n0 0 0\n0 0 0 1e200\n0 0 0 0\n.\n"), "object 'a': has a quaternion that");
   expectContains(error("* a\n-1\n.\n"), "object 'a': its number of shapes");
   expectContains(error("* a\n1\nmesh\n3 1\n0 0 0\n1 0 0\n0 1 0\n0 1 3\n" + pose + ".\n"), "vertex 3 of 3");
   expectContains(error("* a\n1\nmesh\n4000000000 1\n0 0 0\n"), "object 'a': its vertex is cut short");

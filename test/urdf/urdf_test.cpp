@@ -163,6 +163,28 @@ TEST_F(UrdfTest, NotesWhatIsUnusual) {
   EXPECT_EQ(r.tree->dof(), 0);
   EXPECT_EQ(r.tree->joint(1).origin.translation(), Eigen::Vector3d(0, 0, 0.5));
   expectContains(load("<link name='a'/>").notes.at(0), "robot 'r' has no collision geometry");
+  const auto limits = [](const char* numbers) {
+    return "<axis xyz='0 0 1'/><limit " + std::string(numbers) + " effort='1' velocity='1'/>";
+  };
+  const Robot limp = load("<link name='a'/><link name='b'/><link name='c'/>" +
+                          joint("limp", "revolute", "a", "b", limits("")) +
+                          joint("stiff", "revolute", "b", "c", limits("lower='1' upper='1'")));
+  ASSERT_EQ(limp.notes.size(), 2u);
+  expectContains(limp.notes[0], "joint 'limp' has limits that are both 0");
+  EXPECT_FALSE(hasLimits(limp.tree->joint(0)));
+  EXPECT_TRUE(hasLimits(limp.tree->joint(1)));
+}
+
+TEST_F(UrdfTest, IsBoundAsAWholeOrNotAtAll) {
+  Robot r = load(linkWith(collision("<sphere radius='1'/>") + collision("<sphere radius='2'/>")));
+  ASSERT_EQ(r.geometry.size(), 2u);
+  ArticulatedCollisionManager manager(r.tree);
+  Robot bad = r;
+  bad.geometry[1].link = 9;
+  expectContains(messageOf<std::invalid_argument>([&] { bad.addTo(manager); }), "no link 9");
+  EXPECT_TRUE(manager.boundObjects().empty());
+  r.addTo(manager);
+  EXPECT_EQ(manager.boundObjects().size(), 2u);
 }
 
 TEST_F(UrdfTest, VisualAndInertialElementsDoNotMatter) {

@@ -18,6 +18,7 @@ namespace fcl_artic::planning {
 
 struct SetupOptions {
   UrdfOptions urdf;
+  SceneOptions scene;
   /// Values of joint variables outside the group, by name; the others are at 0, or at the limit that is nearest to 0.
   std::map<std::string, double> fixed;
   /// Bounds of positions of planar (x, y) and floating joints that are planned for, m; needed for these only.
@@ -45,7 +46,7 @@ struct PlanningSetup {
 
 /// Sets up planning for a group of a robot from files.
 /// @param srdf   allowed pairs and groups.
-/// @param scene  what loadScene() reads; empty: no obstacles.
+/// @param scene  what loadScene() reads; empty: no obstacles. An obstacle with a link's name gets another, see combineScenes().
 /// @throws std::runtime_error as the loaders, and for an SRDF without the group.
 /// @throws std::invalid_argument as the other one.
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, const std::string& scene,
@@ -54,12 +55,12 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std:
 /// Sets up planning for some joints of a manager that is set up already.
 /// @param joints  names; none: all joints of the tree that move.
 /// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned for,
-///   prismatic without limits, or planar or floating without bounds in the options.
+///   without room between its limits, prismatic without limits, or planar or floating without bounds in the options.
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 
 /// The joints that a group of an SRDF moves, in the tree's order: its chains, joints, links (their parent joints)
-/// and subgroups, without fixed, mimic and passive joints.
+/// and subgroups, without fixed, mimic and passive joints, and those whose limits are one value.
 /// @throws std::runtime_error naming file and reason: unreadable, no such group, unknown link, joint or subgroup, a
 ///   subgroup within itself, a chain whose ends are not connected, a group that moves nothing.
 FCL_ARTIC_EXPORT std::vector<std::string> groupJoints(const std::string& srdf, const KinematicTree& tree,

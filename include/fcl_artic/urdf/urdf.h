@@ -29,6 +29,7 @@ struct Robot {
   std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
 
   /// Binds every geometry and sets the allowed collisions. setup() is left to the caller.
+  /// @throws std::invalid_argument as bind(); nothing stays bound then.
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
@@ -83,6 +84,7 @@ struct Scene {
   };
   std::vector<Obstacle> obstacles;
   std::vector<std::string> notes;
+  /// @throws std::invalid_argument as registerObject(); none stays registered then.
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
@@ -93,9 +95,13 @@ struct SceneOptions {
 };
 
 /// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
-/// URDF (.urdf: all links at q = 0 as obstacles); MoveIt scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes.
+/// URDF (.urdf: all links at q = 0, quaternions at no rotation, as obstacles); MoveIt scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
+
+/// Several scenes as one, for a robot: an obstacle whose name another one or a link has becomes NAME#2, or so on, with a note.
+/// (Allowed pairs and margins go by name.)
+FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
 /// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.
 /// @throws std::runtime_error as loadUrdf().

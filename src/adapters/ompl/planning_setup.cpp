@@ -17,10 +17,6 @@ namespace {
 
 namespace ob = ::ompl::base;
 
-bool limited(const Joint& joint) {
-  return KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous && joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
-}
-
 int requireVariable(const KinematicTree& tree, const std::string& name, const std::string& what) {
   for (int v = 0; v < tree.dof(); ++v) {
     if (tree.variableName(v) == name) return v;
@@ -28,6 +24,9 @@ int requireVariable(const KinematicTree& tree, const std::string& name, const st
   throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no joint '" + name +
                               "' with a value of its own (it is unknown, fixed or a mimic)");
 }
+
+/// It has one value only, which is that of the joints that are not planned for.
+bool standsStill(const Joint& joint) { return hasLimits(joint) && joint.lower == joint.upper; }
 
 /// A joint that can be planned for.
 const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
@@ -74,13 +73,16 @@ ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::st
   for (const std::string& name : joints) {
     const Joint& joint = requireJoint(tree, name);
     if (!named.insert(name).second) throw std::invalid_argument("setUpPlanning: joint '" + name + "' is named twice");
-    if (limited(joint)) {
+    if (standsStill(joint)) {
+      throw std::invalid_argument("setUpPlanning: joint '" + name + "' has no room between its limits, which are the same");
+    }
+    if (hasLimits(joint)) {
       if (!reals) parts.push_back(reals = std::make_shared<ob::RealVectorStateSpace>());
       reals->addDimension(name, joint.lower, joint.upper);
       continue;
     }
     if (joint.type == JointType::prismatic) {
-      throw std::invalid_argument("the prismatic joint '" + name + "' has no limits to plan within");
+      throw std::invalid_argument("setUpPlanning: the prismatic joint '" + name + "' has no limits to plan within");
     }
     reals.reset();
     parts.push_back(wholeJointSpace(joint, options));
@@ -96,7 +98,7 @@ Eigen::VectorXd makeOthers(const KinematicTree& tree, const std::vector<std::str
   Eigen::VectorXd others = tree.neutralConfiguration();
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
-    if (limited(joint)) others[v] = std::clamp(0.0, joint.lower, joint.upper);
+    if (hasLimits(joint)) others[v] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (const auto& [name, value] : fixed) {
     const int variable = requireVariable(tree, name, "options.fixed");
@@ -165,7 +167,8 @@ PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> m
   setup.joints = joints;
   if (joints.empty()) {
     for (int v = 0; v < tree.dof(); v += tree.numVariables(tree.variableJoint(v))) {
-      setup.joints.push_back(tree.joint(tree.variableJoint(v)).name);
+      const Joint& joint = tree.joint(tree.variableJoint(v));
+      if (!standsStill(joint)) setup.joints.push_back(joint.name);
     }
   }
   setup.space = makeSpace(tree, setup.joints, options);
@@ -185,7 +188,10 @@ PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, co
   Robot robot = loadUrdf(urdf, options.urdf);
   robot.allowed = loadSrdf(srdf, *robot.tree);
   const std::vector<std::string> joints = groupJoints(srdf, *robot.tree, group);
-  const auto world = std::make_shared<const World>(std::move(robot), scene.empty() ? Scene() : loadScene(scene));
+  std::vector<Scene> scenes;
+  if (!scene.empty()) scenes.push_back(loadScene(scene, options.scene));
+  Scene obstacles = combineScenes(scenes, *robot.tree);
+  const auto world = std::make_shared<const World>(std::move(robot), std::move(obstacles));
   PlanningSetup setup =
       setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager>(world, &world->manager), joints, options);
   for (const auto* notes : {&world->robot.notes, &world->scene.notes}) {

@@ -37,7 +37,8 @@ class GroupReader {
     std::vector<std::string> names;
     for (const JointId j : joints_) {
       const Joint& joint = tree_.joint(j);
-      if (joint.type != JointType::fixed && !joint.mimics && !passive_.count(j)) names.push_back(joint.name);
+      const bool stands = joint.type == JointType::fixed || (hasLimits(joint) && joint.lower == joint.upper);
+      if (!stands && !joint.mimics && !passive_.count(j)) names.push_back(joint.name);
     }
     if (names.empty()) fail("group '" + group + "' moves no joint");
     return names;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <locale>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "detail.h"
@@ -20,18 +21,32 @@ namespace {
 namespace fs = std::filesystem;
 using detail::fail;
 
-/// Collects obstacles; those that come with a name in use become NAME#2, NAME#3, ...
+/// Gives names once: those in use become NAME#2, NAME#3, ...
+class UniqueNames {
+ public:
+  std::string take(const std::string& name) {
+    int& number = numbers_[name];
+    std::string free = name;
+    do {
+      if (++number > 1) free = name + "#" + std::to_string(number);
+    } while (!taken_.insert(free).second);
+    return free;
+  }
+
+ private:
+  std::set<std::string> taken_;
+  std::map<std::string, int> numbers_;  ///< given last
+};
+
 class SceneBuilder {
  public:
   void add(const std::string& name, const detail::GeometryPtr& geometry, const Eigen::Isometry3d& M_0) {
-    const int count = ++uses_[name];
-    auto object = std::make_shared<fcl::CollisionObjectd>(geometry, M_0);
-    scene.obstacles.push_back({count == 1 ? name : name + "#" + std::to_string(count), std::move(object)});
+    scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(geometry, M_0)});
   }
   Scene scene;
 
  private:
-  std::map<std::string, int> uses_;
+  UniqueNames names_;
 };
 
 // MoveIt's scene text: objects of shapes, each with a pose (position, quaternion xyzw) and a colour.
@@ -135,7 +150,9 @@ class MoveItSceneReader {
     for (double& x : position) x = number(part, "position");
     Eigen::Quaterniond rotation;
     for (double& x : rotation.coeffs()) x = number(part, "quaternion");  // x y z w, as Eigen keeps it
-    if (!(rotation.norm() > 1e-6)) fail(part, "has a zero quaternion");
+    const double length = rotation.norm();
+    if (!(length > 1e-6)) fail(part, "has a zero quaternion");
+    if (!(length < 1e6)) fail(part, "has a quaternion that is far too long");
     return Eigen::Translation3d(position) * rotation.normalized();
   }
 
@@ -273,7 +290,7 @@ void readOctoMap(const std::string& path, bool binary, bool unknown_cells, Scene
 void readRobot(const std::string& path, SceneBuilder& builder) {
   const Robot robot = loadUrdf(path);
   std::vector<Eigen::Isometry3d> M_0;
-  robot.tree->forwardKinematics(Eigen::VectorXd::Zero(robot.tree->dof()), M_0);
+  robot.tree->forwardKinematics(robot.tree->neutralConfiguration(), M_0);
   for (const LinkGeometry& g : robot.geometry) {
     builder.add(robot.tree->linkName(g.link),
                 std::const_pointer_cast<fcl::CollisionGeometryd>(g.object->collisionGeometry()),
@@ -285,7 +302,29 @@ void readRobot(const std::string& path, SceneBuilder& builder) {
 }  // namespace
 
 void Scene::addTo(ArticulatedCollisionManager& manager) const {
-  for (const Obstacle& obstacle : obstacles) manager.registerObject(obstacle.object.get(), obstacle.name);
+  auto added = obstacles.begin();
+  try {
+    for (; added != obstacles.end(); ++added) manager.registerObject(added->object.get(), added->name);
+  } catch (...) {
+    while (added != obstacles.begin()) manager.unregisterObject((--added)->object.get());
+    throw;
+  }
+}
+
+Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree) {
+  Scene all;
+  UniqueNames names;
+  for (LinkId link = 0; link < tree.numLinks(); ++link) names.take(tree.linkName(link));
+  for (const Scene& scene : scenes) {
+    all.notes.insert(all.notes.end(), scene.notes.begin(), scene.notes.end());
+    for (const Scene::Obstacle& obstacle : scene.obstacles) {
+      all.obstacles.push_back({names.take(obstacle.name), obstacle.object});
+      const std::string& name = all.obstacles.back().name;
+      if (name == obstacle.name) continue;
+      all.notes.push_back("obstacle '" + obstacle.name + "' is called '" + name + "' here, the name is taken");
+    }
+  }
+  return all;
 }
 
 Scene loadScene(const std::string& path, const SceneOptions& options) {

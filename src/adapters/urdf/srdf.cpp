@@ -65,10 +65,7 @@ std::pair<double, double> samplingRange(const KinematicTree& tree, int v) {
     if (quaternion >= 0 && v >= quaternion) return {-1, 1};
     return tree.isAngle(v) ? std::make_pair(-kPi, kPi) : std::make_pair(0.0, 0.0);
   }
-  const bool limited = joint.type != JointType::continuous && joint.lower <= joint.upper &&
-                       !(joint.lower == 0 && joint.upper == 0) && std::isfinite(joint.lower) &&
-                       std::isfinite(joint.upper);
-  if (limited) return {joint.lower, joint.upper};
+  if (hasLimits(joint)) return {joint.lower, joint.upper};
   return joint.type == JointType::prismatic ? std::make_pair(0.0, 0.0) : std::make_pair(-kPi, kPi);
 }
 

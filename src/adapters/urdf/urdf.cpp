@@ -179,6 +179,10 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
       if (joint.type == JointType::planar && !joint.axis.normalized().isApprox(Eigen::Vector3d::UnitZ())) {
         notes.push_back("joint '" + name + "' is planar across its axis, which is not z; some tools ignore the axis");
       }
+      const bool limitable = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
+      if (limitable && !joint.mimics && joint.lower == 0 && joint.upper == 0) {
+        notes.push_back("joint '" + name + "' has limits that are both 0, and is taken to have none");
+      }
       if (joint.mimics) {
         mimics.push_back(joint);
       } else {
@@ -292,7 +296,13 @@ class GeometryFactory {
 }  // namespace
 
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
-  for (const LinkGeometry& g : geometry) manager.bind(g.link, g.object.get(), g.offset);
+  auto bound = geometry.begin();
+  try {
+    for (; bound != geometry.end(); ++bound) manager.bind(bound->link, bound->object.get(), bound->offset);
+  } catch (...) {
+    while (bound != geometry.begin()) manager.unbind((--bound)->object.get());
+    throw;
+  }
   manager.setAllowedCollisions(allowed);
 }
 
