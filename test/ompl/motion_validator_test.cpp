@@ -159,6 +159,29 @@ TEST(ContinuousMotionValidatorTest, StartInContact) {
   EXPECT_GT(t, 0.5 - 3 * kTolerance);
 }
 
+/// Planners go on from where a motion ended and from lastValid: no way may lead through an obstacle in steps that begin in
+/// contact with it.
+TEST(ContinuousMotionValidatorTest, InitialContactIsNoWayThrough) {
+  CertifiedRequest request = planningRequest();
+  request.ignore_initial_contact = true;
+  const Planning planning(slideWorld(), reals(1), request);  // faces meet at 2 and part at 4
+  EXPECT_EQ(lastValid(planning, {2.5}, {2.6}), 0) << "s2 is in contact";
+  EXPECT_EQ(lastValid(planning, {2.5}, {3.9999}), 0);
+  EXPECT_EQ(lastValid(planning, {2}, {2.5}), 0);
+  EXPECT_EQ(lastValid(planning, {2}, {0}), 2) << "it separates";
+  EXPECT_LT(lastValid(planning, {0}, {2 - 1e-12}), 1) << "what can hardly be told from a contact is none to go on from";
+  for (const double from : {0.0, 1.0, 1.5, 1.9, 1.999, 1.99999, 1.999999, 1.9999999}) {
+    const TestState s1(planning.space, {from}), s2(planning.space, {8}), state(planning.space, {77});
+    Last last{state, 2};
+    ASSERT_FALSE(planning.validator->checkMotion(s1, s2, last)) << from;
+    EXPECT_LT(state[0], 2);
+    EXPECT_FALSE(planning.validator->checkMotion(state, s2)) << from;
+    if (from >= 1.9999) continue;
+    EXPECT_GT(last.second, (2 - from) / (8 - from) - 3 * kTolerance);
+    EXPECT_TRUE(planning.si->isValid(state)) << from;
+  }
+}
+
 TEST(ContinuousMotionValidatorTest, UndecidedIsInvalid) {
   // Balls within the arm's circle, 5 cm from the one that it carries: near, free, and some work.
   const auto ringWorld = [] {

@@ -87,8 +87,8 @@ class FCL_ARTIC_EXPORT JointMapping {
 ///
 /// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and when
 /// a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. With
-/// CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate; by default a motion that starts in contact
-/// is invalid.
+/// CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way, and at s2 nothing may be nearer than
+/// the request's tolerance_distance: a plan may start in contact, but not come back into it. By default a motion that starts in contact is invalid.
 class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionValidator {
  public:
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
@@ -107,8 +107,8 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
 
   /// When false: the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its first
   /// contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The proof leaves room (twice
-  /// the request's tolerance_distance; none with ignore_initial_contact), so that the state is valid by itself and can be
-  /// left again; where there is no room at s1 the time is 0 and the state s1. When true, lastValid is not touched.
+  /// the request's tolerance_distance), so that the state is valid by itself and can be left again; where there is no room at
+  /// s1, or what touched there is not left behind, the time is 0 and the state s1. When true, lastValid is not touched.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 
@@ -122,10 +122,13 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
 
  private:
   bool count(bool valid) const;
+  bool provenFree(const JointMotion& motion) const;
+  double freeWithRoom(const JointMotion& motion) const;
+  bool apartAt(const JointMotion& motion, double t) const;
 
   std::shared_ptr<const ArticulatedCollisionManager> manager_;
   JointMapping mapping_;
-  CertifiedRequest any_, first_;
+  CertifiedRequest any_, first_, apart_;
 };
 
 /// A state is valid when it is proven free of contact. Thread-safe. Bounds are not judged, as in the motion validator.

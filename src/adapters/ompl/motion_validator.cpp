@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl_artic/ompl/motion_validator.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace fcl_artic::planning {
@@ -60,9 +61,11 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
                                                      JointMapping mapping, const CertifiedRequest& request)
     : ob::MotionValidator(required(si, manager)), manager_(std::move(manager)),
       mapping_(ofManager(std::move(mapping), manager_)), any_(asked(request, ContactMode::any)),
-      first_(asked(request, ContactMode::first)) {
-  // What touches at the start within the margin only must not be ignored.
-  if (!request.ignore_initial_contact) first_.margin += 2 * request.tolerance_distance;
+      first_(asked(request, ContactMode::first)), apart_(askedOfState(request)) {
+  first_.margin += 2 * request.tolerance_distance;
+  // Decided before the room is used up.
+  apart_.margin += request.tolerance_distance;
+  apart_.tolerance_distance *= 0.5;
 }
 
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
@@ -70,22 +73,47 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
     : ContinuousMotionValidator(si, manager, allJoints(si, manager), request) {}
 
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2) const {
+  return count(provenFree(mapping_.motion(s1, s2)));
+}
+
+/// Planners go on from the motion's end. Where initial contacts are ignored there must be none, nor what may be taken for one:
+/// the next motion would lead on through it.
+bool ContinuousMotionValidator::provenFree(const JointMotion& motion) const {
   CertifiedResult& result = scratch();
-  manager_->continuousCollide(mapping_.motion(s1, s2), any_, result);
-  return count(result.isFree());
+  manager_->continuousCollide(motion, any_, result);
+  return result.isFree() && (!any_.ignore_initial_contact || apartAt(motion, 1));
+}
+
+bool ContinuousMotionValidator::apartAt(const JointMotion& motion, double t) const {
+  CertifiedResult& result = scratch();
+  manager_->collide(motion.configuration(t), apart_, result);
+  return result.isFree();
 }
 
 /// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion leaves,
-/// and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not.
+/// and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not. What was within
+/// the margin at the start, where that is ignored, must not touch without it, and be left behind by then.
+double ContinuousMotionValidator::freeWithRoom(const JointMotion& motion) const {
+  CertifiedResult& result = scratch();
+  const auto freeUntil = [&](const CertifiedRequest& request) {
+    manager_->continuousCollide(motion, request, result);
+    return result.isFree() ? 1 : result.t_lower;
+  };
+  const double t = freeUntil(first_);
+  if (result.ignored_initial_contacts.empty()) return t;
+  CertifiedRequest without = first_;
+  without.margin = any_.margin;
+  const double least = std::min(t, freeUntil(without));
+  return apartAt(motion, least) ? least : 0;
+}
+
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2,
                                             std::pair<ob::State*, double>& lastValid) const {
   const JointMotion motion = mapping_.motion(s1, s2);
-  CertifiedResult& result = scratch();
-  manager_->continuousCollide(motion, any_, result);
-  if (result.isFree()) return count(true);
-  manager_->continuousCollide(motion, first_, result);
-  if (result.isFree()) return count(true);  // a budget ran out in the other order of work
-  lastValid.second = result.t_lower;
+  if (provenFree(motion)) return count(true);
+  const double t = freeWithRoom(motion);
+  if (t == 1) return count(true);  // a budget ran out in the other order of work
+  lastValid.second = t;
   if (lastValid.first && lastValid.second > 0) {
     si_->getStateSpace()->interpolate(s1, s2, lastValid.second, lastValid.first);  // may write to s1 or s2
   } else if (lastValid.first && lastValid.first != s1) {
