@@ -89,8 +89,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void detach(fcl::CollisionObjectd* object);
 
   /// Pairs that may touch, by link and obstacle name. Neighbours may always touch: links with one moving joint at most
-  /// between them, and no other link with geometry. (Others that are rigidly attached are checked: allow them where they
-  /// touch by construction.)
+  /// between them, no planar or floating one, and no other link with geometry. (Others that are rigidly attached are
+  /// checked: allow them where they touch by construction.)
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   const AllowedCollisionMatrix& allowedCollisions() const;
 

@@ -222,7 +222,7 @@ void ArticulatedCollisionManager::Impl::addObstacle(std::vector<Item>& items, It
   ready = false;
 }
 
-/// Joined by one moving joint at most, over links without geometry only.
+/// Joined by one moving joint at most, which is none that slides without bounds, over links without geometry only.
 bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   const auto path = [&](LinkId link) {
     std::vector<LinkId> up{link};
@@ -242,7 +242,9 @@ bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   };
   for (const auto* side : {&x, &y}) {
     for (std::size_t i = 0; i + 1 < side->size(); ++i) {
-      moving += tree->joint(tree->parentJoint((*side)[i])).type != JointType::fixed;
+      const JointType type = tree->joint(tree->parentJoint((*side)[i])).type;
+      if (type == JointType::planar || type == JointType::floating) return false;
+      moving += type != JointType::fixed;
     }
     for (std::size_t i = 1; i + 1 < side->size(); ++i) bare = bare && !hasGeometry((*side)[i]);
   }

@@ -132,10 +132,12 @@ struct Case {
   /// Neighbours may touch (every link has geometry but the base).
   static bool near(const KinematicTree* tree, int a, int b) {
     if (a < 0 || b < 0) return false;
-    if (tree->parentLink(a) == b || tree->parentLink(b) == a) return true;
+    const auto type = [&](int link) { return tree->joint(tree->parentJoint(link)).type; };
+    const auto slides = [&](int link) { return type(link) == JointType::planar || type(link) == JointType::floating; };
+    if (tree->parentLink(a) == b) return !slides(a);
+    if (tree->parentLink(b) == a) return !slides(b);
     const bool siblings = tree->parentLink(a) == 0 && tree->parentLink(b) == 0;
-    const auto fixed = [&](int link) { return tree->joint(tree->parentJoint(link)).type == JointType::fixed; };
-    return siblings && (fixed(a) || fixed(b));
+    return siblings && (type(a) == JointType::fixed || type(b) == JointType::fixed) && !slides(a) && !slides(b);
   }
   std::vector<std::pair<int, int>> watched;
 };

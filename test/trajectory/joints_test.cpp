@@ -168,6 +168,25 @@ TEST(Joints, PlanarBaseMeetsTheFloor) {
   expectContact(scene.run(turn), std::asin(0.15 / 0.3));
 }
 
+/// A link of the world is no neighbour of what flies or drives about before it: the ball at x = 2 t meets its face at 1.5.
+TEST(Joints, FreeBodiesMeetTheLinkThatTheyMoveOn) {
+  for (const JointType type : {JointType::floating, JointType::planar, JointType::prismatic}) {
+    Scene scene("world");
+    scene.add("move", type, "world", "body", type == JointType::prismatic ? Vector3d::UnitX() : Vector3d::UnitZ());
+    scene.ball("body", 0.1);
+    scene.bind("world", std::make_shared<fcl::Boxd>(1, 1, 1), translation({2, 0, 0}));
+    const VectorXd q0 = scene.tree->neutralConfiguration();
+    VectorXd q1 = q0;
+    q1[0] = 2;
+    const CertifiedResult r = scene.run(JointMotion::linear(*scene.tree, q0, q1));
+    if (type == JointType::prismatic) {
+      EXPECT_TRUE(r.isFree()) << "neighbours";
+    } else {
+      expectContact(r, 0.7);
+    }
+  }
+}
+
 TEST(Joints, ShortestWrapsThePlanarAngle) {
   Scene scene;
   scene.add("plane", JointType::planar, "base", "body");

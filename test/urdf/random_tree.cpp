@@ -313,12 +313,17 @@ bool RandomTree::neighbours(int a, int b) const {
   int moving = 0, common = b;
   bool bare = true;
   const auto pass = [&](int i) { bare = bare && links_[static_cast<std::size_t>(i)].shapes.empty(); };
+  const auto cross = [&](int i) {
+    const Link& link = links_[static_cast<std::size_t>(i)];
+    const bool slides = link.type == JointType::planar || link.type == JointType::floating;
+    moving += slides ? 2 : link.moves(links_);
+  };
   for (; std::find(above_a.begin(), above_a.end(), common) == above_a.end(); common = up(common)) {
-    moving += links_[static_cast<std::size_t>(common)].moves(links_);
+    cross(common);
     if (common != b) pass(common);
   }
   for (int i = a; i != common; i = up(i)) {
-    moving += links_[static_cast<std::size_t>(i)].moves(links_);
+    cross(i);
     if (i != a) pass(i);
   }
   if (common != a && common != b) pass(common);

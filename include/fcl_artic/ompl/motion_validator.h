@@ -87,8 +87,9 @@ class FCL_ARTIC_EXPORT JointMapping {
 ///
 /// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and when
 /// a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. With
-/// CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way, and at s2 nothing may be nearer than
-/// the request's tolerance_distance: a plan may start in contact, but not come back into it. By default a motion that starts in contact is invalid.
+/// CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way, and at s2 nothing may be
+/// nearer than the request's tolerance_distance: a plan may start in contact, but not come back into it. By default a
+/// motion that starts in contact is invalid.
 class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionValidator {
  public:
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
