@@ -14,7 +14,7 @@ bool touch(const fcl::CollisionObjectd& a, const fcl::CollisionObjectd& b) {
   return fcl::collide(&a, &b, fcl::CollisionRequestd(), result) > 0;
 }
 
-/// Joined by one moving joint at most, no planar or floating one, with no other link with geometry between them.
+/// Joined by one moving joint at most, with no other link with geometry between them.
 bool neighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry, LinkId a, LinkId b) {
   std::vector<LinkId> up_a{a}, up_b{b};
   for (auto* up : {&up_a, &up_b}) {
@@ -31,9 +31,7 @@ bool neighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry
   bool bare = top == a || top == b || !with_geometry.count(top);
   for (const auto* up : {&up_a, &up_b}) {
     for (const LinkId link : *up) {
-      const JointType type = tree.joint(tree.parentJoint(link)).type;
-      if (type == JointType::planar || type == JointType::floating) return false;
-      moving += type != JointType::fixed;
+      moving += tree.joint(tree.parentJoint(link)).type != JointType::fixed;
       bare = bare && (link == a || link == b || !with_geometry.count(link));
     }
   }

@@ -89,8 +89,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void detach(fcl::CollisionObjectd* object);
 
   /// Pairs that may touch, by link and obstacle name. Neighbours may always touch: links with one moving joint at most
-  /// between them, no planar or floating one, and no other link with geometry. (Others that are rigidly attached are
-  /// checked: allow them where they touch by construction.)
+  /// between them, and no other link with geometry; but what a planar or floating joint moves about in the world is no
+  /// neighbour of what stands still. (Others that are rigidly attached are checked: allow them where they touch by
+  /// construction.)
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   const AllowedCollisionMatrix& allowedCollisions() const;
 

@@ -157,6 +157,7 @@ struct ArticulatedCollisionManager::Impl {
   Item makeItem(fcl::CollisionObjectd* object, const std::string& what) const;
   std::string obstacleName(const std::string& name) const;
   void addObstacle(std::vector<Item>& items, Item item);
+  bool isFree(JointId joint) const;
   bool adjacent(LinkId a, LinkId b) const;
   bool linkAbove(LinkId above, LinkId below) const;
   void readObstacle(Item& item) const;
@@ -222,7 +223,18 @@ void ArticulatedCollisionManager::Impl::addObstacle(std::vector<Item>& items, It
   ready = false;
 }
 
-/// Joined by one moving joint at most, which is none that slides without bounds, over links without geometry only.
+/// Whether the joint lets its link go anywhere in the world: a planar or floating one, on what stands still.
+bool ArticulatedCollisionManager::Impl::isFree(JointId joint) const {
+  const JointType type = tree->joint(joint).type;
+  if (type != JointType::planar && type != JointType::floating) return false;
+  LinkId link = tree->link(tree->joint(joint).parent);
+  while (tree->parentJoint(link) >= 0 && tree->joint(tree->parentJoint(link)).type == JointType::fixed) {
+    link = tree->parentLink(link);
+  }
+  return tree->parentJoint(link) < 0;
+}
+
+/// Joined by one moving joint at most, which leaves none of them free, over links without geometry only.
 bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   const auto path = [&](LinkId link) {
     std::vector<LinkId> up{link};
@@ -242,9 +254,9 @@ bool ArticulatedCollisionManager::Impl::adjacent(LinkId a, LinkId b) const {
   };
   for (const auto* side : {&x, &y}) {
     for (std::size_t i = 0; i + 1 < side->size(); ++i) {
-      const JointType type = tree->joint(tree->parentJoint((*side)[i])).type;
-      if (type == JointType::planar || type == JointType::floating) return false;
-      moving += type != JointType::fixed;
+      const JointId joint = tree->parentJoint((*side)[i]);
+      if (isFree(joint)) return false;
+      moving += tree->joint(joint).type != JointType::fixed;
     }
     for (std::size_t i = 1; i + 1 < side->size(); ++i) bare = bare && !hasGeometry((*side)[i]);
   }

@@ -2,6 +2,7 @@
 // Section 3: the arbitrary in-between motion.
 #include <cmath>
 
+#include <fcl/geometry/shape/sphere.h>
 #include <gtest/gtest.h>
 
 #include "fcl_artic/fcl_artic.h"
@@ -68,6 +69,24 @@ TEST(InBetween, MeetsBothEndsAndMovesEvenlyBetweenThem) {
       EXPECT_LT((M.linear() - R).norm(), 1e-12);
     }
   }
+}
+
+/// Links that overlap at their joints may do so on floating joints too.
+TEST(InBetween, NeighboursStayNeighbours) {
+  const auto tree = fcl_artic::inBetweenTree(*twoHinges());
+  fcl_artic::ArticulatedCollisionManager manager(tree);
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> balls;
+  for (const char* link : {"base", "arm", "hand"}) {
+    balls.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(0.1)));
+    manager.bind(link, balls.back().get());
+  }
+  manager.setup();
+  const Isometry3d I = Isometry3d::Identity(), turned(AngleAxisd(1, Vector3d::UnitZ())), out(Eigen::Translation3d(1, 0, 0));
+  fcl_artic::CertifiedResult result;
+  manager.continuousCollide(fcl_artic::inBetweenMotion(*tree, {I, I, out}, {I, turned, turned * out}), {}, result);
+  EXPECT_TRUE(result.isFree()) << "the arm's ball stays within the base's";
+  manager.continuousCollide(fcl_artic::inBetweenMotion(*tree, {I, I, out}, {I, turned, I}), {}, result);
+  EXPECT_EQ(result.status, fcl_artic::Status::contact) << "the hand comes to the base, which is not its neighbour";
 }
 
 TEST(InBetween, BothMethodsFindTheContactOfTheInBetweenMotion) {

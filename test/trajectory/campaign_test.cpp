@@ -133,11 +133,16 @@ struct Case {
   static bool near(const KinematicTree* tree, int a, int b) {
     if (a < 0 || b < 0) return false;
     const auto type = [&](int link) { return tree->joint(tree->parentJoint(link)).type; };
-    const auto slides = [&](int link) { return type(link) == JointType::planar || type(link) == JointType::floating; };
-    if (tree->parentLink(a) == b) return !slides(a);
-    if (tree->parentLink(b) == a) return !slides(b);
+    const auto isFree = [&](int link) {  // planar or floating, on what stands still
+      if (type(link) != JointType::planar && type(link) != JointType::floating) return false;
+      do link = tree->parentLink(link);
+      while (link > 0 && type(link) == JointType::fixed);
+      return link == 0;
+    };
+    if (tree->parentLink(a) == b) return !isFree(a);
+    if (tree->parentLink(b) == a) return !isFree(b);
     const bool siblings = tree->parentLink(a) == 0 && tree->parentLink(b) == 0;
-    return siblings && (type(a) == JointType::fixed || type(b) == JointType::fixed) && !slides(a) && !slides(b);
+    return siblings && (type(a) == JointType::fixed || type(b) == JointType::fixed) && !isFree(a) && !isFree(b);
   }
   std::vector<std::pair<int, int>> watched;
 };

@@ -313,10 +313,14 @@ bool RandomTree::neighbours(int a, int b) const {
   int moving = 0, common = b;
   bool bare = true;
   const auto pass = [&](int i) { bare = bare && links_[static_cast<std::size_t>(i)].shapes.empty(); };
+  bool free = false;  // a planar or floating joint, on what stands still
   const auto cross = [&](int i) {
-    const Link& link = links_[static_cast<std::size_t>(i)];
-    const bool slides = link.type == JointType::planar || link.type == JointType::floating;
-    moving += slides ? 2 : link.moves(links_);
+    const auto link = [&](int k) -> const Link& { return links_[static_cast<std::size_t>(k)]; };
+    moving += link(i).moves(links_);
+    if (link(i).type != JointType::planar && link(i).type != JointType::floating) return;
+    int below = up(i);
+    while (up(below) >= 0 && !link(below).moves(links_)) below = up(below);
+    free = free || up(below) < 0;
   };
   for (; std::find(above_a.begin(), above_a.end(), common) == above_a.end(); common = up(common)) {
     cross(common);
@@ -327,7 +331,7 @@ bool RandomTree::neighbours(int a, int b) const {
     if (i != a) pass(i);
   }
   if (common != a && common != b) pass(common);
-  return moving <= 1 && bare;
+  return moving <= 1 && bare && !free;
 }
 
 }  // namespace urdf_trees
