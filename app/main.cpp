@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program fcl_artic: verbs in files of their own, errors in one place.
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -25,6 +27,10 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    const std::vector<std::string> unknown = program.remaining();  // CLI11 misses the verb first, and doesn't name them
+    if (program.get_subcommands().empty() && !unknown.empty()) {
+      fmt::print(stderr, "fcl_artic: error: '{}' is neither a verb nor an option\n", unknown.front());
+    }
     return program.exit(error) == 0 ? 0 : kExitError;  // help and version are no errors
   } catch (const std::exception& error) {
     fmt::print(stderr, "fcl_artic: error: {}\n", error.what());

@@ -49,8 +49,8 @@ struct Joint {
   Mimic mimic;
 };
 
-/// Whether the joint stays between lower and upper: those of one variable do, but continuous ones, and but for lower > upper,
-/// both 0 or an infinite one, which are no limits.
+/// Whether the joint stays between lower and upper: those of one variable do, but continuous ones, and but for
+/// lower > upper, both 0 or an infinite one, which are no limits.
 FCL_ARTIC_EXPORT bool hasLimits(const Joint& joint);
 
 /// A forest of links carried by joints: one robot or several, each with its own root. Constant during

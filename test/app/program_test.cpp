@@ -240,9 +240,13 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   for (const char* option :
        {"--robot", "--srdf", "--auto-srdf", "--scene", "--package", "--from", "--to", "--shortest", "--margin",
         "--tolerance-time", "--tolerance-distance", "--budget", "--max-contacts", "--every-pair",
-        "--ignore-initial-contact", "--no-self", "--no-scene", "--json", "--image", "--size", "--camera"}) {
+        "--ignore-initial-contact", "--no-self", "--no-scene", "--json", "--image", "--size", "--camera",
+        "--trajectory", "--clearance", "--unknown-cells"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
+  const Outcome unknown = this->run("chek --robot " + arm());
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("'chek' is neither a verb"), std::string::npos) << unknown.err;
 }
 
 TEST_F(ProgramTest, GeneratedDataIsReadBack) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include <ompl/base/ScopedState.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -145,6 +146,28 @@ TEST_F(PlanningSetupTest, JointsWithoutRoomStandStill) {
   manager->setup();
   EXPECT_EQ(setUpPlanning(manager, {}).joints, (Names{"slide", "turn", "grip"}));
   expectContains(messageOf<std::invalid_argument>([&] { setUpPlanning(manager, {"wave"}); }), "'wave' has no room");
+}
+
+TEST_F(PlanningSetupTest, LimitsThatNoQueryTakesAreNamed) {
+  std::string urdf = kUrdf;
+  urdf.replace(urdf.find("upper=\"10\""), 10, "upper=\"1e9\"");
+  const std::string file = write("endless.urdf", urdf);
+  const std::string message =
+      messageOf<std::invalid_argument>([&] { setUpPlanning(file, srdf_, scene_, "joints"); });
+  expectContains(message, "'slide' has limits");
+  auto tree = std::make_shared<KinematicTree>("ship");
+  tree->addLink("sea");
+  tree->addLink("ship");
+  tree->addJoint(makeJoint("swim", JointType::planar, "sea", "ship", Eigen::Vector3d::UnitZ()));
+  const auto manager = World(tree).manager();
+  SetupOptions options;
+  for (const double far : {0.0, std::nan(""), 1e6, std::numeric_limits<double>::infinity()}) {
+    options.position_upper.setConstant(far);
+    const std::string message = messageOf<std::invalid_argument>([&] { setUpPlanning(manager, {}, options); });
+    expectContains(message, "'swim' needs options");
+  }
+  options.position_upper.setConstant(100);
+  EXPECT_EQ(setUpPlanning(manager, {}, options).space->getDimension(), 3u);
 }
 
 TEST_F(PlanningSetupTest, UnknownCellsAreObstaclesOnRequest) {

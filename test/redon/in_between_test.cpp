@@ -81,7 +81,8 @@ TEST(InBetween, NeighboursStayNeighbours) {
     manager.bind(link, balls.back().get());
   }
   manager.setup();
-  const Isometry3d I = Isometry3d::Identity(), turned(AngleAxisd(1, Vector3d::UnitZ())), out(Eigen::Translation3d(1, 0, 0));
+  const Isometry3d I = Isometry3d::Identity(), out(Eigen::Translation3d(1, 0, 0));
+  const Isometry3d turned(AngleAxisd(1, Vector3d::UnitZ()));
   fcl_artic::CertifiedResult result;
   manager.continuousCollide(fcl_artic::inBetweenMotion(*tree, {I, I, out}, {I, turned, turned * out}), {}, result);
   EXPECT_TRUE(result.isFree()) << "the arm's ball stays within the base's";

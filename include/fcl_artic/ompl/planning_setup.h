@@ -55,7 +55,8 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std:
 /// Sets up planning for some joints of a manager that is set up already.
 /// @param joints  names; none: all joints of the tree that move.
 /// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned for,
-///   without room between its limits, prismatic without limits, or planar or floating without bounds in the options.
+///   without room between its limits or with limits beyond 1e5, prismatic without limits, or planar or floating without
+///   bounds in the options (within 1e5 too).
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 

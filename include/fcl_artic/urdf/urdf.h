@@ -95,12 +95,13 @@ struct SceneOptions {
 };
 
 /// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
-/// URDF (.urdf: all links at q = 0, quaternions at no rotation, as obstacles); MoveIt scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes.
+/// URDF (.urdf: all links at q = 0, quaternions at no rotation, as obstacles); MoveIt scene text (.scene);
+/// OctoMap (.bt .ot), occupied cells as boxes. Names are given once: NAME#2 and so on for the further shapes of one object.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Several scenes as one, for a robot: an obstacle whose name another one or a link has becomes NAME#2, or so on, with a note.
-/// (Allowed pairs and margins go by name.)
+/// Several scenes as one, for a robot: an obstacle whose name another one or a link has becomes NAME#2, or so on, with a
+/// note. (Allowed pairs and margins go by name.)
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
 /// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.

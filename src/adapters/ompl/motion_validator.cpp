@@ -76,8 +76,8 @@ bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State
   return count(provenFree(mapping_.motion(s1, s2)));
 }
 
-/// Planners go on from the motion's end. Where initial contacts are ignored there must be none, nor what may be taken for one:
-/// the next motion would lead on through it.
+/// Planners go on from the motion's end. Where initial contacts are ignored there must be none, nor what may be taken for
+/// one: the next motion would lead on through it.
 bool ContinuousMotionValidator::provenFree(const JointMotion& motion) const {
   CertifiedResult& result = scratch();
   manager_->continuousCollide(motion, any_, result);
@@ -90,9 +90,10 @@ bool ContinuousMotionValidator::apartAt(const JointMotion& motion, double t) con
   return result.isFree();
 }
 
-/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion leaves,
-/// and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not. What was within
-/// the margin at the start, where that is ignored, must not touch without it, and be left behind by then.
+/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
+/// leaves, and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not. What
+/// was within the margin at the start, where that is ignored, must not touch without it, and be left behind by then.
+/// @return a time up to which the motion is proven free; 1: all of it.
 double ContinuousMotionValidator::freeWithRoom(const JointMotion& motion) const {
   CertifiedResult& result = scratch();
   const auto freeUntil = [&](const CertifiedRequest& request) {

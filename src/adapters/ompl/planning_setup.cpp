@@ -25,6 +25,9 @@ int requireVariable(const KinematicTree& tree, const std::string& name, const st
                               "' with a value of its own (it is unknown, fixed or a mimic)");
 }
 
+/// Queries take values up to this, rad or m (JointMotion::linear()): planners must not draw others.
+bool answerable(double value) { return std::abs(value) <= 1e5; }
+
 /// It has one value only, which is that of the joints that are not planned for.
 bool standsStill(const Joint& joint) { return hasLimits(joint) && joint.lower == joint.upper; }
 
@@ -45,7 +48,7 @@ ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& option
     for (unsigned i = 0; i < dimensions; ++i) {
       b.low[i] = options.position_lower[i];
       b.high[i] = options.position_upper[i];
-      if (b.low[i] < b.high[i]) continue;
+      if (b.low[i] < b.high[i] && answerable(b.low[i]) && answerable(b.high[i])) continue;
       throw std::invalid_argument("setUpPlanning: joint '" + joint.name + "' needs options.position_lower and position_upper");
     }
     return b;
@@ -74,7 +77,10 @@ ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::st
     const Joint& joint = requireJoint(tree, name);
     if (!named.insert(name).second) throw std::invalid_argument("setUpPlanning: joint '" + name + "' is named twice");
     if (standsStill(joint)) {
-      throw std::invalid_argument("setUpPlanning: joint '" + name + "' has no room between its limits, which are the same");
+      throw std::invalid_argument("setUpPlanning: joint '" + name + "' has no room between its limits");
+    }
+    if (hasLimits(joint) && !(answerable(joint.lower) && answerable(joint.upper))) {
+      throw std::invalid_argument("setUpPlanning: joint '" + name + "' has limits beyond 1e5");
     }
     if (hasLimits(joint)) {
       if (!reals) parts.push_back(reals = std::make_shared<ob::RealVectorStateSpace>());
