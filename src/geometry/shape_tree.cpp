@@ -359,6 +359,19 @@ void ShapeTree::show() {
   view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
 
+engine::CoreBox ShapeTree::coreBox() const {
+  engine::CoreBox box;
+  const Piece& piece = view_.pieces[0];
+  const bool round = view_.num_pieces == 1 && (piece.kind == PieceKind::point || piece.kind == PieceKind::segment);
+  for (int k = 0; k < 3; ++k) {
+    const double half = piece.kind == PieceKind::segment && k == 2 ? piece.size[2] : 0;
+    box.lo[k] = round ? piece.center[k] - half : view_.nodes[0].lo[k];
+    box.hi[k] = round ? piece.center[k] + half : view_.nodes[0].hi[k];
+  }
+  box.radius = round ? piece.radius : 0;
+  return box;
+}
+
 const ObbTree* ShapeTree::obbTree() const {
   std::call_once(obb_once_, [this] {
     if (ObbTree::covers(view_)) obb_ = std::make_unique<const ObbTree>(view_);

@@ -47,6 +47,8 @@ class ShapeTree {
   /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
   /// @throws std::invalid_argument when it is unbounded.
   std::array<double, 7> lineSweptSphere() const;
+  /// A box that holds the whole, for stage 1.
+  engine::CoreBox coreBox() const;
   /// Memory that it takes, roughly.
   std::size_t bytes() const;
 

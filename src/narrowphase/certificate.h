@@ -19,32 +19,35 @@ struct Side {
 
 /// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and pad
 /// are left to the caller.
+/// @param lanes  those that matter.
 ///
 /// n.x(t) over the core is n.c + range of the core along R^T n. With R and c in the hull of their Bernstein points
 /// (with weights that depend on t only) and h convex, h(R(t)^T n) lies below the quadratic with Bernstein points
 /// h(R_k^T n); -h(-u) above the one with -h(-R_k^T n).
-FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const double* n, Lanes* lower, Lanes* upper) {
+FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const double* n, unsigned lanes, Lanes* lower,
+                                  Lanes* upper) {
   for (int k = 0; k < 3; ++k) {
     Lanes u[3];
     for (int j = 0; j < 3; ++j) {
       u[j] = mulAdd(side.m.Rb[k][j], n[0], mulAdd(side.m.Rb[k][3 + j], n[1], side.m.Rb[k][6 + j] * Lanes(n[2])));
     }
-    coreRange(*side.moving, moving, u, lower[k], upper[k]);
+    coreRange(*side.moving, moving, u, lanes, lower[k], upper[k]);
     const Lanes g = dot(side.m.cb[k], n);
     lower[k] = lower[k] + g;
     upper[k] = upper[k] + g;
   }
 }
 
-/// Lanes in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart over the whole interval.
+/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart over the whole interval.
 /// @param n  in the frame of side.still.
 /// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
 FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
-                                             const double* n, double margin, double pad, double& sign) {
+                                             const double* n, unsigned lanes, double margin, double pad,
+                                             double& sign) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
-  movingRange(side, moving, n, lower, upper);
+  movingRange(side, moving, n, lanes, lower, upper);
   const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
   const unsigned above = greater(min(min(lower[0], lower[1]), lower[2]), Lanes(s_upper + slack));
   const unsigned below = greater(Lanes(s_lower - slack), max(max(upper[0], upper[1]), upper[2]));
@@ -87,7 +90,7 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
-  movingRange(side, moving, n, G, upper);
+  movingRange(side, moving, n, kAllLanes, G, upper);
   const Lanes slack(s_upper +
                     (margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad));
   for (int k = 0; k < 3; ++k) G[k] = G[k] - slack;

@@ -117,6 +117,27 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
   upper = m + h;
 }
 
+/// Of so few lanes each goes through a hull's vertices by itself, eight vertices at once.
+constexpr int kFewLanes = 3;
+
+/// The same where only `lanes` matter: nothing need be known of the others.
+FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const Lanes* u, unsigned lanes, Lanes& lower,
+                                Lanes& upper) {
+  if (piece.kind != PieceKind::hull || __builtin_popcount(lanes) > kFewLanes) {
+    return coreRange(tree, piece, u, lower, upper);
+  }
+  lower = Lanes(-kInfinite);
+  upper = Lanes(kInfinite);
+  for (unsigned left = lanes; left; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    const double along[3] = {u[0][lane], u[1][lane], u[2][lane]};
+    double least, most;
+    hullRange(tree.hulls + piece.first_vertex, piece.num_vertices, along, least, most);
+    lower.set(lane, least);
+    upper.set(lane, most);
+  }
+}
+
 /// A point of the core farthest along u (unit or not); of an unbounded piece the foot of its boundary, which is right along
 /// its own normal only.
 inline void supportPoint(const TreeView& tree, const Piece& piece, const double* u, double* x) {

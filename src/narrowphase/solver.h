@@ -82,6 +82,7 @@ class Solver {
   void cull();
   bool isLink(int mover) const { return mover < problem_->num_scene_movers; }
   void sweepMover(int mover);
+  void meetObstacles(const SweptBox& box);
   unsigned lssMayTouch(int pair, unsigned mask);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void refine();
@@ -172,6 +173,12 @@ class Solver {
 
   Buffer<SweptBox> mover_box_;
   Buffer<SweptLss> mover_lss_;  ///< of links
+  struct Met {
+    std::int32_t obstacle;
+    unsigned mask;  ///< lanes in which its box meets the link's
+  };
+  Buffer<Met> met_;
+  Buffer<std::int32_t> open_nodes_;
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidate_pairs_;
   Buffer<engine::CullCandidate> partly_free_;  ///< those left of which stage 2 has proven nodes free

@@ -132,6 +132,7 @@ struct ArticulatedCollisionManager::Impl {
   std::vector<std::uint8_t> scene_allowed;  ///< empty when all pairs of link and obstacle are checked
   std::vector<engine::LinkPair> link_pairs;  ///< of two links first, then of moving obstacles and links
   std::vector<engine::Node> obstacle_tree;
+  std::vector<engine::StillBounds> still_bounds;
   std::vector<TabledPair> tabled;  ///< of self pairs, of this set-up and of the one before where they are the same
   std::vector<std::pair<std::size_t, std::shared_ptr<const PairTable>>> tables;  ///< by link pair
   std::vector<double> scene_margins, link_margins;  ///< of pairs, -1: not their own; empty: none has its own
@@ -460,6 +461,14 @@ void ArticulatedCollisionManager::Impl::buildScene() {
     obstacle_bodies[o] = static_cast<std::int32_t>(first + o);
   }
   obstacle_tree = buildBoxTree(boxes);
+  still_bounds.clear();
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const engine::TreeView& tree = obstacles[o].shape->view();
+    const engine::PieceKind kind = tree.pieces[0].kind;
+    const bool solid = tree.num_pieces == 1 && kind != engine::PieceKind::vertices &&
+                       kind != engine::PieceKind::halfspace && kind != engine::PieceKind::plane;
+    still_bounds.push_back({bodies[first + o].inverse, obstacles[o].shape->coreBox(), &tree, solid});
+  }
 
   scene_allowed.clear();
   const auto allow = [&](std::size_t m, std::size_t o) {
@@ -614,6 +623,7 @@ engine::Problem ArticulatedCollisionManager::Impl::problem() const {
   p.obstacles = obstacle_bodies.data();
   p.num_obstacles = static_cast<std::int32_t>(obstacles.size());
   p.obstacle_tree = obstacle_tree.empty() ? nullptr : obstacle_tree.data();
+  p.still_bounds = still_bounds.data();
   p.scene_margins = scene_margins.empty() ? nullptr : scene_margins.data();
   p.link_margins = link_margins.empty() ? nullptr : link_margins.data();
   p.largest_margin = largest_margin;

@@ -54,6 +54,7 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
       const ScopedRounding scope(mode);
       subject.certify(in, out, m);
     }
+    ASSERT_EQ(out.separated_few, out.separated) << "case " << i << " " << subject.name << " mode " << mode;
     const OwnedPiece &still = in.side ? b : a, &moving = in.side ? a : b;
     const double rem = m.rem_c[in.side] + m.rem_R[in.side] * moving.piece.reach;
     for (int lane = 0; lane < 8; ++lane) {

@@ -41,6 +41,7 @@ struct CertificateOutput {
   double G[8][3], prefix[8];
   double turning_G[8][3], turning_prefix[8];  ///< along the direction that turns
   unsigned separated;
+  unsigned separated_few;  ///< the same, asked for a few lanes at a time
   double sign;
 };
 

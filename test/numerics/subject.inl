@@ -79,7 +79,12 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   const Side& s = side[in.side];
   const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
   out.sign = 0;
-  out.separated = certainlySeparated(s, still, moving, in.n, in.motion.margin, pads.pad, out.sign);
+  out.separated = certainlySeparated(s, still, moving, in.n, kAllLanes, in.motion.margin, pads.pad, out.sign);
+  out.separated_few = 0;
+  for (unsigned lanes = (1u << kFewLanes) - 1; lanes & kAllLanes; lanes <<= kFewLanes) {
+    double sign = 0;
+    out.separated_few |= certainlySeparated(s, still, moving, in.n, lanes & kAllLanes, in.motion.margin, pads.pad, sign);
+  }
   Lanes G[3];
   gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
   for (int lane = 0; lane < kLanes; ++lane) {

@@ -38,18 +38,16 @@ inline void Solver::sweepMover(int mover) {
 /// pose is put down for proveAnywhere() where the link's axis is so near that a thin solid may cut it between its
 /// vertices. Else later lanes are put off.
 inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
-  const Body& obstacle = problem_->bodies[problem_->obstacles[pair % problem_->num_obstacles]];
-  const TreeView& tree = *obstacle.tree;
+  const engine::StillBounds& obstacle = problem_->still_bounds[pair % problem_->num_obstacles];
   const SweptLss& lss = mover_lss_[pair / problem_->num_obstacles];
   Lanes square;
   mask &=
-      ~certainlyApart(lss, coreBox(tree), obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
+      ~certainlyApart(lss, obstacle.box, obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
   const unsigned deep = nearer(kDeep);
-  const bool solid = tree.num_pieces == 1 && tree.pieces[0].kind != PieceKind::vertices && !unbounded(tree.pieces[0]);
-  if (!deep || !solid || query_->every_pair || query_->ignore_initial) return mask;
+  if (!deep || !obstacle.solid || query_->every_pair || query_->ignore_initial) return mask;
   if (!query_->any) {
     claimOverlap(__builtin_ctz(deep));
     return mask;
@@ -58,6 +56,40 @@ inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
   if (proveVertexInside(pair, __builtin_ctz(deep))) return mask;
   if (const unsigned lanes = nearer(kVeryDeep)) overlapping_.push({pair, 0, 0, lanes});
   return mask;
+}
+
+/// Asks for an object's cache lines before they are needed.
+template <class T>
+FCL_ARTIC_INLINE void prefetch(const T* object) {
+  for (unsigned i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + i);
+}
+
+/// Obstacles whose boxes meet a swept box, to met_. Level by level, so that what is looked at next is fetched meanwhile.
+inline void Solver::meetObstacles(const SweptBox& box) {
+  const Node* nodes = problem_->obstacle_tree;
+  met_.resize(problem_->num_obstacles + 1);
+  open_nodes_.resize(problem_->num_obstacles + 1);
+  Met* met = met_.data();
+  std::int32_t *open = open_nodes_.data(), *last = open;
+  const auto meet = [&](int index) {
+    const Node& node = nodes[index];
+    const unsigned mask = kAllLanes & ~apart(box, node);
+    if (!mask) return;
+    if (node.isLeaf()) {
+      *met++ = {node.piece(), mask};
+      prefetch(problem_->still_bounds + node.piece());
+    } else {
+      *last++ = node.child;
+      prefetch(nodes + node.child);
+    }
+  };
+  meet(0);
+  for (; open < last; ++open) {
+    const int left = *open;
+    meet(left);
+    meet(left + 1);
+  }
+  met_.truncate(static_cast<int>(met - met_.data()));
 }
 
 /// Stage 1: pairs whose swept bounds meet, with the lanes in which they do, to entries_.
@@ -70,25 +102,15 @@ inline void Solver::cull() {
   for (int m = 0; m < problem_->num_movers; ++m) {
     sweepMover(m);
     if (!check_scene || !isLink(m)) continue;
-    const SweptBox& box = mover_box_[m];
-    Buffer<Entry>& stack = stack_[0];  // of nodes that the box meets
-    const auto meet = [&](int index) {
-      const Node& node = problem_->obstacle_tree[index];
-      const unsigned mask = kAllLanes & ~apart(box, node);
-      if (!mask) return;
-      if (!node.isLeaf()) return stack.push({0, node.left(), 0, 0});
-      const int pair = m * problem_->num_obstacles + node.piece();
-      if (problem_->scene_allowed && problem_->scene_allowed[pair]) return;
-      if (const unsigned left = lssMayTouch(pair, mask)) entries_.push({pair, 0, 0, left});
-    };
-    meet(0);
-    while (stack.size() && !finished()) {
-      const int left = stack[stack.size() - 1].a;
-      stack.truncate(stack.size() - 1);
-      meet(left);
-      meet(left + 1);
+    meetObstacles(mover_box_[m]);
+    for (int i = 0; i < met_.size() && !finished(); ++i) {
+      const int pair = m * problem_->num_obstacles + met_[i].obstacle;
+      if (problem_->scene_allowed && problem_->scene_allowed[pair]) continue;
+      if (const unsigned left = lssMayTouch(pair, met_[i].mask)) {
+        entries_.push({pair, 0, 0, left});
+        prefetch(problem_->still_bounds[met_[i].obstacle].tree);
+      }
     }
-    stack.clear();
     if (finished()) return;
   }
   if (query_->check_self && !problem_->num_movers) {  // no stage 1: pairs of free bodies

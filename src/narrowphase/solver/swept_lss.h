@@ -12,7 +12,7 @@ namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
 using engine::Body;
-using engine::TreeView;
+using engine::CoreBox;
 
 /// Squared length below which a difference is no direction: far above underflow.
 constexpr double kLeastSquare = 1e-200;
@@ -71,30 +71,6 @@ FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Lanes* lo, Lane
 /// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
 FCL_ARTIC_INLINE Lanes leastPoint(Lanes g0, Lanes g1, Lanes g2) {
   return min((g0 + g2) - abs(g1), g0 - g2);
-}
-
-/// A box in a body's tree frame, grown by a ball, that holds the body: exact for boxes, balls and capsules.
-struct CoreBox {
-  double lo[3], hi[3], radius;
-};
-FCL_ARTIC_INLINE CoreBox coreBox(const TreeView& tree) {
-  CoreBox box;
-  const engine::Piece& piece = tree.pieces[0];
-  if (tree.num_pieces == 1 && (piece.kind == PieceKind::point || piece.kind == PieceKind::segment)) {
-    const double half = piece.kind == PieceKind::segment ? piece.size[2] : 0;
-    for (int k = 0; k < 3; ++k) {
-      box.lo[k] = piece.center[k] - (k == 2 ? half : 0);
-      box.hi[k] = piece.center[k] + (k == 2 ? half : 0);
-    }
-    box.radius = piece.radius;
-    return box;
-  }
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = tree.nodes[0].lo[k];
-    box.hi[k] = tree.nodes[0].hi[k];
-  }
-  box.radius = 0;
-  return box;
 }
 
 /// Lanes with a > b sqrt(square), for b >= 0, up to 8 kUlp of either side.

@@ -54,7 +54,7 @@ inline unsigned Solver::apartFromUnbounded(int a, int b) {
     box.reach = sqrt(far2) * (1 + 8 * kUlp);
     double sign = 0;
     ++statistics_.certificates;
-    separated |= certainlySeparated(side, still, box, still.size, margin_, pad_, sign);
+    separated |= certainlySeparated(side, still, box, still.size, kAllLanes, margin_, pad_, sign);
   }
   return separated;
 }
@@ -119,8 +119,9 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     unsigned separated = 0;
     for (int i = 0; i < 2 && (mask & ~separated); ++i) {
       ++statistics_.certificates;
-      separated |= (first + i) & 1 ? certainlySeparated(side(1), b, a, n, margin_, pad_, sign)
-                                   : certainlySeparated(side(0), a, b, g.n, margin_, pad_, sign);
+      const unsigned left = mask & ~separated;
+      separated |= (first + i) & 1 ? certainlySeparated(side(1), b, a, n, left, margin_, pad_, sign)
+                                   : certainlySeparated(side(0), a, b, g.n, left, margin_, pad_, sign);
     }
     mask &= ~separated;
     untried &= mask;
@@ -182,17 +183,17 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   double sign = 0;
   if (hasDirection(a)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(0), a, b, a.size, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(0), a, b, a.size, mask, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (hasDirection(b)) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(1), b, a, b.size, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(1), b, a, b.size, mask, margin_, pad_, sign);
     if (!mask) return 0;
   }
   if (have_witness_) {
     ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(0), a, b, witness_, margin_, pad_, sign);
+    mask &= ~certainlySeparated(side(0), a, b, witness_, mask, margin_, pad_, sign);
     if (!mask) return 0;
   }
   return notSeparated(a, b, mask, kLanes, [&](int lane) {
