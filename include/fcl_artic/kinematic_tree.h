@@ -127,6 +127,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
  private:
   int findLink(std::string_view name) const;
   void sortLinks();
+  void moveBy(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M) const;
   std::string name_;
   std::vector<std::string> link_names_;
   std::vector<JointId> parent_joint_;

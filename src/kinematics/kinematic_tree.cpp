@@ -199,18 +199,28 @@ double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::Vector
 void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q,
                                       std::vector<Eigen::Isometry3d>& M_0) const {
   requireConfiguration(q, "q");
-  M_0.assign(link_names_.size(), Eigen::Isometry3d::Identity());
+  M_0.resize(link_names_.size());
   for (const LinkId link : topologicalOrder()) {
     const JointId j = parent_joint_[link];
-    if (j < 0) continue;
-    M_0[link] = M_0[joint_parent_[j]] * joints_[j].origin * jointPose(j, q);
+    if (j < 0) {
+      M_0[link].setIdentity();
+      continue;
+    }
+    M_0[link] = M_0[joint_parent_[j]] * joints_[j].origin;
+    moveBy(j, q, M_0[link]);
   }
 }
 
 Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
+  moveBy(j, q, M);
+  return M;
+}
+
+/// Multiplies M by the joint's pose from the right.
+void KinematicTree::moveBy(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M) const {
   const Joint& joint = this->joint(j);
   const int v = jointVariable(j);
-  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
   switch (joint.type) {
     case JointType::fixed:
       break;
@@ -233,7 +243,6 @@ Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eig
       M.rotate(Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized());
       break;
   }
-  return M;
 }
 
 void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {

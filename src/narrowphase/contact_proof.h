@@ -34,6 +34,45 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
   return true;
 }
 
+/// The point x, in a solid's tree frame, is certainly within the solid: farther inside than x can be off by, and as
+/// much again for rounding. Boxes, cylinders, balls and capsules only; others it does not know.
+/// @param eps  bound on x's error.
+inline bool certainlyWithin(const Piece& solid, const double* x, double eps) {
+  double d[3];
+  for (int k = 0; k < 3; ++k) d[k] = abs(x[k] - solid.center[k]);
+  const double* e = solid.size;
+  const double least = 2 * eps;
+  switch (solid.kind) {
+    case PieceKind::box:
+      return e[0] - d[0] > least && e[1] - d[1] > least && e[2] - d[2] > least;
+    case PieceKind::cylinder:
+      return e[0] - sqrt(d[0] * d[0] + d[1] * d[1]) > least && e[2] - d[2] > least;
+    case PieceKind::segment:
+      d[2] = max(0.0, d[2] - e[2]);
+      return solid.radius - norm(d) > least;
+    case PieceKind::point:
+      return solid.radius - norm(d) > least;
+    default:
+      return false;
+  }
+}
+
+/// A segment certainly meets a triangle: the differences of their points are a prism, and one of the three tetrahedra
+/// that it is cut into certainly holds the origin (doc/NUMERICS.md, Lemma 5).
+/// @param a, b  the segment's ends and the triangle's corners in one frame; their differences are off by eps at most.
+/// @param weights  of the corners, where they meet, about, and `part` of the segment: they tell the tetrahedron.
+inline bool certainlyPierces(const double (*a)[3], const double (*b)[3], double eps, const double* weights,
+                             double part) {
+  static const int kTetrahedra[3][4][2] = {
+      {{0, 0}, {1, 0}, {2, 0}, {2, 1}}, {{0, 0}, {1, 0}, {1, 1}, {2, 1}}, {{0, 0}, {0, 1}, {1, 1}, {2, 1}}};
+  const auto& corners = kTetrahedra[part < weights[2] ? 0 : part < weights[1] + weights[2] ? 1 : 2];
+  DifferencePoint w[4];
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 3; ++k) w[i].w[k] = b[corners[i][0]][k] - a[corners[i][1]][k];
+  }
+  return tetrahedronHoldsOrigin(w, eps);
+}
+
 /// Weights (>= 0, sum 1) that bring a tetrahedron's combination near the origin: barycentric ones, or those of a face where
 /// they come nearer, as in a flat tetrahedron, whose volumes are mostly rounding. False when there is nothing to weigh by.
 inline bool originWeights(Simplex& s) {

@@ -160,8 +160,6 @@ struct Problem {
   const LinkPair* link_pairs = nullptr;
   std::int32_t num_link_pairs = 0;
   const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
-  /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this query's motion; null: nothing is known.
-  const std::uint8_t* link_free = nullptr;
   std::int32_t num_scene_pairs = 0;
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   const std::int32_t* obstacles = nullptr;  ///< body of obstacle o
@@ -209,6 +207,10 @@ struct Query {
   std::uint64_t work_budget = 0;
   void (*progress)(void* context, double t_lower) = nullptr;
   void* progress_context = nullptr;
+  /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this motion. Asked for when the pairs are
+  /// come to, which contact with an obstacle may spare. Null: nothing is known.
+  const std::uint8_t* (*link_free)(const void* context) = nullptr;
+  const void* link_free_context = nullptr;
   /// A stage between stage 1 and the first batch: may clear lanes in which a pair is proven free and set free_nodes,
   /// nothing else. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
   void (*refine)(void* context, const Problem& problem, const SweptLink* links, CullCandidate* pairs,

@@ -20,6 +20,7 @@
 
 #include "narrowphase/buffer.h"
 #include "narrowphase/certificate.h"
+#include "narrowphase/chord.h"
 #include "narrowphase/contact_proof.h"
 #include "narrowphase/solver/swept_box.h"
 #include "narrowphase/solver/swept_lss.h"
@@ -40,6 +41,12 @@ using engine::Verdict;
 
 /// Pieces whose `size` is a direction worth trying.
 FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) { return piece.kind == PieceKind::vertices || unbounded(piece); }
+
+/// The middle one of some lanes.
+FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
+  for (int skip = __builtin_popcount(lanes) / 2; skip; --skip) lanes &= lanes - 1;
+  return __builtin_ctz(lanes);
+}
 
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
@@ -83,7 +90,7 @@ class Solver {
   bool isLink(int mover) const { return mover < problem_->num_scene_movers; }
   void sweepMover(int mover);
   void meetObstacles(const SweptBox& box);
-  unsigned lssMayTouch(int pair, unsigned mask);
+  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void refine();
   void collectInitialContacts(int begin, int end);
@@ -115,6 +122,8 @@ class Solver {
   bool isWithin();
   unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
   bool proveVertexInside(int pair, int lane);
+  bool provePierced(int pair, int lane, const double* near);
+  LeafContact& proven(int pair, int piece_a, int piece_b, int lane);
   bool proveLeaves(int pair, int piece_a, int piece_b, int lane);
   bool proveAnywhere();
   bool finished() const { return out_of_budget_ || (query_->any && limit_ < 2); }
@@ -232,6 +241,8 @@ constexpr int kFewLeaves = 12;
 constexpr double kDeep = 0.7;
 /// The same where its vertices do not.
 constexpr double kVeryDeep = 0.35;
+/// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
+constexpr double kThin = 0.5;
 /// Of more pieces none is looked for by the vertices where hulls meet.
 constexpr int kFewPieces = 2048;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
@@ -248,13 +259,14 @@ constexpr double kFollowingAccuracy = 0.02;
 }  // namespace FCL_ARTIC_ISA
 }  // namespace fcl_artic
 
-#include "narrowphase/solver/batch.h"
-#include "narrowphase/solver/traversal.h"
-#include "narrowphase/solver/culling.h"
-#include "narrowphase/solver/initial_contacts.h"
-#include "narrowphase/solver/following.h"
 #include "narrowphase/solver/any_contact.h"
+#include "narrowphase/solver/batch.h"
+#include "narrowphase/solver/culling.h"
+#include "narrowphase/solver/following.h"
+#include "narrowphase/solver/initial_contacts.h"
 #include "narrowphase/solver/search.h"
+#include "narrowphase/solver/solid_contact.h"
+#include "narrowphase/solver/traversal.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

@@ -23,6 +23,12 @@ namespace FCL_ARTIC_ISA {
 // Scalars get the vocabulary of lanes, so that one text serves both.
 FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
 FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE float min(float a, float b) {
+  return a < b ? a : b;
+}
+FCL_ARTIC_INLINE float max(float a, float b) {
+  return a > b ? a : b;
+}
 FCL_ARTIC_INLINE int max(int a, int b) { return a > b ? a : b; }
 FCL_ARTIC_INLINE int min(int a, int b) { return a < b ? a : b; }
 FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }

@@ -569,7 +569,7 @@ void ArticulatedCollisionManager::Impl::buildTables() {
   tables_ready = true;
 }
 
-/// What tables tell of a motion, as engine::Problem::link_free.
+/// What tables tell of a motion, as engine::Query::link_free.
 /// @param margin  the query's, of pairs that have none of their own.
 const std::uint8_t* ArticulatedCollisionManager::Impl::freeByTables(const engine::Problem& problem,
                                                                     const JointMotion& motion, double margin,
@@ -961,8 +961,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     if (problem.link_margins) problem.link_margins += self_pairs;
     problem.num_link_pairs -= self_pairs;
   }
+  const auto byTables = [&] { return m.freeByTables(problem, motion, request.margin, workspace->link_free); };
   if (request.check_self && request.method == Method::standard && !m.tables.empty()) {
-    problem.link_free = m.freeByTables(problem, motion, request.margin, workspace->link_free);
+    query.link_free = [](const void* context) { return (*static_cast<decltype(byTables)*>(context))(); };
+    query.link_free_context = &byTables;
   }
   query.check_self = problem.num_link_pairs > 0;
   engine::Answer answer;

@@ -80,6 +80,10 @@ struct Subject {
   unsigned (*apartFromLss)(const PairInput& in, const LssInput& a, const LssInput& b);
   double (*positivePrefix)(const double* G);
   bool (*certainlyTouching)(const TouchInput& in);
+  /// B's first vertex, or its core's centre, within A.
+  bool (*certainlyWithin)(const TouchInput& in);
+  /// A chord of A through B, a triangle, by any of the prism's tetrahedra.
+  bool (*certainlyPierces)(const TouchInput& in);
 };
 
 extern const Subject kSubjectSse2, kSubjectAvx2, kSubjectAvx512;

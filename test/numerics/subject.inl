@@ -148,8 +148,8 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
     box.hi[k] = still.hi[k];
   }
   box.radius = still.radius;
-  Lanes square;
-  return certainlyApart(swept, box, still.inverse, in.margin, square);
+  Lanes square, nearest[3];
+  return certainlyApart(swept, box, still.inverse, in.margin, square, nearest);
 }
 
 unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {
@@ -174,7 +174,7 @@ double positivePrefixOf(const double* G) {
   return positivePrefix(G);
 }
 
-bool certainlyTouchingOf(const TouchInput& in) {
+DifferenceBody differenceOf(const TouchInput& in) {
   DifferenceBody body;
   body.tree_a = &in.a;
   body.tree_b = &in.b;
@@ -182,8 +182,33 @@ bool certainlyTouchingOf(const TouchInput& in) {
   body.b = in.b.pieces;
   for (int i = 0; i < 9; ++i) body.pose.R[i] = in.R[i];
   for (int i = 0; i < 3; ++i) body.pose.c[i] = in.c[i];
+  return body;
+}
+
+bool certainlyTouchingOf(const TouchInput& in) {
+  const DifferenceBody body = differenceOf(in);
   double point[3];
   return certainlyTouching(body, in.margin, in.eps, in.guess, point);
+}
+
+bool certainlyWithinOf(const TouchInput& in) {
+  const DifferenceBody body = differenceOf(in);
+  double x[3];
+  body.place(body.b->kind == PieceKind::vertices ? in.b.vertices : body.b->center, x);
+  return certainlyWithin(*body.a, x, in.eps);
+}
+
+bool certainlyPiercesOf(const TouchInput& in) {
+  const DifferenceBody body = differenceOf(in);
+  double chord[2][3], corners[3][3], middle[3];
+  for (int i = 0; i < 3; ++i) body.place(in.b.vertices + 3 * i, corners[i]);
+  for (int k = 0; k < 3; ++k) middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
+  if (!longChord(*body.a, middle, chord)) return false;
+  for (int i = 0; i < 3; ++i) {
+    const double weights[3] = {double(i == 0), double(i == 1), double(i == 2)};
+    if (certainlyPierces(chord, corners, in.eps, weights, 0.5)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -194,6 +219,7 @@ const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),  &FCL_AR
                                        &FCL_ARTIC_ISA::relate,           &FCL_ARTIC_ISA::certify,
                                        &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::boundLssOf,
                                        &FCL_ARTIC_ISA::apartFromBox,     &FCL_ARTIC_ISA::apartFromLss,
-                                       &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf};
+                                       &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf,
+                                       &FCL_ARTIC_ISA::certainlyWithinOf, &FCL_ARTIC_ISA::certainlyPiercesOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic

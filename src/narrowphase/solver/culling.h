@@ -34,15 +34,16 @@ inline void Solver::sweepMover(int mover) {
 }
 
 /// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept
-/// sphere. Where that is deep in a solid contact is expected. Where any will do, a vertex is tried at once, and the
-/// pose is put down for proveAnywhere() where the link's axis is so near that a thin solid may cut it between its
-/// vertices. Else later lanes are put off.
-inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
-  const engine::StillBounds& obstacle = problem_->still_bounds[pair % problem_->num_obstacles];
-  const SweptLss& lss = mover_lss_[pair / problem_->num_obstacles];
-  Lanes square;
-  mask &=
-      ~certainlyApart(lss, obstacle.box, obstacle.inverse, engine::marginOf(*problem_, query_->margin, pair), square);
+/// sphere. Where that is deep in a solid contact is expected. Where any will do, a vertex in the solid and a chord of
+/// it are tried at once, the chord first where the solid is thin; and the pose is put down for proveAnywhere() where
+/// the link's axis is very near. Else later lanes are put off.
+inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mask) {
+  const int pair = mover * problem_->num_obstacles + obstacle_number;
+  const engine::StillBounds& obstacle = problem_->still_bounds[obstacle_number];
+  const SweptLss& lss = mover_lss_[mover];
+  Lanes square, nearest[3];
+  const double margin = engine::marginOf(*problem_, query_->margin, pair);
+  mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, margin, square, nearest);
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
@@ -52,8 +53,16 @@ inline unsigned Solver::lssMayTouch(int pair, unsigned mask) {
     claimOverlap(__builtin_ctz(deep));
     return mask;
   }
+  // Where the segment is nearest; the middle one of several lanes in which it is as near.
+  double least = square[__builtin_ctz(deep)];
+  for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
+  const int lane = middleLane(deep & ~greater(square, Lanes(least)));
+  const double near[3] = {nearest[0][lane], nearest[1][lane], nearest[2][lane]};
   setupPair(pair);
-  if (proveVertexInside(pair, __builtin_ctz(deep))) return mask;
+  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThin * lss.radius;
+  if (thin && provePierced(pair, lane, near)) return mask;
+  if (proveVertexInside(pair, lane)) return mask;
+  if (!thin && provePierced(pair, lane, near)) return mask;
   if (const unsigned lanes = nearer(kVeryDeep)) overlapping_.push({pair, 0, 0, lanes});
   return mask;
 }
@@ -106,7 +115,7 @@ inline void Solver::cull() {
     for (int i = 0; i < met_.size() && !finished(); ++i) {
       const int pair = m * problem_->num_obstacles + met_[i].obstacle;
       if (problem_->scene_allowed && problem_->scene_allowed[pair]) continue;
-      if (const unsigned left = lssMayTouch(pair, met_[i].mask)) {
+      if (const unsigned left = lssMayTouch(m, met_[i].obstacle, met_[i].mask)) {
         entries_.push({pair, 0, 0, left});
         prefetch(problem_->still_bounds[met_[i].obstacle].tree);
       }
@@ -120,8 +129,9 @@ inline void Solver::cull() {
     }
   } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
+    const std::uint8_t* free = query_->link_free ? query_->link_free(query_->link_free_context) : nullptr;
     for (int p = 0; p < problem_->num_link_pairs; ++p) {
-      const unsigned open = linkAllowed(p) ? 0 : problem_->link_free ? kAllLanes & ~problem_->link_free[p] : kAllLanes;
+      const unsigned open = linkAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
       if (!open) continue;
       const LinkPair& pair = problem_->link_pairs[p];
       const int mover_a = problem_->bodies[pair.a].mover, mover_b = problem_->bodies[pair.b].mover;

@@ -78,8 +78,9 @@ FCL_ARTIC_INLINE unsigned greaterThanRoot(Lanes a, double b, Lanes square) {
   return greater(a, Lanes(0.0)) & greater(a * a, square * Lanes(b * b));
 }
 
-/// Steps by which a nearest point of a segment is looked for. Nothing rests on it.
-constexpr int kNearestSteps = 3;
+/// Steps by which a nearest point of a segment is looked for. Nothing rests on it. Measured: 3 tell no more apart that
+/// counts, and take 5 to 10 % longer.
+constexpr int kNearestSteps = 1;
 
 /// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
 ///
@@ -90,8 +91,9 @@ constexpr int kNearestSteps = 3;
 /// balls (doc/NUMERICS.md, "Line swept spheres").
 /// @param inverse  the world in the body's tree frame.
 /// @param[out] square  of the segment's distance from the box in the middle of each lane, about.
+/// @param[out] nearest  the segment's point there, in the body's tree frame.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
-                               Lanes& square) {
+                               Lanes& square, Lanes* nearest) {
   Lanes y[2][3], e[3], l[3], u[3];
   for (int k = 0; k < 3; ++k) {
     const double* R = inverse.R + 3 * k;
@@ -103,6 +105,7 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
     Lanes p[3];
     for (int k = 0; k < 3; ++k) {
       const Lanes q = mulAdd(part, e[k], y[0][k]);
+      nearest[k] = q;
       p[k] = min(max(q, Lanes(box.lo[k])), Lanes(box.hi[k]));
       l[k] = q - p[k];
       p[k] = p[k] - y[0][k];

@@ -88,11 +88,7 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
   unsigned untried = mask;
   while (most > 0 && (untried &= live_ & ~contact_lane_) != 0) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
-    int lane = 0;
-    for (int skip = __builtin_popcount(untried) / 2, m = static_cast<int>(untried); m; m &= m - 1, --skip) {
-      lane = __builtin_ctz(static_cast<unsigned>(m));
-      if (skip == 0) break;
-    }
+    const int lane = middleLane(untried);
     untried &= ~(1u << lane);
     const DifferenceBody body = differenceAt(a, b, lane);
     if (!have_guess) {

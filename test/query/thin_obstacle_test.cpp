@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Thin solids and meshes where any contact will do: a mesh is a surface, so what is wholly within it or passes through
+// its openings does not touch it.
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <gtest/gtest.h>
+
+#include "fcl_artic/manager.h"
+
+using namespace fcl_artic;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+/// A tube of square section along z, half width 0.1, half length 0.2; closed at its ends or not.
+std::shared_ptr<fcl::CollisionGeometryd> tube(bool closed) {
+  std::vector<Vector3d> v;
+  for (int i = 0; i < 8; ++i) v.emplace_back((i & 1) ? 0.1 : -0.1, (i & 2) ? 0.1 : -0.1, (i & 4) ? 0.2 : -0.2);
+  const int faces[6][4] = {{0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}, {0, 1, 3, 2}, {4, 6, 7, 5}};
+  std::vector<fcl::Triangle> t;
+  for (int f = 0; f < (closed ? 6 : 4); ++f) {
+    t.emplace_back(faces[f][0], faces[f][1], faces[f][2]);
+    t.emplace_back(faces[f][0], faces[f][2], faces[f][3]);
+  }
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  mesh->beginModel();
+  mesh->addSubModel(v, t);
+  mesh->endModel();
+  return mesh;
+}
+
+/// The tube on a slider along x, and an obstacle.
+struct Scene {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("slider");
+  fcl::CollisionObjectd body, obstacle;
+  ArticulatedCollisionManager manager;
+
+  Scene(std::shared_ptr<fcl::CollisionGeometryd> link, std::shared_ptr<fcl::CollisionGeometryd> solid,
+        const Isometry3d& at)
+      : body(std::move(link)), obstacle(std::move(solid), at), manager(withSlider()) {
+    manager.bind("cart", &body);
+    manager.registerObject(&obstacle, "solid");
+    manager.setup();
+  }
+  std::shared_ptr<const KinematicTree> withSlider() {
+    tree->addLink("base");
+    tree->addLink("cart");
+    Joint slide;
+    slide.name = "slide";
+    slide.type = JointType::prismatic;
+    slide.parent = "base";
+    slide.child = "cart";
+    tree->addJoint(slide);
+    return tree;
+  }
+  CertifiedResult run(double from, double to, ContactMode mode) const {
+    CertifiedRequest request;
+    request.mode = mode;
+    CertifiedResult result;
+    manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Constant(1, from), VectorXd::Constant(1, to)),
+                              request, result);
+    return result;
+  }
+};
+
+Isometry3d turned(const Vector3d& at, const Vector3d& axis = Vector3d::UnitZ()) {
+  Isometry3d M = Isometry3d::Identity();
+  M.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
+  M.translation() = at;
+  return M;
+}
+
+}  // namespace
+
+TEST(ThinObstacle, WithinAClosedMeshItTouchesNothing) {
+  const Scene short_rod(tube(true), std::make_shared<fcl::Cylinderd>(0.005, 0.1), turned({0, 0, 0}));
+  EXPECT_EQ(short_rod.run(-0.05, 0.05, ContactMode::any).status, Status::free);
+  const Scene long_rod(tube(true), std::make_shared<fcl::Cylinderd>(0.005, 1.0), turned({0, 0, 0}));
+  const CertifiedResult r = long_rod.run(-0.05, 0.05, ContactMode::any);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  ASSERT_EQ(r.contacts.size(), 1u);
+  EXPECT_NEAR(std::abs(r.contacts[0].point.z()), 0.2, 1e-12);
+  EXPECT_NEAR(std::abs(r.contacts[0].normal.z()), 1, 1e-12);
+}
+
+TEST(ThinObstacle, ThroughAnOpeningItTouchesNothing) {
+  for (const double length : {0.1, 1.0}) {
+    const Scene open(tube(false), std::make_shared<fcl::Cylinderd>(0.005, length), turned({0, 0, 0}));
+    EXPECT_EQ(open.run(-0.05, 0.05, ContactMode::any).status, Status::free);
+    EXPECT_EQ(open.run(-0.2, 0.2, ContactMode::any).status, Status::contact);
+  }
+}
+
+/// Rods, boards and capsules anywhere, through and beside the tube: both modes say the same, and what any contact is
+/// proven by is a point of the solid and of the triangle that is named.
+TEST(ThinObstacle, AnyContactIsOneOfBothBodies) {
+  std::mt19937 random(5);
+  const auto in = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto direction = [&] { return Vector3d(in(-1, 1), in(-1, 1), in(-1, 1)).normalized(); };
+  int contacts = 0, free = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::shared_ptr<fcl::CollisionGeometryd> solid;
+    const double r = in(0.001, 0.02), half = in(0.02, 0.5);
+    if (i % 3 == 0) solid = std::make_shared<fcl::Cylinderd>(r, 2 * half);
+    if (i % 3 == 1) solid = std::make_shared<fcl::Boxd>(2 * r, in(0.01, 0.5), 2 * half);
+    if (i % 3 == 2) solid = std::make_shared<fcl::Capsuled>(r, 2 * half);
+    const bool closed = i % 2 == 0;
+    const Isometry3d M = turned({in(-0.3, 0.3), in(-0.3, 0.3), in(-0.3, 0.3)}, direction());
+    const Scene scene(tube(closed), solid, M);
+    const double from = in(-0.3, 0.3), to = in(-0.3, 0.3);
+    const CertifiedResult any = scene.run(from, to, ContactMode::any);
+    EXPECT_EQ(any.status, scene.run(from, to, ContactMode::first).status) << i;
+    free += any.isFree();
+    if (any.isFree() || !any.certain) continue;
+    ++contacts;
+    ASSERT_EQ(any.contacts.size(), 1u) << i;
+    const CertifiedContact& contact = any.contacts[0];
+    ASSERT_EQ(contact.body1.name, "cart");
+    const Vector3d x = M.inverse() * contact.point;
+    double outside = 0;  // of the solid
+    if (i % 3 == 0) outside = std::max(std::hypot(x.x(), x.y()) - r, std::abs(x.z()) - half);
+    if (i % 3 == 1) outside = (x.cwiseAbs() - 0.5 * static_cast<const fcl::Boxd&>(*solid).side).maxCoeff();
+    if (i % 3 == 2) outside = (x - Vector3d(0, 0, std::clamp(x.z(), -half, half))).norm() - r;
+    EXPECT_LT(outside, 1e-9) << i;
+    // The named triangle lies in a wall of the tube, where it stands then: the point is at that wall too.
+    const Vector3d y = contact.point - Vector3d(from + contact.t_upper * (to - from), 0, 0);
+    const int wall = contact.b1 / 2;
+    const int axis = wall < 2 ? 1 : wall < 4 ? 0 : 2;
+    EXPECT_LT(std::abs(std::abs(y[axis]) - (axis == 2 ? 0.2 : 0.1)), 1e-9) << i << " wall " << wall;
+    EXPECT_LT(std::max({std::abs(y.x()) - 0.1, std::abs(y.y()) - 0.1, std::abs(y.z()) - 0.2}), 1e-9) << i;
+  }
+  std::printf("%d contacts, %d free\n", contacts, free);
+  EXPECT_GT(contacts, 500);
+  EXPECT_GT(free, 500);
+}
