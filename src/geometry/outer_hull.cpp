@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 // GJK as the engine has it; the portable instruction set serves here.
 #define FCL_ARTIC_ISA sse2
@@ -12,34 +13,29 @@
 namespace fcl_artic {
 namespace {
 
-constexpr std::size_t kMaxVertices = 64, kMaxPoints = 60000;
-/// So few different points make the hull themselves: it is the body's own then, and a convex body touches where its
-/// hull does.
-constexpr std::size_t kAllVertices = 160;
-constexpr int kDirections = 256;
-/// Directions in which the chosen vertices are nearer than this part of the body's size to its surface need no more.
+/// With so many points, or so many different ones, the body must be a scene.
+constexpr std::size_t kMaxPoints = 1000000, kMaxDifferent = 60000;
+constexpr int kDirections = 32;
+/// Points that are nearer to the hull than this part of the body's size are left to its radius.
 constexpr double kGoodEnough = 0.002;
 
-/// Evenly spread over the sphere (Fibonacci's spiral), in an order that is coarse before it is fine.
+/// Evenly spread over the sphere (Fibonacci's spiral).
 std::vector<Eigen::Vector3d> spreadDirections() {
   std::vector<Eigen::Vector3d> directions;
   for (int i = 0; i < kDirections; ++i) {
-    int k = 0;  // i with its eight bits reversed
-    for (int bit = 0; bit < 8; ++bit) k |= (i >> bit & 1) << (7 - bit);
-    const double z = 1 - (2 * k + 1) / static_cast<double>(kDirections), r = std::sqrt(1 - z * z);
-    const double angle = 2.399963229728653 * k;  // the golden angle
+    const double z = 1 - (2 * i + 1) / static_cast<double>(kDirections), r = std::sqrt(1 - z * z);
+    const double angle = 2.399963229728653 * i;  // the golden angle
     directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
   }
   return directions;
 }
 
-/// The points, each once; none when they are more than `most`.
-std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points, std::size_t most) {
+/// The points, each once.
+std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points) {
   std::sort(points.begin(), points.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
   });
   points.erase(std::unique(points.begin(), points.end()), points.end());
-  if (points.size() > most) points.clear();
   return points;
 }
 
@@ -80,19 +76,19 @@ class PointLanes {
 /// How far points are from the hull of a few vertices, from above.
 class HullDistance {
  public:
-  explicit HullDistance(const std::vector<Eigen::Vector3d>& vertices) {
-    for (const Eigen::Vector3d& v : vertices) {
-      packed_.insert(packed_.end(), v.data(), v.data() + 3);
-      reach_ = std::max(reach_, v.norm());
-      middle_ += v / static_cast<double>(vertices.size());
-    }
-    view_.vertices = packed_.data();
-    piece_.num_vertices = static_cast<std::int32_t>(vertices.size());
+  HullDistance() {
     point_.kind = engine::PieceKind::point;
     body_.tree_a = body_.tree_b = &view_;
     body_.a = &piece_;
     body_.b = &point_;
     for (int i = 0; i < 9; ++i) body_.pose.R[i] = i % 4 == 0;
+  }
+  void add(const Eigen::Vector3d& vertex) {
+    packed_.insert(packed_.end(), vertex.data(), vertex.data() + 3);
+    reach_ = std::max(reach_, vertex.norm());
+    sum_ += vertex;
+    view_.vertices = packed_.data();
+    ++piece_.num_vertices;
   }
   /// The distance of p from above: nearly the least where it exceeds `enough`, and else any value up to that.
   double operator()(const Eigen::Vector3d& p, double enough) {
@@ -100,7 +96,7 @@ class HullDistance {
     const double guess = last_.n == 3 ? distanceOfTriangle(p) : INFINITY;
     if (guess <= enough) return guess;
     for (int k = 0; k < 3; ++k) body_.pose.c[k] = p[k];
-    const Eigen::Vector3d direction = p - middle_;
+    const Eigen::Vector3d direction = p - sum_ / piece_.num_vertices;
     sse2::GjkResult g;
     sse2::gjk(body_, direction.data(), 1e-3, enough * (1 - 1e-9), 48, g);
     sse2::originWeights(g.simplex);
@@ -139,38 +135,73 @@ class HullDistance {
   engine::Piece piece_, point_;
   sse2::DifferenceBody body_;
   sse2::Simplex last_;
-  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   double reach_ = 0;
 };
 
 }  // namespace
 
-OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points) {
+OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& all_points, std::size_t most_exact, std::size_t most) {
   OuterHull hull;
-  if (points.size() < 4 || points.size() > kMaxPoints) return hull;
+  if (all_points.size() < 4 || all_points.size() > kMaxPoints) return hull;
+  const std::vector<Eigen::Vector3d> points = differentPoints(all_points);
+  if (points.size() > kMaxDifferent) return hull;
+  if (points.size() <= most_exact) {
+    hull.vertices = points;
+    return hull;
+  }
+  HullDistance distance;
+  const auto choose = [&](std::size_t point) {
+    hull.vertices.push_back(points[point]);
+    distance.add(points[point]);
+  };
+  // From a few points all around on, the one that is farthest from the hull is the next vertex. Distances only shrink
+  // as the hull grows: those in the heap are upper bounds, and only its top needs to be looked at again.
+  const PointLanes lanes(points);
+  std::set<std::size_t> first;
+  for (const Eigen::Vector3d& direction : spreadDirections()) {
+    first.insert(std::min(lanes.firstAt(direction, lanes.farthest(direction)), points.size() - 1));
+  }
+  for (std::size_t point : first) choose(point);
   Eigen::Vector3d lo = points[0], hi = points[0];
   for (const Eigen::Vector3d& p : points) {
     lo = lo.cwiseMin(p);
     hi = hi.cwiseMax(p);
   }
-  hull.vertices = differentPoints(points, kAllVertices);
-  if (!hull.vertices.empty()) return hull;
-  const double size = 0.5 * (hi - lo).norm();
-  static const std::vector<Eigen::Vector3d> kSpread = spreadDirections();
-  const PointLanes lanes(points);
-  for (const Eigen::Vector3d& direction : kSpread) {
-    const double value = lanes.farthest(direction);
-    double chosen = -INFINITY;
-    for (const Eigen::Vector3d& v : hull.vertices) chosen = std::max(chosen, direction.dot(v));
-    if (!(value - chosen > kGoodEnough * size)) continue;
-    hull.vertices.push_back(points[std::min(lanes.firstAt(direction, value), points.size() - 1)]);
-    if (hull.vertices.size() == kMaxVertices) break;
+  const double enough = kGoodEnough * 0.5 * (hi - lo).norm();
+  struct Far {
+    double distance;
+    std::size_t point, vertices;  ///< and the number of vertices that the distance is to
+    bool operator<(const Far& other) const { return distance < other.distance; }
+  };
+  std::vector<Far> heap;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double d = distance(points[i], enough);
+    hull.radius = std::max(hull.radius, std::min(d, enough));
+    if (d > enough) heap.push_back({d, i, hull.vertices.size()});
   }
-  HullDistance distance(hull.vertices);
-  // Some points from all over first: most others then need no more than the proof that they are no farther.
-  for (std::size_t i = 0; i < points.size(); i += 61)
-    hull.radius = std::max(hull.radius, distance(points[i], hull.radius));
-  for (const Eigen::Vector3d& p : points) hull.radius = std::max(hull.radius, distance(p, hull.radius));
+  std::make_heap(heap.begin(), heap.end());
+  while (!heap.empty()) {
+    std::pop_heap(heap.begin(), heap.end());
+    Far top = heap.back();
+    heap.pop_back();
+    if (top.vertices < hull.vertices.size()) {
+      top.distance = std::min(top.distance, distance(points[top.point], enough));
+      top.vertices = hull.vertices.size();
+      if (top.distance <= enough) {
+        hull.radius = std::max(hull.radius, top.distance);
+        continue;
+      }
+      heap.push_back(top);
+      std::push_heap(heap.begin(), heap.end());
+      continue;
+    }
+    if (hull.vertices.size() >= most) {
+      hull.radius = std::max(hull.radius, top.distance);
+      break;
+    }
+    choose(top.point);
+  }
   return hull;
 }
 

@@ -13,7 +13,9 @@ struct OuterHull {
   double radius = 0;
 };
 
-/// A hull of all points where they are at most 160 different ones, its radius 0; else of at most 64 of them. Empty for fewer than 4 points, and for so many that the body must be a scene.
-OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points);
+/// A hull of all points where they are at most `most_exact` different ones, its radius 0; else of at most `most` of
+/// them. Empty for fewer than 4 points, and for so many that the body must be a scene.
+OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points, std::size_t most_exact = 160,
+                        std::size_t most = 96);
 
 }  // namespace fcl_artic

@@ -249,7 +249,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Ve
   if (points.size() > kMostHullPoints) throw std::invalid_argument("it has too many vertices");
   requirePoints(points);
   auto tree = std::make_shared<ShapeTree>(Private());
-  tree->storeHull(points);
+  tree->outer_ = tree->hulls_.add(points, 0);
   BoxBounds box;
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = kInfinity;
@@ -315,24 +315,6 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
   return tree;
 }
 
-/// Makes points the hull that `outer_` is, eight lanes wide; its radius is left alone.
-void ShapeTree::storeHull(const std::vector<Eigen::Vector3d>& points) {
-  const std::size_t n = (points.size() + 7) / 8 * 8;
-  hulls_.resize(3 * n + 7);
-  const std::size_t misaligned = reinterpret_cast<std::uintptr_t>(hulls_.data()) / sizeof(double) % 8;
-  double* x = hulls_.data() + (8 - misaligned) % 8;
-  double reach = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d& v = points[std::min(i, points.size() - 1)];  // the last one fills up
-    for (std::size_t k = 0; k < 3; ++k) x[k * n + i] = v[static_cast<Eigen::Index>(k)];
-    reach = std::max(reach, v.squaredNorm());
-  }
-  view_.hulls = x;
-  outer_.kind = PieceKind::hull;
-  outer_.num_vertices = static_cast<std::int32_t>(n);
-  outer_.reach = std::sqrt(reach) * (1 + 1e-15);
-}
-
 /// One piece around a body of many: a hull of few vertices, grown so far that it holds all points.
 void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
   if (pieces_.size() == 1) {
@@ -341,9 +323,9 @@ void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
   }
   const OuterHull hull = makeOuterHull(points);
   if (hull.vertices.empty()) return;
-  storeHull(hull.vertices);
-  outer_.radius = hull.radius;
+  outer_ = hulls_.add(hull.vertices, hull.radius);
   view_.outer = &outer_;
+  view_.hulls = hulls_.data();
 }
 
 /// Points the view at what was built: a tree over pieces, or else the single piece.
@@ -355,6 +337,7 @@ void ShapeTree::show() {
   view_.pieces = single ? &outer_ : pieces_.data();
   view_.num_pieces = single ? 1 : static_cast<std::int32_t>(pieces_.size());
   view_.vertices = vertices_.data();
+  view_.hulls = hulls_.data();
   if (single) view_.outer = &outer_;
   view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
@@ -372,6 +355,11 @@ engine::CoreBox ShapeTree::coreBox() const {
   return box;
 }
 
+const engine::TreeView& ShapeTree::viewWithParts() const {
+  std::call_once(parts_once_, [this] { parts_ = std::make_unique<const ConvexParts>(view_); });
+  return parts_->view();
+}
+
 const ObbTree* ShapeTree::obbTree() const {
   std::call_once(obb_once_, [this] {
     if (ObbTree::covers(view_)) obb_ = std::make_unique<const ObbTree>(view_);
@@ -381,7 +369,7 @@ const ObbTree* ShapeTree::obbTree() const {
 
 std::size_t ShapeTree::bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(Node) + pieces_.capacity() * sizeof(Piece) +
-         (vertices_.capacity() + hulls_.capacity()) * sizeof(double);
+         vertices_.capacity() * sizeof(double) + hulls_.bytes();
 }
 
 std::array<double, 7> ShapeTree::lineSweptSphere() const {

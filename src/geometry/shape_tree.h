@@ -9,7 +9,9 @@
 
 #include <Eigen/Core>
 
+#include "geometry/convex_parts.h"
 #include "geometry/obb_tree.h"
+#include "geometry/packed_hulls.h"
 #include "narrowphase/problem.h"
 
 namespace fcl_artic {
@@ -39,10 +41,13 @@ class ShapeTree {
   static std::shared_ptr<const ShapeTree> fromPieces(std::vector<engine::Piece> pieces);
 
   const engine::TreeView& view() const { return view_; }
+  /// The same, a surface cut into convex parts, which are made when first asked for.
+  const engine::TreeView& viewWithParts() const;
   /// Box of the whole in its own frame.
   Eigen::Vector3d lower() const { return Eigen::Vector3f::Map(view_.nodes[0].lo).cast<double>(); }
   Eigen::Vector3d upper() const { return Eigen::Vector3f::Map(view_.nodes[0].hi).cast<double>(); }
-  /// Its triangles under a tree of oriented boxes; null for a body that has none (ObbTree::covers). Made when first asked for.
+  /// Its triangles under a tree of oriented boxes; null for a body that has none (ObbTree::covers). Made when first
+  /// asked for.
   const ObbTree* obbTree() const;
   /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
   /// @throws std::invalid_argument when it is unbounded.
@@ -58,16 +63,16 @@ class ShapeTree {
 
  private:
   void show();
-  void storeHull(const std::vector<Eigen::Vector3d>& points);
   void makeOuter(const std::vector<Eigen::Vector3d>& points);
   engine::Node root_[2];  ///< a single piece's node: most shapes then need no memory but this object's
   engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece
   std::vector<engine::Node> nodes_;
   std::vector<engine::Piece> pieces_;
   std::vector<double> vertices_;
-  std::vector<double> hulls_;  ///< with room for alignment
+  PackedHulls hulls_;
   engine::TreeView view_;
-  mutable std::once_flag obb_once_;
+  mutable std::once_flag parts_once_, obb_once_;
+  mutable std::unique_ptr<const ConvexParts> parts_;
   mutable std::unique_ptr<const ObbTree> obb_;
 };
 

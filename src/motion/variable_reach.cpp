@@ -8,6 +8,24 @@
 #include <Eigen/Core>
 
 namespace fcl_artic {
+namespace {
+
+using RowMajor = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+/// The largest value over the corners of the body's box; f is convex.
+template <class F>
+double mostOver(const engine::TreeView& body, const F& f) {
+  const engine::Node& root = body.nodes[0];
+  double most = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d x;
+    for (int k = 0; k < 3; ++k) x[k] = static_cast<double>(corner >> k & 1 ? root.hi[k] : root.lo[k]);
+    most = std::max(most, f(x));
+  }
+  return most;
+}
+
+}  // namespace
 
 double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Placement& placement,
                     const engine::TreeView& body, int variable, const std::function<double(int)>& size) {
@@ -30,19 +48,27 @@ double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Plac
   // A point p of the body in the last frame goes another rate |p|, or as Lemma 2 splits it: convex in p, so that the
   // corners of a box around the body say it all.
   const bool turns = !path.empty() && path.front()->kind == StepKind::revolute;
-  const engine::Node& root = body.nodes[0];
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const Eigen::Map<const RowMajor> R(placement.R, 3, 3);
-  double most = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    Eigen::Vector3d x;
-    for (int k = 0; k < 3; ++k) x[k] = static_cast<double>(corner >> k & 1 ? root.hi[k] : root.lo[k]);
+  const RowMajor R(placement.R, 3, 3);
+  const double most = mostOver(body, [&](const Eigen::Vector3d& x) {
     const Eigen::Vector3d p = R * x + Eigen::Vector3d::Map(placement.t);
-    most = std::max(most, turns ? rate * p.head<2>().norm() + rate_before * std::abs(p[2]) : rate * p.norm());
-  }
+    return turns ? rate * p.head<2>().norm() + rate_before * std::abs(p[2]) : rate * p.norm();
+  });
   // The placement's own error; all sums and products of a path of any length are within 1e-9 of themselves.
   const double error = 0x1p-52 * (placement.ulps + 64) * (placement.length + 4 * body.extent) * rate;
   return (reach + most + error) * (1 + 1e-9);
+}
+
+double reachOfBase(const engine::SweepStep& first, const engine::Placement& inverse, const engine::TreeView& body) {
+  const double multiplier = std::abs(first.multiplier);
+  if (first.kind == engine::StepKind::prismatic) return multiplier;
+  const RowMajor R(inverse.R, 3, 3), C(first.C, 3, 3);
+  const double most = mostOver(body, [&](const Eigen::Vector3d& x) {
+    const Eigen::Vector3d p =
+        C.transpose() * (R.transpose() * (x - Eigen::Vector3d::Map(inverse.t)) - Eigen::Vector3d::Map(first.p));
+    return p.head<2>().norm();
+  });
+  const double error = 0x1p-52 * (inverse.ulps + first.ulps + 64) * (inverse.length + first.length + 4 * body.extent);
+  return multiplier * (most + error) * (1 + 1e-9);
 }
 
 }  // namespace fcl_artic

@@ -16,4 +16,11 @@ namespace fcl_artic {
 double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Placement& placement,
                     const engine::TreeView& body, int variable, const std::function<double(int)>& size);
 
+/// The same seen from what the sweep carries, of a point of the body that stands in its base frame, where the variable
+/// moves the path's first step and no other: the step's axis is fixed in both, and what matters is how far the points
+/// are from it (doc/NUMERICS.md, Lemma 7).
+/// @param first  step of the path, revolute or prismatic.
+/// @param inverse  base frame in the body's tree frame.
+double reachOfBase(const engine::SweepStep& first, const engine::Placement& inverse, const engine::TreeView& body);
+
 }  // namespace fcl_artic

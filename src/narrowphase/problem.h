@@ -53,6 +53,8 @@ struct TreeView {
   const double* vertices = nullptr;  ///< xyz, packed
   const double* hulls = nullptr;     ///< see PieceKind; 64-byte aligned
   const Piece* outer = nullptr;      ///< one convex piece that holds the whole body; null: none worth having
+  const Piece* parts = nullptr;      ///< convex pieces that hold what is below a node each
+  const std::int16_t* part_of_node = nullptr;  ///< index into `parts`, -1: none; null: no node has one
   std::int32_t num_nodes = 0, num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
 };

@@ -163,6 +163,7 @@ struct ArticulatedCollisionManager::Impl {
   bool linkAbove(LinkId above, LinkId below) const;
   void readObstacle(Item& item) const;
   bool mayTouch(const Item& a, const Item& b) const;
+  const engine::TreeView& viewOf(const Item& obstacle) const;
   void buildRobot();
   void buildScene();
   void buildMoving();
@@ -299,6 +300,14 @@ bool ArticulatedCollisionManager::Impl::mayTouch(const Item& a, const Item& b) c
   return a.shape->view().num_pieces && b.shape->view().num_pieces && !allowed.allowed(a.name, b.name);
 }
 
+/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that they move amid it.
+const engine::TreeView& ArticulatedCollisionManager::Impl::viewOf(const Item& obstacle) const {
+  const auto size = [](const Item& item) { return item.shape->view().nodes[0].radius; };
+  const bool large = std::all_of(links.begin(), links.end(),
+                                 [&](const Item& link) { return 2 * size(link) < size(obstacle); });
+  return large ? obstacle.shape->view() : obstacle.shape->viewWithParts();
+}
+
 /// What depends on the links and what is allowed between them only.
 void ArticulatedCollisionManager::Impl::buildRobot() {
   sweeps.clear();
@@ -313,7 +322,7 @@ void ArticulatedCollisionManager::Impl::buildRobot() {
     const Carrier carrier = sweeps[0].carrier(item.link);
     carriers[i] = carrier;
     in_step[i] = carrier.offset * item.offset;
-    body.tree = &item.shape->view();
+    body.tree = &item.shape->viewWithParts();
     body.step = carrier.step;
     body.placement = makePlacement(carrier, item.offset);
     const std::array<double, 7>& lss = item.lss;
@@ -393,7 +402,7 @@ void ArticulatedCollisionManager::Impl::buildMoving() {
     const Item& item = moving[i];
     const std::size_t index = links.size() + i;
     engine::Body& body = bodies[index];
-    body.tree = &item.shape->view();
+    body.tree = &viewOf(item);
     body.mover = static_cast<std::int32_t>(movers.size());
     movers.push_back(static_cast<std::int32_t>(index));
     for (int k = 0; k < 3; ++k) {  // stage 1 knows the box of the whole path
@@ -450,7 +459,7 @@ void ArticulatedCollisionManager::Impl::buildScene() {
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const Item& item = obstacles[o];
     engine::Body& body = bodies[first + o];
-    body.tree = &item.shape->view();
+    body.tree = &viewOf(item);
     body.placement = makePlacement(item.offset);
     body.inverse = makePlacement(item.offset.inverse());
     worldBox(*item.shape, item.offset, body.placement, body.lo, body.hi);
@@ -463,7 +472,7 @@ void ArticulatedCollisionManager::Impl::buildScene() {
   obstacle_tree = buildBoxTree(boxes);
   still_bounds.clear();
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    const engine::TreeView& tree = obstacles[o].shape->view();
+    const engine::TreeView& tree = *bodies[first + o].tree;
     const engine::PieceKind kind = tree.pieces[0].kind;
     const bool solid = tree.num_pieces == 1 && kind != engine::PieceKind::vertices &&
                        kind != engine::PieceKind::halfspace && kind != engine::PieceKind::plane;

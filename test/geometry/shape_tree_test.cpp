@@ -74,7 +74,7 @@ TEST(OuterHull, HoldsAllPoints) {
     if (points.size() <= 160) {  // few: all of them
       ASSERT_EQ(hull.radius, 0);
     } else {
-      ASSERT_LE(hull.vertices.size(), hull.radius > 0 ? 64u : 160u);
+      ASSERT_LE(hull.vertices.size(), 96u);
     }
     for (int i = 0; i < 2000; ++i) {
       const Vector3d u = i % 2 ? unit(random) : (points[random() % points.size()] - hull.vertices[0]).normalized();
@@ -92,7 +92,7 @@ TEST(OuterHull, HoldsAllPoints) {
 // it.
 TEST(OuterHull, HoldsEachPointOfAMesh) {
   Random random(11);
-  int near_surface = 0;
+  int near_surface = 0, good_enough = 0;
   for (int round = 0; round < 30; ++round) {
     std::vector<Vector3d> points;
     const double waves = uniform(random, 1, 5), bump = uniform(random, 0, 0.4);
@@ -127,9 +127,92 @@ TEST(OuterHull, HoldsEachPointOfAMesh) {
       ASSERT_LE(u.dot(p), inside + hull.radius) << "round " << round;
       farthest = std::max(farthest, u.dot(p) - inside);
     }
-    near_surface += farthest > 0.998 * hull.radius;  // and the radius is no larger than it needs to be
+    // And the radius is no larger than it needs to be, but where 1/500 of the body's size is good enough.
+    if (hull.radius <= 0.002 * Vector3d(1.4, 0.98, 0.56).norm()) {
+      ++good_enough;
+    } else {
+      near_surface += farthest > 0.998 * hull.radius;
+    }
   }
-  EXPECT_EQ(near_surface, 30);
+  EXPECT_EQ(near_surface + good_enough, 30);
+  EXPECT_GT(near_surface, 5);
+}
+
+// The farthest points first: a finely cut cylinder's circles, which are told from others by 64 vertices only where
+// these are spread evenly.
+TEST(OuterHull, IsNearRoundBodies) {
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 500; ++i) {
+    const double a = 2 * 3.14159265358979 * i / 500;
+    for (const double z : {-0.3, -0.1, 0.1, 0.3}) points.emplace_back(0.1 * std::cos(a), 0.1 * std::sin(a), z);
+  }
+  const OuterHull hull = makeOuterHull(points, 0, 64);
+  EXPECT_LE(hull.vertices.size(), 64u);
+  EXPECT_LE(hull.radius,
+            4 * 0.1 * (1 - std::cos(3.14159265358979 / 32)));  // 32 on each circle, spread evenly: a quarter
+}
+
+namespace {
+
+/// Corners of the triangles below a node.
+void pointsBelow(const engine::TreeView& view, int node, std::vector<Vector3d>& points) {
+  const engine::Node& n = view.nodes[node];
+  if (!n.isLeaf()) {
+    pointsBelow(view, n.left(), points);
+    pointsBelow(view, n.right(), points);
+    return;
+  }
+  const double* v = view.vertices + 3 * static_cast<std::ptrdiff_t>(view.pieces[n.piece()].first_vertex);
+  for (int k = 0; k < 9; k += 3) points.push_back(Vector3d::Map(v + k));
+}
+
+}  // namespace
+
+TEST(ConvexParts, HoldWhatIsBelowTheirNodes) {
+  Random random(8);
+  int parts = 0;
+  for (int round = 0; round < 20; ++round) {
+    const std::vector<Vector3d> points = cloud(random, 300 + random() % 2000, 0.5);
+    const auto tree = ShapeTree::fromTriangles(points, anyTriangles(random, points.size(), 500 + random() % 3000));
+    const engine::TreeView& view = tree->viewWithParts();
+    ASSERT_EQ(view.nodes, tree->view().nodes);
+    ASSERT_TRUE(view.parts);
+    for (int node = 0; node < view.num_nodes; ++node) {
+      if (node == 1 || view.part_of_node[node] < 0) continue;
+      ++parts;
+      const engine::Piece& part = view.parts[view.part_of_node[node]];
+      const double* x = view.hulls + part.first_vertex;
+      ASSERT_EQ(reinterpret_cast<std::uintptr_t>(x) % 64, 0u);
+      std::vector<Vector3d> below;
+      pointsBelow(view, node, below);
+      for (int i = 0; i < 300; ++i) {
+        const Vector3d u = unit(random);
+        double outside = -INFINITY, inside = -INFINITY, reach = 0;
+        for (const Vector3d& p : below) outside = std::max(outside, u.dot(p - below[0]));
+        for (int j = 0; j < part.num_vertices; ++j) {
+          const Vector3d v(x[j], x[part.num_vertices + j], x[2 * part.num_vertices + j]);
+          inside = std::max(inside, u.dot(v - below[0]));
+          reach = std::max(reach, v.norm());
+        }
+        ASSERT_LE(outside, inside + part.radius) << "round " << round << ", node " << node;
+        ASSERT_LE(reach, part.reach);
+      }
+    }
+    // The whole's hull is still where it was.
+    const engine::Piece& outer = *view.outer;
+    for (int j = 0; j < 3 * outer.num_vertices; ++j) {
+      ASSERT_EQ(view.hulls[outer.first_vertex + j], tree->view().hulls[outer.first_vertex + j]);
+    }
+  }
+  EXPECT_GT(parts, 500);
+}
+
+TEST(ConvexParts, BodiesWithoutASurfaceHaveNone) {
+  Random random(9);
+  const std::vector<Vector3d> points = cloud(random, 500, 0.1);
+  EXPECT_FALSE(ShapeTree::fromHull(points)->viewWithParts().parts);
+  EXPECT_FALSE(ShapeTree::fromTriangle(points[0], points[1], points[2])->viewWithParts().parts);
+  EXPECT_FALSE(ShapeTree::fromPieces({})->viewWithParts().parts);
 }
 
 TEST(ShapeTree, EveryNodeHoldsItsPieces) {

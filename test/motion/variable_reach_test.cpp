@@ -102,6 +102,46 @@ TEST(VariableReach, NoPointGoesFarther) {
   EXPECT_GT(most, 0.95);
 }
 
+/// What stands in the base, seen from the tip, while the first joint alone moves.
+TEST(VariableReach, NothingOfTheBaseGoesFarther) {
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> u(-1, 1);
+  double most = 0;
+  int checked = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Chain chain = randomChain(random, 1 + i % 5);
+    FrameSweep sweep = FrameSweep::fromLink(chain.tree, 0);
+    sweep.carrier(chain.tip);
+    const engine::SweepStep& first = sweep.view().steps[0];
+    bool alone = first.parent < 0;
+    for (int s = 1; s < sweep.view().num_steps; ++s) alone = alone && sweep.view().steps[s].variable != first.variable;
+    if (!alone) continue;
+    ++checked;
+    const Vector3d c(u(random), u(random), u(random));
+    const Box box(c - Vector3d::Constant(0.1), c + Vector3d::Constant(0.1));
+    const Eigen::Isometry3d offset =
+        Eigen::Translation3d(u(random), 0, 0) * Eigen::AngleAxisd(u(random), Vector3d::UnitZ());
+    const double bound = reachOfBase(first, makePlacement(offset.inverse()), box.view);
+    for (int k = 0; k < 50; ++k) {
+      Eigen::VectorXd q(chain.tree.dof());
+      for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = kMost * u(random);
+      const Vector3d x = c + 0.1 * Vector3d(u(random), u(random), u(random));
+      const auto at = [&](double value) {
+        q[first.variable] = value;
+        std::vector<Eigen::Isometry3d> M_0;
+        chain.tree.forwardKinematics(q, M_0);
+        return Vector3d(M_0[static_cast<std::size_t>(chain.tip)].inverse() * (M_0[0] * (offset * x)));
+      };
+      const double from = kMost * u(random), step = k % 2 ? 1e-4 : kMost * u(random) - from;
+      const double way = (at(from + step) - at(from)).norm();
+      EXPECT_LE(way, bound * std::abs(step) * (1 + 1e-9) + 1e-12) << "chain " << i;
+      if (way > 0) most = std::max(most, way / (bound * std::abs(step)));
+    }
+  }
+  EXPECT_GT(most, 0.95);
+  EXPECT_GT(checked, 100);
+}
+
 /// Links in one line, turning alike: the farthest corner goes as far as is said.
 TEST(VariableReach, IsAttained) {
   std::mt19937 random(6);

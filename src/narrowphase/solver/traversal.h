@@ -172,6 +172,21 @@ inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
   });
 }
 
+/// Lanes of `mask` in which the hulls around what is below two nodes are not certainly apart: a concave body is cut
+/// into convex parts by them.
+inline unsigned Solver::partsMayTouch(int a, int b, unsigned mask) {
+  const auto part = [](const TreeView& tree, int node, const TreeView& other) -> const Piece* {
+    const bool whole = tree.num_pieces == 1 ||
+                       (node == 0 && (tree.parts || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
+    if (whole) return tree.outer;
+    return tree.part_of_node && tree.part_of_node[node] >= 0 ? tree.parts + tree.part_of_node[node] : nullptr;
+  };
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  if (!A.parts && !B.parts) return mask;
+  const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
+  return y ? notSeparated(*x, *y, mask, kMostHullOverlaps, [](int) {}) : mask;
+}
+
 /// Lanes of `mask` in which two leaves are not certainly apart.
 inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask) {
   ++statistics_.leaf_tests;
@@ -211,6 +226,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
   }
   const double split_time = last_ ? 0 : kSplitTime * amplitude_;
   Entry e = {pair, a, b, mask};
+  const int most = last_ ? 0x7fffffff : entries_.size() + kMostOpen;
   bool held = true;  // e goes on with a child; else it is the next of the stacks
   for (int lane = 0;;) {
     if (!held) {
@@ -229,6 +245,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     if (outOfBudget()) break;
     if (free_nodes_ && (free_nodes_[e.a / 64] >> e.a % 64 & 1)) continue;
     if (e.a != 0 || e.b != 0 || roots_batch_ != batch_) e.mask = nodesMayTouch(e.a, e.b, e.mask);
+    if (e.mask && (e.a != 0 || e.b != 0)) e.mask = partsMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
     if (x.isLeaf() && y.isLeaf()) {
@@ -240,7 +257,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       } else {
         entries_.push(e);
       }
-    } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time) {
+    } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time || entries_.size() > most) {
       entries_.push(e);
     } else {
       if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
