@@ -226,6 +226,9 @@ struct Statistics {
   double culling_us = 0, narrowphase_us = 0;
 };
 
+/// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.
+constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7;
+
 /// Two leaves that meet, or come too near to be told apart.
 struct LeafContact {
   std::int32_t pair, body_a, body_b, piece_a, piece_b;
@@ -234,7 +237,7 @@ struct LeafContact {
   double normal[3];         ///< in A's tree frame, from A to B
   double point[3];          ///< in A's tree frame at time `t`
   double t;                 ///< t_upper when certain, else t_lower
-  std::int32_t feature = -1;  ///< FeatureKind, where the solver knows it
+  std::int32_t feature = -1;  ///< FeatureKind, where the solver knows it: then the contact is reported as it is
 };
 
 /// A pair in contact at t = 0 and the time from which it is watched again; 2: never.

@@ -115,6 +115,8 @@ std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTr
 
 void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
                    engine::LeafContact& leaf, FeatureKind& feature) {
+  static_assert(static_cast<int>(FeatureKind::edgeFace) == engine::kEdgeFace &&
+                static_cast<int>(FeatureKind::faceEdge) == engine::kFaceEdge);
   if (leaf.feature >= 0) {  // its solver has done so
     feature = static_cast<FeatureKind>(leaf.feature);
     return;

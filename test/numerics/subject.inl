@@ -157,7 +157,8 @@ unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b)
   SweptLss swept[2];
   sweepLssOf(chain, in, a, swept[0]);
   sweepLssOf(chain, in, b, swept[1]);
-  return certainlyApart(swept[0], swept[1], in.margin);
+  Lanes square;
+  return certainlyApart(swept[0], swept[1], in.margin, square);
 }
 
 void sineCosineOf(const double* x, double* sine, double* cosine) {

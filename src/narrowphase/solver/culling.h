@@ -129,6 +129,7 @@ inline void Solver::cull() {
     }
   } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
+    const bool look = query_->any && !query_->every_pair && !query_->ignore_initial;
     const std::uint8_t* free = query_->link_free ? query_->link_free(query_->link_free_context) : nullptr;
     for (int p = 0; p < problem_->num_link_pairs; ++p) {
       const unsigned open = linkAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
@@ -141,7 +142,10 @@ inline void Solver::cull() {
       unsigned mask = open & ~lanesOf(out);
       if (mask && isLink(mover_a) && isLink(mover_b)) {
         const double margin = engine::marginOf(*problem_, query_->margin, problem_->num_scene_pairs + p);
-        mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], margin);
+        const SweptLss &lss_a = mover_lss_[mover_a], &lss_b = mover_lss_[mover_b];
+        Lanes square;
+        mask &= ~certainlyApart(lss_a, lss_b, margin, square);
+        if (mask && look) considerPose(problem_->num_scene_pairs + p, square, lss_a.radius + lss_b.radius);
       }
       if (mask) entries_.push({problem_->num_scene_pairs + p, 0, 0, mask});
     }

@@ -134,7 +134,8 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
 
 /// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction
 /// between the segments' nearest points, with the four differences of their ends.
-inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin) {
+/// @param[out] square  of the segments' distance in the middle of each lane, about.
+inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin, Lanes& square) {
   // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.
   Lanes x[3], y[3], r[3], l[3];
   for (int k = 0; k < 3; ++k) {
@@ -162,7 +163,7 @@ inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double marg
     least = i ? min(least, low) : low;
   }
   const double pad = roundingPart(a.ulps + b.ulps, max(a.rate, b.rate)) * (a.sizes + b.sizes + margin) + kLeastLength;
-  const Lanes square = dot(l, l);
+  square = dot(l, l);
   return greaterThanRoot(least, a.radius + b.radius + margin + pad, square) & greater(square, tiny);
 }
 
