@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 
 #include "geometry/outer_hull.h"
 
@@ -372,7 +372,12 @@ std::size_t ShapeTree::bytes() const {
          vertices_.capacity() * sizeof(double) + hulls_.bytes();
 }
 
-std::array<double, 7> ShapeTree::lineSweptSphere() const {
+const LineSweptSphere& ShapeTree::lineSweptSphere() const {
+  std::call_once(lss_once_, [this] { lss_ = makeLineSweptSphere(); });
+  return lss_;
+}
+
+LineSweptSphere ShapeTree::makeLineSweptSphere() const {
   // Points whose balls hold the body: vertices, or the corners of a shape's box (radii added at the end).
   std::vector<Eigen::Vector3d> points;
   double radius = 0;
@@ -396,46 +401,7 @@ std::array<double, 7> ShapeTree::lineSweptSphere() const {
       points.push_back(x);
     }
   }
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& x : points) mean += x;
-  mean /= static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& x : points) covariance += (x - mean) * (x - mean).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  // The principal axis, its line through the middle of the extents across it; the ends as far out as the round caps
-  // demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
-  const Eigen::Matrix3d axes = solver.eigenvectors();
-  Eigen::Vector3d lo = Eigen::Vector3d::Constant(kInfinity), hi = -lo;
-  for (const Eigen::Vector3d& x : points) {
-    lo = lo.cwiseMin(axes.transpose() * x);
-    hi = hi.cwiseMax(axes.transpose() * x);
-  }
-  const Eigen::Vector3d middle = 0.5 * (lo + hi);
-  double r = 0;
-  for (const Eigen::Vector3d& x : points) {
-    const Eigen::Vector3d y = axes.transpose() * x - middle;
-    r = std::max(r, std::hypot(y[0], y[1]));
-  }
-  r *= 1 + 1e-12;
-  double top = -kInfinity, bottom = kInfinity;
-  for (const Eigen::Vector3d& x : points) {
-    const Eigen::Vector3d y = axes.transpose() * x - middle;
-    const double cap = std::sqrt(std::max(0.0, r * r - y[0] * y[0] - y[1] * y[1]));
-    top = std::max(top, y[2] - cap);
-    bottom = std::min(bottom, y[2] + cap);
-  }
-  if (bottom > top) bottom = top = 0.5 * (bottom + top);
-  const Eigen::Vector3d p0 = axes * (middle + Eigen::Vector3d(0, 0, bottom)),
-                        p1 = axes * (middle + Eigen::Vector3d(0, 0, top));
-  // Whatever rounding did above: the radius is what the points need from the segment as it is stored.
-  double needed = 0;
-  const Eigen::Vector3d d = p1 - p0;
-  for (const Eigen::Vector3d& x : points) {
-    const double s = d.squaredNorm() > 0 ? std::clamp((x - p0).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
-    needed = std::max(needed, (x - p0 - s * d).norm());
-  }
-  needed = (needed + radius) * (1 + 1e-12) + 1e-15 * (p0.norm() + p1.norm());
-  return {p0[0], p0[1], p0[2], p1[0], p1[1], p1[2], needed};
+  return encloseInLineSweptSphere(points, radius);
 }
 
 }  // namespace fcl_artic

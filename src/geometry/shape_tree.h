@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "geometry/convex_parts.h"
+#include "geometry/line_swept_sphere.h"
 #include "geometry/obb_tree.h"
 #include "geometry/packed_hulls.h"
 #include "narrowphase/problem.h"
@@ -49,9 +50,9 @@ class ShapeTree {
   /// Its triangles under a tree of oriented boxes; null for a body that has none (ObbTree::covers). Made when first
   /// asked for.
   const ObbTree* obbTree() const;
-  /// A line swept sphere that holds the whole: p0, p1, r in the tree's frame.
+  /// A line swept sphere that holds the whole, in the tree's frame. Made when first asked for.
   /// @throws std::invalid_argument when it is unbounded.
-  std::array<double, 7> lineSweptSphere() const;
+  const LineSweptSphere& lineSweptSphere() const;
   /// A box that holds the whole, for stage 1.
   engine::CoreBox coreBox() const;
   /// Memory that it takes, roughly.
@@ -63,6 +64,7 @@ class ShapeTree {
 
  private:
   void show();
+  LineSweptSphere makeLineSweptSphere() const;
   void makeOuter(const std::vector<Eigen::Vector3d>& points);
   engine::Node root_[2];  ///< a single piece's node: most shapes then need no memory but this object's
   engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece
@@ -71,7 +73,8 @@ class ShapeTree {
   std::vector<double> vertices_;
   PackedHulls hulls_;
   engine::TreeView view_;
-  mutable std::once_flag parts_once_, obb_once_;
+  mutable std::once_flag parts_once_, obb_once_, lss_once_;
+  mutable LineSweptSphere lss_ = {};
   mutable std::unique_ptr<const ConvexParts> parts_;
   mutable std::unique_ptr<const ObbTree> obb_;
 };

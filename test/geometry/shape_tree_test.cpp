@@ -273,6 +273,48 @@ TEST(ShapeTree, LineSweptSphereHoldsTheBody) {
   }
 }
 
+TEST(ShapeTree, LineSweptSphereHoldsMorePointsThanItsSearchLooksAt) {
+  Random random(5);
+  for (const std::size_t size : {101u, 3000u, 90000u}) {
+    std::vector<Vector3d> points = cloud(random, size, 0.1);
+    for (Vector3d& p : points) p = p.norm() > 0 ? Vector3d(0.1 * p.normalized() + Vector3d(0.3, 4 * p[1], 0)) : p;
+    const engine::Piece ball = [] {
+      engine::Piece piece;
+      piece.kind = engine::PieceKind::point;
+      piece.radius = 0.05;
+      return piece;
+    }();
+    std::vector<engine::Piece> balls(points.size(), ball);
+    for (std::size_t i = 0; i < points.size(); ++i) std::copy_n(points[i].data(), 3, balls[i].center);
+    const LineSweptSphere lss = ShapeTree::fromPieces(balls)->lineSweptSphere();
+    for (const Vector3d& p : points) {
+      ASSERT_LE(distanceToSegment(p, Vector3d::Map(&lss[0]), Vector3d::Map(&lss[3])) + 0.05, lss[6]);
+    }
+  }
+}
+
+TEST(ShapeTree, LineSweptSphereIsSlim) {
+  // A prism over a triangle with corners on a circle, most of its points near one edge: neither the principal axis nor
+  // the middle of the extents is the circle's.
+  Random random(6);
+  std::vector<Vector3d> points;
+  const auto corner = [](int i, double z) {
+    const double angle = 2 * 3.14159265358979 / 3 * i;
+    return Vector3d(0.1 * std::cos(angle), 0.1 * std::sin(angle), z);
+  };
+  for (int i = 0; i < 3; ++i) {
+    for (const double z : {-0.3, 0.3}) points.push_back(corner(i, z));
+  }
+  for (int i = 0; i < 300; ++i) {
+    const double s = uniform(random, 0, 1);
+    points.push_back((1 - s) * corner(0, 0.3 * s) + s * corner(1, 0.3));
+  }
+  const LineSweptSphere lss = ShapeTree::fromHull(points)->lineSweptSphere();
+  const double length = (Vector3d::Map(&lss[3]) - Vector3d::Map(&lss[0])).norm();
+  const auto volume = [](double l, double r) { return r * r * (l + 4.0 / 3 * r); };
+  EXPECT_LT(volume(length, lss[6]), 1.15 * volume(0.6, 0.1));
+}
+
 TEST(ShapeTree, RefusesWhatItCannotHold) {
   const std::vector<Vector3d> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   EXPECT_THROW(ShapeTree::fromTriangles(points, {}), std::invalid_argument);

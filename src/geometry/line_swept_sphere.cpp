@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/line_swept_sphere.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+
+namespace fcl_artic {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Points = std::vector<Vector3d>;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// The search looks at the points that are farthest along so many directions, of at most about so many points.
+constexpr std::size_t kDirections = 100, kSampled = 20000;
+/// Its steps from each axis. Measured on a Panda: 35 % less volume than about the principal axis, and of 1,000 obstacles
+/// about it stage 1 leaves 9.4 pairs in place of 14.8; 150 leave 9.6, 2000 as many as 400.
+constexpr int kSteps = 400;
+
+struct Segment {
+  Vector3d p0, p1;
+  double length() const { return (p1 - p0).norm(); }
+};
+
+/// Largest distance of the points from the segment as it is stored. Rounding apart never too small: that from any point
+/// of the segment would do.
+double reach(const Segment& segment, const Points& points) {
+  const Vector3d d = segment.p1 - segment.p0;
+  const double square = d.squaredNorm(), inverse = square > 1e-200 ? 1 / square : 0;
+  double most = 0;
+  for (const Vector3d& x : points) {
+    const Vector3d y = x - segment.p0;
+    const double s = std::clamp(y.dot(d) * inverse, 0.0, 1.0);
+    most = std::max(most, (y - s * d).squaredNorm());
+  }
+  return std::sqrt(most);
+}
+
+/// Over pi.
+double volume(const Segment& segment, double r) {
+  return r * r * (segment.length() + 4.0 / 3 * r);
+}
+
+/// The longest last.
+Matrix3d principalAxes(const Points& points) {
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& x : points) mean += x;
+  mean /= static_cast<double>(points.size());
+  Matrix3d covariance = Matrix3d::Zero();
+  for (const Vector3d& x : points) covariance += (x - mean) * (x - mean).transpose();
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(covariance).eigenvectors();
+}
+
+/// Along the last of three axes, through the middle of the extents across it; the ends as far out as the round caps
+/// demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
+Segment alongAxis(const Matrix3d& axes, const Points& points) {
+  Vector3d lo = Vector3d::Constant(kInfinity), hi = -lo;
+  for (const Vector3d& x : points) {
+    lo = lo.cwiseMin(axes.transpose() * x);
+    hi = hi.cwiseMax(axes.transpose() * x);
+  }
+  const Vector3d middle = 0.5 * (lo + hi);
+  double r = 0;
+  for (const Vector3d& x : points) {
+    const Vector3d y = axes.transpose() * x - middle;
+    r = std::max(r, std::hypot(y[0], y[1]));
+  }
+  double top = -kInfinity, bottom = kInfinity;
+  for (const Vector3d& x : points) {
+    const Vector3d y = axes.transpose() * x - middle;
+    const double cap = std::sqrt(std::max(0.0, r * r - y[0] * y[0] - y[1] * y[1]));
+    top = std::max(top, y[2] - cap);
+    bottom = std::min(bottom, y[2] + cap);
+  }
+  if (bottom > top) bottom = top = 0.5 * (bottom + top);
+  return {axes * (middle + Vector3d(0, 0, bottom)), axes * (middle + Vector3d(0, 0, top))};
+}
+
+/// The few points that a good segment depends on, about: the farthest ones along directions all around.
+Points extremePoints(const Points& points) {
+  if (points.size() <= kDirections) return points;
+  const std::size_t stride = 1 + points.size() / kSampled;
+  Points kept;
+  for (std::size_t i = 0; i < kDirections; ++i) {  // a Fibonacci lattice
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / kDirections, r = std::sqrt(1 - z * z);
+    const double angle = 2.399963229728653 * static_cast<double>(i);
+    const Vector3d n(r * std::cos(angle), r * std::sin(angle), z);
+    std::size_t best = 0;
+    for (std::size_t j = 0; j < points.size(); j += stride) {
+      if (n.dot(points[j]) > n.dot(points[best])) best = j;
+    }
+    kept.push_back(points[best]);
+  }
+  return kept;
+}
+
+/// Random steps, longer after a gain, shorter else.
+Segment searched(Segment best, const Points& points, double radius) {
+  const double r = reach(best, points);
+  double least = volume(best, r + radius), step = 0.2 * r;
+  std::minstd_rand random(1);
+  const auto moved = [&] { return step * (2.0 * static_cast<double>(random()) / std::minstd_rand::max() - 1); };
+  for (int i = 0; i < kSteps; ++i) {
+    Segment tried = best;
+    for (int k = 0; k < 3; ++k) {
+      tried.p0[k] += moved();
+      tried.p1[k] += moved();
+    }
+    const double v = volume(tried, reach(tried, points) + radius);
+    step *= v < least ? 1.6 : 0.92;
+    if (v >= least) continue;
+    least = v;
+    best = tried;
+  }
+  return best;
+}
+
+}  // namespace
+
+LineSweptSphere encloseInLineSweptSphere(const std::vector<Eigen::Vector3d>& points, double radius) {
+  const Points few = extremePoints(points);
+  Matrix3d axes = principalAxes(points);
+  Segment best;
+  double r = 0, least = kInfinity;
+  for (int k = 0; k < 3; ++k) {
+    const Segment start = alongAxis(axes, points);
+    for (const Segment& segment : {start, searched(start, few, radius)}) {
+      const double needed = reach(segment, points) + radius, v = volume(segment, needed);
+      if (v >= least) continue;
+      least = v;
+      best = segment;
+      r = needed;
+    }
+    const Matrix3d turned = (Matrix3d() << axes.col(2), axes.col(0), axes.col(1)).finished();
+    axes = turned;
+  }
+  // Nothing above is relied on but reach(), of all points, and its rounding.
+  r = r * (1 + 1e-12) + 1e-15 * (best.p0.norm() + best.p1.norm());
+  return {best.p0[0], best.p0[1], best.p0[2], best.p1[0], best.p1[1], best.p1[2], r};
+}
+
+}  // namespace fcl_artic
