@@ -9,6 +9,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "geometry/spread_directions.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -18,7 +20,8 @@ using Points = std::vector<Vector3d>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The search looks at the points that are farthest along so many directions, of at most about so many points.
-constexpr std::size_t kDirections = 100, kSampled = 20000;
+constexpr int kDirections = 100;
+constexpr std::size_t kSampled = 20000;
 /// Its steps from each axis. Measured on a Panda: 35 % less volume than about the principal axis, and of 1,000
 /// obstacles about it stage 1 leaves 9.4 pairs in place of 14.8; 150 leave 9.6, 2000 as many as 400.
 constexpr int kSteps = 400;
@@ -84,13 +87,10 @@ Segment alongAxis(const Matrix3d& axes, const Points& points) {
 
 /// The few points that a good segment depends on, about: the farthest ones along directions all around.
 Points extremePoints(const Points& points) {
-  if (points.size() <= kDirections) return points;
+  if (points.size() <= static_cast<std::size_t>(kDirections)) return points;
   const std::size_t stride = 1 + points.size() / kSampled;
   Points kept;
-  for (std::size_t i = 0; i < kDirections; ++i) {  // a Fibonacci lattice
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / kDirections, r = std::sqrt(1 - z * z);
-    const double angle = 2.399963229728653 * static_cast<double>(i);
-    const Vector3d n(r * std::cos(angle), r * std::sin(angle), z);
+  for (const Vector3d& n : spreadDirections(kDirections)) {
     std::size_t best = 0;
     for (std::size_t j = 0; j < points.size(); j += stride) {
       if (n.dot(points[j]) > n.dot(points[best])) best = j;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "geometry/spread_directions.h"
+
 // GJK as the engine has it; the portable instruction set serves here.
 #define FCL_ARTIC_ISA sse2
 #define FCL_ARTIC_ISA_BITS 128
@@ -18,17 +20,6 @@ constexpr std::size_t kMaxPoints = 1000000, kMaxDifferent = 60000;
 constexpr int kDirections = 32;
 /// Points that are nearer to the hull than this part of the body's size are left to its radius.
 constexpr double kGoodEnough = 0.002;
-
-/// Evenly spread over the sphere (Fibonacci's spiral).
-std::vector<Eigen::Vector3d> spreadDirections() {
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1) / static_cast<double>(kDirections), r = std::sqrt(1 - z * z);
-    const double angle = 2.399963229728653 * i;  // the golden angle
-    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  }
-  return directions;
-}
 
 /// The points, each once.
 std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points) {
@@ -159,7 +150,7 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& all_points, std::siz
   // as the hull grows: those in the heap are upper bounds, and only its top needs to be looked at again.
   const PointLanes lanes(points);
   std::set<std::size_t> first;
-  for (const Eigen::Vector3d& direction : spreadDirections()) {
+  for (const Eigen::Vector3d& direction : spreadDirections(kDirections)) {
     first.insert(std::min(lanes.firstAt(direction, lanes.farthest(direction)), points.size() - 1));
   }
   for (std::size_t point : first) choose(point);
