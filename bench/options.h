@@ -24,8 +24,7 @@ inline std::optional<int> readOptions(CLI::App& app, Report& report, int argc, c
     return app.exit(error);
   }
   std::vector<std::string> rest = app.remaining();
-  rest.insert(rest.begin(), argv[0]);
-  std::vector<char*> arguments;
+  std::vector<char*> arguments = {argv[0]};  // Google Benchmark keeps the pointer
   for (std::string& argument : rest) arguments.push_back(argument.data());
   int left = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/managed_body.h"
+
+#include <stdexcept>
+
+#include "adapters/fcl/fcl_geometry.h"
+#include "adapters/fcl/fcl_motion.h"
+
+namespace fcl_artic {
+
+void ManagedBody::readShape(const std::string& what) {
+  const std::shared_ptr<const fcl::CollisionGeometryd> current =
+      object ? object->collisionGeometry() : moving->collisionGeometry();
+  if (!current) throw std::invalid_argument(what + ": the object has no geometry");
+  if (current == geometry) return;
+  try {
+    shape = readGeometry(*current);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  geometry = current;
+}
+
+void ManagedBody::readObstacle() {
+  const std::string what = "obstacle '" + name + "'";
+  if (object) {
+    const Eigen::Isometry3d M = requireRigid(object->getTransform(), what);
+    readShape(what);
+    offset = M;
+    return;
+  }
+  readShape(what);
+  const fcl::MotionBased* read = moving->getMotion();
+  if (!read) throw std::invalid_argument(what + ": it has no motion");
+  try {
+    motion = readMotion(*read);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  const bool bounded = size() < engine::kUnbounded;
+  const Eigen::Vector3d far = Eigen::Vector3d::Constant(engine::kUnbounded);
+  if (bounded) enclosePath(motion, shape->lower(), shape->upper(), path_lower, path_upper);
+  path_lower = bounded ? path_lower.cwiseMax(-far) : Eigen::Vector3d(-far);
+  path_upper = bounded ? path_upper.cwiseMin(far) : far;
+}
+
+void ManagedBody::worldBox(const Eigen::Isometry3d& M, const engine::Placement& placement, double* lo,
+                           double* hi) const {
+  const Eigen::Vector3d c = 0.5 * (shape->lower() + shape->upper()), h = 0.5 * (shape->upper() - shape->lower());
+  const Eigen::Vector3d center = M * c, half = M.linear().cwiseAbs() * h;
+  // The placement's own error and a dozen roundings of numbers no larger than these.
+  const double pad = 0x1p-52 * (placement.ulps + 32) * (c.cwiseAbs().sum() + h.sum() + placement.length);
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = center[k] - half[k] - pad;
+    hi[k] = center[k] + half[k] + pad;
+  }
+}
+
+}  // namespace fcl_artic

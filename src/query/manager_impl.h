@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The manager inside: what callers told it (Registry), what is made of that for queries (Setup), and who does stage 2.
+// manager.cpp forwards changes to them, manager_query.cpp asks and reports.
+#pragma once
+
+#include <memory>
+
+#include "fcl_artic/manager.h"
+#include "query/registry.h"
+#include "query/setup.h"
+#include "visibility/choice.h"
+#include "visibility/culler.h"
+
+namespace fcl_artic {
+
+/// Who does stage 2, and what it was measured to be worth to each solver.
+struct Stage2 {
+  explicit Stage2(std::shared_ptr<const VisibilityCuller> by)
+      : culler(std::move(by)), standard(visibility::ExecutorLoan::firstUse(*culler)),
+        redon(visibility::ExecutorLoan::firstUse(*culler)) {}
+  std::shared_ptr<const VisibilityCuller> culler;
+  visibility::Choice standard, redon;
+};
+
+struct ArticulatedCollisionManager::Impl {
+  explicit Impl(std::shared_ptr<const KinematicTree> tree) : registry(std::move(tree)) {}
+
+  Registry registry;
+  Setup setup;
+  std::unique_ptr<Stage2> stage2 = std::make_unique<Stage2>(std::make_shared<VisibilityCuller>());
+};
+
+}  // namespace fcl_artic

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One query: the motion's variables, the pairs and margins that are asked for, one of the solvers, and the answer as
+// users see it.
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "query/aspects.h"
+#include "query/engine_query.h"
+#include "query/manager_impl.h"
+#include "visibility/solve.h"
+
+namespace fcl_artic {
+namespace {
+
+/// The motion's variables, then those of the moving obstacles.
+/// @param moving  the latter, column k for t^k.
+/// @param time  of the obstacles' motions.
+/// @param memory  for them, when there are both.
+void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, const TimePart& time,
+                  std::vector<double>& memory, engine::Query& query) {
+  const Eigen::MatrixXd& own = motion.variables();
+  const Eigen::MatrixXd part = time.whole() ? Eigen::MatrixXd() : partOf(moving, time);
+  const Eigen::MatrixXd& others = time.whole() ? moving : part;
+  query.coefficients = own.data();
+  query.num_variables = static_cast<std::int32_t>(own.rows());
+  query.degree = static_cast<std::int32_t>(own.cols()) - 1;
+  query.orientations = motion.orientations().data();
+  if (others.rows() == 0) return;
+  const Eigen::Index columns = std::max(own.cols(), others.cols());
+  memory.assign(static_cast<std::size_t>((own.rows() + others.rows()) * columns), 0);
+  Eigen::Map<Eigen::MatrixXd> all(memory.data(), own.rows() + others.rows(), columns);
+  all.topLeftCorner(own.rows(), own.cols()) = own;
+  all.bottomLeftCorner(others.rows(), others.cols()) = others;
+  query.coefficients = memory.data();
+  query.num_variables = static_cast<std::int32_t>(all.rows());
+  query.degree = static_cast<std::int32_t>(columns) - 1;
+}
+
+/// Leaves the link pairs that the request asks for. Those with moving obstacles are the scene's, though they stand with
+/// those of two links.
+void restrictPairs(const CertifiedRequest& request, std::int32_t num_self_pairs, engine::Problem& problem) {
+  if (!request.check_scene) problem.num_link_pairs = num_self_pairs;
+  if (!request.check_self) {
+    problem.link_pairs += num_self_pairs;
+    if (problem.link_margins) problem.link_margins += num_self_pairs;
+    problem.num_link_pairs -= num_self_pairs;
+  }
+}
+
+/// What a solver says, with its stage 2.
+struct Solved {
+  engine::Answer answer;
+  visibility::Report stage;
+  RedonStatistics redon;
+};
+
+void solve(const Registry& registry, Stage2& stage2, const CertifiedRequest& request, const engine::Problem& problem,
+           engine::Query& query, Workspace& workspace, Solved& solved) {
+  if (request.method == Method::Redon2004) {
+    const auto treeOf = [&](std::int32_t body) { return registry.body(body).shape->obbTree(); };
+    const auto method = [&](const engine::Query& asked, engine::Answer& out) {
+      RedonStatistics work;
+      redon::solve(workspace.redon(), workspace.engine(), problem, asked, request.redon, treeOf, out, work);
+      addWork(work, solved.redon);  // of both solves, where there are two
+      solved.redon.pairs_by_standard = work.pairs_by_standard;
+    };
+    visibility::solve(*stage2.culler, stage2.redon, request.visibility, method, problem, query, solved.answer,
+                      solved.stage);
+  } else {
+    const auto method = [&](const engine::Query& asked, engine::Answer& out) {
+      engine::engine().solve(workspace.engine(), problem, asked, out);
+    };
+    visibility::solve(*stage2.culler, stage2.standard, request.visibility, method, problem, query, solved.answer,
+                      solved.stage);
+  }
+}
+
+FeatureKind swapped(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::vertexEdge: return FeatureKind::edgeVertex;
+    case FeatureKind::edgeVertex: return FeatureKind::vertexEdge;
+    case FeatureKind::vertexFace: return FeatureKind::faceVertex;
+    case FeatureKind::faceVertex: return FeatureKind::vertexFace;
+    case FeatureKind::edgeFace: return FeatureKind::faceEdge;
+    case FeatureKind::faceEdge: return FeatureKind::edgeFace;
+    default: return kind;
+  }
+}
+
+/// A contact as users see it: features named, in world axes, links before obstacles.
+/// @param time  of the obstacles' motions.
+CertifiedContact report(const Registry& registry, void* workspace, const engine::Problem& problem,
+                        const JointMotion& motion, const CertifiedRequest& request, const TimePart& time,
+                        engine::LeafContact leaf) {
+  const ManagedBody &a = registry.body(leaf.body_a), &b = registry.body(leaf.body_b);
+  CertifiedContact contact;
+  if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
+    refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
+  }
+  const auto carried = [&] {
+    std::vector<Eigen::Isometry3d> M_0;
+    registry.tree()->forwardKinematics(motion.configuration(leaf.t), M_0);
+    return M_0[static_cast<std::size_t>(a.link)] * a.offset;
+  };
+  const Eigen::Isometry3d M_0a = a.link >= 0 ? carried() : a.pose(time.at(leaf.t));
+  contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
+  contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
+  contact.body1 = a.reference();
+  contact.body2 = b.reference();
+  contact.o1 = a.geometry.get();
+  contact.o2 = b.geometry.get();
+  contact.b1 = primitiveId(a.geometry.get(), *a.shape, leaf.piece_a);
+  contact.b2 = primitiveId(b.geometry.get(), *b.shape, leaf.piece_b);
+  if (a.link < 0) {
+    contact.feature = swapped(contact.feature);
+    std::swap(contact.body1, contact.body2);
+    std::swap(contact.o1, contact.o2);
+    std::swap(contact.b1, contact.b2);
+    contact.normal = -contact.normal;
+  }
+  contact.t_lower = leaf.t_lower;
+  contact.t_upper = leaf.t_upper;
+  contact.certain = leaf.certain;
+  return contact;
+}
+
+/// The solver's work and stage 2's.
+QueryStatistics workOf(const Solved& solved) {
+  QueryStatistics statistics = statisticsOf(solved.answer.statistics);
+  const visibility::Report& stage = solved.stage;
+  statistics.visibility_pairs = stage.pairs;
+  statistics.visibility_culled = stage.culled;
+  statistics.visibility_nodes = stage.nodes;
+  statistics.visibility_pieces = stage.pieces;
+  statistics.visibility_trials = stage.trials;
+  statistics.visibility_repeated = stage.repeated;
+  statistics.visibility_us = stage.elapsed_us;
+  statistics.visibility_executor = stage.executor;
+  statistics.visibility_fallback = stage.fallback;
+  statistics.redon = solved.redon;
+  return statistics;
+}
+
+}  // namespace
+
+void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
+                                                    CertifiedResult& result) const {
+  collideMotion(motion, request, Aspects(), result);
+}
+
+void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
+                                                const Aspects& aspects, CertifiedResult& result) const {
+  const Registry& registry = impl_->registry;
+  const Setup& setup = impl_->setup;
+  const KinematicTree& robot = *registry.tree();
+  if (!setup.ready()) {
+    throw std::logic_error(
+        "ArticulatedCollisionManager: call setup() after changing objects, links, margins or allowed pairs");
+  }
+  if (motion.size() != robot.dof()) {
+    throw std::invalid_argument("the motion has " + std::to_string(motion.size()) + " joint values, robot '" +
+                                robot.name() + "' has " + std::to_string(robot.dof()));
+  }
+  engine::Query query = makeQuery(request);
+
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point t) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - t).count();
+  };
+  const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
+  const WorkspaceLoan workspace;
+  setVariables(motion, setup.movingCoefficients(), aspects.time, workspace->coefficients, query);
+  engine::Problem problem = setup.problem();
+  const BoundedParts parts(aspects.time, problem);
+  if (!aspects.own_margins) {
+    problem.scene_margins = problem.link_margins = nullptr;
+    problem.largest_margin = 0;
+  }
+  restrictPairs(request, setup.numSelfPairs(), problem);
+  const LinkTables& tables = setup.tables();
+  const auto byTables = [&] { return tables.freeParts(problem, motion, request.margin, workspace->link_free); };
+  if (request.check_self && request.method == Method::standard && !tables.empty()) {
+    query.link_free = [](const void* context) { return (*static_cast<decltype(byTables)*>(context))(); };
+    query.link_free_context = &byTables;
+  }
+  query.check_self = problem.num_link_pairs > 0;
+  Solved solved;
+  solve(registry, *impl_->stage2, request, problem, query, *workspace, solved);
+  const engine::Answer& answer = solved.answer;
+  const Clock::time_point end = request.measure_times ? Clock::now() : Clock::time_point();
+
+  result.status = statusOf(answer.verdict);
+  result.t_lower = answer.t_lower;
+  result.t_upper = answer.t_upper;
+  result.certain = answer.certain;
+  result.contacts.clear();
+  for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
+    result.contacts.push_back(
+        report(registry, workspace->engine(), problem, motion, request, aspects.time, answer.contacts[i]));
+    const CertifiedContact& contact = result.contacts.back();
+    if (contact.certain && contact.t_upper < result.t_upper) {
+      result.t_upper = contact.t_upper;
+      result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
+    }
+  }
+  result.M_0_at_lower.clear();
+  if (!result.isFree()) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
+  result.ignored_initial_contacts.clear();
+  for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+    result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
+                                                 registry.body(answer.ignored[i].body_b).reference());
+  }
+  if (aspects.never_apart) {
+    aspects.never_apart->clear();
+    for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+      aspects.never_apart->push_back(answer.ignored[i].watch_from > 1);
+    }
+  }
+  result.statistics = workOf(solved);
+  if (request.measure_times) {
+    result.statistics.report_us = since(end);
+    result.statistics.total_us = since(begin);
+  }
+}
+
+void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
+                                          CertifiedResult& result) const {
+  continuousCollide(JointMotion::linear(tree(), q, q), request, result);
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which links of a tree are neighbours, that may always touch; and which of two carries the other.
+#pragma once
+
+#include <set>
+
+#include "fcl_artic/kinematic_tree.h"
+
+namespace fcl_artic {
+
+/// Joined by one moving joint at most, which leaves none of them free, over links without geometry only.
+bool areNeighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry, LinkId a, LinkId b);
+
+/// Whether `below` is the link itself or a descendant of it.
+bool linkAbove(const KinematicTree& tree, LinkId above, LinkId below);
+
+}  // namespace fcl_artic
