@@ -126,8 +126,8 @@ Segment searched(Segment best, const Points& points, double radius) {
 LineSweptSphere encloseInLineSweptSphere(const std::vector<Eigen::Vector3d>& points, double radius) {
   const Points few = extremePoints(points);
   Matrix3d axes = principalAxes(points);
-  Segment best = alongAxis(axes, points);
-  double r = reach(best, points) + radius, least = volume(best, r);
+  Segment best = {Vector3d::Zero(), Vector3d::Zero()};
+  double r = 0, least = kInfinity;
   for (int k = 0; k < 3; ++k) {
     const Segment start = alongAxis(axes, points);
     for (const Segment& segment : {start, searched(start, few, radius)}) {

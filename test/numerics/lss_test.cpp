@@ -47,6 +47,19 @@ struct Carried {
   }
 };
 
+/// Draws a link that its joints carry, and its line swept sphere, for f(subject, mode, c, body); a case without is left
+/// out.
+template <class F>
+void drawCarried(Random& random, const F& f) {
+  static const std::vector<const Subject*> tested = subjects();
+  const int mode = kRoundingModes[random.below(4)];
+  PairCase c(random, mode);
+  if (c.link_a >= 0 || c.carrier.step < 0) return;
+  const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
+  Carried body(random, c);
+  f(subject, mode, c, body);
+}
+
 Eigen::Vector3d rounded(const Real3& x) {
   return {x[0].toDouble(), x[1].toDouble(), x[2].toDouble()};
 }
@@ -54,10 +67,21 @@ Eigen::Vector3d rounded(const Real3& x) {
 /// What a campaign of touching pairs counts.
 struct Touching {
   int checks = 0, wrong = 0, wrong_mutant = 0, told_apart = 0;
-  /// @param apart  answers for a clearance: of the bodies the larger part of which they are apart.
-  template <class F>
-  void check(double gap, double size, int lane, const F& apart) {
-    const auto claims = [&](double clearance) { return (apart(clearance) >> lane & 1) != 0; };
+  /// @param gap  how far the body's segment is from the other body without its radius.
+  /// @param size  that errors scale with.
+  /// @param setRadius  of the other body.
+  /// @param ask  the lanes in which they are told apart.
+  template <class SetRadius, class Ask>
+  void check(double gap, double size, int mode, PairCase& c, Carried& body, const SetRadius& setRadius,
+             const Ask& ask) {
+    // A clearance is made up of both radii and a margin.
+    const auto claims = [&](double clearance) {
+      setRadius(0.25 * clearance);
+      c.in.margin = 0.25 * clearance;
+      body.setRadius(c, 0.5 * clearance);
+      const ScopedRounding scope(mode);
+      return (ask() >> body.lane & 1) != 0;
+    };
     ++checks;
     wrong += claims(gap + 8e-15 * size);
     wrong_mutant += claims(gap * (1 - 1e-7) - 1e-12 * size);
@@ -74,14 +98,8 @@ struct Touching {
 
 TEST(LineSweptSphere, CertificateWithBoxIsNeverWrong) {
   Random random(seedOf("LssBox"));
-  const std::vector<const Subject*> tested = subjects();
   Touching touching;
-  while (touching.checks < scaled(20000)) {
-    const int mode = kRoundingModes[random.below(4)];
-    PairCase c(random, mode);
-    if (c.link_a >= 0 || c.carrier.step < 0) continue;
-    const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
-    Carried body(random, c);
+  const auto check = [&](const Subject& subject, int mode, PairCase& c, Carried& body) {
     // A point of the box's surface, and a direction outwards there.
     StillBox box;
     Eigen::Vector3d y, out(0, 0, 0);
@@ -102,27 +120,17 @@ TEST(LineSweptSphere, CertificateWithBoxIsNeverWrong) {
     M.translation() = rounded(body.x) - M.linear() * (y + gap * out);
     box.inverse = makePlacement(M.inverse());
     const double size = rounded(body.x).norm() + M.translation().norm() + y.norm() + gap + c.extent_b;
-    touching.check(gap, size, body.lane, [&](double clearance) {
-      box.radius = 0.25 * clearance;
-      c.in.margin = 0.25 * clearance;
-      body.setRadius(c, 0.5 * clearance);
-      const ScopedRounding scope(mode);
-      return subject.apartFromBox(c.in, body.input, box);
-    });
-  }
+    const auto setRadius = [&](double radius) { box.radius = radius; };
+    touching.check(gap, size, mode, c, body, setRadius, [&] { return subject.apartFromBox(c.in, body.input, box); });
+  };
+  while (touching.checks < scaled(20000)) drawCarried(random, check);
   touching.report();
 }
 
 TEST(LineSweptSphere, CertificateWithAnotherIsNeverWrong) {
   Random random(seedOf("LssLss"));
-  const std::vector<const Subject*> tested = subjects();
   Touching touching;
-  while (touching.checks < scaled(20000)) {
-    const int mode = kRoundingModes[random.below(4)];
-    PairCase c(random, mode);
-    if (c.link_a >= 0 || c.carrier.step < 0) continue;
-    const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
-    Carried body(random, c);
+  const auto check = [&](const Subject& subject, int mode, PairCase& c, Carried& body) {
     // The other one stands still or is carried by a link above; its segment comes from a point near the first one's.
     LinkId link = c.link_b;
     for (int up = random.below(4); up > 0 && link >= 0; --up) link = c.tree.parentLink(link);
@@ -146,29 +154,20 @@ TEST(LineSweptSphere, CertificateWithAnotherIsNeverWrong) {
     const double distance = norm(body.x - y).toDouble();
     const double size = rounded(body.x).norm() + reach + gap;
     c.in.sweep = c.sweep->view();
-    touching.check(distance, size, body.lane, [&](double clearance) {
-      other.lss[6] = 0.25 * clearance + 0x1p-52 * (carrier.ulps + 16) * reach;
-      c.in.margin = 0.25 * clearance;
-      body.setRadius(c, 0.5 * clearance);
-      const ScopedRounding scope(mode);
-      return subject.apartFromLss(c.in, body.input, other);
-    });
-  }
+    const auto setRadius = [&](double radius) { other.lss[6] = radius + 0x1p-52 * (carrier.ulps + 16) * reach; };
+    touching.check(distance, size, mode, c, body, setRadius,
+                   [&] { return subject.apartFromLss(c.in, body.input, other); });
+  };
+  while (touching.checks < scaled(20000)) drawCarried(random, check);
   touching.report();
 }
 
 TEST(LineSweptSphere, BoxesHoldIt) {
   Random random(seedOf("LssBoxes"));
-  const std::vector<const Subject*> tested = subjects();
   const int cases = scaled(10000) / 8;
-  int checks = 0;
+  int i = 0, checks = 0;
   double least = 1;
-  for (int i = 0; i < cases; ++i) {
-    const int mode = kRoundingModes[random.below(4)];
-    const PairCase c(random, mode);
-    if (c.link_a >= 0 || c.carrier.step < 0) continue;
-    const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
-    Carried body(random, c);
+  const auto check = [&](const Subject& subject, int mode, const PairCase& c, Carried& body) {
     const double radius = random.size(1e-3, 1);
     body.setRadius(c, radius);
     BoxOutput box;
@@ -190,7 +189,8 @@ TEST(LineSweptSphere, BoxesHoldIt) {
         ++checks;
       }
     }
-  }
+  };
+  for (; i < cases && !testing::Test::HasFatalFailure(); ++i) drawCarried(random, check);
   std::printf("%d checks; nearest a ball came to a wall: %.2g of its radius\n", checks, least);
   EXPECT_GT(checks, cases);
   EXPECT_LT(least, 1e-9) << "the boxes are never filled: the test tells little";

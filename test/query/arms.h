@@ -51,16 +51,24 @@ inline CertifiedResult ask(const ArticulatedCollisionManager& manager, const Eig
   return result;
 }
 
-/// A slider along x, whose link "cart" carries a ball of 0.1; variable: x.
+/// Links in a row, each on a slider along x on the one before.
+inline std::shared_ptr<KinematicTree> sliderTree(const std::vector<std::string>& links) {
+  auto tree = std::make_shared<KinematicTree>("slider");
+  for (const std::string& link : links) tree->addLink(link);
+  for (std::size_t i = 1; i < links.size(); ++i) {
+    tree->addJoint(makeJoint("slide" + std::to_string(i), JointType::prismatic, links[i - 1], links[i],
+                             Eigen::Vector3d::UnitX()));
+  }
+  return tree;
+}
+
+/// A slider along x, whose link "cart" carries one geometry; variable: x.
 struct Cart {
-  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("cart");
-  std::shared_ptr<fcl::CollisionObjectd> body = ball(0.1);
-  std::unique_ptr<ArticulatedCollisionManager> manager;
-  Cart() {
-    tree->addLink("rail");
-    tree->addLink("cart");
-    tree->addJoint(makeJoint("slide", JointType::prismatic, "rail", "cart", Eigen::Vector3d::UnitX()));
-    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+  std::shared_ptr<KinematicTree> tree = sliderTree({"rail", "cart"});
+  std::shared_ptr<fcl::CollisionObjectd> body;
+  std::unique_ptr<ArticulatedCollisionManager> manager = std::make_unique<ArticulatedCollisionManager>(tree);
+  explicit Cart(std::shared_ptr<fcl::CollisionGeometryd> geometry = std::make_shared<fcl::Sphered>(0.1))
+      : body(object(std::move(geometry))) {
     manager->bind("cart", body.get());
   }
   CertifiedResult run(double from, double to, const CertifiedRequest& request = {}) const {

@@ -7,87 +7,34 @@
 #include <cstdio>
 #include <random>
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/math/bv/OBBRSS.h>
 #include <gtest/gtest.h>
 
-#include "fcl_artic/manager.h"
+#include "arms.h"
+#include "meshes.h"
 
 using namespace fcl_artic;
+using namespace fcl_artic::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 namespace {
 
-using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
-
-/// The surface of a box whose sides are cut into n x n squares.
-std::shared_ptr<Mesh> surface(const Vector3d& half, int n) {
-  std::vector<Vector3d> v;
-  std::vector<fcl::Triangle> t;
-  for (int side = 0; side < 6; ++side) {
-    const int x = side / 2, y = (x + 1) % 3, z = (x + 2) % 3;
-    const std::size_t first = v.size(), row = static_cast<std::size_t>(n) + 1;
-    for (int i = 0; i <= n; ++i) {
-      for (int j = 0; j <= n; ++j) {
-        Vector3d p;
-        p[x] = side % 2 ? half[x] : -half[x];
-        p[y] = half[y] * (2.0 * i / n - 1);
-        p[z] = half[z] * (2.0 * j / n - 1);
-        v.push_back(p);
-      }
-    }
-    for (std::size_t i = 0; i + 1 < row; ++i) {
-      for (std::size_t j = 0; j + 1 < row; ++j) {
-        const std::size_t at = first + i * row + j;
-        t.emplace_back(at, at + row, at + row + 1);
-        t.emplace_back(at, at + row + 1, at + 1);
-      }
-    }
-  }
-  auto mesh = std::make_shared<Mesh>();
-  mesh->beginModel();
-  mesh->addSubModel(v, t);
-  mesh->endModel();
-  return mesh;
-}
-
-/// One mesh on the base, the other on two sliders along x.
-struct Slider {
-  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("slider");
+/// One mesh on the base, the other on two sliders along x: links with one joint between them are not checked.
+struct Crossing {
   fcl::CollisionObjectd still, moving;
-  ArticulatedCollisionManager manager;
+  ArticulatedCollisionManager manager{sliderTree({"base", "between", "cart"})};
 
-  Slider(std::shared_ptr<Mesh> a, std::shared_ptr<Mesh> b, const Isometry3d& at)
-      : still(std::move(a)), moving(std::move(b)), manager(withSlider()) {
+  Crossing(std::shared_ptr<Mesh> a, std::shared_ptr<Mesh> b, const Isometry3d& at)
+      : still(std::move(a)), moving(std::move(b)) {
     manager.bind("base", &still);
     manager.bind("cart", &moving, at);
     manager.setup();
   }
-  std::shared_ptr<const KinematicTree> withSlider() {
-    tree->addLink("base");
-    tree->addLink("between");
-    tree->addLink("cart");
-    const std::array<const char*, 3> links = {"base", "between", "cart"};
-    for (std::size_t i = 0; i < 2; ++i) {  // links with one joint between them are not checked
-      Joint slide;
-      slide.name = links[i + 1];
-      slide.type = JointType::prismatic;
-      slide.parent = links[i];
-      slide.child = links[i + 1];
-      tree->addJoint(slide);
-    }
-    return tree;
-  }
   CertifiedResult run(double from, double to, ContactMode mode) const {
     CertifiedRequest request;
     request.mode = mode;
-    CertifiedResult result;
-    manager.continuousCollide(
-        JointMotion::linear(*tree, VectorXd::Constant(2, 0.5 * from), VectorXd::Constant(2, 0.5 * to)), request,
-        result);
-    return result;
+    return ask(manager, VectorXd::Constant(2, 0.5 * from), VectorXd::Constant(2, 0.5 * to), request);
   }
 };
 
@@ -120,11 +67,11 @@ TEST(CrossingLinks, AnyContactLiesOnBothTriangles) {
     at.linear() = Eigen::Quaterniond(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)).normalized().toRotationMatrix();
     const double reach = small ? 0.05 : 0.5;
     at.translation() = Vector3d(in(-reach, reach), in(-reach, reach), in(-reach, reach));
-    const auto a = surface(half, 1 + i % 5), b = surface(other, 1 + i % 4);
-    const Slider slider(a, b, at);
+    const auto a = fineBoxMesh(half, 1 + i % 5), b = fineBoxMesh(other, 1 + i % 4);
+    const Crossing crossing(a, b, at);
     const double from = in(-reach, reach), to = in(-reach, reach);
-    const CertifiedResult any = slider.run(from, to, ContactMode::any);
-    ASSERT_EQ(any.status, slider.run(from, to, ContactMode::first).status) << i;
+    const CertifiedResult any = crossing.run(from, to, ContactMode::any);
+    ASSERT_EQ(any.status, crossing.run(from, to, ContactMode::first).status) << i;
     free += any.isFree();
     free_within += any.isFree() && small;
     if (any.isFree() || !any.certain) continue;

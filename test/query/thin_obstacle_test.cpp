@@ -6,70 +6,38 @@
 #include <cstdio>
 #include <random>
 
-#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cylinder.h>
-#include <fcl/math/bv/OBBRSS.h>
 #include <gtest/gtest.h>
 
-#include "fcl_artic/manager.h"
+#include "arms.h"
+#include "meshes.h"
 
 using namespace fcl_artic;
+using namespace fcl_artic::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
 
 /// A tube of square section along z, half width 0.1, half length 0.2; closed at its ends or not.
-std::shared_ptr<fcl::CollisionGeometryd> tube(bool closed) {
-  std::vector<Vector3d> v;
-  for (int i = 0; i < 8; ++i) v.emplace_back((i & 1) ? 0.1 : -0.1, (i & 2) ? 0.1 : -0.1, (i & 4) ? 0.2 : -0.2);
-  const int faces[6][4] = {{0, 4, 5, 1}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 5, 7, 3}, {0, 1, 3, 2}, {4, 6, 7, 5}};
-  std::vector<fcl::Triangle> t;
-  for (int f = 0; f < (closed ? 6 : 4); ++f) {
-    t.emplace_back(faces[f][0], faces[f][1], faces[f][2]);
-    t.emplace_back(faces[f][0], faces[f][2], faces[f][3]);
-  }
-  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  mesh->beginModel();
-  mesh->addSubModel(v, t);
-  mesh->endModel();
-  return mesh;
-}
+std::shared_ptr<Mesh> tube(bool closed) { return boxMesh({0.1, 0.1, 0.2}, closed); }
 
 /// The tube on a slider along x, and an obstacle.
 struct Scene {
-  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("slider");
-  fcl::CollisionObjectd body, obstacle;
-  ArticulatedCollisionManager manager;
+  Cart cart;
+  std::shared_ptr<fcl::CollisionObjectd> obstacle;
 
-  Scene(std::shared_ptr<fcl::CollisionGeometryd> link, std::shared_ptr<fcl::CollisionGeometryd> solid,
-        const Isometry3d& at)
-      : body(std::move(link)), obstacle(std::move(solid), at), manager(withSlider()) {
-    manager.bind("cart", &body);
-    manager.registerObject(&obstacle, "solid");
-    manager.setup();
-  }
-  std::shared_ptr<const KinematicTree> withSlider() {
-    tree->addLink("base");
-    tree->addLink("cart");
-    Joint slide;
-    slide.name = "slide";
-    slide.type = JointType::prismatic;
-    slide.parent = "base";
-    slide.child = "cart";
-    tree->addJoint(slide);
-    return tree;
+  Scene(std::shared_ptr<Mesh> link, std::shared_ptr<fcl::CollisionGeometryd> solid, const Isometry3d& at)
+      : cart(std::move(link)), obstacle(object(std::move(solid), at)) {
+    cart.manager->registerObject(obstacle.get(), "solid");
+    cart.manager->setup();
   }
   CertifiedResult run(double from, double to, ContactMode mode) const {
     CertifiedRequest request;
     request.mode = mode;
-    CertifiedResult result;
-    manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Constant(1, from), VectorXd::Constant(1, to)),
-                              request, result);
-    return result;
+    return cart.run(from, to, request);
   }
 };
 
