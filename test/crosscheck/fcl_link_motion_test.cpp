@@ -152,19 +152,25 @@ TEST(FclLinkMotionTest, SpeedAndAccelerationBoundsHold) {
   }
 }
 
-TEST(FclLinkMotionTest, BoundsAreAttainedByOneJoint) {
+/// A link "bar" that turns about z.
+KinematicTree hinge() {
   KinematicTree tree;
   tree.addLink("base");
-  tree.addLink("arm");
+  tree.addLink("bar");
   Joint joint;
   joint.name = "hinge";
   joint.type = JointType::revolute;
   joint.parent = "base";
-  joint.child = "arm";
+  joint.child = "bar";
   joint.axis = Vector3d::UnitZ();
   tree.addJoint(joint);
+  return tree;
+}
+
+TEST(FclLinkMotionTest, BoundsAreAttainedByOneJoint) {
+  const KinematicTree tree = hinge();
   const JointMotion turn = JointMotion::linear(tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.5));
-  const FclLinkMotion motion(tree, turn, tree.link("arm"));
+  const FclLinkMotion motion(tree, turn, tree.link("bar"));
   EXPECT_DOUBLE_EQ(motion.speedBound(2), 1);           // 0.5 rad at 2 m
   EXPECT_DOUBLE_EQ(motion.accelerationBound(2), 0.5);  // 0.5^2 * 2
 }
@@ -219,16 +225,7 @@ TEST(FclLinkMotionTest, VolumesWithoutABoundAreRefusedNotTakenAsStill) {
 //     o=======
 //
 TEST(FclLinkMotionTest, OrientedAdvancementFindsAKnownContactEveryTime) {
-  KinematicTree tree;
-  tree.addLink("base");
-  tree.addLink("bar");
-  Joint joint;
-  joint.name = "hinge";
-  joint.type = JointType::revolute;
-  joint.parent = "base";
-  joint.child = "bar";
-  joint.axis = Vector3d::UnitZ();
-  tree.addJoint(joint);
+  const KinematicTree tree = hinge();
   const JointMotion turn =
       JointMotion::linear(tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, bench::kPi / 2));
   const FclLinkMotion motion(tree, turn, tree.link("bar"));

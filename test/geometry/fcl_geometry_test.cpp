@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <random>
 #include <sstream>
 #include <tuple>
 
@@ -25,6 +24,8 @@
 #include <fcl/narrowphase/collision.h>
 #include <gtest/gtest.h>
 
+#include "random.h"
+
 #define FCL_ARTIC_ISA sse2
 #define FCL_ARTIC_ISA_BITS 128
 #include "narrowphase/piece_support.h"
@@ -36,19 +37,6 @@ using engine::PieceKind;
 using engine::TreeView;
 
 namespace {
-
-using Random = std::mt19937_64;
-
-double uniform(Random& random, double lo, double hi) {
-  return lo + (hi - lo) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-Vector3d unit(Random& random) {
-  for (;;) {
-    const Vector3d x(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
-    if (x.norm() > 0.1 && x.norm() < 1) return x.normalized();
-  }
-}
 
 template <class S>
 std::shared_ptr<std::vector<fcl::Vector3<S>>> points(std::size_t n) {

@@ -4,11 +4,11 @@
 #include "geometry/shape_tree.h"
 
 #include <cmath>
-#include <random>
 
 #include <gtest/gtest.h>
 
 #include "geometry/outer_hull.h"
+#include "random.h"
 
 #define FCL_ARTIC_ISA sse2
 #define FCL_ARTIC_ISA_BITS 128
@@ -18,19 +18,6 @@ using namespace fcl_artic;
 using Eigen::Vector3d;
 
 namespace {
-
-using Random = std::mt19937_64;
-
-double uniform(Random& random, double lo, double hi) {
-  return lo + (hi - lo) * static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
-Vector3d unit(Random& random) {
-  for (;;) {
-    const Vector3d x(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
-    if (x.norm() > 0.1 && x.norm() < 1) return x.normalized();
-  }
-}
 
 /// A bumpy, stretched star around a centre that may be far from the origin.
 std::vector<Vector3d> cloud(Random& random, std::size_t n, double bump) {

@@ -11,31 +11,12 @@
 #include "engine.h"
 #include "generator.h"
 #include "redon/parts.h"
-#include "visibility/cpu_executor.h"
+#include "../visibility/recorder.h"
 
 namespace {
 
 using namespace fcl_artic;
 using Eigen::Vector3d;
-
-/// The executor cpu, with what it was asked last.
-struct Recorder : visibility::Executor {
-  explicit Recorder(visibility::Batch& kept) : last(kept) {}
-  void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
-    last = batch;
-    cpu.run(batch, may);
-  }
-  visibility::Batch& last;
-  visibility::CpuExecutor cpu;
-};
-
-double support(const visibility::Batch& batch, const visibility::Volume& volume, const Vector3d& n) {
-  double most = -HUGE_VAL;
-  for (int i = 0; i < volume.count; ++i) {
-    most = std::max(most, n.dot(Vector3d::Map(batch.points.data() + 3 * (volume.first + i))));
-  }
-  return most + volume.radius * n.norm();
-}
 
 std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> meshOf(const std::vector<Vector3d>& corners) {
   auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
@@ -47,19 +28,7 @@ std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> meshOf(const std::vector<Vector3d>&
 
 /// An arm whose last link is a needle of one triangle, and a small triangle in the middle of its path over each eighth.
 TEST(RedonVisibility, VolumesHoldTheLink) {
-  auto tree = std::make_shared<KinematicTree>("chain");
-  tree->addLink("base");
-  for (int i = 0; i < 4; ++i) {
-    Joint joint;
-    joint.name = "joint" + std::to_string(i);
-    joint.type = i == 2 ? JointType::prismatic : JointType::revolute;
-    joint.parent = i ? "link" + std::to_string(i - 1) : "base";
-    joint.child = "link" + std::to_string(i);
-    joint.axis = Vector3d::Unit(i % 3);
-    joint.origin.translation() << 0.1, 0.2 * i, 0.3;
-    tree->addLink(joint.child);
-    tree->addJoint(joint);
-  }
+  const auto tree = test::fourJoints();
   const std::vector<Vector3d> needle{{-1e-4, 0, -0.2}, {1e-4, 0, -0.2}, {0, 0, 0.2}};
   const auto link = meshOf(needle);
   std::mt19937_64 random(1);
@@ -86,8 +55,7 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
     manager.registerObject(&obstacle);
     manager.setup();
     visibility::Batch batch;
-    manager.setVisibility(std::make_shared<VisibilityCuller>(VisibilityOptions(), "recorder",
-                                                             [&] { return std::make_unique<Recorder>(batch); }));
+    manager.setVisibility(test::recordTo(batch));
     for (const MotionEnclosure enclosure :
          {MotionEnclosure::intervalChain, MotionEnclosure::meanValue, MotionEnclosure::taylor}) {
       CertifiedRequest request;
@@ -102,7 +70,7 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
       for (int part = 0; part < 8; ++part) {
         for (int k = 0; k < 40; ++k) {
           const Vector3d n = Vector3d(normal(random), normal(random), normal(random)).normalized();
-          const double held = support(batch, batch.swept[static_cast<std::size_t>(part)].volume, n);
+          const double held = test::support(batch, batch.swept[static_cast<std::size_t>(part)].volume, n);
           for (int i = 0; i <= 16; ++i) {
             const Eigen::Isometry3d M = poseAt(motion, (part + i / 16.0) / 8);
             for (const Vector3d& x : needle) {

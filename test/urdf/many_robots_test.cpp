@@ -111,11 +111,9 @@ TEST_F(ManyRobotsTest, AllowedPairsGetThePrefixAndBadInputIsNamed) {
   EXPECT_THROW(combineRobots({{&one, "a/", bent}}), std::invalid_argument);
 }
 
-// 2 x - 6 = 0, turned by a quarter about z: y = 3. The slider's ball of 0.1 goes along y from 1 to 4.
-TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
-  const Scene scene = loadScene(write("plane.scene", "s\n* wall\n1\nplane\n2 0 0 -6\n0 0 0\n"
-                                                     "0 0 0.70710678118654757 0.70710678118654757\n0 0 0 0\n.\n"));
-  ASSERT_EQ(scene.obstacles.size(), 1u);
+/// A rail, and a cart on it that starts from `from`.
+std::shared_ptr<const KinematicTree> slider(const Eigen::Vector3d& axis,
+                                            const Eigen::Vector3d& from = Eigen::Vector3d::Zero()) {
   auto tree = std::make_shared<KinematicTree>("slider");
   tree->addLink("rail");
   tree->addLink("cart");
@@ -124,9 +122,18 @@ TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
   joint.type = JointType::prismatic;
   joint.parent = "rail";
   joint.child = "cart";
-  joint.axis = Eigen::Vector3d::UnitY();
+  joint.axis = axis;
+  joint.origin.translation() = from;
   tree->addJoint(joint);
-  ArticulatedCollisionManager manager(tree);
+  return tree;
+}
+
+// 2 x - 6 = 0, turned by a quarter about z: y = 3. The slider's ball of 0.1 goes along y from 1 to 4.
+TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
+  const Scene scene = loadScene(write("plane.scene", "s\n* wall\n1\nplane\n2 0 0 -6\n0 0 0\n"
+                                                     "0 0 0.70710678118654757 0.70710678118654757\n0 0 0 0\n.\n"));
+  ASSERT_EQ(scene.obstacles.size(), 1u);
+  ArticulatedCollisionManager manager(slider(Eigen::Vector3d::UnitY()));
   fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.1));
   manager.bind("cart", &ball);
   scene.addTo(manager);
@@ -160,17 +167,7 @@ TEST_F(ManyRobotsTest, UnknownCellsOfAnOctoMap) {
   EXPECT_EQ(all.obstacles[0].name, "cells");
   EXPECT_EQ(all.obstacles[1].name, "cells/unknown");
   const auto run = [&](double y, double z, bool unknown) {
-    auto tree = std::make_shared<KinematicTree>("slider");
-    tree->addLink("rail");
-    tree->addLink("cart");
-    Joint joint;
-    joint.name = "slide";
-    joint.type = JointType::prismatic;
-    joint.parent = "rail";
-    joint.child = "cart";
-    joint.origin.translation() = Eigen::Vector3d(0, y, z);
-    tree->addJoint(joint);
-    ArticulatedCollisionManager manager(tree);
+    ArticulatedCollisionManager manager(slider(Eigen::Vector3d::UnitX(), {0, y, z}));
     fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.1));
     manager.bind("cart", &ball);
     SceneOptions scene_options;

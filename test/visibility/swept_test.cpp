@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "fcl_artic/fcl_artic.h"
-#include "visibility/cpu_executor.h"
+#include "recorder.h"
 
 namespace {
 
@@ -21,44 +21,10 @@ using namespace fcl_artic;
 using Eigen::Vector3d;
 using visibility::Batch;
 
-/// The executor cpu, with what it was asked last.
-struct Recorder : visibility::Executor {
-  explicit Recorder(Batch& kept) : last(kept) {}
-  void run(const Batch& batch, std::vector<std::uint8_t>& may) override {
-    last = batch;
-    cpu.run(batch, may);
-  }
-  Batch& last;
-  visibility::CpuExecutor cpu;
-};
-
-double support(const Batch& batch, const visibility::Volume& volume, const Vector3d& n) {
-  double most = -HUGE_VAL;
-  for (int i = 0; i < volume.count; ++i) {
-    most = std::max(most, n.dot(Vector3d::Map(batch.points.data() + 3 * (volume.first + i))));
-  }
-  return most + volume.radius * n.norm();
-}
-
 class Swept : public testing::Test {
  protected:
   static constexpr double kRadius = 0.05, kLength = 0.4;
-  Swept() : capsule_(std::make_shared<fcl::Capsuled>(kRadius, kLength)) {
-    auto tree = std::make_shared<KinematicTree>("chain");
-    tree->addLink("base");
-    for (int i = 0; i < 4; ++i) {
-      Joint joint;
-      joint.name = "joint" + std::to_string(i);
-      joint.type = i == 2 ? JointType::prismatic : JointType::revolute;
-      joint.parent = i ? "link" + std::to_string(i - 1) : "base";
-      joint.child = "link" + std::to_string(i);
-      joint.axis = Vector3d::Unit(i % 3);
-      joint.origin.translation() << 0.1, 0.2 * i, 0.3;
-      tree->addLink(joint.child);
-      tree->addJoint(joint);
-    }
-    tree_ = tree;
-  }
+  Swept() : capsule_(std::make_shared<fcl::Capsuled>(kRadius, kLength)), tree_(test::fourJoints()) {}
   Vector3d direction() {
     std::normal_distribution<double> normal;
     return Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
@@ -71,8 +37,7 @@ class Swept : public testing::Test {
     manager.bind("link3", &link);
     manager.registerObject(&object);
     manager.setup();
-    manager.setVisibility(std::make_shared<VisibilityCuller>(VisibilityOptions(), "recorder",
-                                                             [this] { return std::make_unique<Recorder>(batch_); }));
+    manager.setVisibility(test::recordTo(batch_));
     CertifiedRequest request;
     request.visibility = VisibilityMode::on;
     request.margin = margin;
@@ -98,7 +63,7 @@ TEST_F(Swept, VolumesHoldTheLink) {
     for (int lane = 0; lane < 8; ++lane) {
       for (int k = 0; k < 40; ++k) {
         const Vector3d n = direction();
-        const double held = support(batch_, batch_.swept[static_cast<std::size_t>(lane)].volume, n);
+        const double held = test::support(batch_, batch_.swept[static_cast<std::size_t>(lane)].volume, n);
         for (int i = 0; i <= 16; ++i) {
           tree_->forwardKinematics(motion.configuration((lane + i / 16.0) / 8), M_0);
           const Eigen::Isometry3d& M = M_0[static_cast<std::size_t>(tree_->link("link3"))];
@@ -157,7 +122,7 @@ TEST_F(Swept, PiecesHoldTheObstacle) {
     for (int k = 0; k < 2000; ++k) {
       const Vector3d n = direction();
       const double reached = n.dot(at * c.point(at.linear().transpose() * n)) + grown;
-      const double held = support(batch_, batch_.objects[0].volume, n);
+      const double held = test::support(batch_, batch_.objects[0].volume, n);
       ASSERT_LE(reached, held + 1e-13) << c.shape->getNodeType();
       ASSERT_LE(held, reached + c.room) << c.shape->getNodeType();
     }
