@@ -231,18 +231,20 @@ SetReport compareSet(const std::string& name, Bodies bodies, const Options& opti
   return report;
 }
 
+std::size_t widthOf(const std::string& column) { return std::max<std::size_t>(6, column.size() + 1); }
+
 std::string textOf(const SetReport& r) {
   std::string out =
       fmt::format("{}: {} queries, {} touch ({} at the start), {} stay clear ({} of them nearer than 1 mm)\n", r.name,
                   r.queries, r.hits, r.starts, r.queries - r.hits, r.grazes);
-  out += fmt::format("  {:<36}", "");
-  for (const char* name : kGrades) out += fmt::format("{:>10}", name);
-  out += fmt::format("{:>12}{:>12}\n", "median us", "p95 us");
+  out += fmt::format("  {:<34}", "");
+  for (const char* name : kGrades) out += fmt::format("{:>{}}", name, widthOf(name));
+  out += fmt::format("{:>11}{:>10}\n", "median us", "p95 us");
   for (const Score& s : r.scores) {
-    out += fmt::format("  {:<36}", s.way);
-    for (const std::size_t n : s.count) out += fmt::format("{:>10}", n);
+    out += fmt::format("  {:<34}", s.way);
+    for (std::size_t g = 0; g < s.count.size(); ++g) out += fmt::format("{:>{}}", s.count[g], widthOf(kGrades[g]));
     const bool timed = s.p95_us > 0;
-    out += timed ? fmt::format("{:>12.1f}{:>12.1f}\n", s.median_us, s.p95_us) : fmt::format("{:>12}{:>12}\n", "-", "-");
+    out += timed ? fmt::format("{:>11.1f}{:>10.1f}\n", s.median_us, s.p95_us) : fmt::format("{:>11}{:>10}\n", "-", "-");
   }
   if (r.added)
     out += fmt::format("  In {} queries fcl_artic showed a contact that the samples had missed or found later.\n",
