@@ -59,6 +59,8 @@ TEST(AttachedObject, IsMetThenCarriedThenMetAgain) {
   EXPECT_EQ(k.run(0, 2).contacts[0].body2.name, "cup");
   EXPECT_EQ(k.run(0, 2).contacts[0].body2.link, -1);
   k.manager->attach("cart", k.cup.get(), pose({0.3, 0, 0}));
+  k.manager->setup();
+  EXPECT_TRUE(touchesAt(k.run(0, 2), 1.65 / 2));
   k.manager->unregisterObject(k.cup.get());
   k.manager->setup();
   EXPECT_TRUE(touchesAt(k.run(0, 2), 1.9 / 2));

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
@@ -102,7 +103,7 @@ TEST(Manager, TouchingAtTheStartGivesZero) {
   EXPECT_EQ(r.t_upper, 0);
 }
 
-// The slider starts inside one wall, leaves it and meets another whose face is at x = -2: centre at -1.75, t* = 1.75 / 3.
+// The cart starts inside one wall, leaves it and meets another whose face is at x = -2: centre at -1.75, t* = 1.75 / 3.
 TEST(Manager, IgnoredInitialContactIsWatchedOnceItHasSeparated) {
   Cart cart(std::make_shared<fcl::Boxd>(0.5, 0.5, 0.5));
   auto near = object(std::make_shared<fcl::Boxd>(1, 1, 1), pose({0.5, 0.1, 0.05}));
@@ -170,6 +171,18 @@ TEST(Manager, EveryPairReportsEachPairsFirstContact) {
   }
   EXPECT_LE(r.t_lower, 0.5 - half_chord + kRounding);
 }
+
+#if FCL_HAVE_OCTOMAP
+TEST(Manager, NothingTouchesAnEmptyOcTree) {
+  Cart cart;
+  const auto none = object(std::make_shared<fcl::OcTreed>(0.1));
+  cart.manager->registerObject(none.get());
+  cart.manager->setup();
+  CertifiedRequest request;
+  request.margin = 1;
+  EXPECT_EQ(cart.run(0, 1, request).status, Status::free);
+}
+#endif
 
 TEST(Manager, BudgetThatRunsOutSaysUndecidedAndKeepsItsLowerBound) {
   Cart cart(cubeMesh(0.2));
@@ -243,7 +256,8 @@ TEST(Manager, ParallelFacesHeadOnAreProven) {
   }
 }
 
-// c is fixed to b, which is fixed to a: b is a's neighbour and c's, but a and c are checked though no motion parts them.
+// c is fixed to b, which is fixed to a: b is a's neighbour and c's, but a and c are checked though no motion parts
+// them.
 TEST(Manager, RigidlyAttachedLinksThatAreNoNeighboursAreChecked) {
   auto tree = std::make_shared<KinematicTree>("stack");
   for (const char* link : {"a", "b", "c"}) tree->addLink(link);
@@ -266,6 +280,19 @@ TEST(Manager, RigidlyAttachedLinksThatAreNoNeighboursAreChecked) {
   manager.setup();
   manager.collide(VectorXd(), {}, r);
   EXPECT_EQ(r.status, Status::free);
+}
+
+// What a planar joint moves about on the ground can run into it: balls of 0.1, from 1 apart to 0.
+TEST(Manager, GroundIsNoNeighbourOfWhatAPlanarJointMoves) {
+  auto tree = std::make_shared<KinematicTree>("rover");
+  for (const char* link : {"ground", "rover"}) tree->addLink(link);
+  tree->addJoint(makeJoint("drive", JointType::planar, "ground", "rover", Vector3d::UnitZ()));
+  const auto bump = ball(0.1), rover = ball(0.1);
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("ground", bump.get());
+  manager.bind("rover", rover.get());
+  manager.setup();
+  EXPECT_TRUE(touchesAt(ask(manager, Vector3d(1, 0, 0), Vector3d(0, 0, 0)), 0.8));
 }
 
 // Two robots in one forest, each a slider along its own axis; they meet in the middle.

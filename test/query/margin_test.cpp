@@ -151,6 +151,26 @@ TEST(Margin, OfAMovingObstacle) {
   EXPECT_TRUE(touchesAt(cart.run(0, 0, request), 0.7));
 }
 
+// The same past two links 5 apart, whose own pair has a margin that must not be taken for the ball's.
+TEST(Margin, OfAMovingObstacleBesideTwoLinks) {
+  const auto still = ball(0.1), moving = ball(0.1);
+  ArticulatedCollisionManager manager(sliderTree({"base", "between", "cart"}));
+  manager.bind("base", still.get());
+  manager.bind("cart", moving.get(), pose({0, 5, 0}));
+  const Eigen::Isometry3d from = pose({2, 5, 0}), to = pose({0, 5, 0});
+  fcl::ContinuousCollisionObjectd bowl(std::make_shared<fcl::Sphered>(0.2),
+                                       std::make_shared<fcl::TranslationMotiond>(from, to));
+  manager.registerObject(&bowl, "bowl");
+  manager.setMargin("bowl", 0.1);
+  manager.setMargin("base", "cart", 6);
+  manager.setup();
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(2);
+  EXPECT_TRUE(touchesAt(ask(manager, q, q), 0));
+  CertifiedRequest request;
+  request.check_self = false;
+  EXPECT_TRUE(touchesAt(ask(manager, q, q, request), 0.8));
+}
+
 TEST(Margin, BelongsToTheNameOfAnObstacle) {
   Way way;
   way.manager->setMargin("post", 0.4);
