@@ -36,7 +36,9 @@ struct CertifiedContact {
   BodyRef body1, body2;
   const fcl::CollisionGeometryd* o1 = nullptr;
   const fcl::CollisionGeometryd* o2 = nullptr;
-  std::intptr_t b1 = -1, b2 = -1;  ///< triangle index in a mesh, fcl::Contactd::NONE (-1) for a shape
+  /// Triangle index in a mesh, fcl::Contactd::NONE (-1) for a shape. With ContactMode::any also for a mesh: where contact
+  /// is proven by what closed meshes enclose, no triangle is known, and `point` lies within both bodies.
+  std::intptr_t b1 = -1, b2 = -1;
   FeatureKind feature = FeatureKind::volume;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< world, at t_upper when certain, else at t_lower
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< world, unit

@@ -367,6 +367,11 @@ const ObbTree* ShapeTree::obbTree() const {
   return obb_.get();
 }
 
+const engine::InnerBalls* ShapeTree::innerBalls() const {
+  std::call_once(balls_once_, [this] { balls_ = BallsInMesh::find(view_, lineSweptSphere()); });
+  return balls_ ? &balls_->view() : nullptr;
+}
+
 std::size_t ShapeTree::bytes() const {
   return sizeof(*this) + nodes_.capacity() * sizeof(Node) + pieces_.capacity() * sizeof(Piece) +
          vertices_.capacity() * sizeof(double) + hulls_.bytes();

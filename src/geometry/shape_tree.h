@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "geometry/convex_parts.h"
+#include "geometry/inner_balls.h"
 #include "geometry/line_swept_sphere.h"
 #include "geometry/obb_tree.h"
 #include "geometry/packed_hulls.h"
@@ -53,6 +54,8 @@ class ShapeTree {
   /// A line swept sphere that holds the whole, in the tree's frame. Made when first asked for.
   /// @throws std::invalid_argument when it is unbounded.
   const LineSweptSphere& lineSweptSphere() const;
+  /// Balls inside its closed parts; null where there are none. Made when first asked for.
+  const engine::InnerBalls* innerBalls() const;
   /// A box that holds the whole, for stage 1.
   engine::CoreBox coreBox() const;
   /// Memory that it takes, roughly.
@@ -73,10 +76,11 @@ class ShapeTree {
   std::vector<double> vertices_;
   PackedHulls hulls_;
   engine::TreeView view_;
-  mutable std::once_flag parts_once_, obb_once_, lss_once_;
+  mutable std::once_flag parts_once_, obb_once_, lss_once_, balls_once_;
   mutable LineSweptSphere lss_ = {};
   mutable std::unique_ptr<const ConvexParts> parts_;
   mutable std::unique_ptr<const ObbTree> obb_;
+  mutable std::unique_ptr<const BallsInMesh> balls_;
 };
 
 /// Boxes to be put into a tree: the same builder serves pieces and obstacles.

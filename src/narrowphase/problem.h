@@ -64,6 +64,23 @@ struct CoreBox {
   double lo[3], hi[3], radius;
 };
 
+/// A closed part of a mesh's surface: its box, and points of it that lie far out, one per lane.
+struct ClosedPart {
+  double lo[3], hi[3];
+  alignas(64) double points[3][8];
+};
+/// Balls inside closed parts of a mesh (doc/NUMERICS.md, "Inner balls"), in its tree's frame. Lanes go over balls; those
+/// that fill the last eight up have a radius far below 0.
+struct InnerBalls {
+  static constexpr std::int32_t kMost = 16;
+  alignas(64) double center[3][kMost];
+  alignas(64) double radius[kMost];
+  std::int32_t part[kMost];  ///< that the ball lies in
+  std::int32_t count = 0;    ///< without what fills up
+  double reach = 0;          ///< they lie within this of the segment of the mesh's line swept sphere, about
+  const ClosedPart* parts = nullptr;
+};
+
 /// A rigid transform that stands still.
 struct Placement {
   double R[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major
@@ -126,6 +143,7 @@ struct Body {
   std::int32_t step = -1;  ///< in the world's sweep; -1: stands still
   std::int32_t mover = -1;  ///< index among Problem::movers; -1: an obstacle
   double lss[7] = {};      ///< line swept sphere p0, p1, r in the step's frame: holds the body
+  const InnerBalls* balls = nullptr;  ///< of a link; null: none known
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
 };
@@ -227,11 +245,12 @@ struct Statistics {
 };
 
 /// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.
-constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7;
+constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7, kVolume = 9;
 
 /// Two leaves that meet, or come too near to be told apart.
 struct LeafContact {
-  std::int32_t pair, body_a, body_b, piece_a, piece_b;
+  std::int32_t pair, body_a, body_b;
+  std::int32_t piece_a, piece_b;  ///< -1: proven of what a mesh encloses, of no triangle
   bool certain;
   double t_lower, t_upper;  ///< this leaf pair's own bracket
   double normal[3];         ///< in A's tree frame, from A to B

@@ -58,6 +58,8 @@ constexpr unsigned kPutOff = 0x100;
 /// The one body is within the bounds of the other, a large mesh: hulls tell nothing.
 constexpr unsigned kWithin = 0x200;
 
+struct PlacedLink;
+
 class Solver {
  public:
   void solve(const Problem& problem, const Query& query, Answer& answer);
@@ -128,6 +130,10 @@ class Solver {
   bool proveLeaves(int pair, int piece_a, int piece_b, int lane);
   bool proveAnywhere();
   void considerPose(int pair, Lanes square, double radii);
+  PlacedLink placedLink(int mover, int lane);
+  double reachOfBalls(int pair) const;
+  bool proveByBalls(int pair, int lane);
+  bool proveByBallInSolid(int pair, int lane);
   bool proveAtPoses();
   bool proveAtPose(int pair, int lane);
   bool proveTriangles(int pair, int piece_a, int piece_b, int lane);
@@ -202,6 +208,7 @@ class Solver {
   struct Look {
     std::int32_t pair, lane;
     double distance;  ///< of their line swept spheres' segments, as part of the radii
+    unsigned near;    ///< other lanes in which balls inside them may meet
   };
   Buffer<Look> looks_;
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
@@ -283,6 +290,7 @@ constexpr double kFollowingAccuracy = 0.02;
 #include "narrowphase/solver/culling.h"
 #include "narrowphase/solver/following.h"
 #include "narrowphase/solver/initial_contacts.h"
+#include "narrowphase/solver/inner_balls.h"
 #include "narrowphase/solver/search.h"
 #include "narrowphase/solver/solid_contact.h"
 #include "narrowphase/solver/traversal.h"

@@ -104,6 +104,7 @@ Status statusOf(engine::Verdict verdict) {
 }
 
 std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece) {
+  if (piece < 0) return fcl::Contactd::NONE;
   const engine::Piece& p = shape.view().pieces[piece];
 #if FCL_HAVE_OCTOMAP
   if (geometry && geometry->getNodeType() == fcl::GEOM_OCTREE) {
@@ -116,7 +117,8 @@ std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTr
 void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
                    engine::LeafContact& leaf, FeatureKind& feature) {
   static_assert(static_cast<int>(FeatureKind::edgeFace) == engine::kEdgeFace &&
-                static_cast<int>(FeatureKind::faceEdge) == engine::kFaceEdge);
+                static_cast<int>(FeatureKind::faceEdge) == engine::kFaceEdge &&
+                static_cast<int>(FeatureKind::volume) == engine::kVolume);
   if (leaf.feature >= 0) {  // its solver has done so
     feature = static_cast<FeatureKind>(leaf.feature);
     return;

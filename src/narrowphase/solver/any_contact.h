@@ -125,10 +125,16 @@ struct BoxesAtPose {
   }
 };
 
-/// Puts the pose down at which two links' line swept spheres are deepest in each other.
+/// Two links whose line swept spheres meet: balls inside them are tried at the pose at which these are deepest in each
+/// other. That pose is put down, and the others at which balls may meet.
 inline void Solver::considerPose(int pair, Lanes square, double radii) {
   const double least = minLane(square), distance = sqrt(least) / radii;
-  if (distance < kDeepLinks) looks_.push({pair, __builtin_ctz(kAllLanes & ~greater(square, Lanes(least))), distance});
+  const int lane = __builtin_ctz(kAllLanes & ~greater(square, Lanes(least)));
+  const double reach = reachOfBalls(pair);
+  unsigned near = reach > 0 ? kAllLanes & ~greater(square, Lanes(reach * reach)) : 0;
+  if (near && proveByBalls(pair, lane)) return;
+  near &= ~(1u << lane);
+  if (near || distance < kDeepLinks) looks_.push({pair, lane, distance, near});
 }
 
 /// The triangles of two links at a lane's middle, those in boxes whose middles are near each other first.
@@ -171,9 +177,14 @@ inline bool Solver::proveAtPose(int pair, int lane) {
   return false;
 }
 
-/// Where any contact is asked for: links whose line swept spheres are deep in each other, each pair at the pose at
-/// which they are deepest.
+/// Where any contact is asked for: links whose line swept spheres are deep in each other. Balls inside them at all
+/// poses at which these may meet; then each pair's triangles at the pose at which they are deepest.
 inline bool Solver::proveAtPoses() {
+  for (int i = 0; i < looks_.size(); ++i) {
+    for (unsigned near = looks_[i].near; near; near &= near - 1) {
+      if (proveByBalls(looks_[i].pair, __builtin_ctz(near))) return true;
+    }
+  }
   for (int done = 0; done < looks_.size(); ++done) {
     int first = done;
     for (int i = done + 1; i < looks_.size(); ++i) {
@@ -181,7 +192,7 @@ inline bool Solver::proveAtPoses() {
     }
     const Look look = looks_[first];
     looks_[first] = looks_[done];
-    if (proveAtPose(look.pair, look.lane)) return true;
+    if (look.distance < kDeepLinks && proveAtPose(look.pair, look.lane)) return true;
   }
   return false;
 }

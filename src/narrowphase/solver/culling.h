@@ -58,6 +58,7 @@ inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mas
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
   const int lane = middleLane(deep & ~greater(square, Lanes(least)));
   const double near[3] = {nearest[0][lane], nearest[1][lane], nearest[2][lane]};
+  if (proveByBallInSolid(pair, lane)) return mask;
   setupPair(pair);
   const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThin * lss.radius;
   if (thin && provePierced(pair, lane, near)) return mask;
@@ -131,7 +132,7 @@ inline void Solver::cull() {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
     const bool look = query_->any && !query_->every_pair && !query_->ignore_initial;
     const std::uint8_t* free = query_->link_free ? query_->link_free(query_->link_free_context) : nullptr;
-    for (int p = 0; p < problem_->num_link_pairs; ++p) {
+    for (int p = 0; p < problem_->num_link_pairs && !finished(); ++p) {
       const unsigned open = linkAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
       if (!open) continue;
       const LinkPair& pair = problem_->link_pairs[p];

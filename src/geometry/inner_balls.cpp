@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/inner_balls.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <queue>
+
+#include <Eigen/Geometry>
+
+namespace fcl_artic {
+namespace {
+
+using Eigen::Vector3d;
+using engine::ClosedPart;
+using engine::InnerBalls;
+using engine::Node;
+using engine::Piece;
+using engine::PieceKind;
+
+constexpr double kUlp = 0x1p-52;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Directions shorter than this are none.
+constexpr double kLeastLength = 1e-100;
+/// Points looked at in a mesh, and in its smallest part at least.
+constexpr int kSamples = 400, kFewestSamples = 40;
+/// Parts that get balls: so many, none of which is smaller than this part of the largest.
+constexpr std::size_t kMostParts = 8;
+constexpr double kLeastPart = 0.1;
+/// Steps by which a ball is moved away from where it touches.
+constexpr int kSteps = 6;
+
+struct Triangle {
+  Vector3d corner[3];
+};
+Triangle triangleOf(const engine::TreeView& mesh, std::int32_t piece) {
+  const double* v = mesh.vertices + 3 * static_cast<std::ptrdiff_t>(mesh.pieces[piece].first_vertex);
+  return {{Vector3d::Map(v), Vector3d::Map(v + 3), Vector3d::Map(v + 6)}};
+}
+
+/// A triangle's point nearest to x, about (Ericson, Real-Time Collision Detection, 5.1.5).
+Vector3d nearestPoint(const Triangle& t, const Vector3d& x) {
+  const Vector3d &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
+  const Vector3d ab = b - a, ac = c - a, ax = x - a;
+  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vector3d bx = x - b;
+  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const Vector3d cx = x - c;
+  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const double scale = 1 / (va + vb + vc);
+  return a + vb * scale * ab + vc * scale * ac;
+}
+
+/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across the direction to the
+/// nearest one, wherever that came from. A corner's place along it errs by less than 8 kUlp |n| |v - x|.
+double clearanceOf(const Triangle& t, const Vector3d& x, const Vector3d& nearest) {
+  const Vector3d n = nearest - x;
+  const double length = n.norm();
+  if (!(length > kLeastLength)) return 0;
+  double least = kInfinity, far = 0;
+  for (const Vector3d& corner : t.corner) {
+    const Vector3d d = corner - x;
+    least = std::min(least, n.dot(d));
+    far = std::max(far, d.norm());
+  }
+  return std::max(0.0, least / length - 32 * kUlp * far);
+}
+
+/// Distance of x from a node's box, no larger than it is.
+double clearanceOf(const Node& node, const Vector3d& x) {
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = std::max({node.lo[k] - x[k], x[k] - node.hi[k], 0.0});
+    square += d * d;
+  }
+  return std::sqrt(square) * (1 - 16 * kUlp);
+}
+
+/// Whether a line along an axis crosses a triangle: the signs of the areas that the line's point and the edges span,
+/// seen along the axis.
+enum class Crosses { no, yes, unknown };
+Crosses crosses(const Triangle& t, const Vector3d& x, int axis, EnclosedSpace::Crossing& crossing) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  for (const int k : {u, v}) {
+    const double least = std::min({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
+    const double most = std::max({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
+    if (x[k] < least || x[k] > most) return Crosses::no;
+  }
+  const Vector3d d[3] = {t.corner[0] - x, t.corner[1] - x, t.corner[2] - x};
+  double area[3], error[3];  // of the edge across from each corner
+  int positive = 0;
+  bool unknown = false;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d &p = d[(i + 1) % 3], &q = d[(i + 2) % 3];
+    const double one = p[u] * q[v], other = q[u] * p[v];
+    area[i] = one - other;
+    error[i] = 8 * kUlp * (std::abs(one) + std::abs(other)) + kLeastLength;
+    unknown = unknown || !(std::abs(area[i]) > error[i]);
+    positive += area[i] > 0;
+  }
+  if (unknown) return Crosses::unknown;
+  if (positive != 0 && positive != 3) return Crosses::no;
+  double sum = 0, weights = 0, sum_error = kLeastLength;
+  for (int i = 0; i < 3; ++i) {
+    sum += area[i] * d[i][axis];
+    weights += area[i];
+    sum_error += (error[i] + 8 * kUlp * std::abs(area[i])) * std::abs(d[i][axis]);
+  }
+  crossing = {sum / weights, std::abs(sum) > sum_error};
+  return Crosses::yes;
+}
+
+double distanceFromSegment(const LineSweptSphere& around, const Vector3d& x) {
+  const Vector3d begin = Vector3d::Map(&around[0]), along = Vector3d::Map(&around[3]) - begin;
+  const double square = along.squaredNorm();
+  const double part = square > 0 ? std::clamp((x - begin).dot(along) / square, 0.0, 1.0) : 0;
+  return (x - begin - part * along).norm();
+}
+
+/// A ball that may be taken.
+struct Ball {
+  Vector3d center;
+  double radius;
+  std::int32_t part;
+  double weight;  ///< of the space around its centre
+};
+
+/// Points spread through what a part encloses: where a grid's lines along its longest axis run inside.
+void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& lo, const Vector3d& size, double count,
+                std::vector<Ball>& samples) {
+  int axis;
+  const double longest = size.maxCoeff(&axis);
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double step = std::cbrt(size.prod() / count);
+  if (!(step > 0) || !(longest / step < 1e4)) return;  // flat
+  const int columns[2] = {static_cast<int>(std::ceil(size[u] / step)), static_cast<int>(std::ceil(size[v] / step))};
+  std::vector<EnclosedSpace::Crossing> found;
+  std::vector<double> heights;
+  for (int i = 0; i < columns[0]; ++i) {
+    for (int j = 0; j < columns[1]; ++j) {
+      Vector3d x = lo;
+      x[u] += size[u] * (i + 0.501) / columns[0];  // not along an edge in the middle of a body
+      x[v] += size[v] * (j + 0.503) / columns[1];
+      if (!space.crossings(part, x, axis, found)) continue;
+      heights.clear();
+      for (const auto& crossing : found) heights.push_back(crossing.height);
+      std::sort(heights.begin(), heights.end());
+      for (std::size_t k = 0; k + 1 < heights.size(); k += 2) {
+        const double inside = heights[k + 1] - heights[k];
+        const int points = std::max(1, static_cast<int>(inside / step + 0.5));
+        for (int p = 0; p < points; ++p) {
+          Vector3d y = x;
+          y[axis] += heights[k] + inside * (p + 0.5) / points;
+          samples.push_back({y, 0, part, inside / points * size[u] * size[v] / (columns[0] * columns[1])});
+        }
+      }
+    }
+  }
+}
+
+/// Moves a ball away from where it touches as long as that makes it larger by half of the way at least.
+void enlarge(const EnclosedSpace& space, Ball& ball) {
+  Vector3d nearest;
+  ball.radius = space.clearance(ball.part, ball.center, nearest);
+  double way = 0.5 * ball.radius;
+  for (int i = 0; i < kSteps && ball.radius > 0; ++i) {
+    const Vector3d center = ball.center + way * (ball.center - nearest).normalized();
+    Vector3d touched;
+    const double radius = space.clearance(ball.part, center, touched);
+    if (radius > ball.radius + 0.5 * way) {
+      ball.center = center;
+      ball.radius = radius;
+      nearest = touched;
+    } else {
+      way *= 0.4;
+    }
+  }
+}
+
+bool holds(const Ball& ball, const Ball& sample) {
+  return ball.part == sample.part && (sample.center - ball.center).squaredNorm() <= ball.radius * ball.radius;
+}
+
+/// The balls that together hold most of the samples' weight, one after the other.
+std::vector<Ball> choose(const EnclosedSpace& space, std::vector<Ball>& samples) {
+  std::vector<bool> held(samples.size(), false);
+  const auto weightOf = [&](const Ball& ball) {
+    double sum = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (!held[i] && holds(ball, samples[i])) sum += samples[i].weight;
+    }
+    return sum;
+  };
+  // What a ball would add only ever gets less: the first in the queue, weighed anew, is the best when it stays the
+  // first.
+  std::priority_queue<std::pair<double, std::size_t>> queue;
+  for (std::size_t i = 0; i < samples.size(); ++i) queue.emplace(weightOf(samples[i]), i);
+  std::vector<Ball> chosen;
+  while (!queue.empty() && chosen.size() < static_cast<std::size_t>(InnerBalls::kMost)) {
+    const auto [weight, index] = queue.top();
+    queue.pop();
+    const double now = weightOf(samples[index]);
+    if (!(now > 0)) continue;
+    if (now < weight && !queue.empty() && now < queue.top().first) {
+      queue.emplace(now, index);
+      continue;
+    }
+    Ball ball = samples[index];
+    enlarge(space, ball);
+    for (std::size_t i = 0; i < samples.size(); ++i) held[i] = held[i] || holds(ball, samples[i]);
+    if (ball.radius > 0 && space.certainlyEncloses(ball.part, ball.center)) chosen.push_back(ball);
+  }
+  return chosen;
+}
+
+/// A part's box, and its points farthest along eight directions.
+ClosedPart boundPart(const engine::TreeView& mesh, const ClosedParts& parts, std::int32_t part) {
+  ClosedPart bound;
+  for (int k = 0; k < 3; ++k) {
+    bound.lo[k] = kInfinity;
+    bound.hi[k] = -kInfinity;
+  }
+  double most[8];
+  std::fill(std::begin(most), std::end(most), -kInfinity);
+  for (std::int32_t i = 0; i < mesh.num_pieces; ++i) {
+    if (parts.part_of_piece[static_cast<std::size_t>(i)] != part) continue;
+    for (const Vector3d& x : triangleOf(mesh, i).corner) {
+      const double along[8] = {x[0], -x[0], x[1], -x[1], x[2], -x[2], x.sum(), -x.sum()};
+      for (int d = 0; d < 8; ++d) {
+        if (!(along[d] > most[d])) continue;
+        most[d] = along[d];
+        for (int k = 0; k < 3; ++k) bound.points[k][d] = x[k];
+      }
+      for (int k = 0; k < 3; ++k) {
+        bound.lo[k] = std::min(bound.lo[k], x[k]);
+        bound.hi[k] = std::max(bound.hi[k], x[k]);
+      }
+    }
+  }
+  return bound;
+}
+
+}  // namespace
+
+double EnclosedSpace::clearance(std::int32_t part, const Vector3d& x, Vector3d& nearest) const {
+  double least = kInfinity;
+  struct Open {
+    std::int32_t node;
+    double clearance;
+  };
+  constexpr std::size_t kDeepest = 64;  // trees are balanced
+  Open open[kDeepest];
+  std::size_t count = 0;
+  open[count++] = {0, clearanceOf(mesh_.nodes[0], x)};
+  while (count) {
+    const Open at = open[--count];
+    if (at.clearance >= least) continue;
+    const Node& node = mesh_.nodes[at.node];
+    if (node.isLeaf()) {
+      if (parts_.part_of_piece[static_cast<std::size_t>(node.piece())] != part) continue;
+      const Triangle t = triangleOf(mesh_, node.piece());
+      const Vector3d point = nearestPoint(t, x);
+      const double clearance = clearanceOf(t, x, point);
+      if (clearance >= least) continue;
+      least = clearance;
+      nearest = point;
+      continue;
+    }
+    Open left = {node.left(), clearanceOf(mesh_.nodes[node.left()], x)};
+    Open right = {node.right(), clearanceOf(mesh_.nodes[node.right()], x)};
+    if (left.clearance < right.clearance) std::swap(left, right);
+    open[count++] = left;
+    open[count++] = right;
+  }
+  return least;
+}
+
+bool EnclosedSpace::crossings(std::int32_t part, const Vector3d& x, int axis, std::vector<Crossing>& found) const {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  found.clear();
+  std::int32_t open[64];
+  std::size_t count = 0;
+  open[count++] = 0;
+  while (count) {
+    const Node& node = mesh_.nodes[open[--count]];
+    if (x[u] < node.lo[u] || x[u] > node.hi[u] || x[v] < node.lo[v] || x[v] > node.hi[v]) continue;
+    if (!node.isLeaf()) {
+      open[count++] = node.left();
+      open[count++] = node.right();
+      continue;
+    }
+    if (parts_.part_of_piece[static_cast<std::size_t>(node.piece())] != part) continue;
+    const Triangle t = triangleOf(mesh_, node.piece());
+    if (t.corner[0] == t.corner[1] || t.corner[1] == t.corner[2] || t.corner[2] == t.corner[0]) continue;
+    Crossing crossing;
+    const Crosses answer = crosses(t, x, axis, crossing);
+    if (answer == Crosses::unknown) return false;
+    if (answer == Crosses::yes) found.push_back(crossing);
+  }
+  return true;
+}
+
+bool EnclosedSpace::certainlyEncloses(std::int32_t part, const Vector3d& x) const {
+  std::vector<Crossing> found;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!crossings(part, x, axis, found)) continue;
+    if (!std::all_of(found.begin(), found.end(), [](const Crossing& c) { return c.certain; })) continue;
+    return std::count_if(found.begin(), found.end(), [](const Crossing& c) { return c.height > 0; }) % 2 == 1;
+  }
+  return false;
+}
+
+std::unique_ptr<const BallsInMesh> BallsInMesh::find(const engine::TreeView& mesh, const LineSweptSphere& around) {
+  for (std::int32_t i = 0; i < mesh.num_pieces; ++i) {
+    if (mesh.pieces[i].kind != PieceKind::vertices || mesh.pieces[i].num_vertices != 3) return nullptr;
+  }
+  const EnclosedSpace space(mesh);
+  const ClosedParts& parts = space.parts();
+  struct Sized {
+    std::int32_t part;
+    Vector3d lo, size;
+  };
+  std::vector<Sized> sized;
+  {
+    std::vector<Vector3d> lo(static_cast<std::size_t>(parts.count), Vector3d::Constant(kInfinity)), hi;
+    for (const Vector3d& x : lo) hi.push_back(-x);
+    for (std::int32_t i = 0; i < mesh.num_pieces; ++i) {
+      const std::int32_t part = parts.part_of_piece[static_cast<std::size_t>(i)];
+      if (part < 0) continue;
+      for (const Vector3d& x : triangleOf(mesh, i).corner) {
+        lo[static_cast<std::size_t>(part)] = lo[static_cast<std::size_t>(part)].cwiseMin(x);
+        hi[static_cast<std::size_t>(part)] = hi[static_cast<std::size_t>(part)].cwiseMax(x);
+      }
+    }
+    for (std::size_t p = 0; p < lo.size(); ++p) sized.push_back({static_cast<std::int32_t>(p), lo[p], hi[p] - lo[p]});
+  }
+  std::stable_sort(sized.begin(), sized.end(),
+                   [](const Sized& a, const Sized& b) { return a.size.norm() > b.size.norm(); });
+  double volume = 0;
+  std::size_t kept = 0;
+  while (kept < std::min(kMostParts, sized.size()) && sized[kept].size.norm() >= kLeastPart * sized[0].size.norm()) {
+    volume += sized[kept++].size.prod();
+  }
+  std::vector<Ball> samples;
+  for (std::size_t i = 0; i < kept; ++i) {
+    const double share = kSamples * sized[i].size.prod() / volume;
+    addSamples(space, sized[i].part, sized[i].lo, sized[i].size, std::max<double>(kFewestSamples, share), samples);
+  }
+  for (Ball& sample : samples) {
+    Vector3d nearest;
+    sample.radius = space.clearance(sample.part, sample.center, nearest);
+  }
+  const std::vector<Ball> chosen = choose(space, samples);
+  if (chosen.empty()) return nullptr;
+
+  std::unique_ptr<BallsInMesh> found(new BallsInMesh());
+  InnerBalls& balls = found->balls_;
+  balls.count = static_cast<std::int32_t>(chosen.size());
+  std::vector<std::int32_t> number(static_cast<std::size_t>(parts.count), -1);
+  for (std::int32_t i = 0; i < InnerBalls::kMost; ++i) {
+    const bool is_one = i < balls.count;
+    const Ball ball = is_one ? chosen[static_cast<std::size_t>(i)] : Ball{Vector3d::Zero(), -1e30, -1, 0};
+    for (int k = 0; k < 3; ++k) balls.center[k][i] = ball.center[k];
+    balls.radius[i] = ball.radius;
+    balls.part[i] = -1;
+    if (!is_one) continue;
+    balls.reach = std::max(balls.reach, distanceFromSegment(around, ball.center) + ball.radius);
+    std::int32_t& part = number[static_cast<std::size_t>(ball.part)];
+    if (part < 0) {
+      part = static_cast<std::int32_t>(found->parts_.size());
+      found->parts_.push_back(boundPart(mesh, parts, ball.part));
+    }
+    balls.part[i] = part;
+  }
+  balls.parts = found->parts_.data();
+  return found;
+}
+
+}  // namespace fcl_artic
