@@ -21,15 +21,15 @@ struct PlacedLink {
     for (int k = 0; k < 3; ++k) c[k] = P.t[k];
   }
   template <class T>
-  void place(const T* p, T* x) const {
+  FCL_ARTIC_INLINE void place(const T* p, T* x) const {
     for (int k = 0; k < 3; ++k) x[k] = dot(p, R + 3 * k) + T(c[k]);
   }
   template <class T>
-  void turnBack(const T* d, T* p) const {
+  FCL_ARTIC_INLINE void turnBack(const T* d, T* p) const {
     for (int k = 0; k < 3; ++k) p[k] = mulAdd(d[2], T(R[6 + k]), mulAdd(d[1], T(R[3 + k]), d[0] * T(R[k])));
   }
   template <class T>
-  void opposite(const T* x, T* p) const {
+  FCL_ARTIC_INLINE void opposite(const T* x, T* p) const {
     const T d[3] = {x[0] - T(c[0]), x[1] - T(c[1]), x[2] - T(c[2])};
     turnBack(d, p);
   }
