@@ -230,68 +230,68 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
   out.overlap = false;
   out.lower = -1e300;
   if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
-  double length = norm(guess), v[3], size = 0;
-  for (int k = 0; k < 3; ++k) out.n[k] = length > 1e-100 ? guess[k] / length : (k == 0);  // far from underflow: unit
+  double v[3], size2 = 0, best[3], best_length;  // the largest |w|^2 seen; the direction that tells the largest lower bound
+  const double given = norm(guess);
+  best_length = given > 1e-100 ? given : 1;  // far from underflow
+  for (int k = 0; k < 3; ++k) best[k] = given > 1e-100 ? guess[k] : (k == 0);
   Simplex& s = out.simplex;
-  DifferencePoint p;
+  out.iterations = 0;
+  bool inside = false;
   if (start && start->n) {
-    out.iterations = 0;
     s.n = start->n;
     for (int i = 0; i < s.n; ++i) {
       s.v[i] = start->v[i];
       body.subtract(s.v[i]);
-      size = max(size, norm(s.v[i].w));
+      size2 = max(size2, dot(s.v[i].w, s.v[i].w));
     }
-    if (!reduceSimplex(s, v)) {
-      out.overlap = true;
-      out.distance = 0;
-      return;
-    }
+    inside = !reduceSimplex(s, v);
   } else {
-    body.support(out.n, p);
+    const DifferencePoint& p = s.v[0];
+    body.support(best, s.v[0]);
     out.iterations = 1;
-    out.lower = dot(out.n, p.w);
-    s.v[0] = p;
+    out.lower = dot(best, p.w) / best_length;
     s.weight[0] = 1;
     s.n = 1;
-    size = norm(p.w);
+    size2 = dot(p.w, p.w);
     for (int k = 0; k < 3; ++k) v[k] = p.w[k];
   }
-  while (out.iterations < max_iterations) {
+  while (!inside && out.iterations < max_iterations) {
     const double vv = dot(v, v);
     // The origin within rounding of a face of the simplex is as good as inside (aligned faces bring that about).
-    if (vv <= 1e-30 * size * size || vv < radii * radii * (1 - 1e-13)) {
+    if (vv <= 1e-30 * size2 || vv < radii * radii * (1 - 1e-13)) {
       out.overlap = true;
       out.distance = sqrt(vv);
       break;
     }
-    length = sqrt(vv);
+    const double length = sqrt(vv);
     out.distance = length;
-    double n[3] = {v[0] / length, v[1] / length, v[2] / length};
-    body.support(n, p);
+    const DifferencePoint& p = s.v[s.n];
+    body.support(v, s.v[s.n]);
     ++out.iterations;
-    size = max(size, norm(p.w));
-    const double lower = dot(n, p.w);
+    size2 = max(size2, dot(p.w, p.w));
+    const double lower = dot(v, p.w) / length;
     if (lower > out.lower) {
       out.lower = lower;
-      for (int k = 0; k < 3; ++k) out.n[k] = n[k];
+      best_length = length;
+      for (int k = 0; k < 3; ++k) best[k] = v[k];
     }
     // Relative to the gap, not to the core distance.
     if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
     bool known = false;
     for (int i = 0; i < s.n; ++i) {
-      known |= s.v[i].w[0] == p.w[0] && s.v[i].w[1] == p.w[1] && s.v[i].w[2] == p.w[2];
+      known |= (s.v[i].w[0] == p.w[0]) & (s.v[i].w[1] == p.w[1]) & (s.v[i].w[2] == p.w[2]);
     }
     if (known) break;
-    s.v[s.n++] = p;
+    ++s.n;
     double next[3];
-    if (!reduceSimplex(s, next)) {  // it stays a tetrahedron then
-      out.overlap = true;
-      out.distance = 0;
-      break;
-    }
-    if (dot(next, next) >= vv * (1 - 1e-15)) break;
+    inside = !reduceSimplex(s, next);  // it stays a tetrahedron then
+    if (inside || dot(next, next) >= vv * (1 - 1e-15)) break;
     for (int k = 0; k < 3; ++k) v[k] = next[k];
+  }
+  for (int k = 0; k < 3; ++k) out.n[k] = best[k] / best_length;
+  if (inside) {
+    out.overlap = true;
+    out.distance = 0;
   }
   // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane.
   if (out.overlap && out.lower > radii) {

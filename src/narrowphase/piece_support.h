@@ -39,17 +39,20 @@ FCL_ARTIC_INLINE void hullRange(const double* x, int n, const double* u, double&
   lower = minLane(least);
   upper = maxLane(most);
 }
-/// Index of a vertex farthest along u.
+/// Index of a vertex farthest along u, but for 2^-42 of its value.
 inline int hullSupport(const double* x, int n, const double* u) {
-  Lanes most = hullValues(x, n, 0, u), block(0.0);  // lane by lane the largest value, and the block it stands in
-  for (int i = kLanes; i < n; i += kLanes) {
-    const Lanes value = hullValues(x, n, i, u);
-    block = whereGreater(value, most, Lanes(i), block);
-    most = max(most, value);
+  int best = 0;
+  double value = -__builtin_huge_val();
+  for (int begin = 0; begin < n; begin += kNumbered) {  // once, but for very fine hulls
+    Lanes most = numbered(hullValues(x, n, begin, u), 0);
+    for (int i = kLanes; i < min(n - begin, kNumbered); i += kLanes) {
+      most = max(most, numbered(hullValues(x, n, begin + i, u), i));
+    }
+    const double found = maxLane(most);
+    best = found > value ? begin + numberOf(found) : best;
+    value = max(value, found);
   }
-  const unsigned reached = kAllLanes & ~greater(Lanes(maxLane(most)), most);
-  const int lane = reached ? __builtin_ctz(reached) : 0;
-  return static_cast<int>(block[lane]) + lane;
+  return best;
 }
 
 /// Half-spaces and planes: they have one direction, and no search along any other makes sense.

@@ -188,6 +188,26 @@ FCL_ARTIC_INLINE Lanes whereGreater(Lanes a, Lanes b, Lanes x, Lanes y) {
   return o;
 }
 
+/// Values whose lowest bits are replaced by their number, `first` + lane: the largest one then tells which it is. They change
+/// by less than 2^-42 of themselves.
+constexpr int kNumbered = 1024;  ///< numbers lie below
+FCL_ARTIC_INLINE Lanes numbered(Lanes a, int first) {
+  typedef long long Bits __attribute__((vector_size(sizeof(Register))));
+  Lanes o;
+  for (int i = 0; i < kRegisters; ++i) {
+    Bits number;
+    for (int k = 0; k < kRegisterLanes; ++k) number[k] = i * kRegisterLanes + k;
+    o.r[i] = reinterpret_cast<Register>((reinterpret_cast<Bits>(a.r[i]) & ~static_cast<long long>(kNumbered - 1)) |
+                                        (number + static_cast<long long>(first)));
+  }
+  return o;
+}
+FCL_ARTIC_INLINE int numberOf(double a) {
+  long long bits;
+  __builtin_memcpy(&bits, &a, sizeof bits);
+  return static_cast<int>(bits & (kNumbered - 1));
+}
+
 FCL_ARTIC_INLINE double maxLane(Lanes a) {
 #if FCL_ARTIC_ISA_BITS == 128
   const Register m = regMax(regMax(a.r[0], a.r[1]), regMax(a.r[2], a.r[3]));
