@@ -269,8 +269,6 @@ constexpr double kDeepLinks = 0.7;
 constexpr int kMostAtPose = 512;
 /// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
 constexpr double kThin = 0.5;
-/// Of more pieces none is looked for by the vertices where hulls meet.
-constexpr int kFewPieces = 2048;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
 /// in it.
 constexpr double kFirstWindow = 0.4;

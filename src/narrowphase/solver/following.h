@@ -157,27 +157,46 @@ inline bool Solver::prove(Final& f) {
   return false;
 }
 
-/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body;
-/// -1 where that is not worth looking for.
+/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body,
+/// the heaviest of them among these; -1: there is none, as where the hull's vertices are not the body's own.
 inline int Solver::pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
   if (tree.num_pieces == 1) return 0;
-  if (tree.num_pieces > kFewPieces || tree.pieces[0].kind != PieceKind::vertices) return -1;
-  int piece = -1;
+  if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
+  const auto point = [&](int k) { return of_a ? simplex.v[k].a : simplex.v[k].b; };
+  int heaviest = 0;
+  for (int k = 1; k < simplex.n; ++k) {
+    if (simplex.weight[k] > simplex.weight[heaviest]) heaviest = k;
+  }
+  const double* x = point(heaviest);
+  int best = -1, count = 1;
   double most = 0;
-  for (int i = 0; i < tree.num_pieces; ++i) {
-    const double* v = tree.vertices + 3 * static_cast<std::ptrdiff_t>(tree.pieces[i].first_vertex);
+  constexpr int kDeepest = 64;
+  std::int32_t waiting[kDeepest] = {0};
+  while (count) {
+    const Node& node = tree.nodes[waiting[--count]];
+    bool holds = true;
+    for (int k = 0; k < 3; ++k) holds &= x[k] >= node.lo[k] && x[k] <= node.hi[k];
+    if (!holds) continue;
+    if (!node.isLeaf()) {
+      if (count + 2 > kDeepest) return best;
+      waiting[count++] = node.right();
+      waiting[count++] = node.left();
+      continue;
+    }
+    const Piece& piece = tree.pieces[node.piece()];
+    const double* v = tree.vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
     double weight = 0;
-    for (int j = 0; j < tree.pieces[i].num_vertices; ++j, v += 3) {
+    for (int j = 0; j < piece.num_vertices; ++j, v += 3) {
       for (int k = 0; k < simplex.n; ++k) {
-        const double* x = of_a ? simplex.v[k].a : simplex.v[k].b;
-        if (x[0] == v[0] && x[1] == v[1] && x[2] == v[2]) weight += simplex.weight[k];
+        const double* y = point(k);
+        if (y[0] == v[0] && y[1] == v[1] && y[2] == v[2]) weight += simplex.weight[k];
       }
     }
     if (weight <= most) continue;
     most = weight;
-    piece = i;
+    best = node.piece();
   }
-  return piece;
+  return best;
 }
 
 /// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time.
