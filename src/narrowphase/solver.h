@@ -110,6 +110,7 @@ class Solver {
   static int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a);
   void proveBelowHulls(Final& f);
   bool advance(Final& f, double stop, bool patient, unsigned first_lanes = 0);
+  bool proveAhead(Final& f, int lane);
   bool settle(Final& f, double stop);
   bool prove(Final& f);
   void lookBack(Final& f);

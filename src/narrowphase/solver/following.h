@@ -13,7 +13,8 @@ namespace FCL_ARTIC_ISA {
 /// method's.
 /// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
 /// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
-/// @return false where it ended before `stop` (and before the earliest proven contact).
+/// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do, has
+/// proven one (f.certain).
 inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query_->tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
@@ -78,6 +79,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
       span *= 4;
       continue;
     }
+    if (query_->any && round > 0 && proveAhead(f, kLanes - 1)) return false;
     const int lane = __builtin_ctz(~separated);
     double x = 0;
     for (int i = 0; i < bounds; ++i) {
@@ -107,6 +109,24 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
   return !f.stuck;
 }
 
+/// Where any contact will do: the lanes of a followed pair reach beyond the contact that is expected. The pieces that the
+/// last witness lies on are tried there; where they touch, f becomes their contact.
+inline bool Solver::proveAhead(Final& f, int lane) {
+  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  const int piece_a = f.hulls ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
+  const int piece_b = f.hulls ? pieceAtWitness(B, f.simplex, false) : f.piece_b;
+  if (piece_a < 0 || piece_b < 0) return false;
+  ++statistics_.contact_proofs;
+  const DifferenceBody body = differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
+  if (!certainlyTouching(body, margin_, pose_error_, f.normal, f.point)) return false;
+  f.hulls = false;
+  f.piece_a = piece_a;
+  f.piece_b = piece_b;
+  f.certain = f.stuck = true;
+  f.t_upper = t_upper_ = limit_ = tm_at_[lane];
+  return true;
+}
+
 inline void Solver::piecesOf(const Final& f, const Piece*& a, const Piece*& b) const {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
   a = f.hulls ? A.outer : &A.pieces[f.piece_a];
@@ -128,7 +148,7 @@ inline Solver::Final Solver::leafPair(const Entry& e, double start) const {
 inline bool Solver::settle(Final& f, double stop) {
   if (prove(f)) return false;
   if (advance(f, stop, true)) return true;
-  prove(f);
+  if (!f.certain) prove(f);
   return false;
 }
 
@@ -326,7 +346,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   *refine = false;
   for (int i = 0; i < finals_.size(); ++i) {
     Final& f = finals_[i];
-    if (!advance(f, stop, false)) settle(f, stop);
+    if (!advance(f, stop, false) && !f.certain) settle(f, stop);
     if (outOfBudget()) return Step::done;
     // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
     const bool enough = f.certain && f.t_lower <= start && i >= max(64, query_->max_contacts);

@@ -107,6 +107,10 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
       entries_.truncate(first);
       continue;
     }
+    if (f.certain) {
+      describe(f, contacts_.grow());
+      return;
+    }
     candidates_.push(f);
     outOfBudget();
   }
