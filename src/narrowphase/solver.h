@@ -121,7 +121,8 @@ class Solver {
   unsigned partsMayTouch(int a, int b, unsigned mask);
   unsigned apartFromUnbounded(int a, int b);
   template <class F>
-  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap);
+  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last, const F& onOverlap);
+  Simplex& simplexOf(int pair);
   void claimOverlap(int lane);
   bool isWithin();
   unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
@@ -181,6 +182,15 @@ class Solver {
   std::int32_t witness_pair_ = -1;
   std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
   const std::uint64_t* free_nodes_ = nullptr;  ///< of A, a bit each; null: none (engine::CullCandidate)
+  /// The last simplices of pairs' hulls: a small direct-mapped cache; what is pushed out is found again.
+  static constexpr int kHullSimplices = 32;
+  struct HullSimplex {
+    std::int32_t pair;
+    std::uint64_t query;
+    Simplex simplex;
+  };
+  HullSimplex hull_simplices_[kHullSimplices] = {};
+  std::uint64_t query_number_ = 0;
   std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
   /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
   /// processor's own; what is pushed out is made again.
@@ -300,6 +310,7 @@ namespace FCL_ARTIC_ISA {
 inline void Solver::solve(const Problem& problem, const Query& query, Answer& answer) {
   problem_ = &problem;
   query_ = &query;
+  ++query_number_;
   statistics_ = Statistics();
   entries_.clear();
   contacts_.clear();

@@ -103,6 +103,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     const bool whole = f.entry.a == 0 && f.entry.b == 0;
     f.hulls = whole && !leaves && problem_->bodies[pair.a].tree->outer && problem_->bodies[pair.b].tree->outer;
     f.pieces = !(leaves && count == 1) && !f.hulls;
+    if (f.hulls) f.simplex = simplexOf(pair_index);
     if (f.t_lower >= stop || (!f.pieces && advance(f, stop, false, first_lanes))) {
       entries_.truncate(first);
       continue;

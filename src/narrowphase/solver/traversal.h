@@ -79,12 +79,13 @@ inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int l
 /// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
 /// lanes, each frozen in one frame and in the other and tried on all lanes.
 /// @param most  so many overlapping middles end the search.
+/// @param last  what GJK begins with, and ends with.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
-inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, const F& onOverlap) {
+inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
+                                     const F& onOverlap) {
   double guess[3], sign = 0;
   bool have_guess = false;
-  Simplex last;
   unsigned untried = mask;
   while (most > 0 && (untried &= live_ & ~contact_lane_) != 0) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
@@ -123,6 +124,17 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
     untried &= mask;
   }
   return mask;
+}
+
+/// GJK's last simplex of a pair's hulls in this query; empty at first.
+inline Simplex& Solver::simplexOf(int pair) {
+  HullSimplex& kept = hull_simplices_[pair & (kHullSimplices - 1)];
+  if (kept.pair != pair || kept.query != query_number_) {
+    kept.pair = pair;
+    kept.query = query_number_;
+    kept.simplex.n = 0;
+  }
+  return kept.simplex;
 }
 
 /// Puts the lanes behind this one off: there seems to be contact at its middle.
@@ -165,7 +177,7 @@ inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim) {
   if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
   if (!A.outer || !B.outer) return mask;
   if (isWithin()) return mask | kWithin;
-  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, [&](int lane) {
+  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(pair), [&](int lane) {
     overlaps_ |= 1u << lane;
     if (query_->any && tm_at_[lane] >= watchFrom(pair) && proveVertexInside(pair, lane)) return;
     if (claim) claimOverlap(lane);
@@ -184,7 +196,8 @@ inline unsigned Solver::partsMayTouch(int a, int b, unsigned mask) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
   if (!A.parts && !B.parts) return mask;
   const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
-  return y ? notSeparated(*x, *y, mask, kMostHullOverlaps, [](int) {}) : mask;
+  Simplex last;
+  return y ? notSeparated(*x, *y, mask, kMostHullOverlaps, last, [](int) {}) : mask;
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
@@ -207,7 +220,8 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
     mask &= ~certainlySeparated(side(0), a, b, witness_, mask, margin_, pad_, sign);
     if (!mask) return 0;
   }
-  return notSeparated(a, b, mask, kLanes, [&](int lane) {
+  Simplex last;
+  return notSeparated(a, b, mask, kLanes, last, [&](int lane) {
     if (tm_at_[lane] < watchFrom(pair)) return;
     if (query_->any && !decide_only_ && proveLeaves(pair, piece_a, piece_b, lane)) return;
     claimOverlap(lane);
