@@ -117,6 +117,10 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// @throws std::invalid_argument as requireConfiguration().
   void forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q, std::vector<Eigen::Isometry3d>& M_0) const;
 
+  /// Pose of one link in the world, the same bits as forwardKinematics() gives: the joints on its way only.
+  /// @throws std::invalid_argument as requireConfiguration(); std::out_of_range for a link that is not there.
+  Eigen::Isometry3d linkPose(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const;
+
   /// Refuses a configuration of the wrong size, with a value that is not finite, or with a quaternion whose length is not
   /// 1 within 1e-3, naming `what` and the joint.
   /// @throws std::invalid_argument
@@ -128,6 +132,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   int findLink(std::string_view name) const;
   void sortLinks();
   void moveBy(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M) const;
+  Eigen::Isometry3d poseOf(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const;
   std::string name_;
   std::vector<std::string> link_names_;
   std::vector<JointId> parent_joint_;

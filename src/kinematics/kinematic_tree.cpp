@@ -211,6 +211,19 @@ void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q
   }
 }
 
+Eigen::Isometry3d KinematicTree::linkPose(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  requireConfiguration(q, "q");
+  return poseOf(link, q);
+}
+
+Eigen::Isometry3d KinematicTree::poseOf(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  const JointId j = parentJoint(link);
+  if (j < 0) return Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d M_0 = poseOf(joint_parent_[j], q) * joints_[j].origin;
+  moveBy(j, q, M_0);
+  return M_0;
+}
+
 Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
   Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
   moveBy(j, q, M);

@@ -99,12 +99,9 @@ CertifiedContact report(const Registry& registry, void* workspace, const engine:
   if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
     refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
   }
-  const auto carried = [&] {
-    std::vector<Eigen::Isometry3d> M_0;
-    registry.tree()->forwardKinematics(motion.configuration(leaf.t), M_0);
-    return M_0[static_cast<std::size_t>(a.link)] * a.offset;
-  };
-  const Eigen::Isometry3d M_0a = a.link >= 0 ? carried() : a.pose(time.at(leaf.t));
+  const Eigen::Isometry3d M_0a = a.link >= 0
+                                     ? registry.tree()->linkPose(a.link, motion.configuration(leaf.t)) * a.offset
+                                     : a.pose(time.at(leaf.t));
   contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
   contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
   contact.body1 = a.reference();

@@ -99,6 +99,13 @@ void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>&
     }
   }
   num_link_sweeps_ = sweeps_.size();
+  // Large links first: they are the likeliest to touch, where any contact will do.
+  const auto size = [&](const engine::LinkPair& pair) {
+    const auto radius = [&](std::int32_t body) { return bodies_[static_cast<std::size_t>(body)].tree->nodes[0].radius; };
+    return radius(pair.a) + radius(pair.b);
+  };
+  std::stable_sort(link_pairs_.begin(), link_pairs_.end(),
+                   [&](const engine::LinkPair& p, const engine::LinkPair& q) { return size(p) > size(q); });
   num_self_pairs_ = link_pairs_.size();
 }
 

@@ -92,6 +92,19 @@ TEST(KinematicTree, MimicFollowsItsMaster) {
   EXPECT_EQ(M_0[2].translation(), Eigen::Vector3d(0, -0.875, 0));
 }
 
+TEST(KinematicTree, OneLinksPoseIsThatOfAll) {
+  const KinematicTree tree = planarArm();
+  const Eigen::Vector2d q(0.7, -1.9);
+  std::vector<Eigen::Isometry3d> M_0;
+  tree.forwardKinematics(q, M_0);
+  EXPECT_GT(M_0[3].translation().norm(), 0.5);
+  for (LinkId link = 0; link < tree.numLinks(); ++link) {
+    EXPECT_EQ(tree.linkPose(link, q).matrix(), M_0[static_cast<std::size_t>(link)].matrix()) << tree.linkName(link);
+  }
+  EXPECT_THROW(tree.linkPose(4, q), std::out_of_range);
+  EXPECT_THROW(tree.linkPose(3, Eigen::Vector2d(kNaN, 0)), std::invalid_argument);
+}
+
 TEST(KinematicTree, ForestKeepsEachRootAtTheOrigin) {
   KinematicTree tree("two robots");
   for (const char* link : {"b_tip", "b_base", "a_base", "a_tip"}) tree.addLink(link);  // a child before its parent
