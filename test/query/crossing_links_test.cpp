@@ -9,34 +9,14 @@
 
 #include <gtest/gtest.h>
 
-#include "arms.h"
-#include "meshes.h"
+#include "crossing_links.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
-
-/// One mesh on the base, the other on two sliders along x: links with one joint between them are not checked.
-struct Crossing {
-  fcl::CollisionObjectd still, moving;
-  ArticulatedCollisionManager manager{sliderTree({"base", "between", "cart"})};
-
-  Crossing(std::shared_ptr<Mesh> a, std::shared_ptr<Mesh> b, const Isometry3d& at)
-      : still(std::move(a)), moving(std::move(b)) {
-    manager.bind("base", &still);
-    manager.bind("cart", &moving, at);
-    manager.setup();
-  }
-  CertifiedResult run(double from, double to, ContactMode mode) const {
-    CertifiedRequest request;
-    request.mode = mode;
-    return ask(manager, VectorXd::Constant(2, 0.5 * from), VectorXd::Constant(2, 0.5 * to), request);
-  }
-};
 
 /// One triangle drawn twice: no longer closed, so that nothing is known of its inside (inner_balls_test.cpp).
 std::shared_ptr<Mesh> withTriangleTwice(const Mesh& mesh) {
@@ -75,7 +55,7 @@ TEST(CrossingLinks, AnyContactLiesOnBothTriangles) {
     const double reach = small ? 0.05 : 0.5;
     at.translation() = Vector3d(in(-reach, reach), in(-reach, reach), in(-reach, reach));
     const auto a = withTriangleTwice(*fineBoxMesh(half, 1 + i % 5)), b = fineBoxMesh(other, 1 + i % 4);
-    const Crossing crossing(a, b, at);
+    const CrossingLinks crossing(a, b, at);
     const double from = in(-reach, reach), to = in(-reach, reach);
     const CertifiedResult any = crossing.run(from, to, ContactMode::any);
     ASSERT_EQ(any.status, crossing.run(from, to, ContactMode::first).status) << i;
@@ -87,7 +67,7 @@ TEST(CrossingLinks, AnyContactLiesOnBothTriangles) {
     EXPECT_NEAR(contact.normal.norm(), 1, 1e-9) << i;
     if (contact.feature != FeatureKind::edgeFace && contact.feature != FeatureKind::faceEdge) continue;
     ++at_poses;
-    const bool swapped = contact.body1.name != "base";
+    const bool swapped = contact.body1.name != "still";
     Isometry3d M = at;
     M.translation().x() += from + contact.t_upper * (to - from);
     EXPECT_LT(outsideTriangle(*a, swapped ? contact.b2 : contact.b1, contact.point), 1e-9) << i;

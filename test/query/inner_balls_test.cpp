@@ -12,14 +12,12 @@
 #include <fcl/narrowphase/collision.h>
 #include <gtest/gtest.h>
 
-#include "arms.h"
-#include "meshes.h"
+#include "crossing_links.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -35,25 +33,6 @@ std::shared_ptr<Mesh> together(const Mesh& a, const Mesh& b, const Isometry3d& M
   }
   return meshOf(v, t);
 }
-
-/// Two links, "still" on the base and "moving" on two sliders along x, turned and put as `at` says.
-struct Links {
-  fcl::CollisionObjectd still, moving;
-  ArticulatedCollisionManager manager{sliderTree({"still", "between", "moving"})};
-  Isometry3d at;
-
-  Links(std::shared_ptr<Mesh> a, std::shared_ptr<Mesh> b, const Isometry3d& at)
-      : still(std::move(a)), moving(std::move(b)), at(at) {
-    manager.bind("still", &still);
-    manager.bind("moving", &moving, at);
-    manager.setup();
-  }
-  CertifiedResult run(double from, double to, ContactMode mode = ContactMode::any) const {
-    CertifiedRequest request;
-    request.mode = mode;
-    return ask(manager, VectorXd::Constant(2, 0.5 * from), VectorXd::Constant(2, 0.5 * to), request);
-  }
-};
 
 bool touch(const fcl::CollisionGeometryd& a, const Isometry3d& A, const fcl::CollisionGeometryd& b,
            const Isometry3d& B) {
@@ -76,7 +55,7 @@ bool provenByBalls(const CertifiedResult& r) {
 /// Half in each other: proven by what they enclose, and the report says so.
 TEST(InnerBalls, DeepLinksTouch) {
   const auto a = fineBoxMesh(Vector3d(0.3, 0.2, 0.2), 4), b = fineBoxMesh(Vector3d(0.25, 0.15, 0.3), 3);
-  const Links links(a, b, pose(Vector3d(0, 0.05, 0.02), 0.3));
+  const CrossingLinks links(a, b, pose(Vector3d(0, 0.05, 0.02), 0.3));
   const CertifiedResult r = links.run(-1, 1);
   ASSERT_EQ(r.status, Status::contact);
   ASSERT_TRUE(provenByBalls(r));
@@ -95,18 +74,18 @@ TEST(InnerBalls, DeepLinksTouch) {
 TEST(InnerBalls, LinkWithinAnotherIsFree) {
   const auto large = fineBoxMesh(Vector3d::Constant(1), 6), small = fineBoxMesh(Vector3d(0.2, 0.3, 0.25), 2);
   for (const bool swapped : {false, true}) {
-    const Links links(swapped ? small : large, swapped ? large : small, pose(Vector3d(0, 0.1, -0.1), 0.4));
+    const CrossingLinks links(swapped ? small : large, swapped ? large : small, pose(Vector3d(0, 0.1, -0.1), 0.4));
     EXPECT_EQ(links.run(-0.3, 0.3).status, Status::free) << swapped;
     const CertifiedResult through = links.run(-0.3, 1.5);
     EXPECT_EQ(through.status, Status::contact) << swapped;
   }
   // The same with a wall: a second surface within the first.
   const auto hollow = together(*large, *fineBoxMesh(Vector3d::Constant(0.9), 5), Isometry3d::Identity());
-  const Links links(hollow, small, pose(Vector3d(0, 0.1, -0.1), 0.4));
+  const CrossingLinks links(hollow, small, pose(Vector3d(0, 0.1, -0.1), 0.4));
   EXPECT_EQ(links.run(-0.3, 0.3).status, Status::free);
   // And in the wall, as far as that goes, where it is thick.
   const auto thick = together(*fineBoxMesh(Vector3d::Constant(2), 6), *large, Isometry3d::Identity());
-  const Links in_wall(thick, small, pose(Vector3d(1.5, 0, 0), 0.1));
+  const CrossingLinks in_wall(thick, small, pose(Vector3d(1.5, 0, 0), 0.1));
   EXPECT_EQ(in_wall.run(-0.1, 0.1).status, Status::free);
 }
 
@@ -157,7 +136,7 @@ TEST(InnerBalls, FclAgrees) {
                    pose(nested ? Vector3d(0, 0, 0) : Vector3d(0.3, 0.1, 0)));
     const auto b = fineBoxMesh(nested ? Vector3d(in(0.2, 0.6) * half) : size(0.05, 0.4), 1 + i % 3);
     const double reach = nested ? 0.1 : 0.6;
-    const Links links(a, b,
+    const CrossingLinks links(a, b,
                       pose(Vector3d(in(-reach, reach), in(-reach, reach), in(-reach, reach)), in(-3, 3),
                            Vector3d(in(-1, 1), in(-1, 1), 1)));
     const double from = in(-reach, reach), to = in(-reach, reach);
