@@ -230,10 +230,11 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
   out.overlap = false;
   out.lower = -1e300;
   if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
-  double v[3], size2 = 0, best[3], best_length;  // the largest |w|^2 seen; the direction that tells the largest lower bound
   const double given = norm(guess);
-  best_length = given > 1e-100 ? given : 1;  // far from underflow
-  for (int k = 0; k < 3; ++k) best[k] = given > 1e-100 ? guess[k] : (k == 0);
+  const bool usable = given > 1e-100;  // far from underflow
+  double best_length = usable ? given : 1, best[3];  // the direction that tells the largest lower bound
+  for (int k = 0; k < 3; ++k) best[k] = usable ? guess[k] : (k == 0);
+  double v[3], size2 = 0;  // size2: the largest |w|^2 seen
   Simplex& s = out.simplex;
   out.iterations = 0;
   bool inside = false;
