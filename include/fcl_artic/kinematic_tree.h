@@ -131,13 +131,22 @@ class FCL_ARTIC_EXPORT KinematicTree {
  private:
   int findLink(std::string_view name) const;
   void sortLinks();
+  /// A turn of q about a joint's axis, seen from the parent link: along + across cos q + aside sin q.
+  struct Turn {
+    explicit Turn(const Joint& joint);
+    Eigen::Matrix3d along, across, aside;
+  };
   void moveBy(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M) const;
-  Eigen::Isometry3d poseOf(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const;
+  void placeChild(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Isometry3d& M_parent,
+                  Eigen::Isometry3d& M_child) const;
+  void placeLink(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M_0) const;
   std::string name_;
   std::vector<std::string> link_names_;
   std::vector<JointId> parent_joint_;
   std::vector<Joint> joints_;
+  std::vector<Turn> turns_;  ///< of each joint; used of revolute and continuous ones
   std::vector<int> joint_parent_, joint_child_, joint_variable_;
+  std::vector<JointId> with_quaternions_;
   std::vector<JointId> variables_;
   std::vector<std::string> variable_names_;
   std::vector<LinkId> order_;  ///< topological

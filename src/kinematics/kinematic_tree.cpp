@@ -117,9 +117,11 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   joints_.push_back(joint);
   joints_.back().origin.linear() = orthonormal(joint.origin.linear());
   if (has_axis) joints_.back().axis.stableNormalize();
+  turns_.emplace_back(joints_.back());
   joint_parent_.push_back(parent);
   joint_child_.push_back(child);
   joint_variable_.push_back(variable);
+  if (quaternionVariable(id) >= 0) with_quaternions_.push_back(id);
   if (!joint.mimics) {
     variables_.insert(variables_.end(), static_cast<std::size_t>(numVariables(joint.type)), id);
     for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
@@ -127,6 +129,14 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   parent_joint_[child] = id;
   sortLinks();
   return id;
+}
+
+KinematicTree::Turn::Turn(const Joint& joint) {
+  const Eigen::Matrix3d R = joint.origin.linear();
+  const Eigen::Vector3d a = joint.axis;
+  along = R * a * a.transpose();
+  across = R - along;
+  for (int k = 0; k < 3; ++k) aside.col(k) = R * a.cross(Eigen::Vector3d::Unit(k));
 }
 
 bool KinematicTree::isAngle(int v) const {
@@ -146,9 +156,7 @@ int KinematicTree::quaternionVariable(JointId j) const {
 
 Eigen::VectorXd KinematicTree::neutralConfiguration() const {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(dof());
-  for (JointId j = 0; j < numJoints(); ++j) {
-    if (const int v = quaternionVariable(j); v >= 0) q[v + 3] = 1;
-  }
+  for (const JointId j : with_quaternions_) q[quaternionVariable(j) + 3] = 1;
   return q;
 }
 
@@ -204,24 +212,40 @@ void KinematicTree::forwardKinematics(const Eigen::Ref<const Eigen::VectorXd>& q
     const JointId j = parent_joint_[link];
     if (j < 0) {
       M_0[link].setIdentity();
-      continue;
+    } else {
+      placeChild(j, q, M_0[joint_parent_[j]], M_0[link]);
     }
-    M_0[link] = M_0[joint_parent_[j]] * joints_[j].origin;
-    moveBy(j, q, M_0[link]);
   }
 }
 
 Eigen::Isometry3d KinematicTree::linkPose(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const {
   requireConfiguration(q, "q");
-  return poseOf(link, q);
+  Eigen::Isometry3d M_0;
+  placeLink(link, q, M_0);
+  return M_0;
 }
 
-Eigen::Isometry3d KinematicTree::poseOf(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+void KinematicTree::placeLink(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q, Eigen::Isometry3d& M_0) const {
   const JointId j = parentJoint(link);
-  if (j < 0) return Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d M_0 = poseOf(joint_parent_[j], q) * joints_[j].origin;
-  moveBy(j, q, M_0);
-  return M_0;
+  if (j < 0) return M_0.setIdentity();
+  Eigen::Isometry3d M_parent;
+  placeLink(joint_parent_[j], q, M_parent);
+  placeChild(j, q, M_parent, M_0);
+}
+
+void KinematicTree::placeChild(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Isometry3d& M_parent,
+                               Eigen::Isometry3d& M_child) const {
+  const Joint& joint = joints_[j];
+  if (joint.type != JointType::revolute && joint.type != JointType::continuous) {
+    M_child = M_parent * joint.origin;
+    return moveBy(j, q, M_child);
+  }
+  const Turn& turn = turns_[j];
+  const double angle = jointValue(j, q);
+  M_child.linear().noalias() =
+      M_parent.linear() * (turn.along + std::cos(angle) * turn.across + std::sin(angle) * turn.aside);
+  M_child.translation() = M_parent * joint.origin.translation();
+  M_child.makeAffine();
 }
 
 Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
@@ -269,9 +293,8 @@ void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>
                                   "' is not finite");
     }
   }
-  for (JointId j = 0; j < numJoints(); ++j) {
+  for (const JointId j : with_quaternions_) {
     const int v = quaternionVariable(j);
-    if (v < 0) continue;
     const double length = q.segment<4>(v).norm();
     if (std::abs(length - 1) <= kQuaternionLength) continue;
     throw std::invalid_argument(what + ": the quaternion of joint '" + joints_[j].name + "' has the length " +

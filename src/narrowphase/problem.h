@@ -215,6 +215,11 @@ struct CullCandidate {
   const std::uint64_t* free_nodes = nullptr;
 };
 
+/// A pair that is worth a look in the middle of the part [k/8, (k+1)/8] of a motion.
+struct LikelyContact {
+  std::int32_t link_pair, part;
+};
+
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
@@ -231,6 +236,9 @@ struct Query {
   /// come to, which contact with an obstacle may spare. Null: nothing is known.
   const std::uint8_t* (*link_free)(const void* context) = nullptr;
   const void* link_free_context = nullptr;
+  /// With `any`: where balls inside links are likely to meet.
+  const LikelyContact* likely = nullptr;
+  std::int32_t num_likely = 0;
   /// A stage between stage 1 and the first batch: may clear lanes in which a pair is proven free and set free_nodes,
   /// nothing else. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
   void (*refine)(void* context, const Problem& problem, const SweptLink* links, CullCandidate* pairs,

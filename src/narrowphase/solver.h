@@ -137,6 +137,7 @@ class Solver {
   bool proveByBalls(int pair, int lane);
   bool proveByBallInSolid(int pair, int lane);
   bool proveAtPoses();
+  bool proveWhereLikely();
   bool proveAtPose(int pair, int lane);
   bool proveTriangles(int pair, int piece_a, int piece_b, int lane);
   bool finished() const { return out_of_budget_ || (query_->any && limit_ < 2); }

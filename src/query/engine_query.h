@@ -32,6 +32,7 @@ class Workspace {
   FrameSweep sweep;                            ///< of a pair query
   std::vector<double> coefficients;            ///< of its variables
   std::vector<std::uint8_t> link_free;         ///< of a manager's query: what tables say of link pairs
+  std::vector<engine::LikelyContact> likely;   ///< the same
   std::vector<engine::BoundedSource> sources;  ///< of its bounded motions
 
  private:

@@ -4,6 +4,13 @@
 #include <algorithm>
 
 namespace fcl_artic {
+namespace {
+
+/// Parts in whose middles contact is looked for: motions that meet something mostly still do at their end. (All eight
+/// find a few more, and every motion pays for them.)
+constexpr int kLikelyParts[] = {7, 4};
+
+}  // namespace
 
 LinkTables::Made::Made(const ManagedBody& a, const ManagedBody& b, double margin)
     : shape_a(a.shape), shape_b(b.shape), link_a(a.link), link_b(b.link), offset_a(a.offset.matrix()),
@@ -18,17 +25,37 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   std::vector<Made> before;
   std::swap(made_, before);
   tables_.clear();
+  grids_.clear();
+  ranges_.clear();
+  likely_.clear();
   for (std::size_t i = 0; i < num_self_pairs; ++i) {
     const engine::LinkPair& pair = problem.link_pairs[i];
     const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
     if (a.attached || b.attached) continue;
     Made made(a, b, problem.link_margins ? std::max(0.0, problem.link_margins[i]) : 0);
     const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
-    made.table = known != before.end() ? known->table
-                                       : PairTable::build(*registry.tree(), problem.sweeps[pair.sweep], problem.bodies,
-                                                          pair, made.margin);
+    const KinematicTree& tree = *registry.tree();
+    const engine::SweepView& sweep = problem.sweeps[pair.sweep];
+    if (known != before.end()) {
+      made.table = known->table;
+      made.grid = known->grid;
+    } else {
+      made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
+      made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
+    }
     if (made.table) tables_.emplace_back(i, made.table);
+    if (made.grid) addGrid(tree, static_cast<std::int32_t>(i), *made.grid);
     made_.push_back(std::move(made));
+  }
+}
+
+void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, const ContactGrid& grid) {
+  grids_.push_back({link_pair, grid.axes(), likely_.size()});
+  likely_.insert(likely_.end(), grid.touching().begin(), grid.touching().end());
+  for (int i = 0; i < grid.axes().count; ++i) {
+    const int v = grid.axes().variables[i];
+    const bool known = std::any_of(ranges_.begin(), ranges_.end(), [&](const auto& r) { return r.first == v; });
+    if (!known) ranges_.emplace_back(v, VariableRange(tree, v));
   }
 }
 
@@ -41,6 +68,25 @@ const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const 
     memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
   }
   return memory.data();
+}
+
+void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {
+  found.clear();
+  const Eigen::MatrixXd& variables = motion.variables();
+  constexpr int kMost = 64;
+  double parts[kMost];
+  if (grids_.empty() || variables.rows() > kMost) return;
+  for (const int part : kLikelyParts) {
+    const double t = (part + 0.5) / 8;
+    for (const auto& [v, range] : ranges_) {
+      double q = variables(v, variables.cols() - 1);
+      for (Eigen::Index k = variables.cols() - 2; k >= 0; --k) q = q * t + variables(v, k);
+      parts[v] = range.part(q);
+    }
+    for (const Grid& grid : grids_) {
+      if (likely_[grid.first + grid.axes.cell(parts)]) found.push_back({grid.link_pair, part});
+    }
+  }
 }
 
 }  // namespace fcl_artic

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tables of where two links are proven apart (PairTable), one for each self pair that can have one. A table is made
-// again only when its links or their margin change.
+// Tables of where two links are proven apart (PairTable), and of where they are likely to touch (ContactGrid), one of each
+// for each self pair that can have it. They are made again only when their links or the pair's margin change.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "narrowphase/problem.h"
+#include "query/contact_grid.h"
 #include "query/pair_table.h"
 #include "query/registry.h"
 
@@ -29,21 +30,37 @@ class LinkTables {
   const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion, double margin,
                                 std::vector<std::uint8_t>& memory) const;
 
+  /// Where links are likely to touch: a guess, as engine::Query::likely. (None for robots of more than 64 variables.)
+  void likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const;
+
  private:
-  /// The table of two links, and what it was made from.
+  /// The tables of two links, and what they were made from.
   struct Made {
     std::shared_ptr<const ShapeTree> shape_a, shape_b;
     LinkId link_a, link_b;
     Eigen::Matrix4d offset_a, offset_b;
     double margin;
     std::shared_ptr<const PairTable> table;  ///< null: none to be had
+    std::shared_ptr<const ContactGrid> grid;  ///< null: none
 
     Made(const ManagedBody& a, const ManagedBody& b, double margin);
     bool sameMaking(const Made& other) const;
   };
 
+  /// Of a link pair. (All in one piece of memory: every query comes by.)
+  struct Grid {
+    std::int32_t link_pair;
+    ContactGrid::Axes axes;
+    std::size_t first;  ///< of its cells among likely_
+  };
+
+  void addGrid(const KinematicTree& tree, std::int32_t link_pair, const ContactGrid& grid);
+
   std::vector<Made> made_;  ///< of all pairs
   std::vector<std::pair<std::size_t, std::shared_ptr<const PairTable>>> tables_;  ///< by link pair
+  std::vector<Grid> grids_;
+  std::vector<bool> likely_;  ///< of all grids' cells
+  std::vector<std::pair<int, VariableRange>> ranges_;  ///< of the variables that grids are over
 };
 
 }  // namespace fcl_artic

@@ -182,6 +182,11 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     query.link_free = [](const void* context) { return (*static_cast<decltype(byTables)*>(context))(); };
     query.link_free_context = &byTables;
   }
+  if (query.any && request.check_self && request.method == Method::standard) {
+    tables.likelyContacts(motion, workspace->likely);
+    query.likely = workspace->likely.data();
+    query.num_likely = static_cast<std::int32_t>(workspace->likely.size());
+  }
   query.check_self = problem.num_link_pairs > 0;
   Solved solved;
   solve(registry, *impl_->stage2, request, problem, query, *workspace, solved);

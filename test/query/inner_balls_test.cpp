@@ -69,6 +69,77 @@ TEST(InnerBalls, DeepLinksTouch) {
   EXPECT_EQ(contact.toFcl().b1, -1);
 }
 
+/// A link that two joints fold onto another one.
+struct FoldingLinks {
+  std::shared_ptr<Mesh> mesh = fineBoxMesh(Vector3d(0.4, 0.1, 0.1), 4);
+  fcl::CollisionObjectd still{mesh}, turning{mesh};
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("folding");
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+
+  /// @param limit  of both joints, rad; 0: none.
+  explicit FoldingLinks(double limit) {
+    for (const char* link : {"still", "between", "turning"}) tree->addLink(link);
+    Joint joint = makeJoint("lift", limit > 0 ? JointType::revolute : JointType::continuous, "still", "between",
+                            Vector3d::UnitY(), pose(Vector3d(0.5, 0, 0)));
+    joint.lower = -limit;
+    joint.upper = limit;
+    tree->addJoint(joint);
+    joint.name = "fold", joint.parent = "between", joint.child = "turning";
+    joint.origin = pose(Vector3d(0.02, 0, 0));
+    tree->addJoint(joint);
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    manager->bind("still", &still);
+    manager->bind("turning", &turning, pose(Vector3d(0.5, 0, 0)));
+    manager->setup();
+  }
+  CertifiedResult run(const Eigen::Vector2d& q0, const Eigen::Vector2d& q1,
+                      ContactMode mode = ContactMode::any) const {
+    CertifiedRequest request;
+    request.mode = mode;
+    return ask(*manager, q0, q1, request);
+  }
+};
+
+/// Where contact is likely is looked at before all else. (Stage 1 counts the pairs.)
+TEST(InnerBalls, LikelyContactsComeFirst) {
+  constexpr double kTurn = 2 * 3.14159265358979323846;
+  for (const double limit : {0.0, 3.0}) {
+    const FoldingLinks links(limit);
+    for (int turns = -2; turns <= 2; ++turns) {
+      if (limit > 0 && turns) continue;
+      const Eigen::Vector2d whole = turns * kTurn * Eigen::Vector2d(1, -3);
+      const CertifiedResult r = links.run(Eigen::Vector2d(1.0, 1.0) + whole, Eigen::Vector2d(1.6, 1.9) + whole);
+      ASSERT_TRUE(provenByBalls(r)) << turns;
+      EXPECT_EQ(r.statistics.pairs, 0u) << turns;
+    }
+    EXPECT_EQ(links.run({-0.2, 0.1}, {1.2, -0.9}).status, Status::free);
+  }
+}
+
+/// A guess that is wrong changes no answer: any contact and first contact agree on which motions are free, beyond limits
+/// too.
+TEST(InnerBalls, GuessesAreNoAnswers) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  int free = 0, guessed = 0, beyond = 0;
+  for (const double limit : {0.0, 2.5}) {
+    const FoldingLinks links(limit);
+    for (int i = 0; i < 1000; ++i) {
+      const Eigen::Vector2d q0 = 3.5 * Eigen::Vector2d(u(random), u(random));
+      const Eigen::Vector2d q1 = q0 + (i % 2 ? 0.2 : 1.5) * Eigen::Vector2d(u(random), u(random));
+      const CertifiedResult any = links.run(q0, q1), first = links.run(q0, q1, ContactMode::first);
+      EXPECT_EQ(any.isFree(), first.isFree()) << q0.transpose() << " to " << q1.transpose();
+      free += any.isFree();
+      beyond += limit > 0 && q1.cwiseAbs().maxCoeff() > limit;
+      guessed += !any.isFree() && any.statistics.pairs == 0;
+    }
+  }
+  std::printf("%d of 2000 free; %d contacts guessed; %d motions end beyond limits\n", free, guessed, beyond);
+  EXPECT_GT(free, 300);
+  EXPECT_GT(guessed, 300);
+  EXPECT_GT(beyond, 100);
+}
+
 /// A link that moves about in the hollow of another touches nothing, though what that one's surface goes around holds
 /// it.
 TEST(InnerBalls, LinkWithinAnotherIsFree) {

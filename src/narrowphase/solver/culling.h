@@ -102,6 +102,17 @@ inline void Solver::meetObstacles(const SweptBox& box) {
   met_.truncate(static_cast<int>(met - met_.data()));
 }
 
+/// Where any contact is asked for: balls inside links, where these are likely to meet. (Kept out of cull(), which is every
+/// query's way.)
+[[gnu::noinline, gnu::cold]] inline bool Solver::proveWhereLikely() {
+  for (int i = 0; i < query_->num_likely; ++i) {
+    const auto [link_pair, part] = query_->likely[i];
+    const int pair = problem_->num_scene_pairs + link_pair;
+    if (!linkAllowed(link_pair) && proveByBalls(pair, part)) return true;
+  }
+  return false;
+}
+
 /// Stage 1: pairs whose swept bounds meet, with the lanes in which they do, to entries_.
 inline void Solver::cull() {
   beginBatch(0, 1);
@@ -109,6 +120,8 @@ inline void Solver::cull() {
   mover_lss_.resize(problem_->num_scene_movers);
   const bool check_scene = query_->check_scene && problem_->obstacle_tree;
   if (check_scene) statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
+  const bool look = query_->any && !query_->every_pair && !query_->ignore_initial;
+  if (look && query_->num_likely && proveWhereLikely()) return;
   for (int m = 0; m < problem_->num_movers; ++m) {
     sweepMover(m);
     if (!check_scene || !isLink(m)) continue;
@@ -130,7 +143,6 @@ inline void Solver::cull() {
     }
   } else if (query_->check_self) {
     statistics_.pairs += static_cast<std::uint64_t>(problem_->num_link_pairs);
-    const bool look = query_->any && !query_->every_pair && !query_->ignore_initial;
     const std::uint8_t* free = query_->link_free ? query_->link_free(query_->link_free_context) : nullptr;
     for (int p = 0; p < problem_->num_link_pairs && !finished(); ++p) {
       const unsigned open = linkAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
