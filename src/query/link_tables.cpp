@@ -4,14 +4,6 @@
 #include <algorithm>
 
 namespace fcl_artic {
-namespace {
-
-/// Parts in whose middles contact is looked for: motions that meet something mostly still do at their end. (All eight
-/// find a few more, and every motion pays for them.)
-constexpr int kLikelyParts[] = {7, 4};
-
-}  // namespace
-
 LinkTables::Made::Made(const ManagedBody& a, const ManagedBody& b, double margin)
     : shape_a(a.shape), shape_b(b.shape), link_a(a.link), link_b(b.link), offset_a(a.offset.matrix()),
       offset_b(b.offset.matrix()), margin(margin) {}
@@ -73,11 +65,12 @@ const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const 
 void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {
   found.clear();
   const Eigen::MatrixXd& variables = motion.variables();
-  constexpr int kMost = 64;
+  constexpr int kMost = 64, kParts = 8;
   double parts[kMost];
   if (grids_.empty() || variables.rows() > kMost) return;
-  for (const int part : kLikelyParts) {
-    const double t = (part + 0.5) / 8;
+  // Motions that meet something mostly still do at their end.
+  for (int part = kParts; part-- > 0;) {
+    const double t = (part + 0.5) / kParts;
     for (const auto& [v, range] : ranges_) {
       double q = variables(v, variables.cols() - 1);
       for (Eigen::Index k = variables.cols() - 2; k >= 0; --k) q = q * t + variables(v, k);

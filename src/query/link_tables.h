@@ -30,7 +30,8 @@ class LinkTables {
   const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion, double margin,
                                 std::vector<std::uint8_t>& memory) const;
 
-  /// Where links are likely to touch: a guess, as engine::Query::likely. (None for robots of more than 64 variables.)
+  /// Where links are likely to touch, the motion's end first: a guess, as engine::Query::likely. (None for robots of more
+  /// than 64 variables.) Measured: the middle and the end only take a third longer for a UR5, a tenth less for a Fanuc.
   void likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const;
 
  private:
