@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// In which configurations two links are likely to touch: a guess, made once per robot, of the poses at which a query for
-// any contact looks first. Nothing rests on it.
+// In which configurations two links are likely to touch: a guess, made once per robot, of the poses at which a query
+// for any contact looks first. Nothing rests on it.
 #pragma once
 
 #include <cstdint>
