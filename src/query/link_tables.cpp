@@ -4,6 +4,7 @@
 #include <algorithm>
 
 namespace fcl_artic {
+
 LinkTables::Made::Made(const ManagedBody& a, const ManagedBody& b, double margin)
     : shape_a(a.shape), shape_b(b.shape), link_a(a.link), link_b(b.link), offset_a(a.offset.matrix()),
       offset_b(b.offset.matrix()), margin(margin) {}

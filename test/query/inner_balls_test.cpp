@@ -116,8 +116,8 @@ TEST(InnerBalls, LikelyContactsComeFirst) {
   }
 }
 
-/// A guess that is wrong changes no answer: any contact and first contact agree on which motions are free, beyond limits
-/// too.
+/// A guess that is wrong changes no answer: any contact and first contact agree on which motions are free, beyond
+/// limits too.
 TEST(InnerBalls, GuessesAreNoAnswers) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);

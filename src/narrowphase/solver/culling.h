@@ -102,8 +102,8 @@ inline void Solver::meetObstacles(const SweptBox& box) {
   met_.truncate(static_cast<int>(met - met_.data()));
 }
 
-/// Where any contact is asked for: balls inside links, where these are likely to meet. (Kept out of cull(), which is every
-/// query's way.)
+/// Where any contact is asked for: balls inside links, where these are likely to meet. (Kept out of cull(), which is
+/// every query's way.)
 [[gnu::noinline, gnu::cold]] inline bool Solver::proveWhereLikely() {
   for (int i = 0; i < query_->num_likely; ++i) {
     const auto [link_pair, part] = query_->likely[i];
