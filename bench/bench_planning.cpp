@@ -105,6 +105,24 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Edges with all ways of asking, measured in turns when the first is asked for.
+struct Edges {
+  std::vector<Query> queries;
+  std::vector<Method> methods;
+  std::vector<Measured> results;
+
+  const std::vector<Measured>& measured(int passes) {
+    if (results.empty()) {
+      std::vector<std::function<Answer(std::size_t)>> ways;
+      for (const Method& method : methods) {
+        ways.push_back([this, &method](std::size_t i) { return method.ask(queries[i]); });
+      }
+      results = measureInTurns(queries.size(), passes, ways);
+    }
+    return results;
+  }
+};
+
 /// All that one program run collects.
 class Bench {
  public:
@@ -113,14 +131,14 @@ class Bench {
   void add(const std::string& scene, const std::string& set, std::vector<Query> given) {
     if (given.empty()) return;
     adapted_.insert(adapted_.end(), given.begin(), given.end());
-    const auto queries = std::make_shared<std::vector<Query>>(std::move(given));
-    for (const Method& method : methods()) {
-      report_.add(scene, set, method.name, [this, scene, set, queries, method] {
-        Measured measured =
-            measure(queries->size(), passes_, [&](std::size_t i) { return method.ask((*queries)[i]); });
-        judge(scene + " " + set, method.name, *queries, measured);
-        us_[{scene, set}][method.name] = measured.us;
-        for (const double us : measured.us) all_us_[set][method.name].push_back(us);
+    const auto edges = std::make_shared<Edges>(Edges{std::move(given), methods(), {}});
+    for (std::size_t m = 0; m < edges->methods.size(); ++m) {
+      const char* method = edges->methods[m].name;
+      report_.add(scene, set, method, [this, scene, set, edges, m, method] {
+        const Measured& measured = edges->measured(passes_)[m];
+        judge(scene + " " + set, method, edges->queries, measured);
+        us_[{scene, set}][method] = measured.us;
+        for (const double us : measured.us) all_us_[set][method].push_back(us);
         return measured;
       });
     }

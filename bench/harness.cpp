@@ -86,25 +86,36 @@ void addCounters(Row& row, const QueryStatistics& s) {
 }
 
 Measured measure(std::size_t queries, int passes, const std::function<Answer(std::size_t)>& query) {
+  return measureInTurns(queries, passes, {query}).front();
+}
+
+std::vector<Measured> measureInTurns(std::size_t queries, int passes,
+                                     const std::vector<std::function<Answer(std::size_t)>>& ways) {
   using Clock = std::chrono::steady_clock;
-  Measured measured;
-  measured.row.passes = passes;
-  measured.answers.resize(queries);
-  measured.us.assign(queries, std::numeric_limits<double>::infinity());
+  std::vector<Measured> all(ways.size());
+  for (Measured& measured : all) {
+    measured.row.passes = passes;
+    measured.answers.resize(queries);
+    measured.us.assign(queries, std::numeric_limits<double>::infinity());
+  }
   for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t i = 0; i < queries; ++i) {
-      const auto begin = Clock::now();
-      const Answer answer = query(i);
-      const auto end = Clock::now();
-      measured.us[i] = std::min(measured.us[i], std::chrono::duration<double, std::micro>(end - begin).count());
-      if (pass > 0 && answer != measured.answers[i]) {
-        throw std::runtime_error(fmt::format("query {} answers {} and, repeated, {}", i, measured.answers[i], answer));
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+      Measured& measured = all[way];
+      for (std::size_t i = 0; i < queries; ++i) {
+        const auto begin = Clock::now();
+        const Answer answer = ways[way](i);
+        const auto end = Clock::now();
+        measured.us[i] = std::min(measured.us[i], std::chrono::duration<double, std::micro>(end - begin).count());
+        if (pass > 0 && answer != measured.answers[i]) {
+          throw std::runtime_error(
+              fmt::format("query {} answers {} and, repeated, {}", i, measured.answers[i], answer));
+        }
+        measured.answers[i] = answer;
       }
-      measured.answers[i] = answer;
     }
   }
-  summarise(measured);
-  return measured;
+  for (Measured& measured : all) summarise(measured);
+  return all;
 }
 
 void summarise(Measured& measured) {

@@ -38,6 +38,12 @@ FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const d
   }
 }
 
+/// What a gap between the cores has to be larger than along a unit direction, for the pieces to be more than `margin`
+/// apart: radii, what the quadratic leaves out, rounding.
+FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piece& moving, double margin, double pad) {
+  return margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
+}
+
 /// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart over the whole interval.
 /// @param n  in the frame of side.still.
 /// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
@@ -48,7 +54,7 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
   movingRange(side, moving, n, lanes, lower, upper);
-  const double slack = margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
+  const double slack = slackOf(side, still, moving, margin, pad);
   const unsigned above = greater(min(min(lower[0], lower[1]), lower[2]), Lanes(s_upper + slack));
   const unsigned below = greater(Lanes(s_lower - slack), max(max(upper[0], upper[1]), upper[2]));
   if (above) sign = 1;
@@ -91,8 +97,7 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
   movingRange(side, moving, n, kAllLanes, G, upper);
-  const Lanes slack(s_upper +
-                    (margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad));
+  const Lanes slack(s_upper + slackOf(side, still, moving, margin, pad));
   for (int k = 0; k < 3; ++k) G[k] = G[k] - slack;
 }
 
@@ -115,8 +120,7 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
   coreRange(*side.still, still, n.begin, s_lower[0], s_upper[0]);
   coreRange(*side.still, still, n.end, s_lower[1], s_upper[1]);
   const Lanes length = sqrt(max(dot(n.begin, n.begin), dot(n.end, n.end))) *
-                       Lanes((1 + 8 * kUlp) * (margin + still.radius + moving.radius + side.m.rem_c +
-                                               side.m.rem_R * moving.reach + pad));
+                       Lanes((1 + 8 * kUlp) * slackOf(side, still, moving, margin, pad));
   for (int k = 0; k < 4; ++k) {
     // Point k of the cubic: (k n_1 X_(k-1) + (3 - k) n_0 X_k) / 3.
     Lanes u[3], origin(0.0);

@@ -221,15 +221,14 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
   out.distance = max(0.0, out.lower);
 }
 
-/// @param guess  direction from A to B to start with, any length but 0.
-/// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
-/// @param radii  rounding radii and margin: cores nearer than this overlap.
-/// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty: none.
-inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
-                GjkResult& out, const Simplex* start = nullptr) {
+/// The search itself, in any bounded convex body that tells its support points.
+/// @param enough  a direction along which the gap is larger ends the search.
+/// The other parameters are gjk()'s.
+template <class ConvexBody>
+inline void searchNearest(const ConvexBody& body, const double* guess, double relative, double radii, double enough,
+                          int max_iterations, GjkResult& out, const Simplex* start = nullptr) {
   out.overlap = false;
   out.lower = -1e300;
-  if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
   const double given = norm(guess);
   const bool usable = given > 1e-100;  // far from underflow
   double best_length = usable ? given : 1, best[3];  // the direction that tells the largest lower bound
@@ -256,7 +255,7 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
     size2 = dot(p.w, p.w);
     for (int k = 0; k < 3; ++k) v[k] = p.w[k];
   }
-  while (!inside && out.iterations < max_iterations) {
+  while (!inside && out.iterations < max_iterations && !(out.lower > enough)) {
     const double vv = dot(v, v);
     // The origin within rounding of a face of the simplex is as good as inside (aligned faces bring that about).
     if (vv <= 1e-30 * size2 || vv < radii * radii * (1 - 1e-13)) {
@@ -300,6 +299,20 @@ inline void gjk(const DifferenceBody& body, const double* guess, double relative
     out.distance = max(out.lower, radii);
   }
   if (!out.overlap && out.distance <= radii && out.lower <= radii) out.overlap = true;
+}
+
+/// @param guess  direction from A to B to start with, any length but 0.
+/// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
+/// @param radii  rounding radii and margin: cores nearer than this overlap.
+/// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty: none.
+inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
+                GjkResult& out, const Simplex* start = nullptr) {
+  if (unbounded(*body.a) || unbounded(*body.b)) {
+    out.overlap = false;
+    out.lower = -1e300;
+    return unboundedGap(body, radii, out);
+  }
+  searchNearest(body, guess, relative, radii, kInfinite, max_iterations, out, start);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -24,6 +24,7 @@
 #include "narrowphase/contact_proof.h"
 #include "narrowphase/solver/swept_box.h"
 #include "narrowphase/solver/swept_lss.h"
+#include "narrowphase/swept_difference.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -67,6 +68,12 @@ class Solver {
 
  private:
   enum class Step { free, done };
+  /// Whether directions are looked for that certify whole lanes, and what to begin with: `towards` (from A to B in A's
+  /// frame, about, for each lane), or, null, the witness at a lane's middle where that does not do.
+  struct Whole {
+    bool wanted = false;
+    const Lanes* towards = nullptr;
+  };
   struct Final;
 
   /// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
@@ -92,7 +99,7 @@ class Solver {
   bool isLink(int mover) const { return mover < problem_->num_scene_movers; }
   void sweepMover(int mover);
   void meetObstacles(const SweptBox& box);
-  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask);
+  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void refine();
   void collectInitialContacts(int begin, int end);
@@ -121,11 +128,12 @@ class Solver {
   unsigned partsMayTouch(int a, int b, unsigned mask);
   unsigned apartFromUnbounded(int a, int b);
   template <class F>
-  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last, const F& onOverlap);
+  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last, Whole whole,
+                        const F& onOverlap);
   Simplex& simplexOf(int pair);
   void claimOverlap(int lane);
   bool isWithin();
-  unsigned hullsMayTouch(unsigned mask, int pair, bool claim);
+  unsigned hullsMayTouch(unsigned mask, int pair, bool claim, Whole whole);
   bool proveVertexInside(int pair, int lane);
   bool provePierced(int pair, int lane, const double* near);
   LeafContact& proven(int pair, int piece_a, int piece_b, int lane);
@@ -214,6 +222,11 @@ class Solver {
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidate_pairs_;
   Buffer<engine::CullCandidate> partly_free_;  ///< those left of which stage 2 has proven nodes free
+  /// From an obstacle to a link, in the obstacle's tree frame, in the middles of the first batch's lanes; of any length.
+  struct Direction {
+    Lanes l[3];
+  };
+  Buffer<Direction> directions_;  ///< of the first entries that stage 1 leaves, those of links and still obstacles
   Buffer<Entry> entries_;
   Buffer<Entry> overlapping_;  ///< pairs whose hulls overlap in the middles of lanes of the first batch
   /// A pose at which contact of two links is expected.
@@ -314,6 +327,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   ++query_number_;
   statistics_ = Statistics();
   entries_.clear();
+  directions_.clear();
   contacts_.clear();
   overlapping_.clear();
   looks_.clear();

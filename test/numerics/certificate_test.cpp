@@ -129,6 +129,68 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
   EXPECT_GT(no_middle, 0);
 }
 
+/// What GJK finds for whole lanes (narrowphase/swept_difference.h): its support points are those of the certificate, what
+/// it says that separates does, and where it finds none there is none.
+TEST(Certificate, DirectionsForWholeLanesAreFoundWhereThereIsOne) {
+  Random random(seedOf("WholeLanes"));
+  const std::vector<const Subject*> tested = subjects();
+  const int cases = scaled(100000) / 64;
+  int told = 0, middle = 0, none = 0, found_elsewhere = 0;
+  for (int i = 0; i < cases; ++i) {
+    PairCase c(random, kRoundingModes[0]);
+    const OwnedPiece a(random, static_cast<engine::PieceKind>(random.below(kPieceKinds)), c.extent_a);
+    const OwnedPiece b(random, static_cast<engine::PieceKind>(random.below(kPieceKinds)), c.extent_b);
+    if (std::max(a.piece.kind, b.piece.kind) >= engine::PieceKind::halfspace) continue;
+    CertificateInput in;
+    c.in.extents = a.extent() + b.extent();
+    c.in.margin = random.chance(0.5) ? 0 : random.size(1e-6, 0.1);
+    // Long parts of the motion, and near each other: so that there is something to look for.
+    for (int k = 0; k < 8; ++k) c.in.tm[k] = (k + 0.5) / 8;
+    c.in.d = 0.0625;
+    const Real3 t = c.relative(Real(c.in.tm[random.below(8)])).t;
+    const Eigen::Vector3d nearby = random.in(0.2, 2) * c.in.extents * random.direction();
+    c.offset_a = c.offset_a * Eigen::Translation3d(Eigen::Vector3d(t[0].toDouble(), t[1].toDouble(), t[2].toDouble()) - nearby);
+    c.in.inverse_a = makePlacement(c.offset_a.inverse());
+    in.motion = c.in;
+    in.a = a.view();
+    in.b = b.view();
+    in.side = random.below(2);
+    const auto towards = [&](const Eigen::Vector3d& n) {
+      for (int k = 0; k < 3; ++k) in.n[k] = n[k];
+    };
+    towards(random.direction());
+    const Subject& subject = *tested[static_cast<std::size_t>(random.below(static_cast<int>(tested.size())))];
+    CertificateOutput along;
+    PairOutput m;
+    WholeLanesOutput out;
+    subject.certify(in, along, m);
+    subject.searchWholeLanes(in, out);
+    const double size = c.in.extents + m.rem_c[in.side] + 1e3 * m.pad;
+    for (int lane = 0; lane < 8; ++lane) {
+      const double* G = along.G[lane];
+      const double expected = std::min({G[0], G[1], G[2]}) + out.slack;
+      ASSERT_NEAR(out.least[lane], expected, 1e-11 * (size + std::abs(expected) + out.slack)) << "case " << i;
+    }
+    ASSERT_EQ(out.certified, out.told) << "case " << i << " " << subject.name;
+    unsigned elsewhere = out.middle;
+    for (int other = 0; other < 32; ++other) {
+      towards(random.direction());
+      subject.certify(in, along, m);
+      elsewhere |= along.separated;
+    }
+    told += __builtin_popcount(out.told);
+    middle += __builtin_popcount(out.middle);
+    none += 8 - __builtin_popcount(out.told);
+    found_elsewhere += __builtin_popcount(elsewhere & ~out.told);
+  }
+  std::printf("%d lanes with a direction that separates, the middle's witness does in %d; %d without\n", told, middle,
+              none);
+  EXPECT_EQ(found_elsewhere, 0);
+  EXPECT_GT(told, middle);
+  EXPECT_GT(middle, cases);
+  EXPECT_GT(none, cases);
+}
+
 /// The pad is shown to be needed where bodies are small and far away.
 TEST(Certificate, PadScalesWithAbsoluteCoordinates) {
   Random random(seedOf("CertificateFar"));

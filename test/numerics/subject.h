@@ -45,6 +45,15 @@ struct CertificateOutput {
   double sign;
 };
 
+/// What is found for whole lanes, each searched by itself from CertificateInput::n on.
+struct WholeLanesOutput {
+  double least[8];     ///< of n.x over the difference of the moving piece's Bernstein poses and the still piece
+  double slack;        ///< what it has to be larger than
+  unsigned told = 0;   ///< lanes in which a direction is said to do
+  unsigned certified = 0;  ///< in which it does
+  unsigned middle = 0;     ///< in which the witness at the lane's middle does
+};
+
 struct BoxOutput {
   double lo[8][3], hi[8][3];
 };
@@ -71,6 +80,7 @@ struct Subject {
   void (*sineCosine)(const double* x, double* sine, double* cosine);
   void (*relate)(const PairInput& in, PairOutput& out);
   void (*certify)(const CertificateInput& in, CertificateOutput& out, PairOutput& motion);
+  void (*searchWholeLanes)(const CertificateInput& in, WholeLanesOutput& out);
   /// The moving node's box on the given side.
   void (*sweepNode)(const PairInput& in, int side, const engine::Node& node, BoxOutput& out);
   /// Box of a line swept sphere, seen from the base frame.

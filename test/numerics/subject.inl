@@ -18,6 +18,7 @@ using numerics_test::PairInput;
 using numerics_test::PairOutput;
 using numerics_test::Subject;
 using numerics_test::TouchInput;
+using numerics_test::WholeLanesOutput;
 
 constexpr int kMostSteps = 64;
 
@@ -104,6 +105,40 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   }
 }
 
+void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
+  Side side[kSides];
+  const PairPads pads = relateSides(in.motion, side);
+  side[0].still = side[1].moving = &in.a;
+  side[0].moving = side[1].still = &in.b;
+  const Side& s = side[in.side];
+  const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
+  out.slack = slackOf(s, still, moving, in.motion.margin, pads.pad);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const SweptDifference difference(s, still, moving, lane);
+    DifferencePoint p;
+    difference.support(in.n, p);
+    out.least[lane] = dot(in.n, p.w);
+    double sign = 0;
+    const unsigned bit = 1u << lane;
+    GjkResult g;
+    searchNearest(difference, in.n, kWitnessAccuracy, out.slack, out.slack, 48, g);
+    if (g.lower > out.slack) {
+      out.told |= bit;
+      out.certified |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
+    }
+    DifferenceBody body;
+    body.tree_a = s.still;
+    body.tree_b = s.moving;
+    body.a = &still;
+    body.b = &moving;
+    for (int i = 0; i < 9; ++i) body.pose.R[i] = s.m.R[0][i][lane];
+    for (int i = 0; i < 3; ++i) body.pose.c[i] = s.m.c[0][i][lane];
+    gjk(body, in.n, 1e-7, still.radius + moving.radius + in.motion.margin, 48, g);
+    if (g.overlap) continue;
+    out.middle |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
+  }
+}
+
 void sweepNodeOf(const PairInput& in, int side, const engine::Node& node, BoxOutput& out) {
   Side sides[kSides];
   const PairPads pads = relateSides(in, sides);
@@ -148,8 +183,8 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
     box.hi[k] = still.hi[k];
   }
   box.radius = still.radius;
-  Lanes square, nearest[3];
-  return certainlyApart(swept, box, still.inverse, in.margin, square, nearest);
+  Lanes square, nearest[3], l[3];
+  return certainlyApart(swept, box, still.inverse, in.margin, square, nearest, l);
 }
 
 unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {
@@ -218,6 +253,7 @@ bool certainlyPiercesOf(const TouchInput& in) {
 namespace numerics_test {
 const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),  &FCL_ARTIC_ISA::sineCosineOf,
                                        &FCL_ARTIC_ISA::relate,           &FCL_ARTIC_ISA::certify,
+                                       &FCL_ARTIC_ISA::searchWholeLanes,
                                        &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::boundLssOf,
                                        &FCL_ARTIC_ISA::apartFromBox,     &FCL_ARTIC_ISA::apartFromLss,
                                        &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf,

@@ -37,13 +37,14 @@ inline void Solver::sweepMover(int mover) {
 /// sphere. Where that is deep in a solid contact is expected. Where any will do, a vertex in the solid and a chord of
 /// it are tried at once, the chord first where the solid is thin; and the pose is put down for proveAnywhere() where
 /// the link's axis is very near. Else later lanes are put off.
-inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mask) {
+/// @param[out] direction  from the obstacle to the link, as in Direction.
+inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction) {
   const int pair = mover * problem_->num_obstacles + obstacle_number;
   const engine::StillBounds& obstacle = problem_->still_bounds[obstacle_number];
   const SweptLss& lss = mover_lss_[mover];
   Lanes square, nearest[3];
   const double margin = engine::marginOf(*problem_, query_->margin, pair);
-  mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, margin, square, nearest);
+  mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, margin, square, nearest, direction);
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
@@ -129,8 +130,10 @@ inline void Solver::cull() {
     for (int i = 0; i < met_.size() && !finished(); ++i) {
       const int pair = m * problem_->num_obstacles + met_[i].obstacle;
       if (problem_->scene_allowed && problem_->scene_allowed[pair]) continue;
-      if (const unsigned left = lssMayTouch(m, met_[i].obstacle, met_[i].mask)) {
+      Direction direction;
+      if (const unsigned left = lssMayTouch(m, met_[i].obstacle, met_[i].mask, direction.l)) {
         entries_.push({pair, 0, 0, left});
+        directions_.push(direction);
         prefetch(problem_->still_bounds[met_[i].obstacle].tree);
       }
     }
@@ -198,15 +201,20 @@ inline void Solver::refine() {
   const int asked = candidate_pairs_.size();
   if (!asked) return;
   query_->refine(query_->refine_context, *problem_, swept_links_.data(), candidate_pairs_.data(), asked);
-  int kept = 0;
+  int kept = 0, directions = 0;
   for (int i = 0; i < entries_.size(); ++i) {
     Entry e = entries_[i];
     if (i < asked) e.mask &= candidate_pairs_[i].lanes;
     if (!e.mask) continue;
-    if (i < asked && candidate_pairs_[i].free_nodes) partly_free_.push(candidate_pairs_[i]);
+    if (i < asked) {
+      if (candidate_pairs_[i].free_nodes) partly_free_.push(candidate_pairs_[i]);
+      directions_[kept] = directions_[i];
+      directions = kept + 1;
+    }
     entries_[kept++] = e;
   }
   entries_.truncate(kept);
+  directions_.truncate(directions);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -170,7 +170,8 @@ inline void Solver::solvePairs() {
     setupPair(e.pair);
     overlaps_ = 0;
     e.mask = nodesMayTouch(0, 0, e.mask);
-    if (e.mask) e.mask = hullsMayTouch(e.mask, e.pair, !query_->every_pair && movesFar());
+    const Whole whole = {true, i < directions_.size() ? directions_[i].l : nullptr};
+    if (e.mask) e.mask = hullsMayTouch(e.mask, e.pair, !query_->every_pair && movesFar(), whole);
     if (overlaps_) overlapping_.push({e.pair, 0, 0, overlaps_});
     outOfBudget();
   }

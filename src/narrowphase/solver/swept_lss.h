@@ -92,9 +92,10 @@ constexpr int kNearestSteps = 1;
 /// @param inverse  the world in the body's tree frame.
 /// @param[out] square  of the segment's distance from the box in the middle of each lane, about.
 /// @param[out] nearest  the segment's point there, in the body's tree frame.
+/// @param[out] l  the direction.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
-                               Lanes& square, Lanes* nearest) {
-  Lanes y[2][3], e[3], l[3], u[3];
+                               Lanes& square, Lanes* nearest, Lanes* l) {
+  Lanes y[2][3], e[3], u[3];
   for (int k = 0; k < 3; ++k) {
     const double* R = inverse.R + 3 * k;
     for (int end = 0; end < 2; ++end) y[end][k] = dot(s.end[end][0], R) + Lanes(inverse.t[k]);

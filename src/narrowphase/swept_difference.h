@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Directions for a whole time interval. A direction n that is fixed in the still body's frame certifies an interval
+// (certificate.h) if all points of the moving piece, at the three Bernstein poses R_k p + c_k, lie far enough along n. So
+// it does what tells the still piece from the convex hull of these three placed pieces, and GJK between the two finds
+// such an n where there is one; the witness at the interval's middle is one only where the bodies move little
+// (doc/NUMERICS.md, section 4). A heuristic, as gjk.h: the certificate checks what it finds.
+#pragma once
+
+#include "narrowphase/certificate.h"
+#include "narrowphase/gjk.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// The difference of the hull of a moving piece's Bernstein poses in one lane and a still piece: both bounded.
+class SweptDifference {
+ public:
+  SweptDifference(const Side& side, const Piece& still, const Piece& moving, int lane)
+      : side_(side), still_(still), moving_(moving) {
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 9; ++i) R_[k][i] = side.m.Rb[k][i][lane];
+      for (int i = 0; i < 3; ++i) c_[k][i] = side.m.cb[k][i][lane];
+    }
+  }
+  /// The difference's point that is least along n.
+  void support(const double* n, DifferencePoint& p) const {
+    double s[3], u[3][3], origin[3], x[3];
+    supportPoint(*side_.still, still_, n, s);
+    for (int k = 0; k < 3; ++k) {
+      const double* R = R_[k];
+      for (int j = 0; j < 3; ++j) u[k][j] = -(R[j] * n[0] + R[3 + j] * n[1] + R[6 + j] * n[2]);
+      origin[k] = -dot(n, c_[k]);
+    }
+    const int pose = farthest(u, origin, x);
+    for (int k = 0; k < 3; ++k) p.w[k] = dot(R_[pose] + 3 * k, x) + c_[pose][k] - s[k];
+  }
+  /// A point's w is all there is: no simplex of another pose is begun with.
+  void subtract(DifferencePoint&) const {}
+
+ private:
+  /// The pose k, and the moving core's point x, for which u_k.x + origin_k is largest.
+  int farthest(const double (*u)[3], const double* origin, double* x) const {
+    constexpr int kStride = kNumbered / 4;
+    if (moving_.kind == PieceKind::hull && moving_.num_vertices <= kStride) {  // all poses in one pass
+      const double* p = side_.moving->hulls + moving_.first_vertex;
+      const int n = moving_.num_vertices;
+      Lanes most(-kInfinite);
+      for (int i = 0; i < n; i += kLanes) {
+        for (int k = 0; k < 3; ++k) {
+          most = max(most, numbered(hullValues(p, n, i, u[k]) + Lanes(origin[k]), kStride * k + i));
+        }
+      }
+      const int found = numberOf(maxLane(most)), i = found % kStride;
+      for (int k = 0; k < 3; ++k) x[k] = p[k * n + i];
+      return found / kStride;
+    }
+    int pose = 0;
+    double most = -kInfinite;
+    for (int k = 0; k < 3; ++k) {
+      double y[3];
+      supportPoint(*side_.moving, moving_, u[k], y);
+      const double value = dot(u[k], y) + origin[k];
+      if (!(value > most)) continue;
+      most = value;
+      pose = k;
+      for (int i = 0; i < 3; ++i) x[i] = y[i];
+    }
+    return pose;
+  }
+
+  const Side& side_;
+  const Piece &still_, &moving_;
+  double R_[3][9], c_[3][3];
+};
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic
