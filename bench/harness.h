@@ -42,8 +42,8 @@ struct Measured {
 /// @throws std::runtime_error when an answer differs from one pass to the next.
 Measured measure(std::size_t queries, int passes, const std::function<Answer(std::size_t)>& query);
 
-/// The same for several ways of answering: in each pass one after the other, so that a machine that is slow for a while
-/// is slow for all of them.
+/// The same for several ways of answering, by turns: two passes of the one, then of the next, so that a machine that is
+/// slow for a while is slow for all of them. (Two, as the first finds caches that another way has filled.)
 std::vector<Measured> measureInTurns(std::size_t queries, int passes,
                                      const std::vector<std::function<Answer(std::size_t)>>& ways);
 
