@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kinematics/angles.h"
 #include "kinematics/rotation_vector.h"
 #include "narrowphase/problem.h"
 #include "numerics/rotation.h"
@@ -14,7 +15,6 @@ namespace {
 
 /// Beyond this, rad or m, the error pads of the motion's bounds do not hold.
 constexpr double kLargestJointValue = 1e5;
-constexpr double kTwoPi = 6.283185307179586;
 
 Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int v) {
   return Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized();

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "kinematics/angles.h"
 #include "kinematics/rotation_vector.h"
 #include "narrowphase/problem.h"
 
@@ -19,7 +20,6 @@ using Eigen::VectorXd;
 
 /// Between two pieces a difference up to this, rad or m, and this part of the values is rounding.
 constexpr double kJump = 1e-9, kJumpPart = 1e-12;
-constexpr double kTwoPi = 6.283185307179586;
 
 std::string number(std::size_t k) { return std::to_string(k); }
 

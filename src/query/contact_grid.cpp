@@ -3,10 +3,11 @@
 
 #include <algorithm>
 
+#include "kinematics/angles.h"
+
 namespace fcl_artic {
 namespace {
 
-constexpr double kTurn = 6.283185307179586;
 /// Cells along each of one, two or three variables. Finer ones find no more contacts.
 constexpr int kCells[] = {64, 32, 16};
 
@@ -84,10 +85,10 @@ struct Path {
 
 VariableRange::VariableRange(const KinematicTree& tree, int variable) {
   const Joint& joint = tree.joint(tree.variableJoint(variable));
-  wraps = tree.isAngle(variable) && !(hasLimits(joint) && joint.upper - joint.lower < kTurn);
+  wraps = tree.isAngle(variable) && !(hasLimits(joint) && joint.upper - joint.lower < kTwoPi);
   if (!wraps && !hasLimits(joint)) return;
-  lower = wraps ? -kTurn / 2 : joint.lower;
-  per_range = 1 / (wraps ? kTurn : joint.upper - joint.lower);
+  lower = wraps ? -kTwoPi / 2 : joint.lower;
+  per_range = 1 / (wraps ? kTwoPi : joint.upper - joint.lower);
 }
 
 std::shared_ptr<const ContactGrid> ContactGrid::build(const KinematicTree& tree, const engine::SweepView& sweep,

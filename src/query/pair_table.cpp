@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/angles.h"
 #include "motion/variable_reach.h"
 #include "query/engine_query.h"
 
@@ -11,7 +12,6 @@ namespace fcl_artic {
 namespace {
 
 constexpr double kUlp = 0x1p-52;
-constexpr double kTurn = 6.283185307179586;  // 2 pi, off by less than kUlp
 /// Cells along the variable that the engine moves; and at most along the one that is paid for by a margin, where they
 /// are cut so fine that this margin is kRowMargin. Measured: 96 rows take three times as long for the UR5, whose base
 /// and upper arm pass each other at 16 mm.
@@ -174,11 +174,11 @@ std::shared_ptr<const PairTable> PairTable::build(const KinematicTree& tree, con
     });
     const Joint& joint = tree.joint(tree.variableJoint(axis.variable));
     const bool limited = hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kMostValue;
-    axis.wraps = whole_turns && !(limited && joint.upper - joint.lower < kTurn);
+    axis.wraps = whole_turns && !(limited && joint.upper - joint.lower < kTwoPi);
     if (!axis.wraps && !limited) return nullptr;
-    const double range = axis.wraps ? kTurn : joint.upper - joint.lower;
+    const double range = axis.wraps ? kTwoPi : joint.upper - joint.lower;
     axis.cells = kColumns;
-    axis.lower = axis.wraps ? -kTurn / 2 : joint.lower - kBeyondLimits * range;
+    axis.lower = axis.wraps ? -kTwoPi / 2 : joint.lower - kBeyondLimits * range;
     axis.width = (axis.wraps ? range : (1 + 2 * kBeyondLimits) * range) / axis.cells;
     // Rounding of values near the cells' is far below the slack.
     if (!(axis.width * kCellSlack > 64 * kUlp * std::max(std::abs(axis.lower), std::abs(axis.upper())))) return nullptr;
@@ -245,7 +245,7 @@ void PairTable::sum(const std::vector<std::uint8_t>& proven) {
 /// @return false where there are none.
 bool PairTable::cellsOf(const Axis& axis, double lower, double upper, int& first, int& last) {
   if (axis.wraps) {
-    const double turns = kTurn * std::floor((lower - axis.lower) / kTurn);
+    const double turns = kTwoPi * std::floor((lower - axis.lower) / kTwoPi);
     lower -= turns;
     upper -= turns;
   }
