@@ -203,6 +203,7 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
   const Piece& piece = of_a ? *body.a : *body.b;
   double n[3];  // from A to B
   for (int k = 0; k < 3; ++k) n[k] = of_a ? piece.size[k] : -dot(body.pose.R + 3 * k, piece.size);
+  out.lower = -1e300;
   for (int side = 0; side < (piece.kind == PieceKind::plane ? 2 : 1); ++side) {
     DifferencePoint p;
     body.support(n, p);
@@ -304,14 +305,11 @@ inline void searchNearest(const ConvexBody& body, const double* guess, double re
 /// @param guess  direction from A to B to start with, any length but 0.
 /// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
 /// @param radii  rounding radii and margin: cores nearer than this overlap.
-/// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty: none.
+/// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty:
+/// none.
 inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
                 GjkResult& out, const Simplex* start = nullptr) {
-  if (unbounded(*body.a) || unbounded(*body.b)) {
-    out.overlap = false;
-    out.lower = -1e300;
-    return unboundedGap(body, radii, out);
-  }
+  if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
   searchNearest(body, guess, relative, radii, kInfinite, max_iterations, out, start);
 }
 

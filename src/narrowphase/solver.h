@@ -222,7 +222,8 @@ class Solver {
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidate_pairs_;
   Buffer<engine::CullCandidate> partly_free_;  ///< those left of which stage 2 has proven nodes free
-  /// From an obstacle to a link, in the obstacle's tree frame, in the middles of the first batch's lanes; of any length.
+  /// From an obstacle to a link, in the obstacle's tree frame, in the middles of the first batch's lanes; of any
+  /// length.
   struct Direction {
     Lanes l[3];
   };

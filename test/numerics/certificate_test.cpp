@@ -129,8 +129,8 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
   EXPECT_GT(no_middle, 0);
 }
 
-/// What GJK finds for whole lanes (narrowphase/swept_difference.h): its support points are those of the certificate, what
-/// it says that separates does, and where it finds none there is none.
+/// What GJK finds for whole lanes (narrowphase/swept_difference.h): its support points are those of the certificate,
+/// what it says that separates does, and where it finds none there is none.
 TEST(Certificate, DirectionsForWholeLanesAreFoundWhereThereIsOne) {
   Random random(seedOf("WholeLanes"));
   const std::vector<const Subject*> tested = subjects();
@@ -148,8 +148,9 @@ TEST(Certificate, DirectionsForWholeLanesAreFoundWhereThereIsOne) {
     for (int k = 0; k < 8; ++k) c.in.tm[k] = (k + 0.5) / 8;
     c.in.d = 0.0625;
     const Real3 t = c.relative(Real(c.in.tm[random.below(8)])).t;
+    const Eigen::Vector3d from(t[0].toDouble(), t[1].toDouble(), t[2].toDouble());
     const Eigen::Vector3d nearby = random.in(0.2, 2) * c.in.extents * random.direction();
-    c.offset_a = c.offset_a * Eigen::Translation3d(Eigen::Vector3d(t[0].toDouble(), t[1].toDouble(), t[2].toDouble()) - nearby);
+    c.offset_a = c.offset_a * Eigen::Translation3d(from - nearby);
     c.in.inverse_a = makePlacement(c.offset_a.inverse());
     in.motion = c.in;
     in.a = a.view();

@@ -81,8 +81,7 @@ inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int l
 /// tried on all lanes.
 /// @param most  so many overlapping middles end the search.
 /// @param last  what GJK begins with, and ends with.
-/// @param whole  wanted for bodies' hulls. Measured: for parts of them it makes no difference, and where it is tried on
-/// leaves too, first contact of a UR5 takes a third longer.
+/// @param whole  wanted for bodies' hulls; for parts of them, and for leaves, it does not pay.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
 inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
