@@ -48,10 +48,11 @@ struct Workspace::Impl {
   std::vector<LeafContact> contacts;
 
   std::vector<std::uint8_t> by_engine;  ///< by pair of the problem
+  std::vector<std::uint8_t> left;       ///< by pair of the problem: culling has left it
+  std::vector<double> free_until;       ///< by pair of the problem: proven free before
   std::vector<std::uint8_t> scene_allowed, link_allowed;
   std::vector<double> still;  ///< coefficients of a motion that rests at t = 0
   Problem rest;               ///< the engine's part of the problem; stays for its pairMotion()
-  std::vector<engine::Ignored> ignored;
 };
 
 Workspace::Workspace() : impl_(std::make_unique<Impl>()) {}
@@ -59,7 +60,20 @@ Workspace::~Workspace() = default;
 
 namespace {
 
-/// One query on its way.
+/// Passes progress on, no later than what is proven of the pairs that the solver at work knows nothing of.
+struct Progress {
+  void (*tell)(void* context, double t_lower);
+  void* context;
+  double others = 0;
+  static void update(void* self, double t_lower) {
+    const auto& progress = *static_cast<const Progress*>(self);
+    progress.tell(progress.context, std::min(progress.others, t_lower));
+  }
+};
+
+/// One query on its way. Each pair asked for has the time up to which it is proven free: 0 at first, and raised by
+/// proofs only (provenFree). The answer is free when that is 1 for all of them, and its t_lower is the least. So what
+/// no stage has come to, for whatever reason, counts as not free.
 class Run {
  public:
   Run(Workspace::Impl& w, void* engine_workspace, const Problem& problem, const Query& query, const Options& options,
@@ -80,10 +94,15 @@ class Run {
   bool ours(std::int32_t pair) const;
   bool choosePairs();
   bool touchesAtStart(Answer& answer);
-  void solveRest(Answer& answer);
+  void solveRest(const Query& query, Answer& answer);
   void findPairs();
   Found search(const std::vector<BodyPair>& pairs, double limit);
+  Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
   void keepFirst(std::size_t begin, double bracket);
+  void provenFree(std::int32_t pair, double until) {
+    double& known = w_.free_until[static_cast<std::size_t>(pair)];
+    known = std::max(known, until);
+  }
 
   Workspace::Impl& w_;
   void* engine_;
@@ -112,9 +131,11 @@ bool Run::ours(std::int32_t pair) const {
 /// @return whether any pair is the paper's.
 bool Run::choosePairs() {
   w_.by_engine.assign(static_cast<std::size_t>(numPairs()), 0);
+  w_.free_until.assign(static_cast<std::size_t>(numPairs()), 1);  // of pairs that nobody asks for
   bool any = false;
   for (std::int32_t p = 0; p < numPairs(); ++p) {
     if (!asked(p)) continue;
+    w_.free_until[static_cast<std::size_t>(p)] = 0;
     const bool own = ours(p);
     w_.by_engine[static_cast<std::size_t>(p)] = !own;
     any = any || own;
@@ -124,7 +145,8 @@ bool Run::choosePairs() {
 
 /// The paper starts without contact. Whether that is so, the certificate tells, at rest at t = 0: surfaces that cross,
 /// and solids that hold others. A pair of which it can't be proven is the engine's.
-/// @return true when the answer is contact at t = 0.
+/// @return true when all pairs are: there is contact at t = 0 where the first one is asked for, or it is not known
+///   which pairs touch.
 bool Run::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
   w_.still.assign(2 * n, 0);
@@ -132,21 +154,23 @@ bool Run::touchesAtStart(Answer& answer) {
   Query still = query_;
   still.coefficients = w_.still.data();
   still.degree = 1;
-  still.every_pair = query_.every_pair || query_.ignore_initial;
-  still.ignore_initial = false;
-  still.any = false;
   still.max_contacts = 1;
   still.progress = nullptr;
   still.refine = nullptr;
+  still.link_free = nullptr;  // of the motion itself
+  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
+  // When they part is no question at rest: no interval is divided.
+  still.every_pair = false;
+  still.ignore_initial = query_.every_pair || query_.ignore_initial;
+  if (still.ignore_initial) still.tolerance_time = 1;
   engine::engine().solve(engine_, problem_, still, answer);
-  if (answer.verdict == Verdict::free) return false;
-  if (answer.verdict == Verdict::undecided || !still.every_pair) return true;
-  for (int i = 0; i < answer.num_contacts; ++i) w_.by_engine[static_cast<std::size_t>(answer.contacts[i].pair)] = 1;
+  if (answer.verdict != Verdict::free) return true;
+  for (int i = 0; i < answer.num_ignored; ++i) w_.by_engine[static_cast<std::size_t>(answer.ignored[i].pair)] = 1;
   return false;
 }
 
 /// The engine's pairs.
-void Run::solveRest(Answer& answer) {
+void Run::solveRest(const Query& query, Answer& answer) {
   w_.scene_allowed.assign(static_cast<std::size_t>(problem_.num_scene_pairs), 1);
   w_.link_allowed.assign(static_cast<std::size_t>(problem_.num_link_pairs), 1);
   std::uint64_t left = 0;
@@ -160,49 +184,79 @@ void Run::solveRest(Answer& answer) {
   w_.rest = problem_;
   w_.rest.scene_allowed = w_.scene_allowed.data();
   w_.rest.link_allowed = w_.link_allowed.data();
-  engine::engine().solve(engine_, w_.rest, query_, answer);
+  engine::engine().solve(engine_, w_.rest, query, answer);
+  const double until = answer.verdict == Verdict::free ? 1 : answer.t_lower;
+  for (std::int32_t p = 0; p < numPairs(); ++p) {
+    if (w_.by_engine[static_cast<std::size_t>(p)]) provenFree(p, until);
+  }
 }
 
 /// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
 void Run::findPairs() {
   StageClock clock(query_.measure_times);
+  const auto wanted = [this](std::int32_t p) { return asked(p) && !w_.by_engine[static_cast<std::size_t>(p)]; };
   w_.culling.begin(problem_, query_, options_, counts_);
-  w_.culling.bodyPairs([this](std::int32_t p) { return asked(p) && !w_.by_engine[static_cast<std::size_t>(p)]; },
-                       treeOf_, w_.pairs);
+  w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
   clock.lap(counts_.culling_us);
-  if (!query_.refine) return;
-  w_.volumes.refine(problem_, query_, options_, w_.pairs, counts_);
-  clock.lap(counts_.visibility_us);
+  if (query_.refine) {
+    w_.volumes.refine(problem_, query_, options_, w_.pairs, counts_);
+    clock.lap(counts_.visibility_us);
+  }
+  w_.left.assign(static_cast<std::size_t>(numPairs()), 0);
+  for (const BodyPair& pair : w_.pairs) w_.left[static_cast<std::size_t>(pair.index)] = 1;
+  for (std::int32_t p = 0; p < numPairs(); ++p) {
+    if (wanted(p) && !w_.left[static_cast<std::size_t>(p)]) provenFree(p, 1);
+  }
 }
 
-/// All triangles of these pairs that may touch, and then all their equations on [0, 1]; or, in the order of time, one
-/// sub-interval after the other.
+/// First contact of these pairs: boxes, then the equations of the triangles whose boxes meet, one sub-interval after
+/// the other, from the first to that which holds `limit`.
 Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
+  if (!options_.in_time_order) return searchBoxesFirst(pairs, limit);
   StageClock clock(query_.measure_times);
   Found found;
   w_.culling.start(pairs);
   w_.leaves.clear();
   for (int slot = 0; slot < w_.culling.numSlots(); ++slot) {
     const double begin = w_.culling.slotBegin(slot), end = w_.culling.slotBegin(slot + 1);
-    if (begin > limit) break;
-    const bool in_budget = w_.culling.leafPairs(pairs, slot, w_.leaves);
+    if (begin > limit) return found;
+    found.out_of_budget = !w_.culling.leafPairs(pairs, slot, w_.leaves);
     clock.lap(counts_.boxes_us);
-    if (!in_budget) {
-      found.out_of_budget = true;
-      found.t_lower = options_.in_time_order ? begin : 0;
-      return found;
+    if (found.out_of_budget) return found;
+    if (!w_.leaves.empty()) {
+      w_.equations.clear();
+      w_.equations.add(pairs, w_.leaves);
+      found = w_.solver.solve(pairs, w_.equations, begin, end, limit, w_.contacts);
+      clock.lap(counts_.equations_us);
+      if (found.contact || found.free_until < end) return found;
+      w_.leaves.erase(
+          std::remove_if(w_.leaves.begin(), w_.leaves.end(), [&](const LeafPair& l) { return l.until <= end; }),
+          w_.leaves.end());
     }
-    const bool last = slot + 1 == w_.culling.numSlots();
-    if (w_.leaves.empty() || (!options_.in_time_order && !last)) continue;
-    w_.equations.clear();
-    w_.equations.add(pairs, w_.leaves);
-    found = w_.solver.solve(pairs, w_.equations, options_.in_time_order ? begin : 0, end, limit, w_.contacts);
-    clock.lap(counts_.equations_us);
-    if (found.contact || found.out_of_budget || end > limit) return found;
-    w_.leaves.erase(
-        std::remove_if(w_.leaves.begin(), w_.leaves.end(), [&](const LeafPair& l) { return l.until <= end; }),
-        w_.leaves.end());
+    found.free_until = end;
   }
+  return found;
+}
+
+/// The same as the paper has it: all triangles whose boxes meet at any time, then all their equations at once. Boxes
+/// are left out only in sub-intervals that begin after `limit`; of the rest all equations are solved.
+Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
+  StageClock clock(query_.measure_times);
+  Found found;
+  w_.culling.start(pairs);
+  w_.leaves.clear();
+  double end = 0;
+  for (int slot = 0; slot < w_.culling.numSlots() && w_.culling.slotBegin(slot) <= limit; ++slot) {
+    found.out_of_budget = !w_.culling.leafPairs(pairs, slot, w_.leaves);
+    if (found.out_of_budget) break;
+    end = w_.culling.slotBegin(slot + 1);
+  }
+  clock.lap(counts_.boxes_us);
+  if (found.out_of_budget) return found;
+  w_.equations.clear();
+  w_.equations.add(pairs, w_.leaves);
+  found = w_.solver.solve(pairs, w_.equations, 0, end, limit, w_.contacts);
+  clock.lap(counts_.equations_us);
   return found;
 }
 
@@ -222,45 +276,56 @@ void Run::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) {
-    for (const std::uint8_t& p : w_.by_engine) counts_.pairs_by_standard += p;
+    counts_.pairs_by_standard = 0;
+    for (std::int32_t p = 0; p < numPairs(); ++p) counts_.pairs_by_standard += asked(p);
     engine::engine().solve(engine_, problem_, query_, answer);
     return;
   }
-  solveRest(answer);
-  double limit =
-      answer.verdict == Verdict::contact && !query_.every_pair ? (answer.certain ? answer.t_upper : answer.t_lower) : 2;
-  double t_lower = answer.verdict == Verdict::free ? 2 : answer.t_lower;
-  double t_upper = answer.verdict == Verdict::contact && answer.t_upper < 1 ? answer.t_upper : 2;
-  if (answer.certain) t_upper = answer.t_upper;
+  // Of the paper's pairs nothing is known while the engine looks at its own.
+  Progress progress{query_.progress, query_.progress_context};
+  Query query = query_;
+  if (query.progress) {
+    query.progress = &Progress::update;
+    query.progress_context = &progress;
+  }
+  solveRest(query, answer);
   bool contact = answer.verdict == Verdict::contact, out_of_budget = answer.verdict == Verdict::undecided;
+  double t_upper = answer.certain || answer.t_upper < 1 ? answer.t_upper : 2;
+  if (answer.verdict == Verdict::free) t_upper = 2;
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
   const RoundUpward upward;
-  w_.solver.begin(problem_, query_, options_, counts_);
-  const auto take = [&](const Found& found) {
-    if (found.contact || found.out_of_budget) t_lower = std::min(t_lower, found.t_lower);
+  w_.solver.begin(problem_, query, options_, counts_);
+  const auto take = [&](const std::vector<BodyPair>& pairs, const Found& found) {
+    for (const BodyPair& pair : pairs) provenFree(pair.index, found.free_until);
     t_upper = std::min(t_upper, found.t_upper);
     contact = contact || found.contact;
     out_of_budget = out_of_budget || found.out_of_budget;
   };
   findPairs();
   if (!query_.every_pair) {
-    take(search(w_.pairs, limit));
+    progress.others = answer.verdict == Verdict::free ? 1 : answer.t_lower;
+    take(w_.pairs, search(w_.pairs, contact ? (answer.certain ? answer.t_upper : answer.t_lower) : 2));
   } else {
     std::sort(w_.pairs.begin(), w_.pairs.end(), [](const BodyPair& x, const BodyPair& y) { return x.index < y.index; });
     for (std::size_t i = 0; i < w_.pairs.size() && !out_of_budget; ++i) {
       const std::size_t before = w_.contacts.size();
       w_.one.assign(1, w_.pairs[i]);
       const Found found = search(w_.one, 2);
-      take(found);
-      keepFirst(before, found.t_upper < 2 ? found.t_upper : found.t_lower + query_.tolerance_time);
+      take(w_.one, found);
+      keepFirst(before, found.t_upper < 2 ? found.t_upper : found.free_until + query_.tolerance_time);
     }
   }
+  const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
   const bool certain = contact && t_upper - t_lower <= query_.tolerance_time * (1 + 1e-9);
-  if (!query_.every_pair) keepFirst(0, certain ? t_upper : t_lower + query_.tolerance_time);
-  answer.verdict = out_of_budget ? Verdict::undecided : contact ? Verdict::contact : Verdict::free;
+  // Nothing is dropped before t_lower and t_upper are known.
+  keepFirst(0, query_.every_pair ? 1 : certain ? t_upper : t_lower + query_.tolerance_time);
+  answer.verdict = out_of_budget ? Verdict::undecided
+                   : contact     ? Verdict::contact
+                   : t_lower < 1 ? Verdict::undecided
+                                 : Verdict::free;
   answer.certain = answer.verdict == Verdict::contact && certain;
-  answer.t_lower = answer.verdict == Verdict::free ? 1 : std::min(1.0, t_lower);
+  answer.t_lower = t_lower;
   answer.t_upper = answer.verdict == Verdict::free ? 1 : std::min(1.0, t_upper);
   answer.contacts = w_.contacts.data();
   answer.num_contacts = answer.verdict == Verdict::contact ? static_cast<std::int32_t>(w_.contacts.size()) : 0;
@@ -271,7 +336,11 @@ void Run::solve(Answer& answer) {
 void solve(Workspace& workspace, void* engine_workspace, const Problem& problem, const Query& query,
            const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf, Answer& answer,
            Counts& counts) {
-  Run(workspace.impl(), engine_workspace, problem, query, options, treeOf, counts).solve(answer);
+  Query first = query;  // a contact is looked for in the order of time, wherever any would do
+  first.any = false;
+  first.likely = nullptr;
+  first.num_likely = 0;
+  Run(workspace.impl(), engine_workspace, problem, first, options, treeOf, counts).solve(answer);
 }
 
 }  // namespace redon

@@ -93,26 +93,32 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
   const std::size_t n = equations.equations().size();
   counts_->equations += n;
   active_.clear();
-  Found found;
-  found.t_lower = end;
   if (options_->simultaneous) {
     for (std::size_t i = 0; i < n; ++i) active_.push_back({static_cast<std::int32_t>(i), begin, end});
     return search(0, begin, end, limit, contacts);
   }
-  // The paper's baseline: each by itself, up to the first root found so far.
-  for (std::size_t i = 0; i < n && !found.out_of_budget; ++i) {
+  // The paper's baseline: each by itself, up to the first root found so far. Before all are looked at nothing more is
+  // proven of the pairs than that they enter without contact.
+  Found found;
+  found.free_until = begin;
+  double least = end;
+  for (std::size_t i = 0; i < n; ++i) {
     const double from = std::max(begin, equations.equations()[i].from);
-    if (from > std::min(end, limit)) continue;
+    if (from > std::min(end, limit)) {
+      least = std::min(least, from);
+      continue;
+    }
     active_.assign(1, {static_cast<std::int32_t>(i), from, end});
     const Found own = search(0, from, end, limit, contacts);
     found.out_of_budget = own.out_of_budget;
-    if (own.out_of_budget) found.t_lower = begin;
+    if (own.out_of_budget) return found;
+    least = std::min(least, own.free_until);
     if (!own.contact) continue;
     found.contact = true;
-    found.t_lower = std::min(found.t_lower, own.t_lower);
     found.t_upper = std::min(found.t_upper, own.t_upper);
-    limit = std::min(limit, own.t_upper < 2 ? own.t_upper : own.t_lower + query_->tolerance_time);
+    limit = std::min(limit, own.t_upper < 2 ? own.t_upper : own.free_until + query_->tolerance_time);
   }
+  found.free_until = least;
   return found;
 }
 
@@ -120,19 +126,21 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
 Found Solver::search(std::size_t first, double begin, double end, double limit,
                      std::vector<engine::LeafContact>& contacts) {
   Found found;
-  found.t_lower = end;
   tasks_.assign(1, {begin, end, first, active_.size() - first});
   while (!tasks_.empty()) {
     const Task task = tasks_.back();
     tasks_.pop_back();
     active_.resize(task.first + task.count);
+    found.free_until = task.begin;
     if (task.begin > limit) return found;
     if (query_->work_budget && workOf(*counts_) > query_->work_budget) {
       found.out_of_budget = true;
-      found.t_lower = task.begin;
       return found;
     }
-    if (query_->progress && (counts_->intervals & 255) == 0) query_->progress(query_->progress_context, task.begin);
+    // An equation by itself says nothing of the others.
+    if (query_->progress && (counts_->intervals & 255) == 0) {
+      query_->progress(query_->progress_context, options_->simultaneous ? task.begin : 0);
+    }
     ++counts_->intervals;
     setInterval(task.begin, task.end);
     // What stays active moves up; the task's own entries are spent by then.
@@ -180,6 +188,7 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
     if (earlier > later) tasks_.push_back({later_lo, hi, later, earlier - later});
     if (active_.size() > earlier) tasks_.push_back({lo, earlier_hi, earlier, active_.size() - earlier});
   }
+  found.free_until = end;
   return found;
 }
 
@@ -241,7 +250,7 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
   active_.resize(kept);
   if (roots.empty()) return false;
   found.contact = true;
-  found.t_lower = first_lo;  // of those that are no contact, too: they are not decided
+  found.free_until = first_lo;  // of those that are no contact, too: they are not decided
   for (const Root& root : roots) {
     if (root.certain) found.t_upper = std::min(found.t_upper, root.t_upper);
     report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo),

@@ -11,17 +11,18 @@
 namespace fcl_artic {
 namespace redon {
 
+/// What a search has proven: nothing, until it says so.
 struct Found {
   bool contact = false, out_of_budget = false;
-  double t_lower = 1;  ///< without contact: the end of the window, or what the budget allowed
-  double t_upper = 2;  ///< 2: no contact is proven
+  double free_until = 0;  ///< no contact before; what was not looked at is not free
+  double t_upper = 2;     ///< 2: no contact is proven
 };
 
 class Solver {
  public:
   void begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
   /// First contact in [begin, end], which the pairs enter without contact.
-  /// @param limit  what begins later does not matter.
+  /// @param limit  what begins later does not matter, and is not looked at.
   /// @param[out] contacts  all valid roots of the time interval in which the first was found are appended.
   Found solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end, double limit,
               std::vector<engine::LeafContact>& contacts);
