@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,21 @@ namespace fcl_artic {
 
 class PairTable {
  public:
+  /// The cells of one variable: cell i holds [lower + i width, lower + (i + 1) width].
+  struct Axis {
+    int variable = -1;
+    double lower = 0, width = 1;
+    int cells = 1;
+    bool wraps = false;  ///< the cells are a full turn
+    double upper() const { return lower + cells * width; }
+  };
+  /// The table's variables with their cells, by how far they take the link, the farthest first. They are chosen first
+  /// and as a whole; what is proven of a cell, and how far a link goes within it, is worked out of the finished value.
+  struct Cells {
+    int count = 0;
+    Axis axes[3];
+  };
+
   /// @param sweep  that the pair refers to.
   /// @param margin  that the links are proven to keep.
   /// @return null where there is nothing to look up: more variables, joints of other kinds than turns about and slides
@@ -30,32 +46,27 @@ class PairTable {
                                                 double margin);
 
   double margin() const { return margin_; }
+  const Cells& cells() const { return cells_; }
 
   /// Parts [k/8, (k+1)/8] of a motion, bit k each, over all of which the links are proven more than margin() apart.
   /// @param variables  of the motion: a row each, column k for t^k.
   unsigned freeParts(const Eigen::MatrixXd& variables) const;
 
   /// Whether the links are proven more than margin() apart for all values in a box: `lower[i]` to `upper[i]` of
-  /// the variable of axes_[i].
+  /// the variable of cells().axes[i].
   bool free(const double* lower, const double* upper) const;
 
  private:
-  /// The cells of one variable: cell i holds [lower + i width, lower + (i + 1) width].
-  struct Axis {
-    int variable = -1;
-    double lower = 0, width = 1;
-    int cells = 1;
-    bool wraps = false;  ///< the cells are a full turn
-    double upper() const { return lower + cells * width; }
-  };
+  struct Links;
   class Builder;
 
+  PairTable(const Cells& cells, double margin) : cells_(cells), margin_(margin) {}
+  static std::optional<const Cells> chooseCells(const KinematicTree& tree, const Links& links);
   static bool cellsOf(const Axis& axis, double lower, double upper, int& first, int& last);
   void sum(const std::vector<std::uint8_t>& proven);
 
-  double margin_ = 0;
-  int num_axes_ = 0;
-  Axis axes_[3];  ///< by how far they take the link, the farthest first
+  const Cells cells_;
+  const double margin_;
   /// sums_[p * plane_ + i * stride_ + j]: of the third axis's cell p, cells (i', j') with i' < i, j' < j that are not
   /// proven, modulo 2^16. An axis that wraps is there twice, so that every box of less than a turn is one piece.
   std::vector<std::uint16_t> sums_;

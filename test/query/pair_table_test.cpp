@@ -8,6 +8,7 @@
 #include <random>
 
 #include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cylinder.h>
 
 #include "expect_time.h"
 #include "fcl_artic/clearance.h"
@@ -361,4 +362,96 @@ TEST(PairTable, NothingAtTheBorderIsLeftOut) {
   std::cout << borders << " borders, left out a little way off " << left_out_before << '\n';
   EXPECT_GT(borders, 1000);
   EXPECT_GT(left_out_before, 700);
+}
+
+namespace {
+
+/// A ball over a disk whose top is the plane z = 0 and which is the robot's base: a cart along the disk, which takes
+/// the ball farthest, then joints from "cart" to "tip", the ball's centre. The ball never comes near the disk's rim.
+struct OverDisk {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("over disk");
+  static constexpr double kRadius = 0.0005;
+  std::shared_ptr<fcl::CollisionObjectd> disk = object(std::make_shared<fcl::Cylinderd>(7, 0.1));
+  std::shared_ptr<fcl::CollisionObjectd> tip = ball(kRadius);
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+
+  OverDisk(const std::vector<std::string>& links, const std::vector<Joint>& joints) {
+    for (const char* link : {"disk", "cart"}) tree->addLink(link);
+    for (const std::string& link : links) tree->addLink(link);
+    tree->addJoint(limited(makeJoint("rail", JointType::prismatic, "disk", "cart", Vector3d::UnitY()), -5.5, 5.5));
+    for (const Joint& joint : joints) tree->addJoint(joint);
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    manager->bind("disk", disk.get(), pose({0, 0, -0.05}));
+    manager->bind("tip", tip.get());
+    manager->setup();
+  }
+  /// How deep the ball is in the disk; below 0 where it is not.
+  double depth(const VectorXd& q) const { return kRadius - tree->linkPose(tree->link("tip"), q).translation().z(); }
+};
+
+/// Short motions, in both modes: none that begins with the ball deep in the disk is free.
+/// @param states  draws one.
+template <class Draw>
+void expectNoneFreeInTheDisk(const OverDisk& arm, int states, const Draw& draw) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> u(-1, 1);
+  int deep = 0, wrong = 0, shallow_free = 0;
+  double deepest = 0;
+  for (int i = 0; i < states; ++i) {
+    const VectorXd q = draw(random);
+    const double depth = arm.depth(q);
+    const VectorXd to = q + 1e-4 * VectorXd::NullaryExpr(q.size(), [&] { return u(random); });
+    for (const ContactMode mode : {ContactMode::first, ContactMode::any}) {
+      CertifiedRequest request;
+      request.mode = mode;
+      const CertifiedResult result = ask(*arm.manager, q, to, request);
+      if (depth > 1e-9) EXPECT_EQ(result.status, Status::contact) << "depth " << depth << " at " << q.transpose();
+      wrong += depth > 1e-9 && result.isFree();
+      if (depth > 1e-9 && result.isFree()) deepest = std::max(deepest, depth);
+      shallow_free += depth < 0 && depth > -0.03 && result.isFree();
+    }
+    deep += depth > 0.003 && depth < 0.0095;
+  }
+  std::cout << deep << " states 3 to 9.5 mm deep; free though in the disk: " << wrong << ", up to " << deepest << " m; "
+            << shallow_free << " free within 30 mm\n";
+  EXPECT_GT(deep, states / 50);
+  EXPECT_GT(shallow_free, states / 50);
+}
+
+}  // namespace
+
+/// The lever of a turn grows along the slide that it carries: with a third variable the table goes as far beyond the
+/// slide's limits as its range is wide, and rows have to pay for the lever there.
+TEST(PairTable, ATurnsLeverReachesAsFarAsTheSlideAfterIt) {
+  // Of what the rows pay for a turn little is left over when the rows are wide: its joint has wide limits, and a
+  // follower's multiplier keeps the cells from being one turn.
+  Joint drive = limited(makeJoint("drive", JointType::revolute, "disk", "wheel", Vector3d::UnitX()), -100, 100);
+  Joint follower = makeJoint("turn", JointType::revolute, "cart", "arm", Vector3d::UnitY(), pose({0, 0, 0.0575}));
+  follower.mimics = true;
+  follower.mimic = {"drive", 1.5, 0};
+  const OverDisk arm(
+      {"wheel", "arm", "tip"},
+      {drive, follower,
+       limited(makeJoint("finger", JointType::prismatic, "arm", "tip", Vector3d::UnitX()), -0.029, 0.029)});
+  ASSERT_EQ(arm.tree->dof(), 3);
+  expectNoneFreeInTheDisk(arm, 8000, [](std::mt19937& random) {
+    std::uniform_real_distribution<double> u(-1, 1);
+    return VectorXd(Vector3d(5 * u(random), 99 * u(random), (u(random) > 0 ? 1 : -1) * (0.0725 + 0.0135 * u(random))));
+  });
+}
+
+/// A third variable that turns the link and then slides it: its own lever grows with its value.
+TEST(PairTable, AThirdVariablesOwnLeverHoldsBeyondItsLimits) {
+  Joint spin = makeJoint("spin", JointType::revolute, "cross", "arm", Vector3d::UnitY(), pose({0, 0, 0.0242}));
+  spin.mimics = true;
+  spin.mimic = {"finger", 100, -2.854};
+  const OverDisk arm(
+      {"cross", "arm", "tip"},
+      {limited(makeJoint("cross", JointType::prismatic, "cart", "cross", Vector3d::UnitX()), -0.05, 0.05),
+       limited(makeJoint("finger", JointType::prismatic, "arm", "tip", Vector3d::UnitX()), -0.0125, 0.0125), spin});
+  ASSERT_EQ(arm.tree->dof(), 3);
+  expectNoneFreeInTheDisk(arm, 8000, [](std::mt19937& random) {
+    std::uniform_real_distribution<double> u(-1, 1);
+    return VectorXd(Vector3d(5 * u(random), 0.05 * u(random), (u(random) > 0 ? 1 : -1) * (0.03 + 0.0074 * u(random))));
+  });
 }
