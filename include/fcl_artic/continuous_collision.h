@@ -76,6 +76,7 @@ FCL_ARTIC_EXPORT S collide(const fcl::ContinuousCollisionObject<S>* o1, const fc
 
 /// Callback for continuous managers, with FCL's name. Other than FCL's it keeps the earliest contact of all pairs, and
 /// asks to stop when there can be no earlier one.
+/// When it throws, the result of all pairs claims nothing: contact at t = 0.
 /// @param data  a fcl::DefaultContinuousCollisionData<S>, from <fcl/broadphase/default_broadphase_callbacks.h>.
 template <typename S>
 bool DefaultContinuousCollisionFunction(fcl::ContinuousCollisionObject<S>* o1, fcl::ContinuousCollisionObject<S>* o2,
@@ -83,7 +84,13 @@ bool DefaultContinuousCollisionFunction(fcl::ContinuousCollisionObject<S>* o1, f
   auto& all = *static_cast<DefaultContinuousCollisionData<S>*>(data);
   if (all.done) return true;
   fcl::ContinuousCollisionResult<S> result;
-  fcl_artic::collide<S>(o1, o2, all.request, result);
+  try {
+    fcl_artic::collide<S>(o1, o2, all.request, result);
+  } catch (...) {  // the result of all pairs is none either
+    all.result = result;
+    all.done = true;
+    throw;
+  }
   const bool earlier = result.is_collide && result.time_of_contact < all.result.time_of_contact;
   if (!all.result.is_collide || earlier) all.result = result;
   all.done = all.result.is_collide && all.result.time_of_contact <= 0;

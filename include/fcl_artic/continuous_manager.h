@@ -109,6 +109,7 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// First contact of all pairs of registered objects, or the proof that there is none.
   /// @param request  check_scene and check_self have no meaning here, progress is not called. max_contacts is per pair,
   ///   work_budget for all of them together.
+  /// When it throws, the result is reset: undecided on [0, 1].
   /// @throws std::invalid_argument for a tolerance or margin that is negative or not finite.
   /// @throws std::logic_error as collide().
   void continuousCollide(const CertifiedRequest& request, CertifiedPairsResult& result) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "fcl_artic/kinematic_tree.h"
@@ -12,6 +13,9 @@ namespace fcl_artic {
 ///
 /// A quaternion (floating, spherical joint) turns by a rotation vector: the orientation is exp([w(t)]) R0, with R0 the
 /// orientation at t = 0 and w(t) a polynomial in the joint's frame, w(0) = 0.
+///
+/// A motion belongs to the joint variables of the tree that it was made for (KinematicTree::jointSpace()): a tree of
+/// other ones refuses it, whatever their number. What has been moved from is no motion; all trees refuse it.
 class FCL_ARTIC_EXPORT JointMotion {
  public:
   /// Every joint variable goes straight from q0 to q1, also where that is the longer way round. A quaternion takes the
@@ -42,6 +46,13 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// As polynomial() takes them.
   Eigen::MatrixXd coefficients() const;
 
+  /// Whether it is a motion of the tree's joint variables.
+  bool isOf(const KinematicTree& tree) const { return joint_space_.sameAs(tree.jointSpace()); }
+  /// @throws std::invalid_argument when it is not, beginning with `what` and naming both trees.
+  void requireOf(const KinematicTree& tree, const char* what = "the motion") const {
+    if (!isOf(tree)) refuse(tree, what);
+  }
+
   /// As the queries take them: coefficients(), but w(0) = 0 in place of quaternions, which are in orientations().
   const Eigen::MatrixXd& variables() const { return variables_; }
   /// Orientations at t = 0 of the joints that have a quaternion, in the order of the joints: rotation matrices, row-major.
@@ -49,7 +60,10 @@ class FCL_ARTIC_EXPORT JointMotion {
 
  private:
   JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients);
+  [[noreturn]] void refuse(const KinematicTree& tree, const char* what) const;
 
+  Fingerprint joint_space_;
+  std::string tree_name_;  ///< for messages
   Eigen::MatrixXd variables_;
   std::vector<double> orientations_;
   struct Start {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -53,11 +55,36 @@ struct Joint {
 /// lower > upper, both 0 or an infinite one, which are no limits.
 FCL_ARTIC_EXPORT bool hasLimits(const Joint& joint);
 
+/// A number that stands for what was added to it, in that order: 64 bits, equal for equal contents. What has been moved
+/// from, or was never given anything, is none and stands for nothing.
+class FCL_ARTIC_EXPORT Fingerprint {
+ public:
+  Fingerprint() = default;
+  Fingerprint(const Fingerprint&) = default;
+  Fingerprint& operator=(const Fingerprint&) = default;
+  Fingerprint(Fingerprint&& other) noexcept : value_(std::exchange(other.value_, 0)) {}
+  Fingerprint& operator=(Fingerprint&& other) noexcept {
+    value_ = std::exchange(other.value_, 0);
+    return *this;
+  }
+
+  void add(std::uint64_t number);
+  void add(double number);  ///< by its bits
+  void add(std::string_view text);
+
+  bool none() const { return value_ == 0; }
+  /// False for what stands for nothing, also of two such.
+  bool sameAs(const Fingerprint& other) const { return value_ != 0 && value_ == other.value_; }
+
+ private:
+  std::uint64_t value_ = 0;
+};
+
 /// A forest of links carried by joints: one robot or several, each with its own root. Constant during
 /// queries and shared by threads.
 class FCL_ARTIC_EXPORT KinematicTree {
  public:
-  explicit KinematicTree(std::string name = "robot") : name_(std::move(name)) {}
+  explicit KinematicTree(std::string name = "robot");
 
   /// @throws std::invalid_argument for an empty or repeated name.
   LinkId addLink(const std::string& name);
@@ -103,6 +130,13 @@ class FCL_ARTIC_EXPORT KinematicTree {
   JointId jointId(std::string_view name) const;
   bool hasLink(std::string_view name) const { return findLink(name) >= 0; }
 
+  /// What a motion in joint space depends on: of every joint that moves, in the order of addJoint(), its name, its type
+  /// and whom it mimics how. Trees that are alike in this have the same joint variables and take the same motions: a
+  /// copy, the same robot loaded twice, at another base, with other links, limits or measured dimensions.
+  const Fingerprint& jointSpace() const { return joint_space_; }
+  /// All links and joints, with all of their names and numbers. (But for the name of the whole.)
+  const Fingerprint& content() const { return content_; }
+
   /// All variables 0, quaternions at no rotation: every joint at its origin.
   Eigen::VectorXd neutralConfiguration() const;
   /// Value of the joint (rad or m) for the variables q; mimic applied; 0 when fixed.
@@ -131,6 +165,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
  private:
   int findLink(std::string_view name) const;
   void sortLinks();
+  void addToFingerprints(const Joint& joint);
   /// A turn of q about a joint's axis, seen from the parent link: along + across cos q + aside sin q.
   struct Turn {
     explicit Turn(const Joint& joint);
@@ -150,6 +185,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<JointId> variables_;
   std::vector<std::string> variable_names_;
   std::vector<LinkId> order_;  ///< topological
+  Fingerprint joint_space_, content_;
 };
 
 }  // namespace fcl_artic

@@ -134,16 +134,19 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   bool empty() const { return size() == 0; }
 
   /// First contact of the motion, or the proof that there is none (doc/PROMISE.md).
-  /// @throws std::invalid_argument when the motion is not one of this tree, or for a tolerance or margin that is
-  ///   negative or not finite.
-  /// @throws std::logic_error when changes were made after the last setup() or update().
+  ///
+  /// A query that throws, whatever it is, claims nothing: its result is reset, to `undecided` with t_lower at the
+  /// beginning of the motion and no contacts. (So is it while the query runs, for callbacks that look.)
+  /// @throws std::invalid_argument when the motion is not one of this tree's joint variables (JointMotion::isOf()), or
+  ///   for a tolerance or margin that is negative or not finite.
+  /// @throws std::logic_error when changes were made after the last setup() or update(), of the tree too.
   void continuousCollide(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
 
   /// The same for many motions, over threads: result i is the answer to motion i, bit for bit the one that it gets by
   /// itself (but for measured times). The request's `progress` is not called.
   /// @param[out] results  resized; what is in them is used as memory.
   /// @param threads  at most so many; 0: as many as the machine runs at once.
-  /// @throws as above, naming the motion of a wrong size; what is in results then is no answer.
+  /// @throws as above, naming the motion that is not of this tree; all results are reset then.
   void continuousCollide(const std::vector<JointMotion>& motions, const CertifiedRequest& request,
                          std::vector<CertifiedResult>& results, int threads = 0) const;
 

@@ -63,17 +63,21 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   static JointTrajectory bspline(const KinematicTree& tree, int degree, const std::vector<double>& knots,
                                  const std::vector<Eigen::VectorXd>& control_points);
 
-  double beginTime() const { return times_.front(); }
-  double endTime() const { return times_.back(); }
+  // What has been moved from has no pieces: the functions below throw std::out_of_range then.
+  double beginTime() const { return times_.at(0); }
+  double endTime() const { return times_.at(times_.size() - 1); }
   std::size_t numPieces() const { return pieces_.size(); }
   /// Over t in [0, 1], which stands for [times()[k], times()[k + 1]].
   const JointMotion& piece(std::size_t k) const { return pieces_.at(k); }
   /// Begin of each piece, and the end.
   const std::vector<double>& times() const { return times_; }
   /// Number of joint variables.
-  Eigen::Index size() const { return pieces_.front().size(); }
+  Eigen::Index size() const { return pieces_.at(0).size(); }
   /// At t, cut to [beginTime(), endTime()].
   Eigen::VectorXd configuration(double t) const;
+  /// Refuses a trajectory of other joint variables, as JointMotion::requireOf().
+  /// @throws std::invalid_argument
+  void requireOf(const KinematicTree& tree) const;
 
  private:
   JointTrajectory(const KinematicTree& tree, std::vector<double> times, std::vector<JointMotion> pieces);

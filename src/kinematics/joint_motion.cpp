@@ -60,7 +60,7 @@ bool turnsForever(const KinematicTree& tree, int v) {
 }  // namespace
 
 JointMotion::JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients)
-    : variables_(std::move(coefficients)) {
+    : joint_space_(tree.jointSpace()), tree_name_(tree.name()), variables_(std::move(coefficients)) {
   if (variables_.cols() == 1) variables_.conservativeResizeLike(Eigen::MatrixXd::Zero(variables_.rows(), 2));
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     const int v = tree.quaternionVariable(j);
@@ -132,7 +132,15 @@ JointMotion JointMotion::polynomial(const KinematicTree& tree, const Eigen::Matr
   return {tree, coefficients};
 }
 
+void JointMotion::refuse(const KinematicTree& tree, const char* what) const {
+  if (joint_space_.none()) throw std::invalid_argument(std::string(what) + " has been moved from");
+  throw std::invalid_argument(std::string(what) + " was made for robot '" + tree_name_ + "', with " +
+                              std::to_string(size()) + " joint values; robot '" + tree.name() + "' has " +
+                              std::to_string(tree.dof()) + (size() == tree.dof() ? ", of other joints" : ""));
+}
+
 Eigen::VectorXd JointMotion::configuration(double t) const {
+  if (joint_space_.none()) throw std::invalid_argument("JointMotion: the motion has been moved from");
   Eigen::VectorXd q = variables_.col(degree());
   for (Eigen::Index k = degree() - 1; k >= 0; --k) q = q * t + variables_.col(k);
   for (const Start& start : starts_) {

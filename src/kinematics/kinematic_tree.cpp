@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
 
@@ -38,6 +39,36 @@ std::vector<const char*> variableEndings(JointType type) {
 
 }  // namespace
 
+void Fingerprint::add(std::uint64_t number) {
+  // Each step is a bijection of the number, and of what was there before: no single change goes unseen.
+  constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;  // 2^64 / golden ratio
+  std::uint64_t x = (value_ ^ number) + kOdd;
+  x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;  // R. Muegge's mixing step: an odd factor between two shifts
+  x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;
+  x ^= x >> 32;
+  value_ = x == 0 ? kOdd : x;
+}
+
+void Fingerprint::add(double number) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  add(bits);
+}
+
+void Fingerprint::add(std::string_view text) {
+  add(std::uint64_t{text.size()});
+  for (std::size_t i = 0; i < text.size(); i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, text.data() + i, std::min(sizeof word, text.size() - i));
+    add(word);
+  }
+}
+
+KinematicTree::KinematicTree(std::string name) : name_(std::move(name)) {
+  joint_space_.add(std::uint64_t{0});
+  content_.add(std::uint64_t{0});
+}
+
 bool hasLimits(const Joint& joint) {
   const bool could = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
   const bool some = joint.lower <= joint.upper && !(joint.lower == 0 && joint.upper == 0);
@@ -64,6 +95,7 @@ LinkId KinematicTree::addLink(const std::string& name) {
   if (findLink(name) >= 0) throw std::invalid_argument("robot '" + name_ + "': two links are named '" + name + "'");
   link_names_.push_back(name);
   parent_joint_.push_back(-1);
+  content_.add(name);
   sortLinks();
   return numLinks() - 1;
 }
@@ -127,8 +159,31 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
   }
   parent_joint_[child] = id;
+  addToFingerprints(joints_.back());
   sortLinks();
   return id;
+}
+
+void KinematicTree::addToFingerprints(const Joint& joint) {
+  const auto addJointTo = [&](Fingerprint& print) {
+    print.add(joint.name);
+    print.add(static_cast<std::uint64_t>(joint.type));
+    print.add(std::uint64_t{joint.mimics});
+    if (!joint.mimics) return;
+    print.add(joint.mimic.master);
+    print.add(joint.mimic.multiplier);
+    print.add(joint.mimic.offset);
+  };
+  if (joint.type != JointType::fixed) addJointTo(joint_space_);
+  addJointTo(content_);
+  content_.add(joint.parent);
+  content_.add(joint.child);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 4; ++k) content_.add(joint.origin(i, k));
+    content_.add(joint.axis[i]);
+  }
+  content_.add(joint.lower);
+  content_.add(joint.upper);
 }
 
 KinematicTree::Turn::Turn(const Joint& joint) {

@@ -334,7 +334,13 @@ JointTrajectory JointTrajectory::bspline(const KinematicTree& tree, int degree, 
   return {tree, std::move(times), std::move(pieces)};
 }
 
+void JointTrajectory::requireOf(const KinematicTree& tree) const {
+  if (pieces_.empty()) throw std::invalid_argument("the trajectory has been moved from");
+  pieces_.front().requireOf(tree, "the trajectory");  // all were made for one tree
+}
+
 VectorXd JointTrajectory::configuration(double t) const {
+  if (pieces_.empty()) throw std::out_of_range("JointTrajectory: the trajectory has been moved from");
   const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, t);
   const std::size_t k = static_cast<std::size_t>(after - times_.begin()) - 1;
   const double s = (t - times_[k]) / (times_[k + 1] - times_[k]);

@@ -18,6 +18,8 @@
 #endif
 
 #include "fcl_artic/manager.h"
+#include "query/aspects.h"
+#include "query/claim_nothing.h"
 
 namespace fcl_artic {
 namespace {
@@ -62,23 +64,27 @@ void parallelFor(std::size_t n, int threads, const F& f) {
 void ArticulatedCollisionManager::continuousCollide(const std::vector<JointMotion>& motions,
                                                     const CertifiedRequest& request,
                                                     std::vector<CertifiedResult>& results, int threads) const {
-  if (threads < 0) throw std::invalid_argument("continuousCollide: the number of threads is " + std::to_string(threads));
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    if (motions[i].size() != tree().dof()) {
-      throw std::invalid_argument("motion " + std::to_string(i) + " has " + std::to_string(motions[i].size()) +
-                                  " joint values, robot '" + tree().name() + "' has " + std::to_string(tree().dof()));
+  const auto reset = [&] {
+    for (CertifiedResult& result : results) claimNothing(result);
+  };
+  resetAndAnswer(reset, [&] {
+    if (threads < 0) {
+      throw std::invalid_argument("continuousCollide: the number of threads is " + std::to_string(threads));
     }
-  }
-  CertifiedRequest alike = request;
-  alike.progress = nullptr;
-  results.resize(motions.size());
-  if (threads == 0) threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const auto answer = [&](std::size_t i) { continuousCollide(motions[i], alike, results[i]); };
-  if (threads == 1 || motions.size() < 2) {
-    for (std::size_t i = 0; i < motions.size(); ++i) answer(i);
-  } else {
-    parallelFor(motions.size(), threads, answer);
-  }
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+      if (!motions[i].isOf(tree())) motions[i].requireOf(tree(), ("motion " + std::to_string(i)).c_str());
+    }
+    CertifiedRequest alike = request;
+    alike.progress = nullptr;
+    results.resize(motions.size());
+    const int most = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const auto answer = [&](std::size_t i) { collideMotion(motions[i], alike, Aspects(), results[i]); };
+    if (most == 1 || motions.size() < 2) {
+      for (std::size_t i = 0; i < motions.size(); ++i) answer(i);
+    } else {
+      parallelFor(motions.size(), most, answer);
+    }
+  });
 }
 
 }  // namespace fcl_artic

@@ -122,6 +122,7 @@ Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajecto
   const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
     collideTrajectory(trajectory, asked, false, result);
   };
+  trajectory.requireOf(tree());
   return Search(request, trajectory.endTime() - trajectory.beginTime(), ask).run();
 }
 

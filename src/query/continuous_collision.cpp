@@ -10,6 +10,7 @@
 
 #include "adapters/fcl/fcl_geometry.h"
 #include "adapters/fcl/fcl_motion.h"
+#include "query/claim_nothing.h"
 #include "query/pair_query.h"
 
 namespace fcl_artic {
@@ -150,12 +151,7 @@ void reset(CertifiedPairResult& result) {
 /// on from the poses of the last query.
 template <class Result, class Query>
 auto answering(Result& result, Query&& query) {
-  try {
-    return query();
-  } catch (...) {
-    reset(result);
-    throw;
-  }
+  return resetUnlessAnswered([&] { reset(result); }, query);
 }
 
 template <class S>

@@ -12,6 +12,7 @@
 #include "adapters/fcl/fcl_geometry.h"
 #include "adapters/fcl/fcl_motion.h"
 #include "culling/box_overlap.h"
+#include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/pair_query.h"
 
@@ -102,7 +103,6 @@ class Earliest {
  public:
   /// @throws std::invalid_argument for a request that solvePair() refuses.
   Earliest(const CertifiedRequest& request, CertifiedPairsResult& result) : request_(request), result_(result) {
-    result_ = CertifiedPairsResult();  // what is left when something throws
     makeQuery(request);
     if (request.measure_times) begin_ = Clock::now();
     request_.progress = nullptr;
@@ -381,21 +381,30 @@ void ContinuousCollisionManager::collide(const ContinuousCollisionManager* other
 
 void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  Earliest earliest(request, result);
-  earliest.finish(impl_->visitOwn(request.margin, earliest));
+  resetAndAnswer([&] { result = CertifiedPairsResult(); },
+                 [&] {
+                   Earliest earliest(request, result);
+                   earliest.finish(impl_->visitOwn(request.margin, earliest));
+                 });
 }
 
 void ContinuousCollisionManager::continuousCollide(Object* object, const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  Earliest earliest(request, result);
-  earliest.finish(impl_->visitObject(object, request.margin, earliest));
+  resetAndAnswer([&] { result = CertifiedPairsResult(); },
+                 [&] {
+                   Earliest earliest(request, result);
+                   earliest.finish(impl_->visitObject(object, request.margin, earliest));
+                 });
 }
 
 void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other,
                                                    const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  Earliest earliest(request, result);
-  earliest.finish(impl_->visitOther(other, request.margin, earliest));
+  resetAndAnswer([&] { result = CertifiedPairsResult(); },
+                 [&] {
+                   Earliest earliest(request, result);
+                   earliest.finish(impl_->visitOther(other, request.margin, earliest));
+                 });
 }
 
 }  // namespace fcl_artic

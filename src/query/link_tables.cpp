@@ -5,13 +5,14 @@
 
 namespace fcl_artic {
 
-LinkTables::Made::Made(const ManagedBody& a, const ManagedBody& b, double margin)
+LinkTables::Made::Made(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b, double margin)
     : shape_a(a.shape), shape_b(b.shape), link_a(a.link), link_b(b.link), offset_a(a.offset.matrix()),
-      offset_b(b.offset.matrix()), margin(margin) {}
+      offset_b(b.offset.matrix()), margin(margin), tree(tree.content()) {}
 
 bool LinkTables::Made::sameMaking(const Made& other) const {
   return shape_a == other.shape_a && shape_b == other.shape_b && link_a == other.link_a && link_b == other.link_b &&
-         offset_a == other.offset_a && offset_b == other.offset_b && margin == other.margin;
+         offset_a == other.offset_a && offset_b == other.offset_b && margin == other.margin &&
+         tree.sameAs(other.tree);
 }
 
 void LinkTables::build(const Registry& registry, const engine::Problem& problem, std::size_t num_self_pairs) {
@@ -25,9 +26,9 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
     const engine::LinkPair& pair = problem.link_pairs[i];
     const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
     if (a.attached || b.attached) continue;
-    Made made(a, b, problem.link_margins ? std::max(0.0, problem.link_margins[i]) : 0);
-    const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
     const KinematicTree& tree = *registry.tree();
+    Made made(tree, a, b, problem.link_margins ? std::max(0.0, problem.link_margins[i]) : 0);
+    const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
     const engine::SweepView& sweep = problem.sweeps[pair.sweep];
     if (known != before.end()) {
       made.table = known->table;

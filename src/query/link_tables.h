@@ -41,10 +41,11 @@ class LinkTables {
     LinkId link_a, link_b;
     Eigen::Matrix4d offset_a, offset_b;
     double margin;
+    Fingerprint tree;
     std::shared_ptr<const PairTable> table;  ///< null: none to be had
     std::shared_ptr<const ContactGrid> grid;  ///< null: none
 
-    Made(const ManagedBody& a, const ManagedBody& b, double margin);
+    Made(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b, double margin);
     bool sameMaking(const Made& other) const;
   };
 

@@ -105,7 +105,7 @@ void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const Visibility
 }
 
 void ArticulatedCollisionManager::setup() {
-  if (!impl_->setup.ready()) impl_->setup.build(impl_->registry);
+  if (!impl_->setup.ready() || !impl_->setup.isOf(tree())) impl_->setup.build(impl_->registry);
 }
 
 void ArticulatedCollisionManager::update() {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "query/aspects.h"
+#include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
 #include "visibility/solve.h"
@@ -144,7 +145,7 @@ QueryStatistics workOf(const Solved& solved) {
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
-  collideMotion(motion, request, Aspects(), result);
+  resetAndAnswer([&] { claimNothing(result); }, [&] { collideMotion(motion, request, Aspects(), result); });
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
@@ -152,14 +153,11 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const Registry& registry = impl_->registry;
   const Setup& setup = impl_->setup;
   const KinematicTree& robot = *registry.tree();
-  if (!setup.ready()) {
+  if (!setup.ready() || !setup.isOf(robot)) {
     throw std::logic_error(
-        "ArticulatedCollisionManager: call setup() after changing objects, links, margins or allowed pairs");
+        "ArticulatedCollisionManager: call setup() after changing objects, links, margins, allowed pairs or the tree");
   }
-  if (motion.size() != robot.dof()) {
-    throw std::invalid_argument("the motion has " + std::to_string(motion.size()) + " joint values, robot '" +
-                                robot.name() + "' has " + std::to_string(robot.dof()));
-  }
+  motion.requireOf(robot);
   engine::Query query = makeQuery(request);
 
   using Clock = std::chrono::steady_clock;
@@ -229,7 +227,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 
 void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
                                           CertifiedResult& result) const {
-  continuousCollide(JointMotion::linear(tree(), q, q), request, result);
+  resetAndAnswer([&] { claimNothing(result); },
+                 [&] { collideMotion(JointMotion::linear(tree(), q, q), request, Aspects(), result); });
 }
 
 }  // namespace fcl_artic

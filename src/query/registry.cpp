@@ -64,6 +64,16 @@ LinkId Registry::requireLink(const std::string& name, const std::string& what) c
   throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link '" + name + "'");
 }
 
+void Registry::requireLinks() const {
+  for (const ManagedBody& body : links_) {
+    requireLink(body.link, "setup");
+    if (body.attached || tree_->linkName(body.link) == body.name) continue;
+    throw std::invalid_argument("setup: link " + std::to_string(body.link) + " of robot '" + tree_->name() +
+                                "', which carries geometry, was '" + body.name + "' and is '" +
+                                tree_->linkName(body.link) + "' now");
+  }
+}
+
 void Registry::requireBody(const std::string& name) const {
   if (tree_->hasLink(name) || obstacle_names_.count(name)) return;
   throw std::invalid_argument("setMargin: '" + name + "' is no link of robot '" + tree_->name() + "' and no obstacle");

@@ -59,6 +59,9 @@ class Registry {
   /// @throws std::invalid_argument beginning with `what` where the robot has no such link.
   LinkId requireLink(const std::string& name, const std::string& what) const;
 
+  /// @throws std::invalid_argument where the tree is another one by now, and has not the links that carry geometry.
+  void requireLinks() const;
+
   AllowedCollisionMatrix allowed;
 
  private:

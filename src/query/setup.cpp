@@ -4,7 +4,11 @@
 namespace fcl_artic {
 
 void Setup::build(const Registry& registry) {
-  if (!robot_ready_) buildRobot(registry);
+  if (!isOf(*registry.tree())) robotChanged();
+  if (!robot_ready_) {
+    registry.requireLinks();
+    buildRobot(registry);
+  }
   ready_ = false;
   buildScene(registry);
   margins_ = PairMargins::of(registry.margins(), problem(),

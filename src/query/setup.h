@@ -23,6 +23,8 @@ class Setup {
   void obstaclesChanged() { ready_ = false; }
   void marginsChanged() { tables_ready_ = ready_ = false; }
   bool ready() const { return ready_; }
+  /// Whether it was made for the tree as the tree is now: its owner may have added a joint.
+  bool isOf(const KinematicTree& tree) const { return tree_.sameAs(tree.content()); }
 
   /// Makes all of the registry's changes effective.
   void build(const Registry& registry);
@@ -59,6 +61,7 @@ class Setup {
   Eigen::MatrixXd moving_coefficients_;
   PairMargins margins_;
   LinkTables tables_;
+  Fingerprint tree_;           ///< of what buildRobot() was made for
   bool robot_ready_ = false;   ///< what buildRobot() makes is up to date
   bool tables_ready_ = false;  ///< so are the tables of two links
   bool ready_ = false;         ///< all is

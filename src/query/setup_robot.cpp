@@ -15,6 +15,7 @@ void Setup::buildRobot(const Registry& registry) {
   const std::vector<Carrier> carriers = buildLinks(registry);
   buildSelfPairs(registry, carriers);
   tables_ready_ = false;
+  tree_ = registry.tree()->content();
   robot_ready_ = true;
 }
 

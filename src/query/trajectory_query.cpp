@@ -23,6 +23,7 @@
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
 #include "query/aspects.h"
+#include "query/claim_nothing.h"
 #include "query/engine_query.h"
 
 namespace fcl_artic {
@@ -101,12 +102,16 @@ void addContacts(const CertifiedResult& all, const std::set<Bodies>& wrongly, co
 
 void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
-  collideTrajectory(trajectory, request, true, result);
+  const bool none = trajectory.numPieces() == 0;  // moved from, refused below
+  const double begin = none ? 0 : trajectory.beginTime(), end = none ? 1 : trajectory.endTime();
+  resetAndAnswer([&] { claimNothing(result, begin, end); },
+                 [&] { collideTrajectory(trajectory, request, true, result); });
 }
 
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
                                                     bool own_margins, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
+  trajectory.requireOf(tree());
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();

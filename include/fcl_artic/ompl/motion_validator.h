@@ -110,6 +110,7 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The proof leaves room (twice
   /// the request's tolerance_distance), so that the state is valid by itself and can be left again; where there is no room at
   /// s1, or what touched there is not left behind, the time is 0 and the state s1. When true, lastValid is not touched.
+  /// When it throws, the time is 0 and the state s1, too.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 

@@ -92,7 +92,7 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
   if (link < 0 || link >= tree.numLinks()) {
     throw std::out_of_range("FclLinkMotion: robot '" + tree.name() + "' has no link number " + std::to_string(link));
   }
-  tree.requireConfiguration(motion.q0(), "FclLinkMotion: start of the motion");
+  motion.requireOf(tree, "FclLinkMotion: the motion");
   if (!isRigid(offset)) {
     throw std::invalid_argument("FclLinkMotion: offset of the geometry on link '" + tree.linkName(link) +
                                 "' is not rigid");

@@ -109,7 +109,7 @@ double ContinuousMotionValidator::freeWithRoom(const JointMotion& motion) const 
 }
 
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2,
-                                            std::pair<ob::State*, double>& lastValid) const {
+                                            std::pair<ob::State*, double>& lastValid) const try {
   const JointMotion motion = mapping_.motion(s1, s2);
   if (provenFree(motion)) return count(true);
   const double t = freeWithRoom(motion);
@@ -121,6 +121,10 @@ bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State
     si_->copyState(lastValid.first, s1);
   }
   return count(false);
+} catch (...) {  // nothing but the start is left in the caller's hands
+  lastValid.second = 0;
+  if (lastValid.first && lastValid.first != s1) si_->copyState(lastValid.first, s1);
+  throw;
 }
 
 /// The base class counts in plain members and its getters can't be overridden: so its members are what is counted in, by
