@@ -173,6 +173,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
  private:
   struct Impl;
   struct Aspects;
+  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const Aspects& aspects,
                      CertifiedResult& result) const;
   void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request, bool own_margins,

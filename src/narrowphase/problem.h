@@ -228,7 +228,9 @@ struct Query {
   double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   bool any = false;  ///< stop at the first contact that is proven, wherever on the way it is
-  std::int32_t max_contacts = 1;
+  std::int32_t max_contacts = 1;  ///< with every_pair: of each pair
+  const std::int32_t* may_ignore = nullptr;  ///< with ignore_initial: the only pairs whose initial contact may be ignored
+  std::int32_t num_may_ignore = -1;          ///< -1: that of all pairs may
   std::uint64_t work_budget = 0;
   void (*progress)(void* context, double t_lower) = nullptr;
   void* progress_context = nullptr;

@@ -18,6 +18,7 @@
 
 #include <time.h>
 
+#include "narrowphase/bracket.h"
 #include "narrowphase/buffer.h"
 #include "narrowphase/certificate.h"
 #include "narrowphase/chord.h"
@@ -102,6 +103,7 @@ class Solver {
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void refine();
+  bool mayIgnore(int pair) const;
   void collectInitialContacts(int begin, int end);
   double firstFreeTime(double start, double width, int begin, int end);
   void solvePairs();
@@ -136,7 +138,9 @@ class Solver {
   unsigned hullsMayTouch(unsigned mask, int pair, bool claim, Whole whole);
   bool proveVertexInside(int pair, int lane);
   bool provePierced(int pair, int lane, const double* near);
-  LeafContact& proven(int pair, int piece_a, int piece_b, int lane);
+  bool takeProof(int pair, double t);
+  LeafContact* record(int pair, int piece_a, int piece_b, int lane);
+  void record(Final& f);
   bool proveLeaves(int pair, int piece_a, int piece_b, int lane);
   bool proveAnywhere();
   void considerPose(int pair, Lanes square, double radii);
@@ -173,6 +177,8 @@ class Solver {
   unsigned overlaps_ = 0;  ///< lanes in whose middles hulls overlap, as far as looked at
   double claimed_ = 2;  ///< earliest time at which GJK claimed overlap; 2: none. Lanes behind it are put off, not dropped.
   bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
+  /// It is known from when on each pair is watched. Before, with initial contacts to be ignored, no contact counts.
+  bool watching_ = true;
   unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
 
   Buffer<FrameLanes> frames_;       ///< of all sweeps, one after the other
@@ -260,7 +266,8 @@ class Solver {
   Buffer<LeafContact> contacts_;
 
   double front_ = 0;   ///< all pairs are proven free before
-  double t_upper_ = 2;  ///< earliest proven contact so far; 2: none
+  double t_upper_ = 2;  ///< earliest proven contact so far (with every pair: of the present one); 2: none
+  engine::Bracket found_;  ///< of all contacts of this query
   double limit_ = 2;    ///< what lies behind does not matter any more: t_upper_, or the tolerance behind an undecided contact
   bool out_of_budget_ = false;
 };
@@ -339,6 +346,8 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   t_upper_ = limit_ = claimed_ = 2;
   d_ = -1;
   out_of_budget_ = decide_only_ = false;
+  watching_ = !query.ignore_initial;
+  found_ = {};
   first_step_.resize(problem.num_sweeps);
   bounds_ready_.resize(problem.num_sweeps);
   sweep_epoch_.resize(problem.num_sweeps);
@@ -371,21 +380,21 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
 
   if (!out_of_budget_) solvePairs();
 
-  double t_lower = 2;
-  for (int i = 0; i < contacts_.size(); ++i) t_lower = min(t_lower, contacts_[i].t_lower);
   // A pose proven in contact and a proof that all of [0, 1] is free would contradict each other: a fault of ours, and then
   // contact is the answer that harms nobody.
-  if (t_upper_ < t_lower) t_lower = 0;
-  const bool contact = t_lower < 2;
+  if (found_.t_upper < found_.t_lower) found_.t_lower = 0;
+  const bool contact = found_.t_lower < engine::kNever;
+  // Where any contact ends the search, other pairs have come to front_ only.
+  if (query.any && contact) engine::joinLower(found_, front_);
+  const bool certain = engine::isCertain(found_, query.tolerance_time, query.any);
+  if (!query.every_pair) orderContacts(0, certain ? found_.t_upper : found_.t_lower + query.tolerance_time);
+  double t_lower = found_.t_lower;
   // Where the budget ended among the initial contacts, nothing is known of when they are over.
   if (out_of_budget_) t_lower = query.ignore_initial ? 0 : min(front_, t_lower);
-  const bool certain = contact && (query.any ? t_upper_ < 2 : t_upper_ - t_lower <= query.tolerance_time * (1 + 1e-9));
-  if (query.any && t_upper_ < 2) t_lower = min(t_lower, front_);
-  if (!query.every_pair) orderContacts(0, certain ? t_upper_ : t_lower + query.tolerance_time);
   answer.verdict = out_of_budget_ ? Verdict::undecided : contact ? Verdict::contact : Verdict::free;
   answer.certain = answer.verdict == Verdict::contact && certain;
   answer.t_lower = answer.verdict == Verdict::free ? 1 : t_lower;
-  answer.t_upper = answer.verdict == Verdict::free ? 1 : min(1.0, t_upper_);
+  answer.t_upper = answer.verdict == Verdict::free ? 1 : min(1.0, found_.t_upper);
   answer.contacts = contacts_.data();
   answer.num_contacts = answer.verdict == Verdict::contact ? contacts_.size() : 0;
   answer.ignored = ignored_.data();

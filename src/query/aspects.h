@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "fcl_artic/manager.h"
@@ -12,8 +13,10 @@ namespace fcl_artic {
 struct ArticulatedCollisionManager::Aspects {
   TimePart time;  ///< of the moving obstacles' motions, over the query's [0, 1]
   bool own_margins = true;   ///< pairs may have margins of their own; false: all have the request's
-  std::vector<bool>* never_apart =
-      nullptr;  ///< out: of each ignored initial contact, that it has not separated by t = 1
+  /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
+  const std::vector<std::int32_t>* may_ignore = nullptr;
+  std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
+  std::vector<std::int32_t>* pairs = nullptr;        ///< out: the pair of each contact
 };
 
 }  // namespace fcl_artic

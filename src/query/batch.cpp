@@ -18,7 +18,6 @@
 #endif
 
 #include "fcl_artic/manager.h"
-#include "query/aspects.h"
 #include "query/claim_nothing.h"
 
 namespace fcl_artic {
@@ -78,7 +77,7 @@ void ArticulatedCollisionManager::continuousCollide(const std::vector<JointMotio
     alike.progress = nullptr;
     results.resize(motions.size());
     const int most = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    const auto answer = [&](std::size_t i) { collideMotion(motions[i], alike, Aspects(), results[i]); };
+    const auto answer = [&](std::size_t i) { collideMotion(motions[i], alike, results[i]); };
     if (most == 1 || motions.size() < 2) {
       for (std::size_t i = 0; i < motions.size(); ++i) answer(i);
     } else {

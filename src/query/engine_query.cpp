@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "adapters/fcl/fcl_geometry.h"
 #include "narrowphase/add_work.h"
@@ -93,6 +95,28 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   if (!s.visibility_fallback.empty()) sum.visibility_fallback = s.visibility_fallback;
   sum.report_us += s.report_us;
   addWork(s.redon, sum.redon);
+}
+
+void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts) {
+  struct Place {
+    std::size_t contact;
+    int number;  ///< among its pair's
+  };
+  std::vector<Place> places;
+  std::map<std::int32_t, int> seen;
+  for (std::size_t i = 0; i < contacts.size(); ++i) places.push_back({i, seen[pairs[i]]++});
+  const auto earlier = [&](const Place& a, const Place& b) {
+    return contacts[a.contact].t_lower < contacts[b.contact].t_lower;
+  };
+  std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
+    return a.number != b.number ? a.number < b.number : earlier(a, b);
+  });
+  if (places.size() > most) places.resize(most);
+  std::stable_sort(places.begin(), places.end(), earlier);
+  std::vector<CertifiedContact> kept;
+  kept.reserve(places.size());
+  for (const Place& place : places) kept.push_back(std::move(contacts[place.contact]));
+  contacts = std::move(kept);
 }
 
 Status statusOf(engine::Verdict verdict) {

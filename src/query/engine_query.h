@@ -10,6 +10,7 @@
 #include "fcl_artic/result.h"
 #include "geometry/shape_tree.h"
 #include "motion/frame_sweep.h"
+#include "narrowphase/bracket.h"
 #include "narrowphase/problem.h"
 #include "redon/redon.h"
 
@@ -72,6 +73,23 @@ void addWork(const RedonStatistics& s, RedonStatistics& sum);
 /// a shape.
 /// @param geometry  that the tree was read from; null where FCL's double type is not at hand.
 std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece);
+
+/// What the equations of single contacts have proven beyond the solver is taken into the result's bracket.
+template <class Result>
+void sharpenBracket(const CertifiedRequest& request, Result& result) {
+  for (const CertifiedContact& contact : result.contacts) {
+    if (!contact.certain || contact.t_upper >= result.t_upper) continue;
+    result.t_upper = contact.t_upper;
+    const engine::Bracket bracket = {result.t_lower, result.t_upper};
+    const bool any = request.mode == ContactMode::any;
+    result.certain = result.certain || engine::isCertain(bracket, request.tolerance_time, any);
+  }
+}
+
+/// Puts contacts in the order of their t_lower and leaves so many: the first one of every pair before any pair's second,
+/// and of these the earliest.
+/// @param pairs  of each contact; those of one pair in the order in which they are wanted.
+void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts);
 
 /// Names the features of a contact of two triangles and sharpens it (Redon 2004, eqs. 13, 14 and 18). The verdict stays
 /// the solver's.

@@ -145,7 +145,17 @@ QueryStatistics workOf(const Solved& solved) {
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
-  resetAndAnswer([&] { claimNothing(result); }, [&] { collideMotion(motion, request, Aspects(), result); });
+  resetAndAnswer([&] { claimNothing(result); }, [&] { collideMotion(motion, request, result); });
+}
+
+void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
+                                                CertifiedResult& result) const {
+  Aspects aspects;
+  if (request.mode != ContactMode::firstOfEveryPair) return collideMotion(motion, request, aspects, result);
+  std::vector<std::int32_t> pairs;
+  aspects.pairs = &pairs;
+  collideMotion(motion, request, aspects, result);
+  keepEarliest(request.max_contacts, pairs, result.contacts);
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
@@ -185,6 +195,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     query.likely = workspace->likely.data();
     query.num_likely = static_cast<std::int32_t>(workspace->likely.size());
   }
+  if (aspects.may_ignore) {
+    query.may_ignore = aspects.may_ignore->data();
+    query.num_may_ignore = static_cast<std::int32_t>(aspects.may_ignore->size());
+  }
   query.check_self = problem.num_link_pairs > 0;
   Solved solved;
   solve(registry, *impl_->stage2, request, problem, query, *workspace, solved);
@@ -199,12 +213,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(
         report(registry, workspace->engine(), problem, motion, request, aspects.time, answer.contacts[i]));
-    const CertifiedContact& contact = result.contacts.back();
-    if (contact.certain && contact.t_upper < result.t_upper) {
-      result.t_upper = contact.t_upper;
-      result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
-    }
   }
+  sharpenBracket(request, result);
   result.M_0_at_lower.clear();
   if (!result.isFree()) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
@@ -212,10 +222,14 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
                                                  registry.body(answer.ignored[i].body_b).reference());
   }
+  if (aspects.pairs) {
+    aspects.pairs->clear();
+    for (std::int32_t i = 0; i < answer.num_contacts; ++i) aspects.pairs->push_back(answer.contacts[i].pair);
+  }
   if (aspects.never_apart) {
     aspects.never_apart->clear();
     for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-      aspects.never_apart->push_back(answer.ignored[i].watch_from > 1);
+      if (answer.ignored[i].watch_from > 1) aspects.never_apart->push_back(answer.ignored[i].pair);
     }
   }
   result.statistics = workOf(solved);

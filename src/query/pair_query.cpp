@@ -111,7 +111,7 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   result.certain = result.status == Status::contact && (!parallel || alike);
   result.t_upper = result.certain ? 0 : 1;
   setPoses(body1.motion, body2.motion, result);
-  if (result.status == Status::free) return;
+  if (result.status == Status::free || request.max_contacts == 0) return;
   CertifiedContact contact;
   contact.o1 = body1.geometry;
   contact.o2 = body2.geometry;
@@ -185,11 +185,8 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
     contact.t_lower = leaf.t_lower;
     contact.t_upper = leaf.t_upper;
     contact.certain = leaf.certain;
-    if (contact.certain && contact.t_upper < result.t_upper) {
-      result.t_upper = contact.t_upper;
-      result.certain = result.certain || result.t_upper - result.t_lower <= request.tolerance_time;
-    }
   }
+  sharpenBracket(request, result);
   setPoses(body1.motion, body2.motion, result);
 }
 

@@ -2,6 +2,7 @@
 //
 // Trajectories: contact times known in closed form, what the constructors make of waypoints, what goes over from piece to
 // piece, and bad input.
+#include <cfenv>
 #include <limits>
 #include <random>
 
@@ -110,6 +111,45 @@ TEST(Trajectory, ContactExactlyAtAWaypoint) {
     EXPECT_NEAR(r.t_lower, 2, 1e-5);
     EXPECT_GE(r.t_upper, 2);
   }
+}
+
+TEST(Trajectory, BracketIsAProofAtTimesWhoseDoublesAreFarApart) {
+  // The cart meets the wall at x = 0.4; the time of that in extended precision.
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int certain = 0, wider = 0;
+  for (int i = 0; i < 200; ++i) {
+    Slider slider;
+    const double begin = i % 2 ? 1.7e9 + 1e3 * unit(random) : -1.7e9 * unit(random), duration = 0.2 + 5 * unit(random);
+    const double end = begin + duration, from = -0.6 * unit(random);
+    const JointTrajectory trajectory = slider.linear({begin, end}, {from, 1});
+    for (const int mode : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      for (const ContactMode contacts : {ContactMode::first, ContactMode::any}) {
+        CertifiedRequest request;
+        request.mode = contacts;
+        request.tolerance_time = i % 3 ? 1e-6 : 1e-8;
+        std::fesetround(mode);
+        const CertifiedResult r = slider.run(trajectory, request);
+        std::fesetround(FE_TONEAREST);
+        ASSERT_EQ(r.status, Status::contact);
+        ASSERT_EQ(r.contacts.size(), 1u);
+        certain += r.certain;
+        const long double part = (0.4L - from) / (1.0L - from);
+        const long double time = begin + part * (static_cast<long double>(end) - begin);
+        // What the query's own proof leaves open is far below an ulp of these times.
+        EXPECT_LE(r.t_lower, time);
+        EXPECT_GE(r.t_upper, time);
+        EXPECT_LE(r.contacts[0].t_lower, time);
+        EXPECT_GE(r.contacts[0].t_upper, time);
+        if (contacts == ContactMode::any) continue;
+        const double ulp = std::nextafter(std::abs(begin), INFINITY) - std::abs(begin);
+        EXPECT_LE(r.t_upper - r.t_lower, request.tolerance_time + 4 * ulp + 1e-14);
+        wider += r.t_upper - r.t_lower > request.tolerance_time;
+      }
+    }
+  }
+  EXPECT_EQ(certain, 200 * 8);
+  EXPECT_GT(wider, 50) << "not the case that is meant";
 }
 
 TEST(Trajectory, EveryPairIsReportedOnce) {

@@ -6,8 +6,21 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// The contact proven at a lane's middle that ends the search. Point and normal are left to the caller.
-inline LeafContact& Solver::proven(int pair, int piece_a, int piece_b, int lane) {
+/// Takes the proof that a pair is in contact at time t, whoever has proven it: all proofs come through here, and nothing
+/// else lowers t_upper_.
+/// @return false where that contact does not count: it is one to be ignored, or it is not known yet which are.
+inline bool Solver::takeProof(int pair, double t) {
+  if (!watching_ || t < watchFrom(pair)) return false;
+  t_upper_ = min(t_upper_, t);
+  limit_ = min(limit_, t);
+  engine::joinUpper(found_, t);
+  return true;
+}
+
+/// Records a contact proven at a lane's middle, which ends the search. Point and normal are left to the caller.
+/// @return null where the contact does not count (takeProof()).
+inline LeafContact* Solver::record(int pair, int piece_a, int piece_b, int lane) {
+  if (!takeProof(pair, tm_at_[lane])) return nullptr;
   const PairParts bodies = parts(pair);
   LeafContact& contact = contacts_.grow();
   contact = {};
@@ -17,9 +30,11 @@ inline LeafContact& Solver::proven(int pair, int piece_a, int piece_b, int lane)
   contact.piece_a = piece_a;
   contact.piece_b = piece_b;
   contact.certain = true;
-  contact.t = contact.t_upper = t_upper_ = limit_ = tm_at_[lane];
+  contact.t_lower = watchFrom(pair);  // what was ignored before is no part of this contact
+  contact.t = contact.t_upper = tm_at_[lane];
+  engine::joinLower(found_, contact.t_lower);
   updateLive();
-  return contact;
+  return &contact;
 }
 
 /// Two triangles, of which an edge of the one may pierce the other at a lane's middle.
@@ -47,7 +62,9 @@ inline bool Solver::proveTriangles(int pair, int piece_a, int piece_b, int lane)
       if (!Probe(chord[0], chord[1]).meets(&corners[1 - s][0][0], weights, part)) continue;
       ++statistics_.contact_proofs;
       if (!certainlyPierces(chord, corners[1 - s], pose_error_, weights, part)) continue;
-      LeafContact& contact = proven(pair, piece_a, piece_b, lane);
+      LeafContact* const recorded = record(pair, piece_a, piece_b, lane);
+      if (!recorded) return false;
+      LeafContact& contact = *recorded;
       contact.feature = s ? engine::kFaceEdge : engine::kEdgeFace;
       // The pierced triangle's normal: out of A, or into B.
       const TreeView& pierced = *trees[1 - s];
@@ -79,7 +96,9 @@ inline bool Solver::proveLeaves(int pair, int piece_a, int piece_b, int lane) {
   const double* start = have_witness_ ? witness_ : body.pose.c;
   double point[3];
   if (!certainlyTouching(body, margin_, pose_error_, start, point)) return false;
-  LeafContact& contact = proven(pair, piece_a, piece_b, lane);
+  LeafContact* const recorded = record(pair, piece_a, piece_b, lane);
+  if (!recorded) return false;
+  LeafContact& contact = *recorded;
   const double size = norm(start);
   for (int k = 0; k < 3; ++k) {
     contact.point[k] = point[k];

@@ -49,7 +49,7 @@ inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mas
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
   const unsigned deep = nearer(kDeep);
-  if (!deep || !obstacle.solid || query_->every_pair || query_->ignore_initial) return mask;
+  if (!deep || !obstacle.solid || query_->every_pair || !watching_) return mask;
   if (!query_->any) {
     claimOverlap(__builtin_ctz(deep));
     return mask;
@@ -121,7 +121,7 @@ inline void Solver::cull() {
   mover_lss_.resize(problem_->num_scene_movers);
   const bool check_scene = query_->check_scene && problem_->obstacle_tree;
   if (check_scene) statistics_.pairs += static_cast<std::uint64_t>(problem_->num_scene_pairs);
-  const bool look = query_->any && !query_->every_pair && !query_->ignore_initial;
+  const bool look = query_->any && !query_->every_pair && watching_;
   if (look && query_->num_likely && proveWhereLikely()) return;
   for (int m = 0; m < problem_->num_movers; ++m) {
     sweepMover(m);

@@ -119,11 +119,12 @@ inline bool Solver::proveAhead(Final& f, int lane) {
   ++statistics_.contact_proofs;
   const DifferenceBody body = differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
   if (!certainlyTouching(body, margin_, pose_error_, f.normal, f.point)) return false;
+  if (!takeProof(f.entry.pair, tm_at_[lane])) return false;
   f.hulls = false;
   f.piece_a = piece_a;
   f.piece_b = piece_b;
   f.certain = f.stuck = true;
-  f.t_upper = t_upper_ = limit_ = tm_at_[lane];
+  f.t_upper = tm_at_[lane];
   return true;
 }
 
@@ -166,11 +167,10 @@ inline bool Solver::prove(Final& f) {
     const int k = (head + i) % kLanes;
     const DifferenceBody body = differenceAt(a, b, k);
     ++statistics_.contact_proofs;
-    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point, &f.simplex)) {
+    if (certainlyTouching(body, margin_, pose_error_, f.have_normal ? f.normal : body.pose.c, f.point, &f.simplex) &&
+        takeProof(f.entry.pair, tm[k])) {
       f.certain = true;
       f.t_upper = tm[k];
-      t_upper_ = min(t_upper_, tm[k]);
-      limit_ = min(limit_, tm[k]);
       return true;
     }
   }
@@ -308,6 +308,12 @@ inline void Solver::describe(Final& f, LeafContact& contact) {
   for (int k = 0; k < 3; ++k) contact.normal[k] = f.normal[k];
 }
 
+/// Records what is stuck.
+inline void Solver::record(Final& f) {
+  describe(f, contacts_.grow());
+  engine::joinLower(found_, f.t_lower);
+}
+
 /// Of contacts_[begin, ...) those that begin within the bracket, the first contact first, as many as are asked for.
 inline void Solver::orderContacts(int begin, double bracket) {
   int kept = begin;
@@ -364,7 +370,7 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   }
   const int before = contacts_.size();
   for (int i = 0; i < finals_.size(); ++i) {
-    if (finals_[i].stuck && finals_[i].t_lower <= limit_) describe(finals_[i], contacts_.grow());
+    if (finals_[i].stuck && finals_[i].t_lower <= limit_) record(finals_[i]);
   }
   return contacts_.size() > before ? Step::done : Step::free;
 }

@@ -31,11 +31,20 @@ inline double Solver::firstFreeTime(double start, double width, int begin, int e
   return 2;
 }
 
-/// Finds the pairs in contact at t = 0 and from when they are watched.
+inline bool Solver::mayIgnore(int pair) const {
+  if (query_->num_may_ignore < 0) return true;
+  for (int i = 0; i < query_->num_may_ignore; ++i) {
+    if (query_->may_ignore[i] == pair) return true;
+  }
+  return false;
+}
+
+/// Finds the pairs in contact at t = 0 that are to be ignored, and from when they are watched.
 inline void Solver::collectInitialContacts(int begin, int end) {
   decide_only_ = true;
   for (int i = begin; i < end; ++i) {
     const Entry e = entries_[i];
+    if (!mayIgnore(e.pair)) continue;
     const double tm[kLanes] = {0, 0, 0, 0, 0, 0, 0, 0};
     for (int k = 0; k < kLanes; ++k) lane_start_[k] = lane_end_[k] = 0;
     evaluateAt(tm, 0);
@@ -51,6 +60,7 @@ inline void Solver::collectInitialContacts(int begin, int end) {
     entries_.truncate(entries_.size() - 1);
   }
   decide_only_ = false;
+  watching_ = true;
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -132,7 +132,9 @@ inline bool Solver::proveByBalls(int pair, int lane) {
           nested_b = of_b.part[j];
           continue;
         }
-        LeafContact& contact = proven(pair, -1, -1, lane);
+        LeafContact* const recorded = record(pair, -1, -1, lane);
+        if (!recorded) return false;
+        LeafContact& contact = *recorded;
         contact.feature = engine::kVolume;
         // From A's centre towards B's, in the middle of what both balls have in common.
         const double seen[3] = {-d[0][i - first], -d[1][i - first], -d[2][i - first]};
@@ -232,7 +234,9 @@ inline bool Solver::proveByBallInSolid(int pair, int lane) {
     farPoints(*solid.tree, far);
     place.opposite(far, seen);
     if (!certainlyOutside(balls.parts[balls.part[first + i]], seen, error)) continue;
-    LeafContact& contact = proven(pair, 0, -1, lane);
+    LeafContact* const recorded = record(pair, 0, -1, lane);
+    if (!recorded) return false;
+    LeafContact& contact = *recorded;
     contact.feature = engine::kVolume;
     // From the solid's point next to the ball's centre towards that; away from the solid's middle where it is within.
     const double center[3] = {x[0][i], x[1][i], x[2][i]};

@@ -109,7 +109,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
       continue;
     }
     if (f.certain) {
-      describe(f, contacts_.grow());
+      record(f);
       return;
     }
     candidates_.push(f);
@@ -127,7 +127,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     if (f.hulls) proveBelowHulls(f);
     if (!f.hulls && !f.pieces && !f.certain && settle(f, stop)) continue;
     if (f.certain) {
-      describe(f, contacts_.grow());
+      record(f);
       continue;
     }
     claimed_ = 2;
@@ -223,7 +223,6 @@ inline void Solver::solvePairs() {
     }
   };
   if (!query_->every_pair) return search(0, open);
-  double t_upper = 2;
   for (int i = 0; i < open && !out_of_budget_; ++i) {
     const int before = contacts_.size();
     entries_.truncate(open);
@@ -232,9 +231,7 @@ inline void Solver::solvePairs() {
     updateLive();
     search(i, i + 1);
     orderContacts(before, limit_);
-    t_upper = min(t_upper, t_upper_);
   }
-  t_upper_ = t_upper;
   front_ = 0;
 }
 

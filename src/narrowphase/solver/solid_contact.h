@@ -55,7 +55,9 @@ inline bool Solver::proveVertexInside(int pair, int lane) {
     if (!certainlyWithin(*body.a, where, eps) && !certainlyTouching(body, margin_, eps, guess, where)) continue;
     const int piece = pieceAt(mesh, point.center);
     if (piece < 0) continue;
-    LeafContact& contact = proven(pair, s ? piece : 0, s ? 0 : piece, lane);
+    LeafContact* const recorded = record(pair, s ? piece : 0, s ? 0 : piece, lane);
+    if (!recorded) return false;
+    LeafContact& contact = *recorded;
     // Outwards from the solid, through the side of its box that is nearest.
     double n_solid[3] = {0, 0, 0}, most = -1;
     int axis = 0;
@@ -111,7 +113,9 @@ inline bool Solver::provePierced(int pair, int lane, const double* near) {
         for (int i = 0; i < 3; ++i) body.place(v + 3 * i, corners[i]);
         ++statistics_.contact_proofs;
         if (!certainlyPierces(chord, corners, pose_error_, weights, part)) return false;
-        LeafContact& contact = proven(pair, 0, index, lane);
+        LeafContact* const recorded = record(pair, 0, index, lane);
+        if (!recorded) return false;
+        LeafContact& contact = *recorded;
         // The triangle's normal, towards the mesh's middle.
         double normal[3], middle[3], placed[3], inwards = 0;
         middleOf(mesh.nodes[0], middle);

@@ -193,12 +193,13 @@ inline bool Solver::isWithin() {
 /// @return with kWithin where hulls tell nothing.
 inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim, Whole whole) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any ? leavesMayTouch(pair, 0, 0, mask) : mask;
+  if (A.num_pieces == 1 && B.num_pieces == 1)
+    return query_->any && watching_ ? leavesMayTouch(pair, 0, 0, mask) : mask;
   if (!A.outer || !B.outer) return mask;
   if (isWithin()) return mask | kWithin;
   return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(pair), whole, [&](int lane) {
     overlaps_ |= 1u << lane;
-    if (query_->any && tm_at_[lane] >= watchFrom(pair) && proveVertexInside(pair, lane)) return;
+    if (query_->any && watching_ && proveVertexInside(pair, lane)) return;
     if (claim) claimOverlap(lane);
   });
 }
@@ -242,7 +243,7 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
   Simplex last;
   return notSeparated(a, b, mask, kLanes, last, {}, [&](int lane) {
     if (tm_at_[lane] < watchFrom(pair)) return;
-    if (query_->any && !decide_only_ && proveLeaves(pair, piece_a, piece_b, lane)) return;
+    if (query_->any && watching_ && proveLeaves(pair, piece_a, piece_b, lane)) return;
     claimOverlap(lane);
   });
 }

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the contact modes have in common: which pairs they leave out, how many contacts they report, and that the bracket
+// is joined of all contacts before any of them is dropped.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/halfspace.h>
+#include <fcl/math/motion/translation_motion.h>
+
+#include "arms.h"
+#include "fcl_artic/continuous_collision.h"
+#include "meshes.h"
+
+namespace {
+
+using namespace fcl_artic;
+using namespace fcl_artic::test;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+const ContactMode kModes[] = {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair};
+const Method kMethods[] = {Method::standard, Method::Redon2004};
+
+std::shared_ptr<fcl::CollisionGeometryd> box(double side) { return std::make_shared<fcl::Boxd>(side, side, side); }
+
+/// Geometries of which every proof of contact has something to prove: vertices in solids, chords, triangles, balls inside
+/// closed meshes, single pieces.
+std::vector<std::shared_ptr<fcl::CollisionGeometryd>> geometries() {
+  return {cubeMesh(0.1), fineBoxMesh(Vector3d::Constant(0.1), 6), box(0.2), std::make_shared<fcl::Sphered>(0.1)};
+}
+
+TEST(ContactModes, PairsInContactAtTheStartAreLeftOutByAllOfThem) {
+  // Deep in contact at x = 0, apart from |x| = 0.15 on, whatever the two are, and free then.
+  int asked = 0;
+  for (const auto& moving : geometries()) {
+    for (const auto& still : geometries()) {
+      Cart cart(moving);
+      auto obstacle = object(still, pose({-0.05, 0.01, 0.02}));
+      cart.manager->registerObject(obstacle.get(), "obstacle");
+      cart.manager->setup();
+      for (const ContactMode mode : kModes) {
+        for (const Method method : kMethods) {
+          for (const double margin : {0.0, 0.01}) {
+            CertifiedRequest request;
+            request.mode = mode;
+            request.method = method;
+            request.margin = margin;
+            request.ignore_initial_contact = true;
+            const CertifiedResult r = cart.run(0, 1, request);
+            EXPECT_EQ(r.status, Status::free) << static_cast<int>(mode);
+            EXPECT_EQ(r.ignored_initial_contacts.size(), 1u);
+            request.ignore_initial_contact = false;
+            const CertifiedResult seen = cart.run(0, 1, request);
+            EXPECT_EQ(seen.status, Status::contact);
+            EXPECT_EQ(seen.t_lower, 0);
+            ++asked;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(asked, 4 * 4 * 3 * 2 * 2);
+}
+
+TEST(ContactModes, PairQueriesLeaveOutContactAtTheStartInAllOfThem) {
+  for (const auto& moving : geometries()) {
+    for (const auto& still : geometries()) {
+      const fcl::TranslationMotiond away(pose({0, 0, 0}), pose({1, 0, 0}));
+      const fcl::TranslationMotiond rests(pose({-0.05, 0.01, 0.02}), pose({-0.05, 0.01, 0.02}));
+      for (const ContactMode mode : kModes) {
+        CertifiedRequest request;
+        request.mode = mode;
+        request.ignore_initial_contact = true;
+        CertifiedPairResult r;
+        EXPECT_EQ(continuousCollide(moving.get(), &away, still.get(), &rests, request, r), Status::free)
+            << static_cast<int>(mode);
+        EXPECT_TRUE(r.ignored_initial_contact);
+      }
+    }
+  }
+}
+
+TEST(ContactModes, PairsThatComeBackAreReportedAfterTheyHaveParted) {
+  // x(t) = 1.6 t (1 - t): in contact at both ends, apart from x = 0.15 on, before t = 0.11, to t = 0.89.
+  int certain = 0;
+  for (const auto& moving : geometries()) {
+    for (const auto& still : geometries()) {
+      Cart cart(moving);
+      auto obstacle = object(still, pose({-0.05, 0.01, 0.02}));
+      cart.manager->registerObject(obstacle.get(), "obstacle");
+      cart.manager->setup();
+      MatrixXd x(1, 3);
+      x << 0, 1.6, -1.6;
+      const JointMotion there_and_back = JointMotion::polynomial(*cart.tree, x);
+      for (const ContactMode mode : kModes) {
+        CertifiedRequest request;
+        request.mode = mode;
+        request.ignore_initial_contact = true;
+        CertifiedResult r;
+        cart.manager->continuousCollide(there_and_back, request, r);
+        ASSERT_EQ(r.status, Status::contact) << static_cast<int>(mode);
+        EXPECT_EQ(r.ignored_initial_contacts.size(), 1u);
+        EXPECT_GT(r.t_upper, 0.85);
+        for (const CertifiedContact& contact : r.contacts) {
+          EXPECT_GT(contact.t_lower, 0.1) << "its bracket begins before it is watched";
+          EXPECT_GT(contact.t_upper, 0.85);
+          certain += contact.certain;
+        }
+      }
+    }
+  }
+  EXPECT_GT(certain, 40);
+}
+
+/// A triangle mesh with spikes of random lengths along -x, on a plate in the plane x = 0.
+std::shared_ptr<Mesh> spikes(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<Vector3d> v;
+  std::vector<fcl::Triangle> t;
+  for (int i = 0; i < 12; ++i) {
+    const Vector3d foot(0, 2 * unit(random) - 1, 2 * unit(random) - 1);
+    const std::size_t first = v.size();
+    for (int k = 0; k < 3; ++k) {
+      const double angle = 2 * (k + unit(random)) * 3.14159 / 3;
+      v.push_back(foot + 0.2 * Vector3d(0, std::cos(angle), std::sin(angle)));
+    }
+    v.push_back(foot - Vector3d(0.2 + 0.1 * unit(random), 0, 0));
+    for (std::size_t k = 0; k < 3; ++k) t.emplace_back(first + k, first + (k + 1) % 3, first + 3);
+  }
+  return meshOf(v, t);
+}
+
+TEST(ContactModes, BracketIsJoinedBeforeContactsAreDropped) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int several = 0;
+  for (int i = 0; i < 200; ++i) {
+    Cart cart(spikes(random));
+    auto wall = object(spikes(random), pose({1, 0, 0}, 3.14159 * unit(random), Vector3d(unit(random), 1, 0.2)));
+    auto other = object(spikes(random), pose({1 + 0.02 * unit(random), 0.1, 0}, 3, Vector3d::UnitZ()));
+    cart.manager->registerObject(wall.get(), "wall");
+    cart.manager->registerObject(other.get(), "other");
+    cart.manager->setup();
+    for (const Method method : kMethods) {
+      CertifiedRequest request;
+      request.mode = ContactMode::firstOfEveryPair;
+      request.method = method;
+      request.tolerance_time = 0.1;
+      request.max_contacts = 1000;
+      const CertifiedResult all = cart.run(0, 1, request);
+      several += all.contacts.size() > 2;
+      for (const std::size_t most : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        request.max_contacts = most;
+        const CertifiedResult cut = cart.run(0, 1, request);
+        EXPECT_EQ(cut.status, all.status);
+        EXPECT_EQ(cut.t_lower, all.t_lower) << i << ": " << most << " contacts";
+        EXPECT_LE(cut.contacts.size(), most);
+      }
+    }
+  }
+  EXPECT_GT(several, 100);  // of 400
+}
+
+TEST(ContactModes, MaxContactsIsNeverExceededAndTheEarliestAreKept) {
+  Cart cart;
+  std::vector<std::shared_ptr<fcl::CollisionObjectd>> balls;
+  for (const double x : {0.9, 0.5, 0.7, 0.6, 0.8}) {
+    balls.push_back(ball(0.1, {x, 0.1, 0}));
+    cart.manager->registerObject(balls.back().get(), "at " + std::to_string(x).substr(0, 3));
+  }
+  cart.manager->setup();
+  const double half_chord = std::sqrt(0.04 - 0.01);
+  const JointTrajectory halves = JointTrajectory::linear(
+      *cart.tree, {0, 0.5, 1}, {VectorXd::Constant(1, 0), VectorXd::Constant(1, 0.5), VectorXd::Constant(1, 1)});
+  for (const ContactMode mode : kModes) {
+    for (const Method method : kMethods) {
+      for (const bool as_trajectory : {false, true}) {
+        for (std::size_t most = 0; most < 7; ++most) {
+          CertifiedRequest request;
+          request.mode = mode;
+          request.method = method;
+          request.max_contacts = most;
+          CertifiedResult r;
+          if (as_trajectory) {
+            cart.manager->continuousCollide(halves, request, r);
+          } else {
+            r = cart.run(0, 1, request);
+          }
+          EXPECT_EQ(r.status, Status::contact);
+          const std::size_t expected = mode == ContactMode::firstOfEveryPair ? std::min<std::size_t>(most, 5)
+                                                                             : std::min<std::size_t>(most, 1);
+          ASSERT_EQ(r.contacts.size(), expected) << static_cast<int>(mode) << (as_trajectory ? " trajectory" : "");
+          if (mode == ContactMode::any) continue;
+          for (std::size_t i = 0; i < r.contacts.size(); ++i) {
+            EXPECT_NEAR(r.contacts[i].t_lower, 0.5 + 0.1 * static_cast<double>(i) - half_chord, 1e-5);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ContactModes, NoContactIsReportedWhereNoneIsAskedForAlsoOfUnboundedPairs) {
+  const fcl::Halfspaced up(Vector3d::UnitZ(), 0), across(Vector3d::UnitX(), 0);
+  const fcl::TranslationMotiond rests(pose({0, 0, 0}), pose({0, 0, 0}));
+  CertifiedRequest request;
+  for (const std::size_t most : {0, 1, 2}) {
+    request.max_contacts = most;
+    CertifiedPairResult r;
+    EXPECT_EQ(continuousCollide(&up, &rests, &across, &rests, request, r), Status::contact);
+    EXPECT_EQ(r.contacts.size(), std::min<std::size_t>(most, 1));
+  }
+}
+
+// With ContactMode::any `certain` says that a contact is proven at or before t_upper, however early it may begin.
+TEST(ContactModes, AnyIsCertainWhateverTheWidthOfItsBracket) {
+  Cart cart(cubeMesh(0.1));
+  auto wall = object(box(1), pose({1, 0, 0}));
+  cart.manager->registerObject(wall.get(), "wall");
+  cart.manager->setup();
+  CertifiedRequest request;
+  request.mode = ContactMode::any;
+  const CertifiedResult r = cart.run(0, 1, request);
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  EXPECT_LE(r.t_lower, 0.4);
+  EXPECT_GE(r.t_upper, 0.4);
+  ASSERT_EQ(r.contacts.size(), 1u);
+  EXPECT_GE(r.contacts[0].t_lower, r.t_lower);
+  EXPECT_LE(r.contacts[0].t_lower, r.contacts[0].t_upper);
+  EXPECT_TRUE(r.contacts[0].certain);
+  EXPECT_EQ(r.contacts[0].t_upper, r.t_upper);
+}
+
+}  // namespace
