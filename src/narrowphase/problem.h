@@ -186,18 +186,46 @@ struct Problem {
   const StillBounds* still_bounds = nullptr;  ///< of obstacle o
   std::int32_t num_obstacles = 0;
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
-  /// Margins of single pairs, m, per scene pair and per link pair; below 0: the query's. Null: none has its own.
-  const double *scene_margins = nullptr, *link_margins = nullptr;
-  double largest_margin = 0;  ///< the largest of these
 };
 
-/// Margin of a pair: its own, else the query's. (static: each instruction set has it for itself.)
-static inline double marginOf(const Problem& problem, double query_margin, std::int32_t pair) {
-  const std::int32_t link_pair = pair - problem.num_scene_pairs;
-  const double* own = link_pair < 0 ? problem.scene_margins : problem.link_margins;
-  const double margin = own ? own[link_pair < 0 ? pair : link_pair] : -1;
-  return margin >= 0 ? margin : query_margin;
-}
+/// The margins of a query's pairs, m, and all that any part of the library knows of them. A pair's margin is its own, else
+/// the one requested, and to either is added what the query adds. These parts can't be had one by one, so that nobody can
+/// leave one out. (Sums are as rounded. Inlined always: each instruction set has the code for itself.)
+class Margins {
+ public:
+  /// All pairs have the margin requested.
+  [[gnu::always_inline]] explicit Margins(double requested = 0, double added = 0)
+      : requested_(requested + added), added_(added), largest_(requested_) {}
+
+  /// Margins of the pairs' own: per scene pair and per link pair, below 0: none; null: no pair of that kind has one.
+  /// @param largest  of all of them.
+  [[gnu::always_inline]] void setOwn(const double* scene, std::int32_t num_scene_pairs, const double* link,
+                                     double largest) {
+    scene_ = scene;
+    link_ = link;
+    num_scene_pairs_ = num_scene_pairs;
+    largest_ = largest + added_ > requested_ ? largest + added_ : requested_;
+  }
+  /// For a problem whose link pairs begin so many later.
+  [[gnu::always_inline]] void skipLinkPairs(std::int32_t n) {
+    if (link_) link_ += n;
+  }
+
+  /// Of a pair by its number in the problem.
+  [[gnu::always_inline]] double of(std::int32_t pair) const {
+    const std::int32_t link_pair = pair - num_scene_pairs_;
+    const double* own = link_pair < 0 ? scene_ : link_;
+    const double margin = own ? own[link_pair < 0 ? pair : link_pair] : -1;
+    return margin >= 0 ? margin + added_ : requested_;
+  }
+  /// No pair has a larger one.
+  [[gnu::always_inline]] double largest() const { return largest_; }
+
+ private:
+  const double *scene_ = nullptr, *link_ = nullptr;
+  std::int32_t num_scene_pairs_ = 0;
+  double requested_, added_, largest_;  ///< the first and the last with what is added
+};
 
 /// A link's line swept sphere over one of the eight parts [k/8, (k+1)/8] of the motion: within the hull of these points, in
 /// the world, grown by a ball.
@@ -225,7 +253,8 @@ struct Query {
   const double* coefficients = nullptr;
   std::int32_t num_variables = 0, degree = 1;
   const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
-  double tolerance_time = 1e-6, tolerance_distance = 1e-6, margin = 0;
+  double tolerance_time = 1e-6, tolerance_distance = 1e-6;
+  Margins margins;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   bool any = false;  ///< stop at the first contact that is proven, wherever on the way it is
   std::int32_t max_contacts = 1;  ///< with every_pair: of each pair

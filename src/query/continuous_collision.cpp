@@ -11,6 +11,7 @@
 #include "adapters/fcl/fcl_geometry.h"
 #include "adapters/fcl/fcl_motion.h"
 #include "query/claim_nothing.h"
+#include "query/engine_query.h"
 #include "query/pair_query.h"
 
 namespace fcl_artic {
@@ -97,7 +98,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin) {
   lower.setConstant(-INFINITY);
   upper.setConstant(INFINITY);
   const bool bounded = other.shape && other.shape->view().nodes[0].radius < engine::kUnbounded;
-  if (standsStill(tree.motion) && bounded && std::isfinite(margin)) {
+  if (standsStill(tree.motion) && bounded) {
     const Eigen::Isometry3d M_0t = tree.motion.pose(0);
     BodyMotion seen = other.motion;  // from the tree's frame
     Eigen::Isometry3d& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
@@ -118,9 +119,10 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin) {
 
 template <class S>
 void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedRequest& request, CertifiedPairResult& result) {
-  if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, request.margin);
-  if (!body1.shape) readCells(body1, body2, request.margin);
-  if (!body2.shape) readCells(body2, body1, request.margin);
+  const double margin = marginsOf(request).largest();
+  if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin);
+  if (!body1.shape) readCells(body1, body2, margin);
+  if (!body2.shape) readCells(body2, body1, margin);
   solvePair({*body1.shape, body1.motion, reported(body1.geometry)},
             {*body2.shape, body2.motion, reported(body2.geometry)}, request, result);
 }

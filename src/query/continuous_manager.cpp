@@ -384,7 +384,7 @@ void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& reque
   resetAndAnswer([&] { result = CertifiedPairsResult(); },
                  [&] {
                    Earliest earliest(request, result);
-                   earliest.finish(impl_->visitOwn(request.margin, earliest));
+                   earliest.finish(impl_->visitOwn(marginsOf(request).largest(), earliest));
                  });
 }
 
@@ -393,7 +393,7 @@ void ContinuousCollisionManager::continuousCollide(Object* object, const Certifi
   resetAndAnswer([&] { result = CertifiedPairsResult(); },
                  [&] {
                    Earliest earliest(request, result);
-                   earliest.finish(impl_->visitObject(object, request.margin, earliest));
+                   earliest.finish(impl_->visitObject(object, marginsOf(request).largest(), earliest));
                  });
 }
 
@@ -403,7 +403,7 @@ void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionMana
   resetAndAnswer([&] { result = CertifiedPairsResult(); },
                  [&] {
                    Earliest earliest(request, result);
-                   earliest.finish(impl_->visitOther(other, request.margin, earliest));
+                   earliest.finish(impl_->visitOther(other, marginsOf(request).largest(), earliest));
                  });
 }
 

@@ -31,10 +31,17 @@ WorkspaceLoan::WorkspaceLoan() {
   workspace_->busy_ = true;
 }
 
+engine::Margins marginsOf(const CertifiedRequest& request) {
+  requireTolerance(request.margin, "margin", false);
+  requireTolerance(request.added_margin, "added_margin", false);
+  requireTolerance(request.margin + request.added_margin, "margin + added_margin", false);
+  return engine::Margins(request.margin, request.added_margin);
+}
+
 engine::Query makeQuery(const CertifiedRequest& request) {
   requireTolerance(request.tolerance_time, "tolerance_time", true);
   requireTolerance(request.tolerance_distance, "tolerance_distance", true);
-  requireTolerance(request.margin, "margin", false);
+  const engine::Margins margins = marginsOf(request);
   const int level = request.redon.refinement_level;
   if (level < -1 || level > 6) {
     throw std::invalid_argument("request.redon.refinement_level is " + std::to_string(level) + ", not in [-1, 6]");
@@ -42,7 +49,7 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   engine::Query query;
   query.tolerance_time = request.tolerance_time;
   query.tolerance_distance = request.tolerance_distance;
-  query.margin = request.margin;
+  query.margins = margins;
   query.check_scene = request.check_scene;
   query.check_self = request.check_self;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;

@@ -59,7 +59,11 @@ class WorkspaceLoan {
   Workspace* workspace_;
 };
 
-/// The request as the engine takes it, without the motion.
+/// The margins that a request asks for; of pairs that have none of their own. Nothing else reads a request's margins.
+/// @throws std::invalid_argument for a margin that is negative or not finite, or when their sum is not finite.
+engine::Margins marginsOf(const CertifiedRequest& request);
+
+/// The request as the engine takes it, without the motion and the pairs' own margins.
 /// @throws std::invalid_argument for a tolerance or margin that is negative or not finite.
 engine::Query makeQuery(const CertifiedRequest& request);
 

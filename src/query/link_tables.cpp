@@ -15,7 +15,8 @@ bool LinkTables::Made::sameMaking(const Made& other) const {
          tree.sameAs(other.tree);
 }
 
-void LinkTables::build(const Registry& registry, const engine::Problem& problem, std::size_t num_self_pairs) {
+void LinkTables::build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
+                       std::size_t num_self_pairs) {
   std::vector<Made> before;
   std::swap(made_, before);
   tables_.clear();
@@ -27,7 +28,7 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
     const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
     if (a.attached || b.attached) continue;
     const KinematicTree& tree = *registry.tree();
-    Made made(tree, a, b, problem.link_margins ? std::max(0.0, problem.link_margins[i]) : 0);
+    Made made(tree, a, b, margins.ofLinkPair(i));
     const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
     const engine::SweepView& sweep = problem.sweeps[pair.sweep];
     if (known != before.end()) {
@@ -53,12 +54,12 @@ void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, cons
   }
 }
 
-const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion, double margin,
-                                          std::vector<std::uint8_t>& memory) const {
+const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion,
+                                          const engine::Margins& margins, std::vector<std::uint8_t>& memory) const {
   memory.assign(static_cast<std::size_t>(problem.num_link_pairs), 0);
   for (const auto& [pair, table] : tables_) {
     const auto number = problem.num_scene_pairs + static_cast<std::int32_t>(pair);
-    if (engine::marginOf(problem, margin, number) > table->margin()) continue;
+    if (margins.of(number) > table->margin()) continue;
     memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
   }
   return memory.data();

@@ -11,6 +11,7 @@
 
 #include "narrowphase/problem.h"
 #include "query/contact_grid.h"
+#include "query/margins.h"
 #include "query/pair_table.h"
 #include "query/registry.h"
 
@@ -20,15 +21,15 @@ class LinkTables {
  public:
   /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.)
   /// @param num_self_pairs  the first so many of the problem's link pairs.
-  void build(const Registry& registry, const engine::Problem& problem, std::size_t num_self_pairs);
+  void build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
+             std::size_t num_self_pairs);
 
   bool empty() const { return tables_.empty(); }
 
-  /// What tables tell of a motion, as engine::Query::link_free.
-  /// @param margin  the query's, of pairs that have none of their own.
+  /// What tables tell of a motion, as engine::Query::link_free: those built for at least the margin that the pair has here.
   /// @param memory  holds the answer.
-  const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion, double margin,
-                                std::vector<std::uint8_t>& memory) const;
+  const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion,
+                                const engine::Margins& margins, std::vector<std::uint8_t>& memory) const;
 
   /// Where links are likely to touch, the motion's end first: a guess, as engine::Query::likely. (None for robots of
   /// more than 64 variables.)

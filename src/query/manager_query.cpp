@@ -41,11 +41,12 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
 
 /// Leaves the link pairs that the request asks for. Those with moving obstacles are the scene's, though they stand with
 /// those of two links.
-void restrictPairs(const CertifiedRequest& request, std::int32_t num_self_pairs, engine::Problem& problem) {
+void restrictPairs(const CertifiedRequest& request, std::int32_t num_self_pairs, engine::Problem& problem,
+                   engine::Margins& margins) {
   if (!request.check_scene) problem.num_link_pairs = num_self_pairs;
   if (!request.check_self) {
     problem.link_pairs += num_self_pairs;
-    if (problem.link_margins) problem.link_margins += num_self_pairs;
+    margins.skipLinkPairs(num_self_pairs);
     problem.num_link_pairs -= num_self_pairs;
   }
 }
@@ -93,12 +94,12 @@ FeatureKind swapped(FeatureKind kind) {
 /// A contact as users see it: features named, in world axes, links before obstacles.
 /// @param time  of the obstacles' motions.
 CertifiedContact report(const Registry& registry, void* workspace, const engine::Problem& problem,
-                        const JointMotion& motion, const CertifiedRequest& request, const TimePart& time,
+                        const JointMotion& motion, const engine::Query& query, const TimePart& time,
                         engine::LeafContact leaf) {
   const ManagedBody &a = registry.body(leaf.body_a), &b = registry.body(leaf.body_b);
   CertifiedContact contact;
-  if (engine::marginOf(problem, request.margin, leaf.pair) == 0) {
-    refineContact(workspace, a.shape->view(), b.shape->view(), request.tolerance_time, leaf, contact.feature);
+  if (query.margins.of(leaf.pair) == 0) {
+    refineContact(workspace, a.shape->view(), b.shape->view(), query.tolerance_time, leaf, contact.feature);
   }
   const Eigen::Isometry3d M_0a = a.link >= 0
                                      ? registry.tree()->linkPose(a.link, motion.configuration(leaf.t)) * a.offset
@@ -179,13 +180,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   setVariables(motion, setup.movingCoefficients(), aspects.time, workspace->coefficients, query);
   engine::Problem problem = setup.problem();
   const BoundedParts parts(aspects.time, problem);
-  if (!aspects.own_margins) {
-    problem.scene_margins = problem.link_margins = nullptr;
-    problem.largest_margin = 0;
-  }
-  restrictPairs(request, setup.numSelfPairs(), problem);
+  if (aspects.own_margins) setup.margins().putInto(query.margins);
+  restrictPairs(request, setup.numSelfPairs(), problem, query.margins);
   const LinkTables& tables = setup.tables();
-  const auto byTables = [&] { return tables.freeParts(problem, motion, request.margin, workspace->link_free); };
+  const auto byTables = [&] { return tables.freeParts(problem, motion, query.margins, workspace->link_free); };
   if (request.check_self && request.method == Method::standard && !tables.empty()) {
     query.link_free = [](const void* context) { return (*static_cast<decltype(byTables)*>(context))(); };
     query.link_free_context = &byTables;
@@ -212,7 +210,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(
-        report(registry, workspace->engine(), problem, motion, request, aspects.time, answer.contacts[i]));
+        report(registry, workspace->engine(), problem, motion, query, aspects.time, answer.contacts[i]));
   }
   sharpenBracket(request, result);
   result.M_0_at_lower.clear();
@@ -242,7 +240,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
                                           CertifiedResult& result) const {
   resetAndAnswer([&] { claimNothing(result); },
-                 [&] { collideMotion(JointMotion::linear(tree(), q, q), request, Aspects(), result); });
+                 [&] { collideMotion(JointMotion::linear(tree(), q, q), request, result); });
 }
 
 }  // namespace fcl_artic

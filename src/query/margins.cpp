@@ -51,11 +51,11 @@ PairMargins PairMargins::of(const NamedMargins& margins, const engine::Problem& 
   };
   for (std::int32_t m = 0; m < problem.num_scene_movers; ++m) {
     for (std::int32_t o = 0; o < problem.num_obstacles; ++o) {
-      of.scene.push_back(larger(problem.movers[m], problem.obstacles[o]));
+      of.scene_.push_back(larger(problem.movers[m], problem.obstacles[o]));
     }
   }
   for (std::int32_t i = 0; i < problem.num_link_pairs; ++i) {
-    of.link.push_back(larger(problem.link_pairs[i].a, problem.link_pairs[i].b));
+    of.link_.push_back(larger(problem.link_pairs[i].a, problem.link_pairs[i].b));
   }
 
   const std::int32_t first_obstacle = problem.num_movers;  // links and moving obstacles come before
@@ -68,19 +68,28 @@ PairMargins PairMargins::of(const NamedMargins& margins, const engine::Problem& 
           own[{link, other}] = margin;
         } else if (link < problem.num_scene_movers) {
           const std::int32_t pair = problem.bodies[link].mover * problem.num_obstacles + (other - first_obstacle);
-          of.scene[static_cast<std::size_t>(pair)] = margin;
+          of.scene_[static_cast<std::size_t>(pair)] = margin;
         }
       }
     }
   }
   for (std::int32_t i = 0; i < problem.num_link_pairs; ++i) {
     const auto margin = own.find(std::minmax(problem.link_pairs[i].a, problem.link_pairs[i].b));
-    if (margin != own.end()) of.link[static_cast<std::size_t>(i)] = margin->second;
+    if (margin != own.end()) of.link_[static_cast<std::size_t>(i)] = margin->second;
   }
-  for (const std::vector<double>* kind : {&of.scene, &of.link}) {
-    for (const double margin : *kind) of.largest = std::max(of.largest, margin);
+  for (const std::vector<double>* kind : {&of.scene_, &of.link_}) {
+    for (const double margin : *kind) of.largest_ = std::max(of.largest_, margin);
   }
   return of;
+}
+
+void PairMargins::putInto(engine::Margins& margins) const {
+  const double* const scene = scene_.empty() ? nullptr : scene_.data();
+  const double* const link = link_.empty() ? nullptr : link_.data();
+  margins.setOwn(scene, static_cast<std::int32_t>(scene_.size()), link, largest_);
+  if (std::isfinite(margins.largest())) return;
+  throw std::invalid_argument("request.added_margin and the margin " + std::to_string(largest_) +
+                              " of a pair have no finite sum");
 }
 
 }  // namespace fcl_artic

@@ -3,6 +3,8 @@
 // Margins in place of a request's: as the caller sets them, by names of bodies; and as queries read them, by pairs.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -32,15 +34,23 @@ class NamedMargins {
   std::map<std::pair<std::string, std::string>, double> of_pair_;
 };
 
-/// What engine::Problem wants of them.
-struct PairMargins {
-  std::vector<double> scene, link;  ///< of scene pairs and link pairs, -1: not their own; empty: none has its own
-  double largest = 0;               ///< of them all
-
+/// The same as queries want it.
+class PairMargins {
+ public:
   /// @param problem  its bodies and pairs.
   /// @param nameOf  a body of the problem.
   static PairMargins of(const NamedMargins& margins, const engine::Problem& problem,
                         const std::function<const std::string&(std::int32_t body)>& nameOf);
+
+  /// Puts them in a query's margins. They stay here.
+  /// @throws std::invalid_argument: the largest of them and what the query adds have no finite sum.
+  void putInto(engine::Margins& margins) const;
+  /// The margin that a link pair has in queries which ask for none.
+  double ofLinkPair(std::size_t link_pair) const { return link_.empty() ? 0 : std::max(0.0, link_[link_pair]); }
+
+ private:
+  std::vector<double> scene_, link_;  ///< of scene pairs and link pairs, -1: not their own; empty: none has its own
+  double largest_ = 0;                ///< of them all
 };
 
 }  // namespace fcl_artic

@@ -171,7 +171,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
     engine::LeafContact leaf = answer.contacts[i];
     result.contacts.emplace_back();
     CertifiedContact& contact = result.contacts.back();
-    if (request.margin == 0) {
+    if (query.margins.largest() == 0) {
       refineContact(workspace->engine(), body1.shape.view(), body2.shape.view(), request.tolerance_time, leaf,
                     contact.feature);
     }

@@ -136,11 +136,12 @@ class PairTable::Builder {
                    axis.lower + (end[a] + 2 * kCellSlack) * axis.width};
       box.set(axis.variable, ranges[a]);
     }
-    query_.margin = margin_;
+    double margin = margin_;
     for (int a = 1; a < cells_.count; ++a) {
       variables_(a, 0) = ranges[a].middle();
-      query_.margin += links_.lever(cells_.axes[a].variable, box) * ranges[a].half();
+      margin += links_.lever(cells_.axes[a].variable, box) * ranges[a].half();
     }
+    query_.margins = engine::Margins(margin);
   }
 
   /// Rows [j, j_end) together, else in halves, else one row in parts.

@@ -15,7 +15,7 @@ void Setup::build(const Registry& registry) {
                              [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
   sweep_views_.clear();
   for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
-  if (!tables_ready_) tables_.build(registry, problem(), num_self_pairs_);
+  if (!tables_ready_) tables_.build(registry, problem(), margins_, num_self_pairs_);
   tables_ready_ = ready_ = true;
 }
 
@@ -36,9 +36,6 @@ engine::Problem Setup::problem() const {
   p.num_obstacles = static_cast<std::int32_t>(obstacle_bodies_.size());
   p.obstacle_tree = obstacle_tree_.empty() ? nullptr : obstacle_tree_.data();
   p.still_bounds = still_bounds_.data();
-  p.scene_margins = margins_.scene.empty() ? nullptr : margins_.scene.data();
-  p.link_margins = margins_.link.empty() ? nullptr : margins_.link.data();
-  p.largest_margin = margins_.largest;
   return p;
 }
 

@@ -123,7 +123,7 @@ bool Run::asked(std::int32_t pair) const {
 /// Triangles on both sides, no margin, and a motion by joints.
 bool Run::ours(std::int32_t pair) const {
   const PairParts parts = partsOf(problem_, pair);
-  if (engine::marginOf(problem_, query_.margin, pair) > 0) return false;
+  if (query_.margins.of(pair) > 0) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
   return treeOf_(parts.a) && treeOf_(parts.b);
 }

@@ -67,7 +67,7 @@ void SweptVolumes::refine(const engine::Problem& problem, const engine::Query& q
     if (pair.index >= problem.num_scene_pairs) break;
     candidates_.push_back({pair.index, pair.index / problem.num_obstacles, pair.parts.a,
                            static_cast<std::uint32_t>(partsAt(kPartsLevel, pair.mask, pair.level)),
-                           engine::marginOf(problem, query.margin, pair.index)});
+                           query.margins.of(pair.index)});
   }
   if (candidates_.empty()) return;
   sweep(problem, query, options, counts);

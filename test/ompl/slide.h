@@ -45,9 +45,14 @@ class World {
     manager_->bind(link, objects_.back().get(), offset);
     return *this;
   }
-  World& obstacle(std::shared_ptr<fcl::CollisionGeometryd> shape, const fcl::Transform3d& pose) {
+  World& obstacle(std::shared_ptr<fcl::CollisionGeometryd> shape, const fcl::Transform3d& pose,
+                  const std::string& name = {}) {
     objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(shape), pose));
-    manager_->registerObject(objects_.back().get());
+    manager_->registerObject(objects_.back().get(), name);
+    return *this;
+  }
+  World& margin(const std::string& a, const std::string& b, double margin) {
+    manager_->setMargin(a, b, margin);
     return *this;
   }
   std::shared_ptr<const ArticulatedCollisionManager> manager() const {

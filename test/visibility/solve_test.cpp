@@ -37,7 +37,7 @@ class SolveTwice : public testing::Test {
         }
         links[k].radius = 0.05;
       }
-      engine::CullCandidate pair = {0, 0, 0, 0xff, query.margin};
+      engine::CullCandidate pair = {0, 0, 0, 0xff, query.margins.of(0)};
       query.refine(query.refine_context, problem_, links, &pair, 1);
     }
     std::this_thread::sleep_for(std::chrono::microseconds(query.refine ? 500 : 5000));

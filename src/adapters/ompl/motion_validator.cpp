@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <ompl/base/ScopedState.h>
+
 namespace fcl_artic::planning {
 namespace {
 
@@ -57,15 +59,34 @@ CertifiedRequest planningRequest() {
   return request;
 }
 
+// What planners may rely on. M is a pair's margin, its own or the request's, with what the request adds to it, and delta the
+// request's tolerance_distance. A state s is *apart* when collide() proves, at the configuration that the mapping reads
+// from s, that all pairs are farther than M + delta from each other: roomAt(s).
+//
+// Lemma. Let s_0, ..., s_n be states of which each motion s_k -> s_k+1 was accepted, or s_k+1 is the last valid state, at a
+// time > 0, of a motion from s_k. With ignore_initial_contact nothing comes within its margin on any s_k -> s_k+1 with
+// k >= 1, no pair excepted; on s_0 -> s_1 only pairs are excepted that touch at s_0 (that no proof holds apart there),
+// until they have separated, and none where s_0 is apart. Without ignore_initial_contact nothing is excepted at all.
+// Proof. Each s_k -> s_k+1 is proven by provenFree(), that to a last valid state too, but for pairs that are ignored. Its
+// end is apart (1): both checkMotion() ask roomAt(s_k+1). From a state that is apart nothing is ignored (2): ignoring() asks
+// roomAt(s_k), the same query of the same numbers, which gives the same answer. QED
+//
+// Neither the kind of planner nor the order of its questions matters, as both are questions about a state. (2) is what makes
+// it a proof: that a pair which is delta from touching is seen to be apart at t = 0 by a query that ignores what is not,
+// nothing promises.
+//
+// The room is added to every pair's margin (added_margin), those of its own too. A pair whose own margin is 0, beside a
+// request with a larger one, has the room as others do.
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                      JointMapping mapping, const CertifiedRequest& request)
     : ob::MotionValidator(required(si, manager)), manager_(std::move(manager)),
       mapping_(ofManager(std::move(mapping), manager_)), any_(asked(request, ContactMode::any)),
       first_(asked(request, ContactMode::first)), apart_(askedOfState(request)) {
-  first_.margin += 2 * request.tolerance_distance;
-  // Decided before the room is used up.
-  apart_.margin += request.tolerance_distance;
+  // Twice what a state must have: the state is the motion's up to roundings, and a query may leave the last half open.
+  first_.added_margin += 2 * request.tolerance_distance;
+  apart_.added_margin += request.tolerance_distance;
   apart_.tolerance_distance *= 0.5;
+  apart_.visibility = VisibilityMode::off;  // it might leave to the clock which of two proofs is tried
 }
 
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
@@ -73,53 +94,66 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
     : ContinuousMotionValidator(si, manager, allJoints(si, manager), request) {}
 
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2) const {
-  return count(provenFree(mapping_.motion(s1, s2)));
+  return count(provenFree(mapping_.motion(s1, s2), s2, ignoring(s1)));
 }
 
-/// Planners go on from the motion's end. Where initial contacts are ignored there must be none, nor what may be taken for
-/// one: the next motion would lead on through it.
-bool ContinuousMotionValidator::provenFree(const JointMotion& motion) const {
+/// Whether a state is apart: valid by itself, and to be left again.
+bool ContinuousMotionValidator::roomAt(const ob::State* state) const {
+  thread_local Eigen::VectorXd q;
+  mapping_.configuration(state, q);
   CertifiedResult& result = scratch();
-  manager_->continuousCollide(motion, any_, result);
-  return result.isFree() && (!any_.ignore_initial_contact || apartAt(motion, 1));
-}
-
-bool ContinuousMotionValidator::apartAt(const JointMotion& motion, double t) const {
-  CertifiedResult& result = scratch();
-  manager_->collide(motion.configuration(t), apart_, result);
+  manager_->collide(q, apart_, result);
   return result.isFree();
 }
 
-/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
-/// leaves, and that can't be told from one in contact. So the time is asked for with a margin; the verdict is not. What
-/// was within the margin at the start, where that is ignored, must not touch without it, and be left behind by then.
-/// @return a time up to which the motion is proven free; 1: all of it.
-double ContinuousMotionValidator::freeWithRoom(const JointMotion& motion) const {
+/// Whether pairs that touch at the start of a motion from this state are ignored.
+bool ContinuousMotionValidator::ignoring(const ob::State* s1) const {
+  return any_.ignore_initial_contact && !roomAt(s1);
+}
+
+bool ContinuousMotionValidator::provenFree(const JointMotion& motion, const ob::State* s2, bool ignoring) const {
+  CertifiedRequest request = any_;
+  request.ignore_initial_contact = ignoring;
   CertifiedResult& result = scratch();
-  const auto freeUntil = [&](const CertifiedRequest& request) {
+  manager_->continuousCollide(motion, request, result);
+  return result.isFree() && (!any_.ignore_initial_contact || roomAt(s2));
+}
+
+/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
+/// leaves, and that can't be told from one in contact. So the time is asked for with more margin; the verdict is not. What
+/// is ignored as it is within that at the start must not touch without it.
+/// @return a time up to which the motion is proven free; 1: all of it.
+double ContinuousMotionValidator::timeWithRoom(const JointMotion& motion, bool ignoring) const {
+  CertifiedResult& result = scratch();
+  const auto freeUntil = [&](CertifiedRequest request) {
+    request.ignore_initial_contact = ignoring;
     manager_->continuousCollide(motion, request, result);
     return result.isFree() ? 1 : result.t_lower;
   };
   const double t = freeUntil(first_);
   if (result.ignored_initial_contacts.empty()) return t;
   CertifiedRequest without = first_;
-  without.margin = any_.margin;
-  const double least = std::min(t, freeUntil(without));
-  return apartAt(motion, least) ? least : 0;
+  without.added_margin = any_.added_margin;
+  return std::min(t, freeUntil(without));
 }
 
 bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State* s2,
                                             std::pair<ob::State*, double>& lastValid) const try {
   const JointMotion motion = mapping_.motion(s1, s2);
-  if (provenFree(motion)) return count(true);
-  const double t = freeWithRoom(motion);
-  if (t == 1) return count(true);  // a budget ran out in the other order of work
-  lastValid.second = t;
-  if (lastValid.first && lastValid.second > 0) {
-    si_->getStateSpace()->interpolate(s1, s2, lastValid.second, lastValid.first);  // may write to s1 or s2
-  } else if (lastValid.first && lastValid.first != s1) {
-    si_->copyState(lastValid.first, s1);
+  const bool ignored = ignoring(s1);
+  if (provenFree(motion, s2, ignored)) return count(true);
+  double t = timeWithRoom(motion, ignored);
+  if (t == 1 && roomAt(s2)) return count(true);  // a budget ran out in the other order of work
+  ob::ScopedState<> last(si_->getStateSpace());
+  if (t > 0) {
+    si_->getStateSpace()->interpolate(s1, s2, t, last.get());
+    // The motion to the state itself: that is not quite the first part of the one to s2 (JointMapping on orientations).
+    if (!roomAt(last.get()) || !provenFree(mapping_.motion(s1, last.get()), last.get(), ignored)) t = 0;
   }
+  if (lastValid.first && (t > 0 || lastValid.first != s1)) {  // which may be s1 or s2
+    si_->copyState(lastValid.first, t > 0 ? last.get() : s1);
+  }
+  lastValid.second = t;
   return count(false);
 } catch (...) {  // nothing but the start is left in the caller's hands
   lastValid.second = 0;

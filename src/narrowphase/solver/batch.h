@@ -109,7 +109,7 @@ inline void Solver::setupPair(int index) {
   if (present_ == index && present_batch_ == batch_) return;
   present_ = index;
   present_batch_ = batch_;
-  margin_ = engine::marginOf(*problem_, query_->margin, index);
+  margin_ = query_->margins.of(index);
   const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);

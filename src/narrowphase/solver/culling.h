@@ -10,7 +10,7 @@ namespace FCL_ARTIC_ISA {
 /// obstacle only the box of its whole path is known.
 inline void Solver::sweepMover(int mover) {
   const Body& body = problem_->bodies[problem_->movers[mover]];
-  const double margin = max(query_->margin, problem_->largest_margin);  // whatever the partner
+  const double margin = query_->margins.largest();  // whatever the partner
   SweptBox& box = mover_box_[mover];
   if (isLink(mover)) {
     static const StepBounds kStill = {};
@@ -43,7 +43,7 @@ inline unsigned Solver::lssMayTouch(int mover, int obstacle_number, unsigned mas
   const engine::StillBounds& obstacle = problem_->still_bounds[obstacle_number];
   const SweptLss& lss = mover_lss_[mover];
   Lanes square, nearest[3];
-  const double margin = engine::marginOf(*problem_, query_->margin, pair);
+  const double margin = query_->margins.of(pair);
   mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, margin, square, nearest, direction);
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
@@ -157,7 +157,7 @@ inline void Solver::cull() {
       for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
       unsigned mask = open & ~lanesOf(out);
       if (mask && isLink(mover_a) && isLink(mover_b)) {
-        const double margin = engine::marginOf(*problem_, query_->margin, problem_->num_scene_pairs + p);
+        const double margin = query_->margins.of(problem_->num_scene_pairs + p);
         const SweptLss &lss_a = mover_lss_[mover_a], &lss_b = mover_lss_[mover_b];
         Lanes square;
         mask &= ~certainlyApart(lss_a, lss_b, margin, square);
@@ -196,7 +196,7 @@ inline void Solver::refine() {
     const int mover = e.pair / problem_->num_obstacles;
     if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
     candidate_pairs_.push({e.pair, mover, problem_->obstacles[e.pair % problem_->num_obstacles], e.mask,
-                           engine::marginOf(*problem_, query_->margin, e.pair)});
+                           query_->margins.of(e.pair)});
   }
   const int asked = candidate_pairs_.size();
   if (!asked) return;
