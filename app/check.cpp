@@ -73,6 +73,7 @@ std::string requirePackage(const std::string& text) {
 
 UrdfOptions urdfOptions(const Options& options) {
   UrdfOptions out;
+  out.solid_meshes = options.scene.solid_meshes;
   for (const std::string& package : options.packages) {
     const std::size_t equals = package.find('=');
     out.packages[package.substr(0, equals)] = package.substr(equals + 1);
@@ -218,6 +219,9 @@ void addCheck(CLI::App& program, int& exit_status) {
   check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
       ->group("Robot and scene")->type_name("FILE...");
   check->add_flag("--unknown-cells", o.scene.unknown_cells, "OctoMap: unknown cells are obstacles too")
+      ->group("Robot and scene");
+  check->add_flag("--solid-meshes", o.scene.solid_meshes,
+                  "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
   check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "narrowphase/problem.h"
@@ -17,5 +18,19 @@ struct ClosedParts {
 
 /// @param mesh  of triangles only.
 ClosedParts findClosedParts(const engine::TreeView& mesh);
+
+/// Triangles that hang together by corners at the very same place, closed or not.
+struct ConnectedParts {
+  std::vector<std::int32_t> part_of_piece;
+  std::int32_t count = 0;
+};
+/// @param mesh  of triangles only.
+ConnectedParts findConnectedParts(const engine::TreeView& mesh);
+
+/// Why a mesh bounds no solid; empty when it does: it is closed and consistently oriented when its triangles pass every
+/// edge, corners at the very same place being one, as often in the one direction as in the other. (Of a manifold: once
+/// each. Which side is the outer one does not matter, nor do triangles without area, as long as their edges count.)
+/// @param mesh  of triangles only.
+std::string whyNoSolid(const engine::TreeView& mesh);
 
 }  // namespace fcl_artic

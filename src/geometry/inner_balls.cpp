@@ -9,6 +9,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/mesh_triangle.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -19,10 +21,7 @@ using engine::Node;
 using engine::Piece;
 using engine::PieceKind;
 
-constexpr double kUlp = 0x1p-52;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Directions shorter than this are none.
-constexpr double kLeastLength = 1e-100;
 /// Points looked at in a mesh, and in its smallest part at least.
 constexpr int kSamples = 400, kFewestSamples = 40;
 /// Parts that get balls: so many, none of which is smaller than this part of the largest.
@@ -30,95 +29,6 @@ constexpr std::size_t kMostParts = 8;
 constexpr double kLeastPart = 0.1;
 /// Steps by which a ball is moved away from where it touches.
 constexpr int kSteps = 6;
-
-struct Triangle {
-  Vector3d corner[3];
-};
-Triangle triangleOf(const engine::TreeView& mesh, std::int32_t piece) {
-  const double* v = mesh.vertices + 3 * static_cast<std::ptrdiff_t>(mesh.pieces[piece].first_vertex);
-  return {{Vector3d::Map(v), Vector3d::Map(v + 3), Vector3d::Map(v + 6)}};
-}
-
-/// A triangle's point nearest to x, about (Ericson, Real-Time Collision Detection, 5.1.5).
-Vector3d nearestPoint(const Triangle& t, const Vector3d& x) {
-  const Vector3d &a = t.corner[0], &b = t.corner[1], &c = t.corner[2];
-  const Vector3d ab = b - a, ac = c - a, ax = x - a;
-  const double d1 = ab.dot(ax), d2 = ac.dot(ax);
-  if (d1 <= 0 && d2 <= 0) return a;
-  const Vector3d bx = x - b;
-  const double d3 = ab.dot(bx), d4 = ac.dot(bx);
-  if (d3 >= 0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
-  const Vector3d cx = x - c;
-  const double d5 = ab.dot(cx), d6 = ac.dot(cx);
-  if (d6 >= 0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  const double scale = 1 / (va + vb + vc);
-  return a + vb * scale * ab + vc * scale * ac;
-}
-
-/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across the direction to the
-/// nearest one, wherever that came from. A corner's place along it errs by less than 8 kUlp |n| |v - x|.
-double clearanceOf(const Triangle& t, const Vector3d& x, const Vector3d& nearest) {
-  const Vector3d n = nearest - x;
-  const double length = n.norm();
-  if (!(length > kLeastLength)) return 0;
-  double least = kInfinity, far = 0;
-  for (const Vector3d& corner : t.corner) {
-    const Vector3d d = corner - x;
-    least = std::min(least, n.dot(d));
-    far = std::max(far, d.norm());
-  }
-  return std::max(0.0, least / length - 32 * kUlp * far);
-}
-
-/// Distance of x from a node's box, no larger than it is.
-double clearanceOf(const Node& node, const Vector3d& x) {
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double d = std::max({node.lo[k] - x[k], x[k] - node.hi[k], 0.0});
-    square += d * d;
-  }
-  return std::sqrt(square) * (1 - 16 * kUlp);
-}
-
-/// Whether a line along an axis crosses a triangle: the signs of the areas that the line's point and the edges span,
-/// seen along the axis.
-enum class Crosses { no, yes, unknown };
-Crosses crosses(const Triangle& t, const Vector3d& x, int axis, EnclosedSpace::Crossing& crossing) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  for (const int k : {u, v}) {
-    const double least = std::min({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
-    const double most = std::max({t.corner[0][k], t.corner[1][k], t.corner[2][k]});
-    if (x[k] < least || x[k] > most) return Crosses::no;
-  }
-  const Vector3d d[3] = {t.corner[0] - x, t.corner[1] - x, t.corner[2] - x};
-  double area[3], error[3];  // of the edge across from each corner
-  int positive = 0;
-  bool unknown = false;
-  for (int i = 0; i < 3; ++i) {
-    const Vector3d &p = d[(i + 1) % 3], &q = d[(i + 2) % 3];
-    const double one = p[u] * q[v], other = q[u] * p[v];
-    area[i] = one - other;
-    error[i] = 8 * kUlp * (std::abs(one) + std::abs(other)) + kLeastLength;
-    unknown = unknown || !(std::abs(area[i]) > error[i]);
-    positive += area[i] > 0;
-  }
-  if (unknown) return Crosses::unknown;
-  if (positive != 0 && positive != 3) return Crosses::no;
-  double sum = 0, weights = 0, sum_error = kLeastLength;
-  for (int i = 0; i < 3; ++i) {
-    sum += area[i] * d[i][axis];
-    weights += area[i];
-    sum_error += (error[i] + 8 * kUlp * std::abs(area[i])) * std::abs(d[i][axis]);
-  }
-  crossing = {sum / weights, std::abs(sum) > sum_error};
-  return Crosses::yes;
-}
 
 double distanceFromSegment(const LineSweptSphere& around, const Vector3d& x) {
   const Vector3d begin = Vector3d::Map(&around[0]), along = Vector3d::Map(&around[3]) - begin;
@@ -268,7 +178,7 @@ double EnclosedSpace::clearance(std::int32_t part, const Vector3d& x, Vector3d& 
     const Node& node = mesh_.nodes[at.node];
     if (node.isLeaf()) {
       if (parts_.part_of_piece[static_cast<std::size_t>(node.piece())] != part) continue;
-      const Triangle t = triangleOf(mesh_, node.piece());
+      const MeshTriangle t = triangleOf(mesh_, node.piece());
       const Vector3d point = nearestPoint(t, x);
       const double clearance = clearanceOf(t, x, point);
       if (clearance >= least) continue;
@@ -300,7 +210,7 @@ bool EnclosedSpace::crossings(std::int32_t part, const Vector3d& x, int axis, st
       continue;
     }
     if (parts_.part_of_piece[static_cast<std::size_t>(node.piece())] != part) continue;
-    const Triangle t = triangleOf(mesh_, node.piece());
+    const MeshTriangle t = triangleOf(mesh_, node.piece());
     if (t.corner[0] == t.corner[1] || t.corner[1] == t.corner[2] || t.corner[2] == t.corner[0]) continue;
     Crossing crossing;
     const Crosses answer = crosses(t, x, axis, crossing);

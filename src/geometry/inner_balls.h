@@ -8,6 +8,7 @@
 
 #include "geometry/closed_parts.h"
 #include "geometry/line_swept_sphere.h"
+#include "geometry/mesh_triangle.h"
 #include "narrowphase/problem.h"
 
 namespace fcl_artic {
@@ -25,11 +26,7 @@ class EnclosedSpace {
   /// The part certainly goes around x an odd number of times.
   bool certainlyEncloses(std::int32_t part, const Eigen::Vector3d& x) const;
 
-  /// A triangle that a line along an axis crosses.
-  struct Crossing {
-    double height;  ///< above the point that the line goes through, about
-    bool certain;   ///< which side of that point it lies on
-  };
+  using Crossing = LineCrossing;
   /// All of a part's triangles that the line through x along an axis crosses. False where it comes too near an edge to
   /// tell.
   bool crossings(std::int32_t part, const Eigen::Vector3d& x, int axis, std::vector<Crossing>& found) const;

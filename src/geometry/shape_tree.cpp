@@ -11,7 +11,9 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/closed_parts.h"
 #include "geometry/outer_hull.h"
+#include "geometry/solid_space.h"
 
 namespace fcl_artic {
 namespace {
@@ -208,8 +210,12 @@ std::vector<Node> buildBoxTree(const std::vector<BoxBounds>& boxes) {
   return Builder(leaves).run();
 }
 
+ShapeTree::ShapeTree(Private) {}
+ShapeTree::~ShapeTree() = default;
+
 std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
-                                                          const std::vector<std::array<int, 3>>& triangles) {
+                                                          const std::vector<std::array<int, 3>>& triangles,
+                                                          bool solid) {
   if (triangles.empty()) throw std::invalid_argument("the mesh has no triangle");
   requirePoints(vertices);
   auto tree = std::make_shared<ShapeTree>(Private());
@@ -231,6 +237,11 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eige
   }
   tree->nodes_ = Builder(leaves).run();
   tree->show();
+  if (solid) {
+    const std::string reason = whyNoSolid(tree->view_);
+    if (!reason.empty()) throw std::invalid_argument("a mesh that is to be a solid: " + reason);
+    tree->space_ = std::make_unique<const SolidSpace>(tree->view_);
+  }
   tree->makeOuter(vertices);
   return tree;
 }
@@ -370,6 +381,11 @@ const ObbTree* ShapeTree::obbTree() const {
 const engine::InnerBalls* ShapeTree::innerBalls() const {
   std::call_once(balls_once_, [this] { balls_ = BallsInMesh::find(view_, lineSweptSphere()); });
   return balls_ ? &balls_->view() : nullptr;
+}
+
+const SurfacePoints* ShapeTree::surfacePoints() const {
+  std::call_once(points_once_, [this] { points_ = std::make_unique<const SurfacePoints>(view_); });
+  return points_.get();
 }
 
 std::size_t ShapeTree::bytes() const {

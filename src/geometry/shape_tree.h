@@ -29,8 +29,11 @@ class ShapeTree {
   /// A triangle surface; triangle i becomes a piece with primitive id i. Degenerate triangles (no area) count as the
   /// segments or points that they are.
   /// @throws std::invalid_argument: no triangle, an index out of range, a vertex that is not finite.
+  /// @param solid  the body is what the surface encloses, too (SolidSpace); then also @throws when it is not closed or
+  ///   not consistently oriented.
   static std::shared_ptr<const ShapeTree> fromTriangles(const std::vector<Eigen::Vector3d>& vertices,
-                                                        const std::vector<std::array<int, 3>>& triangles);
+                                                        const std::vector<std::array<int, 3>>& triangles,
+                                                        bool solid = false);
   /// One triangle that is a shape: its primitive id is -1.
   static std::shared_ptr<const ShapeTree> fromTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                                        const Eigen::Vector3d& c);
@@ -56,12 +59,17 @@ class ShapeTree {
   const LineSweptSphere& lineSweptSphere() const;
   /// Balls inside its closed parts; null where there are none. Made when first asked for.
   const engine::InnerBalls* innerBalls() const;
+  /// Where points lie in a mesh that is a solid; null for all other bodies.
+  const SolidSpace* space() const { return space_.get(); }
+  /// Points of all of its parts, for pairs with such a mesh. Made when first asked for.
+  const SurfacePoints* surfacePoints() const;
   /// A box that holds the whole, for stage 1.
   engine::CoreBox coreBox() const;
   /// Memory that it takes, roughly.
   std::size_t bytes() const;
 
-  explicit ShapeTree(Private) {}
+  explicit ShapeTree(Private);
+  ~ShapeTree();
   ShapeTree(const ShapeTree&) = delete;
   ShapeTree& operator=(const ShapeTree&) = delete;
 
@@ -76,11 +84,13 @@ class ShapeTree {
   std::vector<double> vertices_;
   PackedHulls hulls_;
   engine::TreeView view_;
-  mutable std::once_flag parts_once_, obb_once_, lss_once_, balls_once_;
+  std::unique_ptr<const SolidSpace> space_;
+  mutable std::once_flag parts_once_, obb_once_, lss_once_, balls_once_, points_once_;
   mutable LineSweptSphere lss_ = {};
   mutable std::unique_ptr<const ConvexParts> parts_;
   mutable std::unique_ptr<const ObbTree> obb_;
   mutable std::unique_ptr<const BallsInMesh> balls_;
+  mutable std::unique_ptr<const SurfacePoints> points_;
 };
 
 /// Boxes to be put into a tree: the same builder serves pieces and obstacles.

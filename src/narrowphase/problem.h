@@ -7,6 +7,10 @@
 #include <cstdint>
 
 namespace fcl_artic {
+
+class SolidSpace;
+class SurfacePoints;
+
 namespace engine {
 
 /// Kinds of convex piece. Every piece is a core, given by its support function, grown by a ball of radius `radius`
@@ -144,6 +148,8 @@ struct Body {
   std::int32_t mover = -1;  ///< index among Problem::movers; -1: an obstacle
   double lss[7] = {};      ///< line swept sphere p0, p1, r in the step's frame: holds the body
   const InnerBalls* balls = nullptr;  ///< of a link; null: none known
+  const SolidSpace* space = nullptr;      ///< of a mesh that is a solid; null: any other body
+  const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
 };
@@ -167,6 +173,19 @@ struct LinkPair {
   Placement placement_b;    ///< B's tree frame in its step's frame
 };
 
+/// Pose of B's tree frame in A's at one time: a point p of B is at R p + c up to `error`, one of A seen from B likewise.
+struct PairPose {
+  double R[9], c[3];
+  double error;
+};
+/// Whether a part of one body's surface lies within the other body, a mesh that is a solid.
+struct Containment {
+  static constexpr std::int32_t kNone = 0, kPossible = 1, kCertain = 2;
+  std::int32_t verdict;
+  double point[3];   ///< of that part, in A's tree frame
+  double normal[3];  ///< in A's tree frame, from A to B: the shortest way out, about
+};
+
 /// Everything that stays the same from query to query.
 struct Problem {
   const Body* bodies = nullptr;
@@ -186,6 +205,8 @@ struct Problem {
   const StillBounds* still_bounds = nullptr;  ///< of obstacle o
   std::int32_t num_obstacles = 0;
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
+  /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
+  void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
 };
 
 /// The margins of a query's pairs, m, and all that any part of the library knows of them. A pair's margin is its own, else

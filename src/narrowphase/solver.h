@@ -105,6 +105,12 @@ class Solver {
   void refine();
   bool mayIgnore(int pair) const;
   void collectInitialContacts(int begin, int end);
+  void findContained(int pair, double t, engine::Containment& found);
+  bool mayBeContained(int pair, double t);
+  void testAtStart(int pair);
+  void findContainedAtStart();
+  bool isContained(int pair) const;
+  void reportContained();
   double firstFreeTime(double start, double width, int begin, int end);
   void solvePairs();
   bool movesFar() const;
@@ -245,6 +251,7 @@ class Solver {
   Buffer<Look> looks_;
   Buffer<Entry> stack_[kLanes];  ///< node pairs to visit, by their earliest lane
   Buffer<Ignored> ignored_;
+  Buffer<LeafContact> contained_;  ///< pairs in which one body lies within the other, a solid mesh, at t = 0
   /// What is followed by itself: a leaf pair, the hulls around a pair of bodies, or parts of these.
   struct Final {
     Entry entry;
@@ -324,6 +331,7 @@ constexpr double kFollowingAccuracy = 0.02;
 #include "narrowphase/solver/inner_balls.h"
 #include "narrowphase/solver/search.h"
 #include "narrowphase/solver/solid_contact.h"
+#include "narrowphase/solver/solids.h"
 #include "narrowphase/solver/traversal.h"
 
 namespace fcl_artic {
@@ -340,6 +348,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   overlapping_.clear();
   looks_.clear();
   ignored_.clear();
+  contained_.clear();
   partly_free_.clear();
   front_ = 0;
   witness_pair_ = present_ = roots_batch_ = -1;
@@ -371,14 +380,19 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   if (query.any && !finished()) proveAnywhere();
   if (query.any && !finished()) proveAtPoses();
   statistics_.culling_us = now() - time0;
+  if (problem.contained && !finished()) findContainedAtStart();
   if (query.refine && !finished()) refine();
   const double time1 = now();
   if (query.ignore_initial && !finished()) {
     collectInitialContacts(0, entries_.size());
     beginBatch(0, 1);
   }
+  if (contained_.size() && !out_of_budget_) {
+    reportContained();
+    updateLive();
+  }
 
-  if (!out_of_budget_) solvePairs();
+  if (!out_of_budget_ && limit_ > 0) solvePairs();
 
   // A pose proven in contact and a proof that all of [0, 1] is free would contradict each other: a fault of ours, and then
   // contact is the answer that harms nobody.

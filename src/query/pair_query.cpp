@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/solid_space.h"
 #include "motion/frame_sweep.h"
 #include "query/engine_query.h"
 #include "query/motion_variables.h"
@@ -150,6 +151,12 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   problem.num_sweeps = 1;
   problem.link_pairs = &pair;
   problem.num_link_pairs = 1;
+  const MovingShape* shapes[2] = {&body1, &body2};
+  if (body1.shape.space() || body2.shape.space()) problem.contained = &findContained;
+  for (int i = 0; i < 2; ++i) {
+    bodies[i].space = shapes[i]->shape.space();
+    bodies[i].points = problem.contained ? shapes[i]->shape.surfacePoints() : nullptr;
+  }
   engine::Answer answer;
   RedonStatistics redon_work;
   if (request.method == Method::Redon2004) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/setup.h"
 
+#include "geometry/solid_space.h"
+
 namespace fcl_artic {
 
 void Setup::build(const Registry& registry) {
@@ -13,6 +15,15 @@ void Setup::build(const Registry& registry) {
   buildScene(registry);
   margins_ = PairMargins::of(registry.margins(), problem(),
                              [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
+  // Asked of pairs with a solid mesh only; where there is none queries know nothing of it.
+  solids_ = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].space = registry.body(static_cast<std::int32_t>(i)).shape->space();
+    solids_ = solids_ || bodies_[i].space;
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].points = solids_ ? registry.body(static_cast<std::int32_t>(i)).shape->surfacePoints() : nullptr;
+  }
   sweep_views_.clear();
   for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
   if (!tables_ready_) tables_.build(registry, problem(), margins_, num_self_pairs_);
@@ -36,6 +47,7 @@ engine::Problem Setup::problem() const {
   p.num_obstacles = static_cast<std::int32_t>(obstacle_bodies_.size());
   p.obstacle_tree = obstacle_tree_.empty() ? nullptr : obstacle_tree_.data();
   p.still_bounds = still_bounds_.data();
+  p.contained = solids_ ? &findContained : nullptr;
   return p;
 }
 

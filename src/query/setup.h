@@ -64,6 +64,7 @@ class Setup {
   PairMargins margins_;
   LinkTables tables_;
   Fingerprint tree_;           ///< of what buildRobot() was made for
+  bool solids_ = false;        ///< a mesh that is a solid is among the bodies
   bool robot_ready_ = false;   ///< what buildRobot() makes is up to date
   bool tables_ready_ = false;  ///< so are the tables of two links
   bool ready_ = false;         ///< all is

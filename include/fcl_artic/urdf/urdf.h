@@ -17,7 +17,7 @@ namespace fcl_artic {
 struct LinkGeometry {
   LinkId link = -1;
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< geometry in the link's frame
-  std::shared_ptr<fcl::CollisionObjectd> object;              ///< mesh: BVHModel<OBBRSSd>; or Box, Cylinder, Sphere
+  std::shared_ptr<fcl::CollisionObjectd> object;              ///< mesh: BVHModel<OBBRSSd>, SolidMesh<OBBRSSd>; or Box, Cylinder, Sphere
   std::string source;                                         ///< mesh file, or "box", "cylinder", "sphere"
 };
 
@@ -37,12 +37,15 @@ struct UrdfOptions {
   /// Folders that stand for "package://NAME/": name to folder. A package that isn't named is looked for in the URDF's
   /// folder and its parents, by folder name.
   std::map<std::string, std::string> packages;
+  /// Meshes are solids (SolidMesh), what lies within one touches it. One that is not closed and consistently oriented is
+  /// an error then. (For some meshes only: makeSolid() of what Robot::geometry has.)
+  bool solid_meshes = false;
 };
 
 /// Reads a robot. Meshes (what assimp reads) come with their scale, by absolute path, path relative to the URDF's
 /// folder, file:// or package://. Degenerate triangles stay out, with a note.
 /// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing
-///   or empty mesh, mesh without a triangle of positive area.
+///   or empty mesh, mesh without a triangle of positive area, mesh that is to be a solid and can't be one.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
 /// One of several robots: every name gets the prefix, such as "left_".
@@ -92,6 +95,7 @@ struct SceneOptions {
   /// OctoMap: unknown cells are obstacles too, within the box around all cells that are known (octomap's
   /// getMetricMin() to getMetricMax()); else unknown space is free.
   bool unknown_cells = false;
+  bool solid_meshes = false;  ///< as UrdfOptions::solid_meshes
 };
 
 /// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
@@ -105,9 +109,12 @@ FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& op
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
 /// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.
+/// @param solid  it is a SolidMesh, triangles without area included; refused when it is not closed and consistently
+///   oriented.
 /// @throws std::runtime_error as loadUrdf().
 FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path,
                                                                  const Eigen::Vector3d& scale,
-                                                                 std::vector<std::string>* notes = nullptr);
+                                                                 std::vector<std::string>* notes = nullptr,
+                                                                 bool solid = false);
 
 }  // namespace fcl_artic

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -20,9 +21,13 @@
 #include <fcl/geometry/shape/triangle_p.h>
 
 #include "adapters/fcl/mesh_cache.h"
+#include "fcl_artic/solid_mesh.h"
 #include "numerics/rotation.h"
 
 namespace fcl_artic {
+
+SolidMark::~SolidMark() = default;
+
 namespace {
 
 using engine::Piece;
@@ -34,7 +39,14 @@ struct Mesh {
   const fcl::Vector3<S>* vertices;
   const fcl::Triangle* triangles;
   std::size_t num_vertices, num_triangles;
+  bool solid;
 };
+
+/// A mesh that is a SolidMesh. (Most are BVHModels themselves, which one comparison tells.)
+template <class BV>
+bool isSolid(const fcl::CollisionGeometry<typename BV::S>& geometry) {
+  return typeid(geometry) != typeid(fcl::BVHModel<BV>) && dynamic_cast<const SolidMark*>(&geometry);
+}
 
 template <class BV>
 Mesh<typename BV::S> meshOf(const fcl::CollisionGeometry<typename BV::S>& geometry) {
@@ -46,7 +58,7 @@ Mesh<typename BV::S> meshOf(const fcl::CollisionGeometry<typename BV::S>& geomet
     throw std::invalid_argument("the mesh has no triangle (was endModel() called?)");
   }
   return {model.vertices, model.tri_indices, static_cast<std::size_t>(model.num_vertices),
-          static_cast<std::size_t>(model.num_tris)};
+          static_cast<std::size_t>(model.num_tris), isSolid<BV>(geometry)};
 }
 
 /// @return whether the geometry is one.
@@ -90,7 +102,7 @@ std::shared_ptr<const ShapeTree> readMesh(const Mesh<S>& mesh) {
       triangles[i][k] = index < mesh.num_vertices ? static_cast<int>(index) : -1;  // ShapeTree tells
     }
   }
-  return ShapeTree::fromTriangles(toDouble(mesh.vertices, mesh.num_vertices), triangles);
+  return ShapeTree::fromTriangles(toDouble(mesh.vertices, mesh.num_vertices), triangles, mesh.solid);
 }
 
 double requireSize(double x, const char* what) {
@@ -189,7 +201,8 @@ std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry,
                           mesh.triangles,
                           mesh.num_vertices * sizeof(fcl::Vector3<S>),
                           mesh.num_triangles * sizeof(fcl::Triangle),
-                          sizeof(S)};
+                          sizeof(S),
+                          mesh.solid};
     std::shared_ptr<const ShapeTree> tree = cache.find(bytes);
     if (!tree) cache.keep(bytes, tree = readMesh(mesh));
     return tree;
@@ -280,6 +293,44 @@ Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, double most, const st
 }
 
 }  // namespace
+
+std::shared_ptr<fcl::CollisionGeometryd> makeSolid(const fcl::CollisionGeometryd& mesh) {
+  const auto copy = [&](auto bv) -> std::shared_ptr<fcl::CollisionGeometryd> {
+    using BV = decltype(bv);
+    return std::make_shared<SolidMesh<BV>>(static_cast<const fcl::BVHModel<BV>&>(mesh));
+  };
+  std::shared_ptr<fcl::CollisionGeometryd> solid;
+  switch (mesh.getNodeType()) {
+    case fcl::BV_AABB:
+      solid = copy(fcl::AABBd());
+      break;
+    case fcl::BV_OBB:
+      solid = copy(fcl::OBBd());
+      break;
+    case fcl::BV_RSS:
+      solid = copy(fcl::RSSd());
+      break;
+    case fcl::BV_kIOS:
+      solid = copy(fcl::kIOSd());
+      break;
+    case fcl::BV_OBBRSS:
+      solid = copy(fcl::OBBRSSd());
+      break;
+    case fcl::BV_KDOP16:
+      solid = copy(fcl::KDOP<double, 16>());
+      break;
+    case fcl::BV_KDOP18:
+      solid = copy(fcl::KDOP<double, 18>());
+      break;
+    case fcl::BV_KDOP24:
+      solid = copy(fcl::KDOP<double, 24>());
+      break;
+    default:
+      throw std::invalid_argument(std::string("makeSolid: ") + geometryName(mesh) + " is no mesh");
+  }
+  (void)readGeometry(*solid);  // refuses what is none
+  return solid;
+}
 
 template <class S>
 const char* geometryName(const fcl::CollisionGeometry<S>& geometry) {

@@ -10,6 +10,7 @@ namespace fcl_artic {
 
 struct MeshCache::Entry {
   std::size_t vertex_bytes, triangle_bytes, scalar_bytes;
+  bool solid;
   std::unique_ptr<char[]> copy;  ///< vertices, then triangles
   std::shared_ptr<const ShapeTree> tree;
   std::size_t bytes;
@@ -17,7 +18,8 @@ struct MeshCache::Entry {
 
   bool sameAs(const MeshBytes& mesh) const {
     return vertex_bytes == mesh.vertex_bytes && triangle_bytes == mesh.triangle_bytes &&
-           scalar_bytes == mesh.scalar_bytes && std::memcmp(copy.get(), mesh.vertices, vertex_bytes) == 0 &&
+           scalar_bytes == mesh.scalar_bytes && solid == mesh.solid &&
+           std::memcmp(copy.get(), mesh.vertices, vertex_bytes) == 0 &&
            std::memcmp(copy.get() + vertex_bytes, mesh.triangles, triangle_bytes) == 0;
   }
 };
@@ -42,6 +44,7 @@ void MeshCache::keep(const MeshBytes& mesh, std::shared_ptr<const ShapeTree> tre
   entry->vertex_bytes = mesh.vertex_bytes;
   entry->triangle_bytes = mesh.triangle_bytes;
   entry->scalar_bytes = mesh.scalar_bytes;
+  entry->solid = mesh.solid;
   entry->copy.reset(new char[mesh.vertex_bytes + mesh.triangle_bytes]);
   std::memcpy(entry->copy.get(), mesh.vertices, mesh.vertex_bytes);
   std::memcpy(entry->copy.get() + mesh.vertex_bytes, mesh.triangles, mesh.triangle_bytes);

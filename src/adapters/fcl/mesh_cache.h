@@ -21,6 +21,7 @@ struct MeshBytes {
   const void* triangles = nullptr;
   std::size_t vertex_bytes = 0, triangle_bytes = 0;
   std::size_t scalar_bytes = 0;  ///< of a coordinate
+  bool solid = false;            ///< SolidMesh
 };
 
 /// A tree is found when vertices and triangles are, byte for byte, those that it was built from: what a query answers

@@ -32,9 +32,10 @@ GeometryPtr makeSphere(double radius, const std::string& where);
 GeometryPtr makeCylinder(double radius, double length, const std::string& where);
 GeometryPtr makeCone(double radius, double length, const std::string& where);
 /// A BVHModel<OBBRSSd> of the triangles that have an area; what is dropped is noted.
+/// @param solid  a SolidMesh of all triangles: those without area may be what closes it.
 /// @throws std::runtime_error naming `where` for an index out of range, a vertex that is not finite or no triangle
-/// left.
+/// left; for a mesh that is to be a solid and can't be one.
 GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
-                     const std::string& where, std::vector<std::string>* notes);
+                     const std::string& where, std::vector<std::string>* notes, bool solid = false);
 
 }  // namespace fcl_artic::detail

@@ -16,6 +16,7 @@
 #include <sstream>
 
 #include "detail.h"
+#include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
@@ -72,7 +73,7 @@ GeometryPtr makeCone(double radius, double length, const std::string& where) {
 }
 
 GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
-                     const std::string& where, std::vector<std::string>* notes) {
+                     const std::string& where, std::vector<std::string>* notes, bool solid) {
   if (triangles.empty()) fail(where, "has no triangles");
   std::vector<fcl::Triangle> kept;
   kept.reserve(triangles.size());
@@ -89,6 +90,7 @@ GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::ve
     if (!isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]])) kept.push_back(triangle);
   }
   if (kept.empty()) fail(where, "has no triangle with an area");
+  if (solid) kept = triangles;
   if (notes && kept.size() < triangles.size()) {
     notes->push_back(where + ": " + std::to_string(triangles.size() - kept.size()) + " of " +
                      std::to_string(triangles.size()) + " triangles have no area and were left out");
@@ -99,7 +101,12 @@ GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::ve
     fail(where, "FCL cannot build its tree");
   }
   model->computeLocalAABB();
-  return model;
+  if (!solid) return model;
+  try {
+    return makeSolid(*model);
+  } catch (const std::invalid_argument& error) {
+    fail(where, error.what());
+  }
 }
 
 }  // namespace detail
@@ -135,7 +142,7 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
 }  // namespace
 
 std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const Eigen::Vector3d& scale,
-                                                  std::vector<std::string>* notes) {
+                                                  std::vector<std::string>* notes, bool solid) {
   const std::string where = "mesh '" + path + "'";
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     detail::fail(where, "its scale has an entry that is zero or not finite");
@@ -151,7 +158,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   TriangleSoup soup;
   collect(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), soup);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
-  return detail::makeMesh(soup.vertices, soup.triangles, where, notes);
+  return detail::makeMesh(soup.vertices, soup.triangles, where, notes, solid);
 }
 
 }  // namespace fcl_artic

@@ -40,10 +40,12 @@ class UniqueNames {
 
 class SceneBuilder {
  public:
+  explicit SceneBuilder(const SceneOptions& asked) : options(asked) {}
   void add(const std::string& name, const detail::GeometryPtr& geometry, const Eigen::Isometry3d& M_0) {
     scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(geometry, M_0)});
   }
   Scene scene;
+  const SceneOptions& options;
 
  private:
   UniqueNames names_;
@@ -140,7 +142,7 @@ class MoveItSceneReader {
         const auto a = count(part, "triangle"), b = count(part, "triangle"), c = count(part, "triangle");
         triangles.emplace_back(a, b, c);
       }
-      return detail::makeMesh(vertices, triangles, part, &builder_.scene.notes);
+      return detail::makeMesh(vertices, triangles, part, &builder_.scene.notes, builder_.options.solid_meshes);
     }
     fail(part, "has a shape '" + kind + "'; box, sphere, cylinder, cone, plane and mesh are read");
   }
@@ -288,7 +290,9 @@ void readOctoMap(const std::string& path, bool binary, bool unknown_cells, Scene
 }
 
 void readRobot(const std::string& path, SceneBuilder& builder) {
-  const Robot robot = loadUrdf(path);
+  UrdfOptions options;
+  options.solid_meshes = builder.options.solid_meshes;
+  const Robot robot = loadUrdf(path, options);
   std::vector<Eigen::Isometry3d> M_0;
   robot.tree->forwardKinematics(robot.tree->neutralConfiguration(), M_0);
   for (const LinkGeometry& g : robot.geometry) {
@@ -330,7 +334,7 @@ Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree)
 Scene loadScene(const std::string& path, const SceneOptions& options) {
   std::string ending = fs::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  SceneBuilder builder;
+  SceneBuilder builder(options);
   if (ending == ".urdf") {
     readRobot(path, builder);
   } else if (ending == ".scene") {
@@ -338,7 +342,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
   } else {
-    builder.add(fs::path(path).stem().string(), loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes),
+    builder.add(fs::path(path).stem().string(), loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes),
                 Eigen::Isometry3d::Identity());
   }
   return std::move(builder.scene);

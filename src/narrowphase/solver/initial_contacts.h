@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs that touch at t = 0 and are ignored until they have separated.
+// Pairs that touch at t = 0 and are ignored until they have separated. Solid meshes have where their surfaces are apart
+// and neither body lies within the other.
 #pragma once
 
 namespace fcl_artic {
@@ -22,7 +23,11 @@ inline double Solver::firstFreeTime(double start, double width, int begin, int e
   const unsigned blocked = blocked_;
   for (int lane = 0; lane < kLanes; ++lane) {
     const double lane_start = start + lane * w;
-    if (!(blocked >> lane & 1)) return out_of_budget_ ? 2 : lane_start;
+    if (!(blocked >> lane & 1)) {
+      if (out_of_budget_) return 2;
+      if (mayBeContained(entries_[begin].pair, lane_start)) continue;  // and so it stays over the lane
+      return lane_start;
+    }
     if (w > 1.0 / 512 && w > query_->tolerance_time) {
       const double t = firstFreeTime(lane_start, w, begin, end);
       if (t < 2) return t;
@@ -53,11 +58,17 @@ inline void Solver::collectInitialContacts(int begin, int end) {
     blocked_ = 0;
     setupPair(e.pair);
     traverse(e.pair, e.a, e.b, 1);
-    if (!blocked_) continue;
+    if (!blocked_ && !isContained(e.pair)) continue;
     entries_.push(e);
     const PairParts pair = parts(e.pair);
     ignored_.push({e.pair, pair.a, pair.b, firstFreeTime(0, 1, entries_.size() - 1, entries_.size())});
     entries_.truncate(entries_.size() - 1);
+  }
+  // One within the other, with surfaces that are proven apart over the whole motion: that does not end.
+  for (int i = 0; i < contained_.size(); ++i) {
+    bool known = !mayIgnore(contained_[i].pair);
+    for (int j = 0; j < ignored_.size(); ++j) known = known || ignored_[j].pair == contained_[i].pair;
+    if (!known) ignored_.push({contained_[i].pair, contained_[i].body_a, contained_[i].body_b, 2});
   }
   decide_only_ = false;
   watching_ = true;
