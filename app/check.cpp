@@ -128,6 +128,10 @@ int run(const Options& options) {
       motion_notes.push_back(fmt::format("'{}' has no column for {}: at 0 all the time, a quaternion at no rotation",
                                          options.trajectory, waypoints.unnamed));
     }
+    if (waypoints.open_end) {
+      motion_notes.push_back(
+          fmt::format("the last line of '{}' has no line end: the file may be cut short", options.trajectory));
+    }
     for (std::size_t k = 0; k < waypoints.times.size(); ++k) {
       noteLimits(waypoints.configurations[k], fmt::format("waypoint at t = {:g}", waypoints.times[k]));
     }

@@ -11,6 +11,7 @@
 
 #include "bars.h"
 #include "exit_status.h"
+#include "files/files.h"
 #include "generator.h"
 #include "redon_options.h"
 #include "step_bench.h"
@@ -133,8 +134,8 @@ int runDepth(const DepthOptions& o) {
   }
   fmt::print("{}", textOf(table, 2, 2, table.columns.size()));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
-  if (!o.csv.empty()) writeFile(o.csv, csvOf(table));
-  if (!o.svg.empty()) writeFile(o.svg, toSvg({chart}));
+  if (!o.csv.empty()) files::write(o.csv, csvOf(table));
+  if (!o.svg.empty()) files::write(o.svg, toSvg({chart}));
   return differ ? kExitContact : kExitFree;
 }
 

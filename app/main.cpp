@@ -11,6 +11,7 @@
 #include "check.h"
 #include "compare.h"
 #include "exit_status.h"
+#include "files/files.h"
 #include "generate.h"
 
 int main(int argc, char** argv) {
@@ -31,10 +32,16 @@ int main(int argc, char** argv) {
     if (program.get_subcommands().empty() && !unknown.empty()) {
       fmt::print(stderr, "fcl_artic: error: '{}' is neither a verb nor an option\n", unknown.front());
     }
-    return program.exit(error) == 0 ? 0 : kExitError;  // help and version are no errors
+    exit_status = program.exit(error) == 0 ? 0 : kExitError;  // help and version are no errors
   } catch (const std::exception& error) {
     fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
-    return kExitError;
+    exit_status = kExitError;
+  }
+  try {
+    fcl_artic::files::flushStandardOutput();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
+    exit_status = kExitError;
   }
   return exit_status;
 }

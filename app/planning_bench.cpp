@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 
 #include "bars.h"
 #include "exit_status.h"
+#include "files/files.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
@@ -274,11 +274,6 @@ class Bench {
   Example example_;
 };
 
-void write(const fs::path& path, const std::string& content) {
-  std::ofstream out(path, std::ios::binary);
-  if (!(out << content).flush()) throw std::runtime_error("cannot write '" + path.string() + "'");
-}
-
 bool hasPictures() {
   try {
     render::requirePictures();
@@ -297,9 +292,9 @@ int benchPlanning(const PlanningBenchOptions& options) {
   bench.run();
   fmt::print("{}", bench.table());
   if (!options.out.empty()) {
-    write(out / "planning.txt", bench.table());
-    write(out / "planning.csv", bench.csv());
-    write(out / "planning.svg", bench.plot());
+    files::write(out / "planning.txt", bench.table());
+    files::write(out / "planning.csv", bench.csv());
+    files::write(out / "planning.svg", bench.plot());
     if (!hasPictures()) {
       fmt::print("no picture: this program was built without the component visibility or libpng\n");
     } else if (!bench.picture((out / "planning.png").string())) {

@@ -2,8 +2,6 @@
 #include "step_bench.h"
 
 #include <algorithm>
-#include <fstream>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -105,13 +103,6 @@ std::string csvOf(const Table& table) {
     for (std::size_t c = 0; c < row.size(); ++c) add(c, row[c]);
   }
   return out;
-}
-
-void writeFile(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("can't write '" + path + "'");
 }
 
 }  // namespace fcl_artic::app

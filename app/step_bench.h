@@ -50,7 +50,5 @@ struct Table {
 /// @param begin, end  columns to print behind the first `names`; rows without a cell in them are left out.
 std::string textOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end);
 std::string csvOf(const Table& table);
-/// @throws std::runtime_error naming the file.
-void writeFile(const std::string& path, const std::string& text);
 
 }  // namespace fcl_artic::app

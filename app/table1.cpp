@@ -17,6 +17,7 @@
 #include "bars.h"
 #include "exit_status.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "files/files.h"
 #include "generator.h"
 #include "progress.h"
 #include "redon_options.h"
@@ -294,8 +295,8 @@ int runTable1(const Table1Options& o) {
       executor == o.executor ? "" : fmt::format(" ({})", culler->fallbackReason()), textOf(table, 3, 3, 11),
       textOf(table, 3, 11, table.columns.size()));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
-  if (!o.csv.empty()) writeFile(o.csv, csvOf(table));
-  if (!o.svg.empty()) writeFile(o.svg, svgOf(groups, variants, o));
+  if (!o.csv.empty()) files::write(o.csv, csvOf(table));
+  if (!o.svg.empty()) files::write(o.svg, svgOf(groups, variants, o));
   return differ ? kExitContact : kExitFree;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "configuration.h"
+#include "files/files.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -62,14 +62,18 @@ std::vector<int> readHeader(const KinematicTree& tree, const std::vector<std::st
 }  // namespace
 
 Waypoints readWaypoints(const KinematicTree& tree, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw std::invalid_argument(fmt::format("'{}': no such file, or it cannot be read", path));
+  return parseWaypoints(tree, files::read(path), path);
+}
+
+Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, const std::string& path) {
   Waypoints out;
+  out.open_end = !content.empty() && content.back() != '\n';
   std::vector<int> columns;
   std::vector<std::string> names;
-  std::string text;
-  for (int number = 1; std::getline(in, text); ++number) {
-    std::string_view line = text;
+  for (int number = 1; !content.empty(); ++number) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    std::string_view line = content.substr(0, end);
+    content.remove_prefix(std::min(end + 1, content.size()));
     if (number == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
     if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
     const std::string where = fmt::format("'{}' line {}", path, number);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fcl_artic/trajectory.h"
@@ -17,10 +18,14 @@ struct Waypoints {
   std::vector<double> times;
   std::vector<Eigen::VectorXd> configurations;
   std::string unnamed;  ///< variables without a column
+  bool open_end = false;  ///< the last line has no line end: the file may be cut short within its last number
 };
 
-/// @throws std::invalid_argument naming file, line and column.
+/// @throws std::invalid_argument naming file, line and column; std::runtime_error for a file that can't be read to its
+/// end.
 Waypoints readWaypoints(const KinematicTree& tree, const std::string& path);
+/// The same of a file's content. @param path  named in errors.
+Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, const std::string& path);
 
 /// `cubic` passes each inner waypoint at the speed of the parabola through it and its neighbours, and starts and ends at
 /// rest.

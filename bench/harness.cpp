@@ -18,6 +18,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "files/files.h"
+
 namespace fcl_artic::bench {
 namespace {
 
@@ -205,6 +207,7 @@ int Report::finish() const {
     write(program_ + ".json", all.dump(1) + '\n');
     write(program_ + ".txt", table());
   }
+  files::flushStandardOutput();
   return failed_ ? 1 : 0;
 }
 
@@ -212,8 +215,7 @@ void Report::write(const std::string& file, const std::string& content) const {
   if (results_folder.empty()) return;
   const auto folder = std::filesystem::path(results_folder) / machineName();
   std::filesystem::create_directories(folder);
-  std::ofstream out(folder / file);
-  if (!(out << content).flush()) throw std::runtime_error("cannot write " + (folder / file).string());
+  files::write(folder / file, content);
 }
 
 std::string machineName() {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image.h"
 
-#include <cerrno>
-#include <cstring>
 #include <stdexcept>
 
 #include <png.h>
+
+#include "files/files.h"
 
 namespace fcl_artic::render {
 
@@ -15,11 +15,13 @@ void writePng(const std::string& path, const Image& image) {
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
   header.format = PNG_FORMAT_RGB;
-  errno = 0;
-  if (!png_image_write_to_file(&header, path.c_str(), 0, image.rgb.data(), 0, nullptr)) {
-    const std::string reason = errno ? std::strerror(errno) : header.message;
-    throw std::runtime_error("can't write the picture '" + path + "': " + reason);
+  std::string content(PNG_IMAGE_PNG_SIZE_MAX(header), '\0');
+  png_alloc_size_t size = content.size();
+  if (!png_image_write_to_memory(&header, content.data(), &size, 0, image.rgb.data(), 0, nullptr)) {
+    throw std::runtime_error("cannot write '" + path + "': " + header.message);
   }
+  content.resize(size);
+  files::write(path, content);
 }
 
 }  // namespace fcl_artic::render

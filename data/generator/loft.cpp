@@ -2,8 +2,6 @@
 #include "loft.h"
 
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
 
 namespace fcl_artic::generator {
 
@@ -103,13 +101,6 @@ void snap(Mesh& mesh) {
   for (auto& v : mesh.vertices) {
     for (double& x : v) x = static_cast<double>(std::llround(x * kGridPerMetre)) / kGridPerMetre;
   }
-}
-
-void writeText(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error("can't write '" + path + "'");
 }
 
 std::string objText(const Mesh& mesh, const std::string& title) {

@@ -38,8 +38,6 @@ void addPlate(Mesh& mesh, const Eigen::Isometry3d& pose, const std::vector<Circl
 /// Puts the vertices on the grid of 10 µm.
 void snap(Mesh& mesh);
 
-/// @throws std::runtime_error naming the file when it can't be written.
-void writeText(const std::string& path, const std::string& text);
 /// The mesh, snapped, as OBJ. `title` becomes a comment.
 std::string objText(const Mesh& mesh, const std::string& title);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "files/files.h"
 #include "loft.h"
 
 namespace fcl_artic::generator {
@@ -247,8 +248,9 @@ Mesh pipes(std::size_t triangles, std::uint64_t seed) {
 }
 
 void writePipes(std::size_t triangles, std::uint64_t seed, const std::string& obj_path) {
-  writeText(obj_path, objText(pipes(triangles, seed), "Pipes: " + std::to_string(triangles) +
-                                                          " triangles wanted, seed " + std::to_string(seed) + "; m"));
+  files::write(obj_path,
+               objText(pipes(triangles, seed), "Pipes: " + std::to_string(triangles) + " triangles wanted, seed " +
+                                                   std::to_string(seed) + "; m"));
 }
 
 }  // namespace fcl_artic::generator

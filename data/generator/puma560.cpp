@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "files/files.h"
 #include "loft.h"
 
 namespace fcl_artic::generator {
@@ -202,9 +203,9 @@ void writePuma560(const std::string& dir) {
   std::filesystem::create_directories(root / "meshes", error);
   if (error) throw std::runtime_error("can't make folder '" + (root / "meshes").string() + "': " + error.message());
   for (const NamedMesh& m : puma560Meshes()) {
-    writeText((root / "meshes" / (m.link + ".obj")).string(), objText(m.mesh, "PUMA 560, link " + m.link + "; m"));
+    files::write((root / "meshes" / (m.link + ".obj")).string(), objText(m.mesh, "PUMA 560, link " + m.link + "; m"));
   }
-  writeText((root / "puma560.urdf").string(), urdf());
+  files::write((root / "puma560.urdf").string(), urdf());
 }
 
 }  // namespace fcl_artic::generator

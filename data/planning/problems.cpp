@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <stdexcept>
 
 #include <fcl/geometry/shape/box.h>
@@ -12,15 +11,23 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <nlohmann/json.hpp>
 
+#include "files/files.h"
+
 namespace fcl_artic::planning_data {
 namespace {
 
 using nlohmann::json;
 
-json readJson(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) throw std::runtime_error("cannot read '" + path.string() + "'");
-  return json::parse(in);
+/// @param use  called with what the file holds. @throws std::runtime_error naming the file, also for what is missing in
+/// it.
+template <typename F>
+auto withJson(const std::filesystem::path& path, F&& use) {
+  const std::string content = files::read(path);
+  try {
+    return use(json::parse(content));
+  } catch (const std::exception& error) {
+    throw std::runtime_error("'" + path.string() + "': " + error.what());
+  }
 }
 
 std::shared_ptr<fcl::CollisionGeometryd> toGeometry(const json& obstacle) {
@@ -76,51 +83,54 @@ Eigen::VectorXd Environment::configuration(const KinematicTree& tree, const std:
 }
 
 Environment readEnvironment(const std::filesystem::path& path, const KinematicTree& tree) {
-  const json file = readJson(path);
-  Environment environment;
-  environment.name = path.stem().string();
-  file.at("joints").get_to(environment.joints);
-  for (const std::string& joint : environment.joints) {
-    if (variable(tree, joint) < 0) throw std::runtime_error("'" + path.string() + "': unknown joint '" + joint + "'");
-  }
-  for (const auto& [joint, value] : file.at("locked_joints").items()) {
-    if (variable(tree, joint) >= 0) environment.locked[joint] = value;
-  }
-  for (const json& given : file.at("problems")) {
-    Problem& problem = environment.problems.emplace_back();
-    given.at("index").get_to(problem.index);
-    given.at("start").get_to(problem.start);
-    given.at("goal").get_to(problem.goal);
-    for (const json& obstacle : given.at("obstacles")) {
-      problem.scene.obstacles.push_back(
-          {obstacle.at("name"), std::make_shared<fcl::CollisionObjectd>(toGeometry(obstacle), toPose(obstacle))});
+  return withJson(path, [&](const json& file) {
+    Environment environment;
+    environment.name = path.stem().string();
+    file.at("joints").get_to(environment.joints);
+    for (const std::string& joint : environment.joints) {
+      if (variable(tree, joint) < 0) throw std::runtime_error("unknown joint '" + joint + "'");
     }
-  }
-  return environment;
+    for (const auto& [joint, value] : file.at("locked_joints").items()) {
+      if (variable(tree, joint) >= 0) environment.locked[joint] = value;
+    }
+    for (const json& given : file.at("problems")) {
+      Problem& problem = environment.problems.emplace_back();
+      given.at("index").get_to(problem.index);
+      given.at("start").get_to(problem.start);
+      given.at("goal").get_to(problem.goal);
+      for (const json& obstacle : given.at("obstacles")) {
+        problem.scene.obstacles.push_back(
+            {obstacle.at("name"), std::make_shared<fcl::CollisionObjectd>(toGeometry(obstacle), toPose(obstacle))});
+      }
+    }
+    return environment;
+  });
 }
 
 std::vector<Edge> readTrace(const std::filesystem::path& path) {
-  const json file = readJson(path);
-  std::vector<Edge> edges;
-  for (const json& given : file.at("edges")) {
-    Edge& edge = edges.emplace_back(readEdge(given));
-    file.at("environment").get_to(edge.environment);
-    edge.hit = given.at("dense") == "hit";
-    if (edge.hit) given.at("first_hit").get_to(edge.seen_at);
-  }
-  return edges;
+  return withJson(path, [](const json& file) {
+    std::vector<Edge> edges;
+    for (const json& given : file.at("edges")) {
+      Edge& edge = edges.emplace_back(readEdge(given));
+      file.at("environment").get_to(edge.environment);
+      edge.hit = given.at("dense") == "hit";
+      if (edge.hit) given.at("first_hit").get_to(edge.seen_at);
+    }
+    return edges;
+  });
 }
 
 std::vector<Edge> readMissed(const std::filesystem::path& path) {
-  const json file = readJson(path);
-  std::vector<Edge> edges;
-  for (const json& given : file.at("edges")) {
-    Edge& edge = edges.emplace_back(readEdge(given));
-    given.at("environment").get_to(edge.environment);
-    edge.hit = true;
-    given.at("hit_at").get_to(edge.seen_at);
-  }
-  return edges;
+  return withJson(path, [](const json& file) {
+    std::vector<Edge> edges;
+    for (const json& given : file.at("edges")) {
+      Edge& edge = edges.emplace_back(readEdge(given));
+      given.at("environment").get_to(edge.environment);
+      edge.hit = true;
+      given.at("hit_at").get_to(edge.seen_at);
+    }
+    return edges;
+  });
 }
 
 std::filesystem::path problemsPath(const std::filesystem::path& data, const std::string& robot,

@@ -203,6 +203,76 @@ TEST_F(SceneTest, OctoMapErrorsNameTheFile) {
   expectContains(errorOf("other.bt", other), "other.bt': holds a tree of type 'Other'");
 }
 
+TEST_F(SceneTest, OctoMapHasSixteenLevels) {
+  const auto chain = [](int levels) {  // each node with one child, the last a leaf
+    std::string data;
+    for (int k = 1; k < levels; ++k) data += std::string("\x03\0", 2);
+    return octomap("Octomap OcTree binary file", levels + 1, data + std::string("\x02\0", 2));
+  };
+  EXPECT_EQ(load("levels.bt", chain(16)).obstacles.size(), 1u);
+  expectContains(errorOf("deep.bt", chain(17)), "deep.bt': has a node below the 16 levels of an OctoMap");
+  expectContains(errorOf("deeper.bt", chain(300000)), "below the 16 levels");
+  std::string full;
+  for (int k = 0; k < 17; ++k) full += node(1, 1);
+  expectContains(errorOf("deep.ot", octomap("Octomap OcTree file", 18, full + node(1, 0))), "below the 16 levels");
+}
+
+// What says that it is empty though bytes follow would pass as free.
+TEST_F(SceneTest, OctoMapHoldsWhatItsHeadSays) {
+  expectContains(errorOf("none.bt", octomap("Octomap OcTree binary file", 0, "\x09\x80")),
+                 "goes on after its last node");
+  expectContains(errorOf("more.ot", octomap("Octomap OcTree file", 1, node(1, 0) + node(1, 0))), "goes on after");
+  EXPECT_TRUE(load("none.bt", octomap("Octomap OcTree binary file", 0, "")).obstacles.empty());
+}
+
+/// Whatever is missing at the end of a file is missed, at whatever byte it ends.
+TEST_F(SceneTest, FilesCutShortAnywhereAreRefused) {
+  const std::string v = "0 0 0\n1 0 0\n0 1 0\n", facet =
+                                                     "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                                                     "vertex 0 1 0\nendloop\nendfacet\n";
+  const float corners[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::string binary_stl(80, ' '), binary_ply;
+  for (int i = 0; i < 2; ++i) {
+    if (i == 0) binary_stl += std::string("\2\0\0\0", 4);
+    binary_stl += std::string(reinterpret_cast<const char*>(corners), sizeof corners) + std::string(2, '\0');
+  }
+  const auto plyHead = [](const std::string& format) {
+    return "ply\nformat " + format +
+           " 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  };
+  binary_ply = plyHead("binary_little_endian") +
+               std::string(reinterpret_cast<const char*>(corners + 3), 9 * sizeof(float)) +
+               std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  const std::string solid = "solid s\n" + facet + facet + "endsolid";
+  std::string solid_binary = binary_stl;
+  solid_binary.replace(0, 5, "solid");
+  const struct {
+    const char* name;
+    std::string content;
+  } files[] = {
+      {"a.stl", solid},
+      {"b.stl", binary_stl},
+      {"c.stl", solid_binary},
+      {"a.ply", plyHead("ascii") + v + "3 0 1 2"},
+      {"b.ply", binary_ply},
+      {"a.off", "OFF\n3 1 0\n" + v + "3 0 1 2"},
+      {"a.bt", kBinary},
+      {"a.ot", octomap("Octomap OcTree file", 3, node(1, 0x81) + node(-1, 0) + node(2, 0))},
+      {"a.scene", "s\n* a\n1\nbox\n1 1 1\n0 0 0\n0 0 0 1\n0 0 0 0\n."},
+      {"a.urdf",
+       "<robot name='r'><link name='a'><collision><geometry><sphere "
+       "radius='1'/></geometry></collision></link></robot>"},
+  };
+  for (const auto& file : files) {
+    SCOPED_TRACE(file.name);
+    EXPECT_FALSE(load(file.name, file.content).obstacles.empty());
+    for (std::size_t size = 0; size < file.content.size(); ++size) {
+      expectContains(errorOf(file.name, file.content.substr(0, size)), file.name);
+    }
+  }
+}
+
 TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {
   for (const char* name : {"none.obj", "none.urdf", "none.scene", "none.bt", "none.ot", "none"}) {
     expectContains(messageOf([&] { loadScene(path(name)); }), name);

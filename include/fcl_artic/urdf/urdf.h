@@ -75,7 +75,7 @@ struct AllowedPair {
 /// Sampled, not proven: 'never' is for speed, and a pair that does collide rarely may be among them.
 FCL_ARTIC_EXPORT std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int samples = 10000,
                                                                   std::uint64_t seed = 1);
-/// Writes an SRDF with these pairs.
+/// Writes an SRDF with these pairs, all or nothing. @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name,
                                 const std::vector<AllowedPair>& pairs);
 

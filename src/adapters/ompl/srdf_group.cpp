@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "fcl_artic/ompl/planning_setup.h"
+#include "files/files.h"
 
 namespace fcl_artic::planning {
 namespace {
@@ -17,7 +18,8 @@ using Element = tinyxml2::XMLElement;
 class GroupReader {
  public:
   GroupReader(const std::string& path, const KinematicTree& tree) : where_("'" + path + "'"), tree_(tree) {
-    if (document_.LoadFile(path.c_str()) != tinyxml2::XML_SUCCESS) fail(document_.ErrorStr());
+    const std::string xml = files::read(path);
+    if (document_.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(document_.ErrorStr());
     root_ = document_.RootElement();
     if (!root_ || std::string(root_->Name()) != "robot") fail("is not an SRDF: the root element is not <robot>");
     forEach(*root_, "virtual_joint", [&](const Element& e) { virtual_types_[attribute(e, "name")] = attribute(e, "type"); });

@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fcl_artic::detail {
@@ -18,9 +19,6 @@ using GeometryPtr = std::shared_ptr<fcl::CollisionGeometryd>;
 [[noreturn]] inline void fail(const std::string& where, const std::string& reason) {
   throw std::runtime_error(where + ": " + reason);
 }
-
-/// @throws std::runtime_error naming the file.
-std::string readFile(const std::string& path);
 
 /// A number as messages show it.
 std::string text(double value);
@@ -37,5 +35,12 @@ GeometryPtr makeCone(double radius, double length, const std::string& where);
 /// left; for a mesh that is to be a solid and can't be one.
 GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid = false);
+
+/// Refuses an STL, PLY or OFF file that is cut short or broken; others pass.
+/// @param ending  of the file's name, in lower case, such as ".stl". @throws std::runtime_error naming `where`.
+void requireWholeMesh(std::string_view content, const std::string& ending, const std::string& where);
+
+/// The ending of a file's name, in lower case, such as ".stl".
+std::string endingOf(const std::string& path);
 
 }  // namespace fcl_artic::detail

@@ -8,16 +8,21 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 
+#include <algorithm>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "detail.h"
 #include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "files/files.h"
 
 namespace fcl_artic {
 namespace detail {
@@ -41,13 +46,10 @@ std::string text(double value) {
   return out.str();
 }
 
-std::string readFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream content;
-  if (!in || std::filesystem::is_directory(path) || !(content << in.rdbuf())) {
-    fail("'" + path + "'", "cannot be read, or is empty");
-  }
-  return content.str();
+std::string endingOf(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  return ending;
 }
 
 GeometryPtr makeBox(const Eigen::Vector3d& size, const std::string& where) {
@@ -139,6 +141,61 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
   for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], M, soup);
 }
 
+/// A file in memory, as assimp reads.
+class MemoryStream : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(std::string content) : content_(std::move(content)) {}
+  std::size_t Read(void* to, std::size_t size, std::size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (content_.size() - at_) / size);
+    std::memcpy(to, content_.data() + at_, whole * size);
+    at_ += whole * size;
+    return whole;
+  }
+  std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin from) override {
+    const std::size_t base = from == aiOrigin_SET ? 0 : from == aiOrigin_CUR ? at_ : content_.size();
+    const std::size_t to = from == aiOrigin_END ? base - offset : base + offset;  // as assimp's own memory stream
+    if (to > content_.size()) return aiReturn_FAILURE;
+    at_ = to;
+    return aiReturn_SUCCESS;
+  }
+  std::size_t Tell() const override { return at_; }
+  std::size_t FileSize() const override { return content_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string content_;
+  std::size_t at_ = 0;
+};
+
+/// Reads whole files for assimp, whose own streams take an error for the file's end. Keeps the first error. The mesh
+/// itself is what was looked at before, even when the file has changed since.
+class CheckedFiles : public Assimp::IOSystem {
+ public:
+  CheckedFiles(std::string path, const std::string& content) : path_(std::move(path)), content_(content) {}
+  bool Exists(const char* path) const override {
+    std::error_code error;
+    return std::filesystem::exists(path, error);
+  }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    if (std::strchr(mode, 'r') == nullptr || !Exists(path)) return nullptr;
+    try {
+      return new MemoryStream(path == path_ ? content_ : files::read(path));
+    } catch (const std::runtime_error& error) {
+      if (error_.empty()) error_ = error.what();
+      return nullptr;
+    }
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+  const std::string& error() const { return error_; }
+
+ private:
+  const std::string path_, &content_;
+  std::string error_;
+};
+
 }  // namespace
 
 std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const Eigen::Vector3d& scale,
@@ -149,10 +206,19 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   }
   if (std::error_code error; !std::filesystem::is_regular_file(path, error)) detail::fail(where, "no such file");
 
+  const std::string ending = detail::endingOf(path), content = files::read(path);
+  detail::requireWholeMesh(content, ending, where);
+  if (notes && ending == ".obj" && !content.empty() && content.back() != '\n') {
+    notes->push_back(where + ": its last line has no line end: the file may be cut short");
+  }
+
   Assimp::Importer importer;
+  auto* const read_by = new CheckedFiles(path, content);  // the importer's from now on
+  importer.SetIOHandler(read_by);
   // As in ROS, a COLLADA file's unit counts and its up axis does not.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (!read_by->error().empty()) detail::fail(where, read_by->error());
   if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
 
   TriangleSoup soup;

@@ -3,17 +3,17 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <locale>
 #include <map>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "files/files.h"
 
 namespace fcl_artic {
 namespace {
@@ -56,7 +56,7 @@ class SceneBuilder {
 class MoveItSceneReader {
  public:
   MoveItSceneReader(const std::string& path, SceneBuilder& builder)
-      : where_("'" + path + "'"), in_(detail::readFile(path)), builder_(builder) {
+      : where_("'" + path + "'"), in_(files::read(path)), builder_(builder) {
     in_.imbue(std::locale::classic());
   }
 
@@ -254,6 +254,53 @@ OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title) {
   return header;
 }
 
+/// Walks over the bytes of an OctoMap's nodes. OctoMap's own readers go as deep as the file says, though a tree has 16
+/// levels, and stop where they think that they are done.
+class OctoMapNodes {
+ public:
+  /// @param node_bytes  of a full tree: those of a node but for its children's; 0: a binary tree.
+  OctoMapNodes(std::string_view bytes, std::size_t node_bytes, const std::string& where)
+      : bytes_(bytes), node_bytes_(node_bytes), where_(where) {}
+
+  void requireWhole(std::size_t count) {
+    if (count > 0) {
+      count_ = 1;
+      walk(0);
+    }
+    if (count_ != count) {
+      fail(where_, "holds " + std::to_string(count_) + " nodes, its head says " + std::to_string(count));
+    }
+    if (at_ < bytes_.size()) fail(where_, "goes on after its last node");
+  }
+
+ private:
+  static constexpr int kLevels = 16;
+
+  unsigned byte() {
+    if (at_ >= bytes_.size()) fail(where_, "is cut short");
+    return static_cast<unsigned char>(bytes_[at_++]);
+  }
+  void walk(int level) {
+    for (std::size_t k = 0; k < node_bytes_; ++k) byte();
+    const unsigned first = byte(), children = node_bytes_ > 0 ? first : first | byte() << 8;
+    int inner = 0;
+    for (int i = 0; i < 8; ++i) {
+      // Two bits a child in a binary tree: 0 none, 3 one with children, else a leaf. One bit in a full one.
+      const unsigned child = node_bytes_ > 0 ? 3 * (children >> i & 1) : children >> 2 * i & 3;
+      if (child == 0) continue;
+      if (level == kLevels) fail(where_, "has a node below the 16 levels of an OctoMap");
+      ++count_;
+      inner += child == 3;
+    }
+    for (; inner > 0; --inner) walk(level + 1);
+  }
+
+  std::string_view bytes_;
+  const std::size_t node_bytes_;
+  const std::string& where_;
+  std::size_t at_ = 0, count_ = 0;
+};
+
 template <class Tree>
 void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const std::string& path,
               bool unknown_cells, SceneBuilder& builder) {
@@ -268,13 +315,20 @@ void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const 
 
 void readOctoMap(const std::string& path, bool binary, bool unknown_cells, SceneBuilder& builder) {
   const std::string where = "'" + path + "'";
-  std::istringstream in(detail::readFile(path), std::ios::binary);
+  const std::string content = files::read(path);
+  std::istringstream in(content, std::ios::binary);
   // OctoMap's readers go on past the end of a file that is cut short; an exception stops them.
   in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   try {
     const auto header = readOctoMapHeader(in, binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file");
     if (header.id.empty() || !(header.resolution > 0)) {
       fail(where, std::string("is not an OctoMap file of the kind ") + (binary ? ".bt" : ".ot"));
+    }
+    // A colour is three bytes more.
+    const std::size_t node_bytes = binary ? 0 : header.id == "ColorOcTree" ? 7 : 4;
+    if (header.id == "OcTree" || header.id == "ColorOcTree") {
+      const std::string_view nodes = std::string_view(content).substr(static_cast<std::size_t>(in.tellg()));
+      OctoMapNodes(nodes, node_bytes, where).requireWhole(header.size);
     }
     if (header.id == "OcTree") {
       readTree<octomap::OcTree>(in, header, binary, path, unknown_cells, builder);
@@ -332,8 +386,7 @@ Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree)
 }
 
 Scene loadScene(const std::string& path, const SceneOptions& options) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = detail::endingOf(path);
   SceneBuilder builder(options);
   if (ending == ".urdf") {
     readRobot(path, builder);

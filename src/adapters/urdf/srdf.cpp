@@ -8,6 +8,7 @@
 
 #include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "files/files.h"
 
 namespace fcl_artic {
 namespace {
@@ -103,7 +104,7 @@ class LinkCollider {
 
 AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree) {
   const std::string where = "'" + path + "'";
-  const std::string xml = detail::readFile(path);
+  const std::string xml = files::read(path);
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
   const tinyxml2::XMLElement* robot = document.RootElement();
@@ -232,7 +233,9 @@ void writeSrdf(const std::string& path, const std::string& robot_name, const std
     element->SetAttribute("link2", pair.link2.c_str());
     element->SetAttribute("reason", pair.reason.c_str());
   }
-  if (document.SaveFile(path.c_str()) != tinyxml2::XML_SUCCESS) fail("'" + path + "'", "cannot be written");
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  files::write(path, printer.CStr());
 }
 
 }  // namespace fcl_artic

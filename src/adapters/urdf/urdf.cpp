@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "detail.h"
+#include "files/files.h"
 
 namespace fcl_artic {
 namespace {
@@ -310,7 +311,7 @@ void Robot::addTo(ArticulatedCollisionManager& manager) const {
 
 Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   const std::string where = "'" + path + "'";
-  const Document document = readDocument(where, detail::readFile(path));
+  const Document document = readDocument(where, files::read(path));
   Robot robot;
   const urdf::ModelInterfaceSharedPtr model = parse(where, document.xml, robot.notes);
   robot.tree = makeTree(where, *model, document, robot.notes);
