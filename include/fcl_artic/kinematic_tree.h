@@ -27,8 +27,8 @@ using JointId = int;
 /// A quaternion is accepted when its length is 1 within 1e-3, and is normalised.
 enum class JointType { fixed, revolute, continuous, prismatic, planar, spherical, floating };
 
-/// q_this = multiplier * q_master + offset, as in URDF. The master may not be a mimic joint itself; both have one
-/// variable.
+/// q_this = multiplier * q_master + offset, as in URDF; both have one variable. Where the master is a mimic itself, the
+/// tree keeps what that comes to, rounded: a mimic of the joint that the chain ends at.
 struct Mimic {
   std::string master;  ///< name of the joint that is followed
   double multiplier = 1;
@@ -90,7 +90,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   LinkId addLink(const std::string& name);
   /// Adds a joint between two known links. The tree is unchanged when this throws.
   /// @throws std::invalid_argument, naming joint and reason: repeated name, unknown link, a child that has a parent
-  ///   already, a loop, a zero or non-finite axis, a rotation that is not orthonormal to 1e-9, an unknown or mimicking
+  ///   already, a loop, a zero or non-finite axis, a rotation that is not orthonormal to 1e-9, an unknown or fixed
   ///   master.
   JointId addJoint(const Joint& joint);
 

@@ -131,6 +131,7 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) refuse("has a limit that is not a number");
 
   int variable = moves ? dof() : -1;
+  Mimic followed = joint.mimic;
   if (joint.mimics) {
     if (!moves) refuse("is fixed and cannot mimic");
     if (numVariables(joint.type) > 1) refuse("has more than one variable and cannot mimic");
@@ -139,14 +140,23 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     }
     const JointId master = findJoint(joint.mimic.master);
     if (master < 0) refuse("mimics an unknown joint '" + joint.mimic.master + "'");
-    if (joints_[master].mimics) refuse("mimics joint '" + joint.mimic.master + "', which is a mimic joint itself");
     variable = joint_variable_[master];
     if (variable < 0) refuse("mimics joint '" + joint.mimic.master + "', which is fixed");
     if (numVariables(master) > 1) refuse("mimics joint '" + joint.mimic.master + "', which has more than one variable");
+    if (joints_[master].mimics) {  // its own mimic is one of the joint at the end of the chain already
+      const Mimic& next = joints_[master].mimic;
+      followed = {next.master, joint.mimic.multiplier * next.multiplier,
+                  joint.mimic.multiplier * next.offset + joint.mimic.offset};
+      if (!std::isfinite(followed.multiplier) || !std::isfinite(followed.offset)) {
+        refuse("mimics joint '" + next.master + "' through '" + joint.mimic.master +
+               "' with a multiplier or offset that is not finite");
+      }
+    }
   }
 
   const JointId id = numJoints();
   joints_.push_back(joint);
+  joints_.back().mimic = followed;
   joints_.back().origin.linear() = orthonormal(joint.origin.linear());
   if (has_axis) joints_.back().axis.stableNormalize();
   turns_.emplace_back(joints_.back());

@@ -92,6 +92,49 @@ TEST(KinematicTree, MimicFollowsItsMaster) {
   EXPECT_EQ(M_0[2].translation(), Eigen::Vector3d(0, -0.875, 0));
 }
 
+// second = -2 first + 0.125, third = 0.5 second + 1 = -first + 1.0625.
+TEST(KinematicTree, MimicOfAMimicFollowsTheLastMaster) {
+  KinematicTree tree("hand");
+  for (const char* link : {"palm", "a", "b", "c", "d"}) tree.addLink(link);
+  const auto add = [&](const char* name, const char* child, const Mimic& mimic) {
+    Joint joint = makeJoint(name, JointType::prismatic, "palm", child, {0, 0, 0}, {0, 1, 0});
+    joint.mimics = !mimic.master.empty();
+    joint.mimic = mimic;
+    return tree.addJoint(joint);
+  };
+  add("first", "a", {});
+  add("second", "b", {"first", -2, 0.125});
+  const JointId third = add("third", "c", {"second", 0.5, 1});
+  EXPECT_EQ(tree.dof(), 1);
+  EXPECT_EQ(tree.jointVariable(third), 0);
+  EXPECT_EQ(tree.joint(third).mimic.master, "first");
+  EXPECT_EQ(tree.joint(third).mimic.multiplier, -1);
+  EXPECT_EQ(tree.joint(third).mimic.offset, 1.0625);
+  const JointId fourth = add("fourth", "d", {"third", 4, 0});
+  const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.5);
+  EXPECT_EQ(tree.jointValue(third, q), 0.5625);
+  EXPECT_EQ(tree.jointValue(fourth, q), 2.25);
+  EXPECT_EQ(tree.linkPose(tree.link("d"), q).translation(), Eigen::Vector3d(0, 2.25, 0));
+}
+
+// A chain's factors multiply, and what they come to is kept within the proven range.
+TEST(KinematicTree, MimicOfAMimicBeyondTheProvenRangeIsRefused) {
+  KinematicTree tree("gears");
+  for (const char* link : {"base", "a", "b", "c"}) tree.addLink(link);
+  tree.addJoint(makeJoint("turn", JointType::revolute, "base", "a", {0, 0, 0}, {0, 0, 1}));
+  Joint fast = makeJoint("fast", JointType::revolute, "base", "b", {0, 0, 0}, {0, 0, 1});
+  fast.mimics = true;
+  fast.mimic = {"turn", 400, 0};
+  tree.addJoint(fast);
+  const Eigen::VectorXd q0 = Eigen::VectorXd::Zero(1), q1 = Eigen::VectorXd::Ones(1);
+  EXPECT_NO_THROW(JointMotion::linear(tree, q0, q1));
+  Joint faster = makeJoint("faster", JointType::revolute, "base", "c", {0, 0, 0}, {0, 0, 1});
+  faster.mimics = true;
+  faster.mimic = {"fast", 400, 0};
+  tree.addJoint(faster);
+  expectContains(messageOf<std::invalid_argument>([&] { JointMotion::linear(tree, q0, q1); }), "'faster'");
+}
+
 TEST(KinematicTree, OneLinksPoseIsThatOfAll) {
   const KinematicTree tree = planarArm();
   const Eigen::Vector2d q(0.7, -1.9);
@@ -162,7 +205,11 @@ TEST(KinematicTree, JointErrorsNameTheJointAndChangeNothing) {
       {"NaN limit", [](Joint& j) { j.upper = kNaN; }, "limit that is not a number"},
       {"unknown master", [](Joint& j) { j.mimics = true, j.mimic.master = "wrist"; }, "unknown joint 'wrist'"},
       {"fixed master", [](Joint& j) { j.mimics = true, j.mimic.master = "tool"; }, "'tool', which is fixed"},
-      {"master mimics", [](Joint& j) { j.mimics = true, j.mimic.master = "copy"; }, "'copy', which is a mimic joint"},
+      {"chain beyond doubles",
+       [](Joint& j) {
+         j.mimics = true, j.mimic = {"copy", 1e308, 0};
+       },
+       "mimics joint 'elbow' through 'copy' with a multiplier or offset that is not finite"},
       {"itself", [](Joint& j) { j.mimics = true, j.mimic.master = "new"; }, "mimics an unknown joint 'new'"},
       {"NaN multiplier",
        [](Joint& j) {
@@ -177,7 +224,7 @@ TEST(KinematicTree, JointErrorsNameTheJointAndChangeNothing) {
   tree.addLink("extra");
   Joint copy = makeJoint("copy", JointType::revolute, "base", "copied", {0, 0, 0}, {0, 0, 1});
   copy.mimics = true;
-  copy.mimic.master = "elbow";
+  copy.mimic = {"elbow", 2, 0};
   tree.addJoint(copy);
   const Joint good = makeJoint("new", JointType::revolute, "hand", "extra", {0, 0, 0}, {0, 0, 1});
   for (const BadJoint& c : cases) {

@@ -177,7 +177,7 @@ Shape randomShape(pairs::Random& random, double size, const std::string& folder)
 
 bool Link::moves(const std::vector<Link>& links) const {
   if (type == JointType::fixed) return false;
-  return master < 0 || links[static_cast<std::size_t>(master)].type != JointType::fixed;
+  return master < 0 || links[static_cast<std::size_t>(master)].moves(links);
 }
 
 RandomTree::RandomTree(pairs::Random& random, const std::string& folder) {
@@ -198,7 +198,7 @@ RandomTree::RandomTree(pairs::Random& random, const std::string& folder) {
       if (hasOneValue(link.type) && i > 1 && random.chance(0.2)) {
         const int master = 1 + random.below(i - 1);
         const Link& followed = links_[static_cast<std::size_t>(master)];
-        if (followed.master < 0 && (hasOneValue(followed.type) || followed.type == JointType::fixed)) {
+        if (hasOneValue(followed.type) || followed.type == JointType::fixed) {  // a mimic too
           link.master = master;
           link.multiplier = random.uniform(-1.5, 1.5);
           link.joint_offset = random.uniform(-0.5, 0.5);
@@ -272,15 +272,18 @@ std::vector<Isometry3d> RandomTree::poses(const std::vector<JointWay>& way, doub
     return w.from.empty() ? 0 : (1 - t) * w.from[k] + t * w.to[k];
   };
   std::vector<Isometry3d> M_0(links_.size(), Isometry3d::Identity());
+  std::vector<double> values(links_.size());  // masters come before their followers here
   for (int i = 0; i < static_cast<int>(links_.size()); ++i) {
     const Link& link = links_[static_cast<std::size_t>(i)];
     if (link.parent < 0) continue;
     Isometry3d& M = M_0[static_cast<std::size_t>(i)];
     M = M_0[static_cast<std::size_t>(link.parent)] * link.origin;
     const Vector3d axis = link.axis.normalized();
-    const double q = !hasOneValue(link.type) ? 0
-                     : link.master < 0       ? value(i, 0)
-                                             : link.multiplier * value(link.master, 0) + link.joint_offset;
+    double& q = values[static_cast<std::size_t>(i)];
+    if (hasOneValue(link.type)) {
+      q = link.master < 0 ? value(i, 0)
+                          : link.multiplier * values[static_cast<std::size_t>(link.master)] + link.joint_offset;
+    }
     switch (link.type) {
       case JointType::fixed:
         break;

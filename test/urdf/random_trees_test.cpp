@@ -23,6 +23,7 @@ TEST(RandomTrees, NothingIsMissedAndWrongAnswersWouldBeSeen) {
   EXPECT_LT(report.uncertain, report.trees / 50);
   for (const long count : report.of_kind) EXPECT_GT(count, report.joints / 20);
   EXPECT_GT(report.mimics, report.joints / 50);
+  EXPECT_GT(report.chains, report.mimics / 50);
   EXPECT_GT(report.spoilt, 50);
   EXPECT_GT(report.spoilt_seen, report.spoilt * 9 / 10);
 }

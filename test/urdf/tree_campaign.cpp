@@ -224,6 +224,7 @@ void judge(const Options& options, int number, const std::string& folder, Report
   report.pairs += c.numWatched();
   for (const Link& link : c.tree().links()) {
     report.mimics += link.master >= 0;
+    report.chains += link.master >= 0 && c.tree().links()[static_cast<std::size_t>(link.master)].master >= 0;
     for (const Shape& shape : link.shapes) report.meshes += shape.mesh;
     if (link.parent < 0) continue;
     static const JointType kinds[] = {JointType::revolute, JointType::continuous, JointType::prismatic,
@@ -262,6 +263,7 @@ void Report::add(const Report& o) {
   links += o.links;
   joints += o.joints;
   mimics += o.mimics;
+  chains += o.chains;
   meshes += o.meshes;
   for (int k = 0; k < 6; ++k) of_kind[k] += o.of_kind[k];
   hits += o.hits;
@@ -308,8 +310,8 @@ std::string toText(const Report& r) {
   std::ostringstream out;
   out << r.trees << " trees: " << r.links << " links, " << r.joints << " joints (revolute " << r.of_kind[0]
       << ", continuous " << r.of_kind[1] << ", prismatic " << r.of_kind[2] << ", fixed " << r.of_kind[3] << ", planar "
-      << r.of_kind[4] << ", floating " << r.of_kind[5] << "; " << r.mimics << " mimic), " << r.meshes << " meshes, "
-      << r.pairs << " watched pairs of shapes\n"
+      << r.of_kind[4] << ", floating " << r.of_kind[5] << "; " << r.mimics << " mimic, " << r.chains
+      << " of them a mimic), " << r.meshes << " meshes, " << r.pairs << " watched pairs of shapes\n"
       << r.hits << " contacts (" << r.at_start << " at the start, " << r.uncertain << " not certain), " << r.free
       << " free; " << r.samples << " samples\n"
       << "missed " << r.missed << ", untrue " << r.untrue << ", modes that differ " << r.differing << "\n";

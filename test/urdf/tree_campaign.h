@@ -21,6 +21,7 @@ struct Options {
 
 struct Report {
   long trees = 0, links = 0, joints = 0, mimics = 0, meshes = 0;
+  long chains = 0;                        ///< mimics of mimics, anywhere in the file
   long of_kind[6] = {};                   ///< joints: revolute, continuous, prismatic, fixed, planar, floating
   long hits = 0, at_start = 0, free = 0;  ///< answers
   long uncertain = 0;                     ///< contacts that are not proven

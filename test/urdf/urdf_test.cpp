@@ -71,6 +71,39 @@ TEST_F(UrdfTest, ReadsTreeInTheOrderOfTheFile) {
   EXPECT_EQ(tree.joint(tree.jointId("follow")).axis, Eigen::Vector3d(0, 0, 1));
 }
 
+// In the file followers stand before those that they follow, and the last one's master mimics the fixed joint.
+TEST_F(UrdfTest, MimicsOfMimicsStandInAnyOrder) {
+  const auto follows = [](const char* name, const char* child, const char* mimic) {
+    return joint(name, "revolute", "z", child,
+                 std::string("<axis xyz='0 0 1'/><limit lower='-9' upper='9' effort='1' velocity='1'/>") + mimic);
+  };
+  const std::string joints[] = {follows("third", "c", "<mimic joint='second' multiplier='0.5' offset='1'/>"),
+                                follows("second", "b", "<mimic joint='first' multiplier='-2' offset='0.125'/>"),
+                                follows("first", "a", ""),
+                                follows("stiff", "e", "<mimic joint='held' multiplier='3' offset='0.25'/>"),
+                                follows("held", "d", "<mimic joint='lock' offset='0.5'/>"),
+                                joint("lock", "fixed", "z", "f", "")};
+  std::vector<std::size_t> order = {0, 1, 2, 3, 4, 5};
+  int orders = 0;
+  do {
+    std::string body =
+        "<link name='z'/><link name='a'/><link name='b'/><link name='c'/><link name='d'/><link name='e'/>"
+        "<link name='f'/>";
+    for (const std::size_t i : order) body += joints[i];
+    const Robot r = load(body);
+    const KinematicTree& tree = *r.tree;
+    ASSERT_EQ(tree.dof(), 1);
+    const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.5);
+    EXPECT_EQ(tree.jointValue(tree.jointId("second"), q), -0.875);
+    EXPECT_EQ(tree.jointValue(tree.jointId("third"), q), 0.5625);
+    EXPECT_EQ(tree.joint(tree.jointId("stiff")).type, JointType::fixed);
+    const Eigen::Vector3d x = tree.linkPose(tree.link("e"), q) * Eigen::Vector3d::UnitX();
+    EXPECT_LT((x - Eigen::Vector3d(std::cos(1.75), std::sin(1.75), 0)).norm(), 1e-15);
+    ++orders;
+  } while (std::next_permutation(order.begin(), order.end()));
+  EXPECT_EQ(orders, 720);
+}
+
 TEST_F(UrdfTest, ReadsFloatingAndPlanarJoints) {
   const Robot r = load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/>" +
                        joint("free", "floating", "a", "b") +
@@ -224,13 +257,25 @@ TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
       {"NaN limit", ab + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='1' effort='1' velocity='1'/>"),
        "j"},
       {"bad type", ab + joint("j", "screw", "a", "b"), "screw"},
-      {"floating mimics", abc + joint("k", "continuous", "b", "c") + joint("j", "floating", "a", "b", "<mimic joint='k'/>"),
+      {"floating mimics",
+       abc + joint("k", "continuous", "b", "c") + joint("j", "floating", "a", "b", "<mimic joint='k'/>"),
        "joint 'j' has more than one variable and cannot mimic"},
       {"mimics planar", abc + joint("k", "planar", "a", "b") + joint("j", "continuous", "b", "c", "<mimic joint='k'/>"),
        "joint 'j' mimics joint 'k', which has more than one variable"},
       {"zero axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 0 0'/>"), "joint 'j' has an axis"},
       {"short axis", ab + joint("j", "continuous", "a", "b", "<axis xyz='0 1'/>"), "axis"},
       {"bad origin", ab + joint("j", "fixed", "a", "b", "<origin xyz='0 0 far'/>"), "j"},
+      {"mimics itself", ab + joint("j", "continuous", "a", "b", "<mimic joint='j'/>"),
+       "joints mimic each other in a circle: 'j' mimics 'j'"},
+      {"mimics in a circle",
+       abc + "<link name='d'/>" + joint("i", "continuous", "c", "d", "<mimic joint='j'/>") +
+           joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+           joint("k", "continuous", "b", "c", "<mimic joint='j'/>"),
+       "joints mimic each other in a circle: 'j' mimics 'k', which mimics 'j'"},
+      {"unknown master's follower",
+       abc + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+           joint("k", "continuous", "b", "c", "<mimic joint='l'/>"),
+       "'k' mimics an unknown joint 'l'"},
       {"unknown master", ab + joint("j", "continuous", "a", "b", "<mimic joint='k'/>"), "unknown joint 'k'"},
       {"xacro", "<xacro:property name='x' value='1'/>" + ab, "xacro"},
       {"empty mesh name", linkWith(collision("<mesh filename=''/>")), ""},

@@ -158,15 +158,49 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
   return out;
 }
 
-/// A joint that follows a fixed one stands still where its offset puts it.
-void freeze(Joint& joint) {
+/// A joint that follows one that stands still at `value` stands still too.
+void freeze(Joint& joint, double value) {
+  const double q = joint.mimic.multiplier * value + joint.mimic.offset;
   if (joint.type == JointType::prismatic) {
-    joint.origin.translate(joint.mimic.offset * joint.axis.normalized());
+    joint.origin.translate(q * joint.axis.normalized());
   } else {
-    joint.origin.rotate(Eigen::AngleAxisd(joint.mimic.offset, joint.axis.normalized()));
+    joint.origin.rotate(Eigen::AngleAxisd(q, joint.axis.normalized()));
   }
   joint.type = JointType::fixed;
   joint.mimics = false;
+}
+
+/// Mimic joints in an order in which masters come before those that follow them; the file has them in any.
+/// @throws std::invalid_argument naming the joints of a circle.
+std::vector<Joint> mastersFirst(const std::vector<Joint>& mimics) {
+  std::map<std::string, std::size_t> index;
+  for (std::size_t i = 0; i < mimics.size(); ++i) index[mimics[i].name] = i;
+  std::vector<Joint> sorted;
+  enum class State { open, on_chain, placed };
+  std::vector<State> state(mimics.size(), State::open);
+  for (std::size_t start = 0; start < mimics.size(); ++start) {
+    std::vector<std::size_t> chain;  // from a follower to its masters that are not placed yet
+    for (std::size_t i = start; state[i] != State::placed;) {
+      if (state[i] == State::on_chain) {
+        std::string names = "'" + mimics[i].name + "'";
+        for (auto it = std::find(chain.begin(), chain.end(), i) + 1; it != chain.end(); ++it) {
+          names += " mimics '" + mimics[*it].name + "', which";
+        }
+        throw std::invalid_argument("joints mimic each other in a circle: " + names + " mimics '" + mimics[i].name +
+                                    "'");
+      }
+      state[i] = State::on_chain;
+      chain.push_back(i);
+      const auto master = index.find(mimics[i].mimic.master);
+      if (master == index.end()) break;
+      i = master->second;
+    }
+    for (auto it = chain.rbegin(); it != chain.rend(); ++it) {
+      sorted.push_back(mimics[*it]);
+      state[*it] = State::placed;
+    }
+  }
+  return sorted;
 }
 
 std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const urdf::ModelInterface& model,
@@ -190,11 +224,17 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
         tree->addJoint(joint);
       }
     }
-    for (Joint& joint : mimics) {
+    std::map<std::string, double> still;  // mimics that stand still, and where
+    for (Joint& joint : mastersFirst(mimics)) {
+      const auto found = still.find(joint.mimic.master);
       const urdf::JointConstSharedPtr master = model.getJoint(joint.mimic.master);
-      if (master && master->type == urdf::Joint::FIXED) {
-        freeze(joint);
-        notes.push_back("joint '" + joint.name + "' mimics the fixed joint '" + master->name + "' and is fixed too");
+      const bool can_follow = KinematicTree::numVariables(joint.type) == 1 && !joint.axis.isZero(0);
+      if (can_follow && (found != still.end() || (master && master->type == urdf::Joint::FIXED))) {
+        const double value = found != still.end() ? found->second : 0;
+        still[joint.name] = joint.mimic.multiplier * value + joint.mimic.offset;
+        notes.push_back("joint '" + joint.name + "' mimics the fixed joint '" + joint.mimic.master +
+                        "' and is fixed too");
+        freeze(joint, value);
       }
       tree->addJoint(joint);
     }
