@@ -32,8 +32,9 @@ class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
 };
 
 /// Certified continuous collision detection of a forest of links against obstacles and against itself, in FCL's
-/// manager idiom. Objects and geometries stay the caller's and are never written to; their geometry is read by
-/// setup() and update().
+/// manager idiom. Objects and geometries stay the caller's and are never written to. Their geometry is read when they
+/// are registered or bound, and by setup() and update() wherever it is not what was read before, also where it was
+/// changed in place: a shape's sizes, a mesh's vertices, an OcTree's cells or threshold. Queries go by what was read.
 ///
 /// After setup() all const members may be called from many threads at once.
 class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
@@ -110,11 +111,18 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// has measured is forgotten.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
-  /// Makes all changes effective; needed before the first query and after register, bind, allow or setMargin.
+  /// Makes all changes effective; needed before the first query and after register, bind, allow or setMargin. Reads all
+  /// that callers may have changed of their objects: the geometry that links carry and that of obstacles, transforms and
+  /// motions of obstacles. What is the same, byte for byte, stays as it is, with all that was made of it; finding that out
+  /// takes as long as comparing all vertices and triangles and walking through OcTrees does: 17 us for 9 meshes of 1,800
+  /// triangles, 2 ms for one of 500,000. With large maps in the scene update(object) is cheaper.
+  /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. Nothing that
+  ///   was read is changed then; what was set up stays in use.
   void setup();
-  /// Reads the transforms and motions (and geometry, when it is another one) of the obstacles again. Links, their pairs
-  /// and geometry that is the same stay as they are.
+  /// The same as setup().
   void update();
+  /// Reads these objects only, obstacles or what links carry, and makes all changes effective.
+  /// @throws std::invalid_argument also for an object that is not there.
   void update(fcl::CollisionObjectd* object);
   void update(const std::vector<fcl::CollisionObjectd*>& objects);
   void update(fcl::ContinuousCollisionObjectd* object);

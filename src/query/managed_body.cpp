@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/managed_body.h"
 
+#include <cstring>
 #include <stdexcept>
 
 #include "adapters/fcl/fcl_geometry.h"
@@ -8,17 +9,47 @@
 
 namespace fcl_artic {
 
+namespace {
+
+std::shared_ptr<const fcl::CollisionGeometryd> geometryOf(const ManagedBody& body) {
+  return body.object ? body.object->collisionGeometry() : body.moving->collisionGeometry();
+}
+
+}  // namespace
+
+bool ManagedBody::isAsRead() const {
+  if (moving) return false;
+  const std::shared_ptr<const fcl::CollisionGeometryd> current = geometryOf(*this);
+  if (current != geometry || !content->sameAs(*current)) return false;
+  return link >= 0 || std::memcmp(object->getTransform().data(), transform.data(), 16 * sizeof(double)) == 0;
+}
+
+void ManagedBody::readAgain() {
+  if (link < 0) return readObstacle();
+  readCarried(attached ? "attached object '" + name + "'" : "geometry of link '" + name + "'");
+}
+
 void ManagedBody::readShape(const std::string& what) {
-  const std::shared_ptr<const fcl::CollisionGeometryd> current =
-      object ? object->collisionGeometry() : moving->collisionGeometry();
+  const std::shared_ptr<const fcl::CollisionGeometryd> current = geometryOf(*this);
   if (!current) throw std::invalid_argument(what + ": the object has no geometry");
-  if (current == geometry) return;
+  if (!content || !content->sameAs(*current)) {
+    try {
+      shape = readGeometry(*current);
+    } catch (const std::invalid_argument& e) {
+      throw std::invalid_argument(what + ": " + e.what());
+    }
+    content = std::make_shared<const GeometryContent>(*current);
+  }
+  geometry = current;
+}
+
+void ManagedBody::readCarried(const std::string& what) {
+  readShape(what);
   try {
-    shape = readGeometry(*current);
+    lss = shape->lineSweptSphere();
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(what + ": " + e.what());
   }
-  geometry = current;
 }
 
 void ManagedBody::readObstacle() {
@@ -26,6 +57,7 @@ void ManagedBody::readObstacle() {
   if (object) {
     const Eigen::Isometry3d M = requireRigid(object->getTransform(), what);
     readShape(what);
+    transform = object->getTransform();
     offset = M;
     return;
   }

@@ -20,23 +20,36 @@
 
 namespace fcl_artic {
 
+class GeometryContent;
+
 struct ManagedBody {
   fcl::CollisionObjectd* object = nullptr;
   fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< instead of it, of an obstacle that moves
   std::string name;
   LinkId link = -1;  ///< -1: obstacle
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< in the link's frame; of an obstacle: in the world
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();  ///< of an obstacle: the object's own, as read
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
   std::shared_ptr<const ShapeTree> shape;
+  std::shared_ptr<const GeometryContent> content;  ///< that the shape was made of: the caller may change it in place
   std::array<double, 7> lss = {};          ///< of a link: line swept sphere in the geometry's frame
   bool attached = false;                   ///< an obstacle that the link carries
   std::set<LinkId> touch_links;            ///< that it may touch then
   BodyMotion motion;                       ///< of an obstacle that moves
   Eigen::Vector3d path_lower, path_upper;  ///< its box in the world over all of the motion
 
-  /// Reads the object's geometry, where it is another one than was read before.
+  /// Whether what the caller has is what was read: the geometry by its content, of an obstacle its transform too. (Of a
+  /// motion nobody knows.)
+  bool isAsRead() const;
+  /// Reads it again: the geometry, where its content is another one, and an obstacle's transform or motion.
+  /// @throws std::invalid_argument naming it; it is not to be used then.
+  void readAgain();
+  /// Reads the object's geometry, where its content is another one than was read before.
   /// @throws std::invalid_argument beginning with `what`.
   void readShape(const std::string& what);
+  /// Reads what a link carries.
+  /// @throws std::invalid_argument beginning with `what`, also for what is unbounded.
+  void readCarried(const std::string& what);
   /// Reads an obstacle: its geometry, and its transform or its motion.
   /// @throws std::invalid_argument naming it.
   void readObstacle();

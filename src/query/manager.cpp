@@ -105,12 +105,11 @@ void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const Visibility
 }
 
 void ArticulatedCollisionManager::setup() {
-  if (!impl_->setup.ready() || !impl_->setup.isOf(tree())) impl_->setup.build(impl_->registry);
+  impl_->use(impl_->registry.readAgain());
 }
 
 void ArticulatedCollisionManager::update() {
-  impl_->registry.readObstacles();
-  impl_->setup.build(impl_->registry);
+  impl_->use(impl_->registry.readAgain());
 }
 
 void ArticulatedCollisionManager::update(fcl::CollisionObjectd* object) {
@@ -118,13 +117,11 @@ void ArticulatedCollisionManager::update(fcl::CollisionObjectd* object) {
 }
 
 void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd*>& objects) {
-  impl_->registry.readObstacles(objects);
-  impl_->setup.build(impl_->registry);
+  impl_->use(impl_->registry.readAgain(objects));
 }
 
 void ArticulatedCollisionManager::update(fcl::ContinuousCollisionObjectd* object) {
-  impl_->registry.readObstacle(object);
-  impl_->setup.build(impl_->registry);
+  impl_->use(impl_->registry.readAgain(object));
 }
 
 void ArticulatedCollisionManager::clear() {

@@ -26,6 +26,13 @@ struct Stage2 {
 struct ArticulatedCollisionManager::Impl {
   explicit Impl(std::shared_ptr<const KinematicTree> tree) : registry(std::move(tree)) {}
 
+  /// Makes the set-up anew where that is out of date.
+  void use(const Registry::Changes& changes) {
+    if (changes.links) setup.robotChanged();
+    if (changes.obstacles) setup.obstaclesChanged();
+    if (!setup.ready() || !setup.isOf(*registry.tree())) setup.build(registry);
+  }
+
   Registry registry;
   Setup setup;
   std::unique_ptr<Stage2> stage2 = std::make_unique<Stage2>(std::make_shared<VisibilityCuller>());

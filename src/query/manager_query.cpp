@@ -93,9 +93,8 @@ FeatureKind swapped(FeatureKind kind) {
 
 /// A contact as users see it: features named, in world axes, links before obstacles.
 /// @param time  of the obstacles' motions.
-CertifiedContact report(const Registry& registry, void* workspace, const engine::Problem& problem,
-                        const JointMotion& motion, const engine::Query& query, const TimePart& time,
-                        engine::LeafContact leaf) {
+CertifiedContact report(const Registry& registry, void* workspace, const JointMotion& motion,
+                        const engine::Query& query, const TimePart& time, engine::LeafContact leaf) {
   const ManagedBody &a = registry.body(leaf.body_a), &b = registry.body(leaf.body_b);
   CertifiedContact contact;
   if (query.margins.of(leaf.pair) == 0) {
@@ -209,8 +208,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.certain = answer.certain;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(
-        report(registry, workspace->engine(), problem, motion, query, aspects.time, answer.contacts[i]));
+    result.contacts.push_back(report(registry, workspace->engine(), motion, query, aspects.time, answer.contacts[i]));
   }
   sharpenBracket(request, result);
   result.M_0_at_lower.clear();

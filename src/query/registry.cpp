@@ -161,7 +161,7 @@ void Registry::bind(LinkId link, fcl::CollisionObjectd* object, const Eigen::Iso
   body.link = link;
   body.name = tree_->linkName(link);
   body.offset = requireRigid(offset, what);
-  body.lss = body.shape->lineSweptSphere();
+  body.readCarried(what);
   objects_.insert(object);
   links_.push_back(std::move(body));
 }
@@ -212,28 +212,42 @@ void Registry::clear() {
   named_ = 0;
 }
 
-void Registry::readObstacles() {
-  Bodies obstacles = obstacles_, moving = moving_;  // all or nothing
-  for (Bodies* bodies : {&obstacles, &moving}) {
-    for (ManagedBody& body : *bodies) body.readObstacle();
+Registry::Changes Registry::readAgain(const std::vector<ManagedBody*>& bodies) {
+  std::vector<std::pair<ManagedBody*, ManagedBody>> changed;  // all or nothing
+  for (ManagedBody* body : bodies) {
+    if (body->isAsRead()) continue;
+    changed.emplace_back(body, *body);
+    changed.back().second.readAgain();
   }
-  obstacles_ = std::move(obstacles);
-  moving_ = std::move(moving);
+  Changes changes;
+  for (auto& [body, read] : changed) {
+    (body->link >= 0 ? changes.links : changes.obstacles) = true;
+    *body = std::move(read);
+  }
+  return changes;
 }
 
-void Registry::readObstacles(const std::vector<fcl::CollisionObjectd*>& objects) {
-  Bodies obstacles = obstacles_;
+Registry::Changes Registry::readAgain() {
+  std::vector<ManagedBody*> bodies;
+  for (Bodies* of : {&links_, &moving_, &obstacles_}) {
+    for (ManagedBody& body : *of) bodies.push_back(&body);
+  }
+  return readAgain(bodies);
+}
+
+Registry::Changes Registry::readAgain(const std::vector<fcl::CollisionObjectd*>& objects) {
+  std::vector<ManagedBody*> bodies;
   for (const fcl::CollisionObjectd* object : objects) {
-    require(obstacles, object, "update: the object is not registered")->readObstacle();
+    const auto is_it = [&](const ManagedBody& b) { return object && b.object == object; };
+    const auto obstacle = std::find_if(obstacles_.begin(), obstacles_.end(), is_it);
+    const auto carried = obstacle != obstacles_.end() ? obstacle : require(links_, object, "update: the object is not registered");
+    bodies.push_back(&*carried);
   }
-  obstacles_ = std::move(obstacles);
+  return readAgain(bodies);
 }
 
-void Registry::readObstacle(fcl::ContinuousCollisionObjectd* object) {
-  const auto body = require(moving_, object, "update: the object is not registered");
-  ManagedBody read = *body;
-  read.readObstacle();
-  *body = std::move(read);
+Registry::Changes Registry::readAgain(fcl::ContinuousCollisionObjectd* object) {
+  return readAgain(std::vector<ManagedBody*>{&*require(moving_, object, "update: the object is not registered")});
 }
 
 void Registry::setMargin(const std::string& body, double margin) {

@@ -46,10 +46,14 @@ class Registry {
   void detach(fcl::CollisionObjectd* object);
   void clear();
 
-  /// Reads obstacles again: all, or the given ones.
-  void readObstacles();
-  void readObstacles(const std::vector<fcl::CollisionObjectd*>& objects);
-  void readObstacle(fcl::ContinuousCollisionObjectd* object);
+  /// What reading again has changed.
+  struct Changes {
+    bool links = false, obstacles = false;
+  };
+  /// Reads what callers have changed in their own hands, geometry in place too: of all, or of the given ones.
+  Changes readAgain();
+  Changes readAgain(const std::vector<fcl::CollisionObjectd*>& objects);
+  Changes readAgain(fcl::ContinuousCollisionObjectd* object);
 
   void setMargin(const std::string& body, double margin);
   void setMargin(const std::string& a, const std::string& b, double margin);
@@ -73,6 +77,7 @@ class Registry {
   ManagedBody newBody(fcl::CollisionObjectd* object, const std::string& what) const;
   void addObstacle(Bodies& bodies, ManagedBody body);
   void forget(Bodies& bodies, Bodies::iterator body);
+  Changes readAgain(const std::vector<ManagedBody*>& bodies);
 
   std::shared_ptr<const KinematicTree> tree_;
   Bodies links_, moving_, obstacles_;

@@ -307,6 +307,27 @@ TEST(ContinuousMotionValidatorTest, BadInputThrows) {
                std::invalid_argument);
 }
 
+// What the last motion left there, "valid up to 0.7", is no answer to a motion that is none.
+TEST(ContinuousMotionValidatorTest, WhenItThrowsTheStartIsTheLastValidState) {
+  const Planning planning(slideWorld(), reals(1));
+  const TestState s1(planning.space, {1}), far(planning.space, {1e6}),
+      nowhere(planning.space, {std::numeric_limits<double>::quiet_NaN()}), state(planning.space, {7});
+  for (const ob::State* to : {static_cast<ob::State*>(far), static_cast<ob::State*>(nowhere)}) {
+    Last last{state, 0.7};
+    EXPECT_THROW(planning.validator->checkMotion(s1, to, last), std::invalid_argument);
+    EXPECT_EQ(last.second, 0);
+    EXPECT_EQ(state[0], 1);
+    last = {nullptr, 0.7};
+    EXPECT_THROW(planning.validator->checkMotion(s1, to, last), std::invalid_argument);
+    EXPECT_EQ(last.second, 0);
+    last = {s1, 0.7};
+    EXPECT_THROW(planning.validator->checkMotion(s1, to, last), std::invalid_argument);
+    EXPECT_EQ(last.second, 0);
+    EXPECT_EQ(s1[0], 1);
+  }
+  EXPECT_EQ(planning.validator->getCheckedMotionCount(), 0u);
+}
+
 TEST(ContinuousMotionValidatorTest, CountsFromManyThreads) {
   Planning planning(slideWorld(), reals(1));
   constexpr int kThreads = 8, kMotions = 2000;

@@ -462,6 +462,22 @@ TEST(SolidMesh, HalfspaceBesideASolid) {
 }
 
 // At the door: closed and consistently oriented, with the obstacle's name, the reason and an edge where it is not.
+/// The same vertices and triangles, byte for byte, as a surface and as a solid are two geometries.
+TEST(SolidMesh, SurfaceThatBecomesASolidIsReadAgain) {
+  const auto surface = cubeMesh(1);
+  fcl::CollisionObjectd around(surface);
+  for (const bool one : {true, false}) {
+    around = fcl::CollisionObjectd(surface);
+    Cart cart(std::make_shared<fcl::Sphered>(0.1));
+    cart.manager->registerObject(&around);
+    cart.manager->setup();
+    EXPECT_TRUE(cart.run(0, 0.1).isFree());
+    around = fcl::CollisionObjectd(std::make_shared<Solid>(*surface));
+    one ? cart.manager->update(&around) : cart.manager->setup();
+    EXPECT_TRUE(touchesAtStart(cart.run(0, 0.1)));
+  }
+}
+
 TEST(SolidMesh, OthersAreRefused) {
   const auto reason = [](const Soup& soup) -> std::string {
     Cart cart;

@@ -2,6 +2,7 @@
 #include "adapters/fcl/fcl_geometry.h"
 
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <type_traits>
 #include <typeinfo>
@@ -146,8 +147,24 @@ class CellReader {
     upper_ = upper;
   }
   std::shared_ptr<const ShapeTree> read() {
-    if (const Node* root = tree_.getRoot()) visit(*root, Eigen::Vector3d::Zero(), root_half_);
-    return ShapeTree::fromPieces(std::move(cells_));
+    std::vector<Piece> cells;
+    forEach([&](const Eigen::Vector3d& center, double half) {
+      Piece cell;
+      cell.kind = PieceKind::box;
+      cell.primitive = static_cast<std::int32_t>(cells.size());
+      for (int k = 0; k < 3; ++k) {
+        cell.size[k] = half;
+        cell.center[k] = center[k];
+      }
+      cells.push_back(cell);
+      return true;
+    });
+    return ShapeTree::fromPieces(std::move(cells));
+  }
+  /// Calls found(center, half a side) for each cell, until that returns false.
+  template <class Found>
+  void forEach(const Found& found) const {
+    if (const Node* root = tree_.getRoot()) visit(*root, Eigen::Vector3d::Zero(), root_half_, found);
   }
   /// Centres and half sizes are multiples of a power of two of the root's half size: exact, but for float resolutions'
   /// last digits, whatever the depth.
@@ -156,33 +173,23 @@ class CellReader {
   }
 
  private:
-  void visit(const Node& node, const Eigen::Vector3d& center, double half) {
+  template <class Found>
+  bool visit(const Node& node, const Eigen::Vector3d& center, double half, const Found& found) const {
     for (int k = 0; k < 3; ++k) {
       // The cell's faces carry a rounding: those of two cells that touch must not leave a gap.
       const double reach = half + 0x1p-50 * root_half_;
-      if (center[k] - reach > upper_[k] || center[k] + reach < lower_[k]) return;
+      if (center[k] - reach > upper_[k] || center[k] + reach < lower_[k]) return true;
     }
-    if (!tree_.nodeHasChildren(&node)) {
-      if (!tree_.isNodeOccupied(&node)) return;
-      Piece cell;
-      cell.kind = PieceKind::box;
-      cell.primitive = static_cast<std::int32_t>(cells_.size());
-      for (int k = 0; k < 3; ++k) {
-        cell.size[k] = half;
-        cell.center[k] = center[k];
-      }
-      cells_.push_back(cell);
-      return;
-    }
+    if (!tree_.nodeHasChildren(&node)) return !tree_.isNodeOccupied(&node) || found(center, half);
     for (unsigned i = 0; i < 8; ++i) {
-      if (tree_.nodeChildExists(&node, i))
-        visit(*tree_.getNodeChild(&node, i), childCenter(center, half, i), 0.5 * half);
+      if (!tree_.nodeChildExists(&node, i)) continue;
+      if (!visit(*tree_.getNodeChild(&node, i), childCenter(center, half, i), 0.5 * half, found)) return false;
     }
+    return true;
   }
   const fcl::OcTree<S>& tree_;
   const double root_half_;
   Eigen::Vector3d lower_ = Eigen::Vector3d::Constant(-INFINITY), upper_ = Eigen::Vector3d::Constant(INFINITY);
-  std::vector<Piece> cells_;
 };
 #endif
 
@@ -267,6 +274,63 @@ std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry,
       throw std::invalid_argument("this type of geometry is not supported");
   }
   return ShapeTree::fromPiece(piece);
+}
+
+/// Hands all that read() reads of a geometry to add(data, bytes), in one order, until that returns false.
+template <class Add>
+void visitContent(const fcl::CollisionGeometryd& geometry, const Add& add) {
+  const auto numbers = [&](const double* data, std::size_t n) { return add(data, n * sizeof *data); };
+  const auto vector = [&](const Eigen::Vector3d& v) { return numbers(v.data(), 3); };
+  const fcl::NODE_TYPE type = geometry.getNodeType();
+  if (!add(&type, sizeof type)) return;
+  switch (type) {
+    case fcl::GEOM_BOX:
+      return (void)vector(static_cast<const fcl::Boxd&>(geometry).side);
+    case fcl::GEOM_SPHERE:
+      return (void)numbers(&static_cast<const fcl::Sphered&>(geometry).radius, 1);
+    case fcl::GEOM_CAPSULE: {
+      const auto& capsule = static_cast<const fcl::Capsuled&>(geometry);
+      return (void)(numbers(&capsule.radius, 1) && numbers(&capsule.lz, 1));
+    }
+    case fcl::GEOM_CYLINDER: {
+      const auto& cylinder = static_cast<const fcl::Cylinderd&>(geometry);
+      return (void)(numbers(&cylinder.radius, 1) && numbers(&cylinder.lz, 1));
+    }
+    case fcl::GEOM_CONE: {
+      const auto& cone = static_cast<const fcl::Coned&>(geometry);
+      return (void)(numbers(&cone.radius, 1) && numbers(&cone.lz, 1));
+    }
+    case fcl::GEOM_ELLIPSOID:
+      return (void)vector(static_cast<const fcl::Ellipsoidd&>(geometry).radii);
+    case fcl::GEOM_CONVEX: {
+      const auto& vertices = static_cast<const fcl::Convexd&>(geometry).getVertices();
+      return (void)add(vertices.data(), vertices.size() * sizeof(Eigen::Vector3d));
+    }
+    case fcl::GEOM_HALFSPACE: {
+      const auto& half = static_cast<const fcl::Halfspaced&>(geometry);
+      return (void)(vector(half.n) && numbers(&half.d, 1));
+    }
+    case fcl::GEOM_PLANE: {
+      const auto& plane = static_cast<const fcl::Planed&>(geometry);
+      return (void)(vector(plane.n) && numbers(&plane.d, 1));
+    }
+    case fcl::GEOM_TRIANGLE: {
+      const auto& t = static_cast<const fcl::TrianglePd&>(geometry);
+      return (void)(vector(t.a) && vector(t.b) && vector(t.c));
+    }
+#if FCL_HAVE_OCTOMAP
+    case fcl::GEOM_OCTREE:
+      return CellReader<double>(static_cast<const fcl::OcTreed&>(geometry))
+          .forEach([&](const Eigen::Vector3d& center, double half) { return vector(center) && numbers(&half, 1); });
+#endif
+    default: {
+      Mesh<double> mesh;
+      if (!asMesh(geometry, mesh)) return;
+      const std::size_t counts[] = {mesh.num_vertices, mesh.num_triangles, mesh.solid};
+      (void)(add(counts, sizeof counts) && add(mesh.vertices, mesh.num_vertices * sizeof(fcl::Vector3d)) &&
+             add(mesh.triangles, mesh.num_triangles * sizeof(fcl::Triangle)));
+    }
+  }
 }
 
 template <class S>
@@ -381,6 +445,30 @@ const char* geometryName(const fcl::CollisionGeometry<S>& geometry) {
 template <class S>
 std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<S>& geometry) {
   return readNamed(geometry, false);
+}
+
+GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry) {
+  visitContent(geometry, [&](const void* data, std::size_t n) {
+    const char* begin = static_cast<const char*>(data);
+    bytes_.insert(bytes_.end(), begin, begin + n);
+    return true;
+  });
+  bytes_.shrink_to_fit();
+}
+
+bool GeometryContent::sameAs(const fcl::CollisionGeometryd& geometry) const {
+  std::size_t at = 0;
+  bool same = true;
+  try {
+    visitContent(geometry, [&](const void* data, std::size_t n) {
+      same = n <= bytes_.size() - at && (n == 0 || std::memcmp(bytes_.data() + at, data, n) == 0);
+      at += n;
+      return same;
+    });
+  } catch (const std::invalid_argument&) {  // no mesh any more
+    return false;
+  }
+  return same && at == bytes_.size();
 }
 
 template <class S>

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -31,6 +32,19 @@ std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<S>& g
 template <class S>
 std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<S>& geometry);
 constexpr std::size_t kMeshCacheBytes = std::size_t{256} << 20;
+
+/// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place: its type, the
+/// numbers of a shape, a mesh's vertices and triangles and whether it is a solid, an OcTree's occupied cells. Equal contents give equal trees.
+class GeometryContent {
+ public:
+  /// The geometry must have been read, that is, not refused.
+  explicit GeometryContent(const fcl::CollisionGeometryd& geometry);
+  /// Whether the geometry, this one or another, is byte for byte what was copied. It may be one that is refused.
+  bool sameAs(const fcl::CollisionGeometryd& geometry) const;
+
+ private:
+  std::vector<char> bytes_;
+};
 
 #if FCL_HAVE_OCTOMAP
 /// An OcTree's cells without children that are occupied by its own threshold (OcTree::isNodeOccupied): a box each,
