@@ -17,7 +17,8 @@ struct CertifiedPairResult {
   /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise 1, or the time of a later
   /// proven contact.
   double t_upper = 1;
-  /// Contact is proven, not only undecidable within the tolerances.
+  /// Contact is proven, not only undecidable within the tolerances; t_upper - t_lower is no more than tolerance_time
+  /// then, but with ContactMode::any.
   bool certain = false;
   std::vector<CertifiedContact> contacts;
   /// Poses of both objects at t_lower, where they do not touch yet, and at t_upper, where, when certain, they do.

@@ -10,7 +10,9 @@ namespace fcl_artic {
 /// What to look for.
 enum class ContactMode {
   first,             ///< the first contact of the whole motion
-  any,               ///< any contact that can be proven soon: cheaper where only the verdict counts; free is as certain
+  /// Any contact that can be proven soon: cheaper where only the verdict counts; free is as certain. The contact is
+  /// proven at t_upper; t_lower says only up to when the motion is free, often 0.
+  any,
   firstOfEveryPair,  ///< the first contact of every pair of bodies that touches
 };
 
@@ -53,7 +55,7 @@ struct RedonOptions {
 
 /// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest {
-  /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1.
+  /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1. (ContactMode::any does not ask for it.)
   double tolerance_time = 1e-6;
   /// A pair counts as touching (with certain = false) only when its gap is below this, in m.
   double tolerance_distance = 1e-6;
@@ -63,7 +65,9 @@ struct CertifiedRequest {
   bool check_scene = true;  ///< links against obstacles
   bool check_self = true;   ///< links against links
   ContactMode mode = ContactMode::first;
-  /// At most so many contacts are reported. They all lie in [t_lower, t_upper] with mode `first`.
+  /// At most so many contacts are reported; t_lower and t_upper are those of all. With mode `first` each of them may be
+  /// the first: none begins after t_upper. With `firstOfEveryPair` they are in the order of their t_lower; of more than so
+  /// many every pair's first contact is kept before any pair's second, and of these the earliest.
   std::size_t max_contacts = 1;
   /// Node and leaf tests after which the answer is `undecided`; 0: no limit. Counted work, not time, so that the
   /// answer does not depend on the machine.

@@ -42,6 +42,9 @@ struct CertifiedContact {
   FeatureKind feature = FeatureKind::volume;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< world, at t_upper when certain, else at t_lower
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< world, unit
+  /// These two pieces of the bodies (b1, b2) do not touch before t_lower, counted from when their pair is watched; with
+  /// `certain` they do at or before t_upper, else that is the motion's end. Other pieces may touch earlier,
+  /// but not before the result's t_lower. With ContactMode::any t_lower is often 0.
   double t_lower = 0, t_upper = 1;
   bool certain = false;
 
@@ -104,7 +107,8 @@ struct CertifiedResult {
   /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise 1, or the time of a later
   /// proven contact.
   double t_upper = 1;
-  /// Contact is proven, not only undecidable within the tolerances.
+  /// Contact is proven, not only undecidable within the tolerances; t_upper - t_lower is no more than tolerance_time
+  /// then, but with ContactMode::any.
   bool certain = false;
   std::vector<CertifiedContact> contacts;
   /// Pose of every link in the world at t_lower; empty when the motion is free.

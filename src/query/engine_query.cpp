@@ -53,7 +53,8 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   query.check_scene = request.check_scene;
   query.check_self = request.check_self;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  query.any = request.mode == ContactMode::any;
+  // The paper's method looks for the first contact; the pairs that it leaves to the standard one then take part in that.
+  query.any = request.mode == ContactMode::any && request.method == Method::standard;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
   query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));

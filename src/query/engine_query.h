@@ -3,6 +3,7 @@
 // What all queries share on their way to the engine and back: memory, request, statistics, contacts of triangles.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -79,19 +80,29 @@ void addWork(const RedonStatistics& s, RedonStatistics& sum);
 std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece);
 
 /// What the equations of single contacts have proven beyond the solver is taken into the result's bracket.
+/// @param every_pair  else contacts that are now proven to be later than another one are left out, and the others put in
+///   order: proven ones by their t_upper, then the rest.
 template <class Result>
-void sharpenBracket(const CertifiedRequest& request, Result& result) {
-  for (const CertifiedContact& contact : result.contacts) {
+void sharpenBracket(const CertifiedRequest& request, bool every_pair, Result& result) {
+  std::vector<CertifiedContact>& contacts = result.contacts;
+  for (const CertifiedContact& contact : contacts) {
     if (!contact.certain || contact.t_upper >= result.t_upper) continue;
     result.t_upper = contact.t_upper;
     const engine::Bracket bracket = {result.t_lower, result.t_upper};
     const bool any = request.mode == ContactMode::any;
     result.certain = result.certain || engine::isCertain(bracket, request.tolerance_time, any);
   }
+  if (every_pair || contacts.size() < 2) return;
+  const auto later = [&](const CertifiedContact& contact) { return contact.t_lower > result.t_upper; };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), later), contacts.end());
+  std::stable_sort(contacts.begin(), contacts.end(), [](const CertifiedContact& a, const CertifiedContact& b) {
+    if (a.certain != b.certain) return a.certain;
+    return a.certain ? a.t_upper < b.t_upper : a.t_lower < b.t_lower;
+  });
 }
 
-/// Puts contacts in the order of their t_lower and leaves so many: the first one of every pair before any pair's second,
-/// and of these the earliest.
+/// Puts contacts in the order of their t_lower and leaves `most` of them: the first one of every pair before any pair's
+/// second, and of these the earliest.
 /// @param pairs  of each contact; those of one pair in the order in which they are wanted.
 void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts);
 

@@ -210,7 +210,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(report(registry, workspace->engine(), motion, query, aspects.time, answer.contacts[i]));
   }
-  sharpenBracket(request, result);
+  sharpenBracket(request, query.every_pair, result);
   result.M_0_at_lower.clear();
   if (!result.isFree()) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();

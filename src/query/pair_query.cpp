@@ -193,7 +193,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
     contact.t_upper = leaf.t_upper;
     contact.certain = leaf.certain;
   }
-  sharpenBracket(request, result);
+  sharpenBracket(request, false, result);
   setPoses(body1.motion, body2.motion, result);
 }
 

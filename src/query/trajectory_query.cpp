@@ -2,16 +2,16 @@
 //
 // A trajectory is asked piece by piece. What has to be carried over:
 //
-// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Of T_k + s h each of the three steps is
-// rounded outward, in whatever mode, but not out of the piece: t_lower stays a proof, however large |T| is. A step moves by
-// less than 2 ulp, so an end by less than 2 ulp of the larger |T| and 4 of h.
+// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Of T_k + s h each of the three steps
+// is rounded outward, in whatever mode, but not out of the piece: t_lower stays a proof, however large |T| is. A step
+// moves by no more than 2 ulp, so an end by no more than 2 ulp of the larger |T| and 4 of h.
 //
 // Obstacles that move. Their motions' [0, 1] is the trajectory's time; piece k gets the part [s_k, s_k+1] of it, with
 // s_k = (T_k - T_0) / (T_n - T_0) as rounded: the same number ends one piece and begins the next.
 //
 // Initial contacts that may separate. Pairs that touch at the very beginning are ignored; those that did not separate
-// within a piece (by the measure of one query: free over 1/512 of the piece) may be ignored at the beginning of the next
-// one too (Query::may_ignore), all others are watched. A pair that has separated is never ignored again.
+// within a piece (by the measure of one query: free over 1/512 of the piece) may be ignored at the beginning of the
+// next one too (Query::may_ignore), all others are watched. A pair that has separated is never ignored again.
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@
 namespace fcl_artic {
 namespace {
 
-/// The next double below x, from its bits, so that no rounding mode matters. A sum, difference or product of doubles that
-/// is computed as x, in any mode, lies above it. (Below 2^-1000, where products underflow, no time is told from 0.)
+/// The next double below x, from its bits, so that no rounding mode matters. A sum, difference or product of doubles
+/// that is computed as x, in any mode, is no less. (Below 2^-1000, where products underflow, times count as 0.)
 double below(double x) {
   if (std::abs(x) < 0x1p-1000) return -0x1p-1000;
   std::int64_t bits;
@@ -104,8 +104,9 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     const std::uint64_t used = sum.statistics.node_tests + sum.statistics.leaf_tests;
     if (request.work_budget) {
       if (used >= request.work_budget) {
-        if (contact_found) break;
         sum.status = Status::undecided;
+        sum.certain = false;
+        if (contact_found) break;  // not of every pair
         sum.t_lower = clock.begin;
         tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
         break;
@@ -118,7 +119,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
-    aspects.pairs = &pairs_of_part;
+    aspects.pairs = every_pair ? &pairs_of_part : nullptr;
     collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
@@ -145,9 +146,13 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       contact.t_lower = clock.lower(contact.t_lower);
       contact.t_upper = contact.certain ? clock.upper(contact.t_upper) : trajectory.endTime();
       sum.contacts.push_back(contact);
-      pairs.push_back(pairs_of_part[i]);
+      if (every_pair) pairs.push_back(pairs_of_part[i]);
     }
     seen.insert(pairs.begin(), pairs.end());
+    if (contact_found && part.status == Status::undecided) {
+      sum.status = Status::undecided;
+      sum.certain = false;
+    }
     contact_found = contact_found || part.status == Status::contact;
     if (!every_pair || part.status == Status::undecided || seen.size() >= request.max_contacts) break;
   }

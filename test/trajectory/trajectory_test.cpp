@@ -272,6 +272,29 @@ VectorXd derivative(const JointTrajectory& x, double t, double h = 1e-6) {
   return (x.configuration(t + h) - x.configuration(t - h)) / (2 * h);
 }
 
+TEST(Trajectory, BudgetThatEndsBeforeAllPairsAreLookedAtIsUndecided) {
+  Slider slider;
+  slider.obstacle("gate", std::make_shared<fcl::Sphered>(0.1), translation({0, 0.15, 0}));
+  CertifiedRequest request;
+  request.mode = ContactMode::firstOfEveryPair;
+  request.max_contacts = 10;
+  const JointTrajectory trajectory = slider.linear({0, 1, 2, 3, 4}, {-1, 0, -1, 0, 1});
+  int undecided = 0, after_a_contact = 0;
+  for (request.work_budget = 1; request.work_budget < 400; ++request.work_budget) {
+    const CertifiedResult r = slider.run(trajectory, request);
+    EXPECT_NE(r.status, Status::free);
+    if (r.status == Status::undecided) {
+      ++undecided;
+      after_a_contact += !r.contacts.empty();
+      EXPECT_FALSE(r.certain);
+    } else {
+      EXPECT_EQ(r.contacts.size(), 2u) << "budget " << request.work_budget;
+    }
+  }
+  EXPECT_GT(undecided, 0);
+  EXPECT_GT(after_a_contact, 0);
+}
+
 TEST(Trajectory, CubicAndQuinticPassWaypointsAtTheirRates) {
   const Scene scene = twoJoints();
   const std::vector<double> times = {1, 1.5, 4};

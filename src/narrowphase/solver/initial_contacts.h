@@ -28,7 +28,7 @@ inline double Solver::firstFreeTime(double start, double width, int begin, int e
       if (mayBeContained(entries_[begin].pair, lane_start)) continue;  // and so it stays over the lane
       return lane_start;
     }
-    if (w > 1.0 / 512 && w > query_->tolerance_time) {
+    if (w > 1.0 / 512) {  // whatever the tolerance: all queries are to leave out the same
       const double t = firstFreeTime(lane_start, w, begin, end);
       if (t < 2) return t;
     }

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What must hold among all answers to one motion, whatever mode, method, margins, budget and limits they were asked
+// with.
+//
+//   bracket    0 <= t_lower <= t_upper within the motion; free: at its end; a certain `first` is no wider than the
+//              tolerance of time; a contact's own bracket lies in its motion and begins no earlier than the answer's
+//   most       no more contacts than max_contacts; of every pair, the earliest first, and no pair's second before
+//              another one's first is there
+//   budget     undecided only with a budget
+//   ordered    Question Q asks for all that question P asks for (more pairs, no smaller margins, nothing left out):
+//   what
+//              Q proves free until t_lower, no answer to P proves in contact before; Q = P: all modes, methods, budgets
+//   pairs      a pair with a proven contact is among those of every answer to the same question for every pair
+//   ignored    all answers to one question leave the same pairs out
+//   cut        t_lower and the verdict of every pair do not depend on max_contacts (from 2 on: doc of CertifiedRequest)
+//   sampled    FCL's static test at random poses before the latest t_lower finds no contact (of geometry a little
+//   smaller) proven     FCL's distance at a proven contact's t_upper is no more than the margin (and a little)
+//
+// Each rule counts the cases in which it was telling: in which an answer that is wrong could have been seen.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "world.h"
+
+namespace modes {
+
+/// What is asked for. Whoever asks more of everything must find contact no later.
+struct Question {
+  bool check_scene = true, check_self = true, ignore_initial = false;
+  double margin = 0;
+  /// Whether all that `other` asks for is asked for too. (With a larger margin more is in contact at the start and left
+  /// out.)
+  bool covers(const Question& other) const {
+    return check_scene >= other.check_scene && check_self >= other.check_self &&
+           (ignore_initial ? other.ignore_initial && margin == other.margin : margin >= other.margin);
+  }
+  bool same(const Question& other) const { return covers(other) && other.covers(*this); }
+};
+
+struct Asked {
+  Question question;
+  fcl_artic::CertifiedRequest request;
+  fcl_artic::CertifiedResult result;
+};
+
+enum Rule { kBracket, kMost, kBudget, kOrdered, kPairs, kIgnored, kCut, kSampled, kProven, kNumRules };
+extern const char* const kRuleNames[kNumRules];
+
+struct Tally {
+  std::array<long, kNumRules> telling{}, broken{};
+  long cases = 0, queries = 0, free = 0, certain = 0, uncertain = 0, undecided = 0, thrown = 0;
+  std::vector<std::string> findings;  ///< the first ones, to be read
+  void add(const Tally& other);
+};
+
+std::string describe(const Asked& asked);
+
+/// A random question's queries. The last max_contacts etc. are chosen at random.
+std::vector<Asked> randomQueries(Random& random, int count);
+
+/// Checks all rules among these answers.
+/// @param replay  names the case in findings.
+void check(const World& world, const std::vector<Asked>& asked, Random& random, const std::string& replay,
+           Tally& tally);
+
+/// One case: a world, its queries, the rules.
+void runCase(std::uint64_t seed, Tally& tally);
+
+}  // namespace modes
