@@ -159,12 +159,13 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                          std::vector<CertifiedResult>& results, int threads = 0) const;
 
   /// The same for a whole trajectory, in its time: t_lower, t_upper, those of the contacts, tolerance_time and progress
-  /// are in the unit of its times, and free means all of it. Both ends are rounded outward: by that t_upper - t_lower may
-  /// exceed tolerance_time by 4 ulp of the times and 8 of a piece's duration (1e-6 s at 1.7e9 s, where doubles are 2.4e-7 s
-  /// apart). With ignore_initial_contact pairs that touch at its beginning may separate; they are watched from the moment
-  /// they have (in steps of 1/512 of a piece at most) and not ignored again. A pair that separates for less time than that
-  /// may be taken as never apart. The motions of obstacles that move take as long as the trajectory. With
-  /// ContactMode::firstOfEveryPair a budget that ends after a contact leaves the answer undecided, with the contacts so far.
+  /// are in the unit of its times, and free means all of it. Both ends are rounded outward: by that t_upper - t_lower
+  /// may exceed tolerance_time by 4 ulp of the times and 8 of a piece's duration (1e-6 s at 1.7e9 s, where doubles are
+  /// 2.4e-7 s apart). With ignore_initial_contact pairs that touch at its beginning may separate; they are watched from
+  /// the moment they have (in steps of 1/512 of a piece at most) and not ignored again. A pair that separates for less
+  /// time than that may be taken as never apart. The motions of obstacles that move take as long as the trajectory.
+  /// With ContactMode::firstOfEveryPair a budget that ends after a contact leaves the answer undecided, with the
+  /// contacts so far.
   /// @throws as for a motion.
   void continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                          CertifiedResult& result) const;

@@ -66,8 +66,8 @@ struct CertifiedRequest {
   bool check_self = true;   ///< links against links
   ContactMode mode = ContactMode::first;
   /// At most so many contacts are reported; t_lower and t_upper are those of all. With mode `first` each of them may be
-  /// the first: none begins after t_upper. With `firstOfEveryPair` they are in the order of their t_lower; of more than so
-  /// many every pair's first contact is kept before any pair's second, and of these the earliest.
+  /// the first: none begins after t_upper. With `firstOfEveryPair` they are in the order of their t_lower; of more than
+  /// so many every pair's first contact is kept before any pair's second, and of these the earliest.
   std::size_t max_contacts = 1;
   /// Node and leaf tests after which the answer is `undecided`; 0: no limit. Counted work, not time, so that the
   /// answer does not depend on the machine.
