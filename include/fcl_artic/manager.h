@@ -96,8 +96,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   const AllowedCollisionMatrix& allowedCollisions() const;
 
-  /// A margin of the body's own, in m, in place of CertifiedRequest::margin, for all pairs that it belongs to. Of two bodies
-  /// that both have one the larger counts.
+  /// A margin of the body's own, in m, in place of CertifiedRequest::margin, for all pairs that it belongs to
+  /// (CertifiedRequest::added_margin is added to it too). Of two bodies that both have one the larger counts.
   /// @param body  a link (all of its geometry), an obstacle or an attached object, by name. The margin belongs to the name: it
   ///   waits for an obstacle that is unregistered to come back.
   /// @throws std::invalid_argument: no such name, margin negative or not finite.

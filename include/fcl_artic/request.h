@@ -84,8 +84,9 @@ struct CertifiedRequest {
   VisibilityMode visibility = VisibilityMode::off;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far.
   std::function<void(double t_lower)> progress;
-  /// Added to every pair's margin, in m: to `margin`, and to the margins that pairs and bodies have in its place too. For
-  /// room that is wanted whatever the margins are. Bodies count as touching that are nearer than the sum, as rounded.
+  /// Added to every pair's margin, in m: to `margin`, and to the margins that pairs and bodies have in its place too.
+  /// For room that is wanted whatever the margins are. Bodies count as touching that are nearer than the sum, as
+  /// rounded.
   double added_margin = 0;
 };
 

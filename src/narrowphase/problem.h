@@ -209,9 +209,9 @@ struct Problem {
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
 };
 
-/// The margins of a query's pairs, m, and all that any part of the library knows of them. A pair's margin is its own, else
-/// the one requested, and to either is added what the query adds. These parts can't be had one by one, so that nobody can
-/// leave one out. (Sums are as rounded. Inlined always: each instruction set has the code for itself.)
+/// The margins of a query's pairs, m, and all that any part of the library knows of them. A pair's margin is its own,
+/// else the one requested, and to either is added what the query adds. These parts can't be had one by one, so that
+/// nobody can leave one out. (Sums are as rounded. Inlined always: each instruction set has the code for itself.)
 class Margins {
  public:
   /// All pairs have the margin requested.

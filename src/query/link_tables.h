@@ -26,7 +26,8 @@ class LinkTables {
 
   bool empty() const { return tables_.empty(); }
 
-  /// What tables tell of a motion, as engine::Query::link_free: those built for at least the margin that the pair has here.
+  /// What tables tell of a motion, as engine::Query::link_free: those built for at least the margin that the pair has
+  /// here.
   /// @param memory  holds the answer.
   const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion,
                                 const engine::Margins& margins, std::vector<std::uint8_t>& memory) const;

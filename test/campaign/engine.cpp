@@ -85,7 +85,7 @@ Question prepare(const Scene& scene) {
   fcl_artic::CertifiedRequest& request = question.request;
   request.tolerance_time = scene.tolerance_time;
   request.tolerance_distance = scene.tolerance_distance;
-  request.margin = scene.margin;
+  request.margin = request.added_margin = 0.5 * scene.margin;  // an exact sum
   request.check_scene = scene.check_scene;
   request.check_self = scene.check_self;
   request.mode = scene.every_pair ? fcl_artic::ContactMode::firstOfEveryPair : fcl_artic::ContactMode::first;

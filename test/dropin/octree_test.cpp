@@ -123,6 +123,10 @@ TEST(DropInOcTree, CellsFarFromThePathAreNotRead) {
   const fcl::TranslationMotiond half(at(0, 0, 7), at(1.6, 0, 7));
   ASSERT_EQ(fcl_artic::continuousCollide(&room, &rest, &ball, &half, request, r), Status::contact);
   EXPECT_NEAR(r.t_lower, 1.55 / 1.6, 1e-5);
+  request.margin = 0.05;
+  request.added_margin = 0.1;
+  ASSERT_EQ(fcl_artic::continuousCollide(&room, &rest, &ball, &half, request, r), Status::contact);
+  EXPECT_NEAR(r.t_lower, 1.55 / 1.6, 1e-5);
   // What is unbounded comes everywhere.
   const fcl::Halfspaced floor(Vector3d::UnitX(), -1.95);
   EXPECT_EQ(fcl_artic::continuousCollide(&room, &rest, &floor, &rest, CertifiedRequest(), r), Status::contact);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The room that last valid states keep, with margins of pairs' own; and whether a way leads through an obstacle when one
-// motion after the other begins where the last one ended: accepted motions in all kinds of spaces, judged by FCL at many
-// states on OMPL's own way between their ends, with poses that this file works out.
+// The room that last valid states keep, with margins of pairs' own; and whether a way leads through an obstacle when
+// one motion after the other begins where the last one ended: accepted motions in all kinds of spaces, judged by FCL at
+// many states on OMPL's own way between their ends, with poses that this file works out.
 //
 // FCL_ARTIC_ROOM_CASES: worlds of the campaign; FCL_ARTIC_ROOM_SEED: others.
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ struct Setting {
   double margin, own;  ///< request's, and the pair's; below 0: none
   bool ignore;
 };
-constexpr Setting kSettings[] = {{0, -1, false}, {0, 0, false},   {0.05, 0, false},   {0, 0.02, false},
-                                 {0, -1, true},  {0, 0, true},    {0.05, 0, true},    {0, 0.02, true},
+constexpr Setting kSettings[] = {{0, -1, false},   {0, 0, false},      {0.05, 0, false},   {0, 0.02, false},
+                                 {0, -1, true},    {0, 0, true},       {0.05, 0, true},    {0, 0.02, true},
                                  {0.05, -1, true}, {0.05, 0.02, true}, {0.01, 0.04, true}, {0.01, 0.04, false}};
 
 // A motion that ends in contact (x = 3) is known to fewer digits than one that goes on far beyond (x = 9): what the one
@@ -113,7 +113,8 @@ TEST(Room, NoWayLeadsThroughFromALastValidState) {
   EXPECT_GT(motions, 500);
 }
 
-/// The end of an accepted motion, however near it comes: whatever is not ignored there can't be at the next one's start.
+/// The end of an accepted motion, however near it comes: whatever is not ignored there can't be at the next one's
+/// start.
 TEST(Room, NoWayLeadsThroughFromAnAcceptedEnd) {
   int accepted = 0, refused = 0;
   for (const Setting& setting : kSettings) {
@@ -195,31 +196,52 @@ std::vector<Kind> kinds() {
   };
   const auto part = [](const ob::State* s, unsigned i) { return s->as<ob::CompoundState>()->components[i]; };
   return {
-      {"RealVector", reals(3, 2), treeOf({{JointType::prismatic, x}, {JointType::prismatic, y}, {JointType::revolute, z}}),
-       {"l2", "l3"}, [](const ob::State* s) {
+      {"RealVector",
+       reals(3, 2),
+       treeOf({{JointType::prismatic, x}, {JointType::prismatic, y}, {JointType::revolute, z}}),
+       {"l2", "l3"},
+       [](const ob::State* s) {
          const double* q = s->as<ob::RealVectorStateSpace::StateType>()->values;
          const Isometry3d slid = moved(q[0], 0) * moved(0.9, q[1]);
          return std::vector<Isometry3d>{slid, slid * moved(0.9, 0) * turned(q[2])};
        }},
-      {"SO2", so2, treeOf({{JointType::continuous, z}}), {"l1"},
+      {"SO2",
+       so2,
+       treeOf({{JointType::continuous, z}}),
+       {"l1"},
        [=](const ob::State* s) { return std::vector<Isometry3d>{turned(angleOf(s))}; }},
-      {"SE2", se2, treeOf({{JointType::planar, z}}), {"l1"},
+      {"SE2",
+       se2,
+       treeOf({{JointType::planar, z}}),
+       {"l1"},
        [=](const ob::State* s) { return std::vector<Isometry3d>{se2Pose(s)}; }},
-      {"SO3", so3, treeOf({{JointType::spherical, x}}), {"l1"},
+      {"SO3",
+       so3,
+       treeOf({{JointType::spherical, x}}),
+       {"l1"},
        [](const ob::State* s) {
          return std::vector<Isometry3d>{Isometry3d(rotation(*s->as<ob::SO3StateSpace::StateType>()))};
        }},
-      {"SE3", se3, treeOf({{JointType::floating, x}}), {"l1"},
+      {"SE3",
+       se3,
+       treeOf({{JointType::floating, x}}),
+       {"l1"},
        [](const ob::State* s) {
          const auto& at = *s->as<ob::SE3StateSpace::StateType>();
          return std::vector<Isometry3d>{moved(at.getX(), at.getY(), at.getZ()) * rotation(at.rotation())};
        }},
-      {"RealVector and SO2", both(reals(1, 2), so2), treeOf({{JointType::prismatic, x}, {JointType::continuous, z}}),
-       {"l1", "l2"}, [=](const ob::State* s) {
+      {"RealVector and SO2",
+       both(reals(1, 2), so2),
+       treeOf({{JointType::prismatic, x}, {JointType::continuous, z}}),
+       {"l1", "l2"},
+       [=](const ob::State* s) {
          const Isometry3d cart = moved(part(s, 0)->as<ob::RealVectorStateSpace::StateType>()->values[0], 0);
          return std::vector<Isometry3d>{cart, cart * moved(0.9, 0) * turned(angleOf(part(s, 1)))};
        }},
-      {"SE2 and SO2", both(se2, so2), treeOf({{JointType::planar, z}, {JointType::continuous, z}}), {"l1", "l2"},
+      {"SE2 and SO2",
+       both(se2, so2),
+       treeOf({{JointType::planar, z}, {JointType::continuous, z}}),
+       {"l1", "l2"},
        [=](const ob::State* s) {
          const Isometry3d base = se2Pose(part(s, 0));
          return std::vector<Isometry3d>{base, base * moved(0.9, 0) * turned(angleOf(part(s, 1)))};
@@ -251,11 +273,13 @@ class Campaign {
     const auto si = std::make_shared<ob::SpaceInformation>(kind_.space);
     World world(kind_.tree);
     for (const std::string& link : kind_.links) {
-      const Shape shape = uniform(0, 1) < 0.5 ? Shape(std::make_shared<fcl::Sphered>(0.1))
-                                              : std::make_shared<fcl::Capsuled>(0.05, 0.3);
-      const Isometry3d offset = moved(kind_.space->getType() == ob::STATE_SPACE_SO2 ||
-                                              kind_.space->getType() == ob::STATE_SPACE_SO3 ||
-                                              link == "l3" ? 1.0 : 0.2, 0);
+      const Shape shape =
+          uniform(0, 1) < 0.5 ? Shape(std::make_shared<fcl::Sphered>(0.1)) : std::make_shared<fcl::Capsuled>(0.05, 0.3);
+      const Isometry3d offset = moved(
+          kind_.space->getType() == ob::STATE_SPACE_SO2 || kind_.space->getType() == ob::STATE_SPACE_SO3 || link == "l3"
+              ? 1.0
+              : 0.2,
+          0);
       shapes_.push_back({shape, offset});
       world.bind(link, shape, offset);
     }
@@ -264,8 +288,8 @@ class Campaign {
       const bool in_room = kind_.name == std::string("SO3") || kind_.name == std::string("SE3");
       const Isometry3d pose = moved(reach * std::cos(out), reach * std::sin(out), in_room ? uniform(-0.5, 0.5) : 0) *
                               turned(uniform(-3, 3));
-      const Shape shape = uniform(0, 1) < 0.5 ? Shape(std::make_shared<fcl::Sphered>(0.1))
-                                              : std::make_shared<fcl::Boxd>(0.2, 0.5, 0.5);
+      const Shape shape =
+          uniform(0, 1) < 0.5 ? Shape(std::make_shared<fcl::Sphered>(0.1)) : std::make_shared<fcl::Boxd>(0.2, 0.5, 0.5);
       obstacles_.push_back({shape, pose});
       world.obstacle(shape, pose, "o" + std::to_string(o));
     }
@@ -318,7 +342,8 @@ class Campaign {
   }
 
   /// Looks at an accepted motion. @param excused  pairs that may touch on it.
-  void judge(const ob::State* s1, const ob::State* s2, const std::vector<std::vector<bool>>& excused, const char* what) {
+  void judge(const ob::State* s1, const ob::State* s2, const std::vector<std::vector<bool>>& excused,
+             const char* what) {
     constexpr int kSamples = 256;
     ob::ScopedState<> state(kind_.space);
     double least = 1;
@@ -348,7 +373,9 @@ class Campaign {
   /// A state anywhere: positions within 2 m, of slides too.
   void sample(const ob::StateSpace& space, ob::State* state) {
     switch (space.getType()) {
-      case ob::STATE_SPACE_SO2: state->as<ob::SO2StateSpace::StateType>()->value = uniform(-3.14, 3.14); return;
+      case ob::STATE_SPACE_SO2:
+        state->as<ob::SO2StateSpace::StateType>()->value = uniform(-3.14, 3.14);
+        return;
       case ob::STATE_SPACE_SO3: {
         std::normal_distribution<double> normal;
         auto& q = *state->as<ob::SO3StateSpace::StateType>();

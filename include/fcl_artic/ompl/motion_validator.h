@@ -85,14 +85,14 @@ class FCL_ARTIC_EXPORT JointMapping {
 
 /// Says of a motion that it is valid only when it is proven free of contact, over all of its way. Thread-safe.
 ///
-/// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and when
-/// a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. By default a motion
-/// that starts in contact is invalid.
+/// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and
+/// when a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. By default a
+/// motion that starts in contact is invalid.
 ///
-/// With CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way. At s2 all pairs must
-/// be farther than their margin and tolerance_distance from each other, and from such a state on nothing is ignored: a
-/// plan may start in contact, but not come back into it. So of any sequence of states whose motions are valid one by one,
-/// nothing touches after the first motion, and in that one only what touched at its start.
+/// With CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way. At s2 all pairs
+/// must be farther than their margin and tolerance_distance from each other, and from such a state on nothing is
+/// ignored: a plan may start in contact, but not come back into it. So of any sequence of states whose motions are
+/// valid one by one, nothing touches after the first motion, and in that one only what touched at its start.
 ///
 /// Margins are the pairs' own where they have any (ArticulatedCollisionManager::setMargin), else the request's;
 /// CertifiedRequest::added_margin is added to either, and so is the room that states are given.
@@ -112,12 +112,12 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// Any contact will do here: it need not be the first.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const override;
 
-  /// When false: the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its first
-  /// contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The motion from s1 to that
-  /// state is valid. The time is asked for with twice the request's tolerance_distance added to every margin, and at the
-  /// state itself all pairs are proven farther apart than their margin and tolerance_distance: so it is valid by itself and
-  /// can be left again. Where there is no such room at s1, or what touched there has not separated by then, the time is 0 and
-  /// the state s1. When true, lastValid is not touched.
+  /// When false: the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its
+  /// first contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The motion from s1
+  /// to that state is valid. The time is asked for with twice the request's tolerance_distance added to every margin,
+  /// and at the state itself all pairs are proven farther apart than their margin and tolerance_distance: so it is
+  /// valid by itself and can be left again. Where there is no such room at s1, or what touched there has not separated
+  /// by then, the time is 0 and the state s1. When true, lastValid is not touched.
   /// When it throws, the time is 0 and the state s1, too.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;

@@ -195,8 +195,8 @@ inline void Solver::refine() {
     const Entry& e = entries_[i];
     const int mover = e.pair / problem_->num_obstacles;
     if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
-    candidate_pairs_.push({e.pair, mover, problem_->obstacles[e.pair % problem_->num_obstacles], e.mask,
-                           query_->margins.of(e.pair)});
+    candidate_pairs_.push(
+        {e.pair, mover, problem_->obstacles[e.pair % problem_->num_obstacles], e.mask, query_->margins.of(e.pair)});
   }
   const int asked = candidate_pairs_.size();
   if (!asked) return;
