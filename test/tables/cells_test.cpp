@@ -46,7 +46,6 @@ class Looker {
     problem_ = problem;
     problem_.link_pairs += pair;
     problem_.num_link_pairs = 1;
-    problem_.link_margins = nullptr;
     problem_.num_movers = 0;  // no stage 1: the pair is looked at by itself
     problem_.num_scene_pairs = 0;
     query_.num_variables = dof_;
@@ -133,7 +132,7 @@ class Looker {
 
   engine::Answer solve(double margin) {
     engine::Answer answer;
-    query_.margin = margin;
+    query_.margins = engine::Margins(margin);
     query_.any = random_.chance(0.5);
     engine::engine().solve(workspace_->engine(), problem_, query_, answer);
     return answer;
