@@ -8,10 +8,11 @@
 namespace fcl_artic {
 
 /// How far a point of a body goes at most, seen from the base of its sweep, per unit of one joint variable while the
-/// others stand still: an upper bound, for all values of the variables within `size` (Lemma 2 of doc/NUMERICS.md for n
-/// = 1, with that variable in the place of time).
+/// others stand still: an upper bound (Lemma 2 of doc/NUMERICS.md for n = 1, with that variable in the place of time).
+/// It holds where every variable that drives a slide, the moved one included, stays within its `size`, and nowhere else:
+/// a turn's lever grows with the slides after it (section 10).
 /// @param sweep, step  that carry the body; the path there turns about and slides along axes only.
-/// @param size  per variable: its largest absolute value.
+/// @param size  per variable: the largest absolute value that it has wherever the bound is used.
 /// @return m per rad or m.
 double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Placement& placement,
                     const engine::TreeView& body, int variable, const std::function<double(int)>& size);
