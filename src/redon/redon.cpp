@@ -5,6 +5,7 @@
 #include <chrono>
 #include <vector>
 
+#include "narrowphase/bracket.h"
 #include "redon/solver.h"
 #include "redon/swept_volumes.h"
 
@@ -317,9 +318,9 @@ void Run::solve(Answer& answer) {
     }
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
-  const bool certain = contact && t_upper - t_lower <= query_.tolerance_time * (1 + 1e-9);
-  // Nothing is dropped before t_lower and t_upper are known.
-  keepFirst(0, query_.every_pair ? 1 : certain ? t_upper : t_lower + query_.tolerance_time);
+  const bool certain = contact && engine::isCertain({t_lower, t_upper}, query_.tolerance_time, false);
+  // Nothing is dropped before t_lower and t_upper are known. (With every pair max_contacts is of each.)
+  if (!query_.every_pair) keepFirst(0, certain ? t_upper : t_lower + query_.tolerance_time);
   answer.verdict = out_of_budget ? Verdict::undecided
                    : contact     ? Verdict::contact
                    : t_lower < 1 ? Verdict::undecided
