@@ -398,10 +398,10 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   // contact is the answer that harms nobody.
   if (found_.t_upper < found_.t_lower) found_.t_lower = 0;
   const bool contact = found_.t_lower < engine::kNever;
-  // Where any contact ends the search, other pairs have come to front_ only.
-  if (query.any && contact) engine::joinLower(found_, front_);
   const bool certain = engine::isCertain(found_, query.tolerance_time, query.any);
   if (!query.every_pair) orderContacts(0, certain ? found_.t_upper : found_.t_lower + query.tolerance_time);
+  // Where any contact ends the search, proven or not, other pairs have come to front_ only.
+  if (query.any && contact) engine::joinLower(found_, front_);
   double t_lower = found_.t_lower;
   // Where the budget ended among the initial contacts, nothing is known of when they are over.
   if (out_of_budget_) t_lower = query.ignore_initial ? 0 : min(front_, t_lower);

@@ -276,6 +276,58 @@ TEST(ContactModes, NoContactIsReportedWhereNoneIsAskedForAlsoOfUnboundedPairs) {
   }
 }
 
+void addTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, std::vector<Vector3d>& vertices,
+                 std::vector<fcl::Triangle>& triangles) {
+  const std::size_t first = vertices.size();
+  vertices.insert(vertices.end(), {a, b, c});
+  triangles.emplace_back(first, first + 1, first + 2);
+}
+/// A rectangle of two triangles, in a plane of z.
+void addPlate(double x0, double x1, double y, double z, std::vector<Vector3d>& v, std::vector<fcl::Triangle>& t) {
+  addTriangle({x0, -y, z}, {x1, -y, z}, {x1, y, z}, v, t);
+  addTriangle({x0, -y, z}, {x1, y, z}, {x0, y, z}, v, t);
+}
+
+// A small cart runs through two meshes that are open in front:
+//
+//     far   ______________________________________   plates above and below, from 0.2 to 0.9, and in them a plate
+//     near            _____                          whose plane the cart's side lies in, from 0.6 on: never proven;
+//     cart  []->        |          __________        plates above and below, and in them a triangle across the way,
+//     near            _____                          met at 0.5545 and left at 0.5565, between the poses that are
+//     tried. far   ______________________________________
+//
+// The far mesh is looked at first, as the cart is within its hull already; its contact ends the search.
+TEST(ContactModes, AnyIsNotLateWhereItsContactIsNotProven) {
+  Cart cart(box(0.002));
+  std::vector<Vector3d> v;
+  std::vector<fcl::Triangle> t;
+  for (const double z : {-0.05, 0.05}) addPlate(0.2, 0.9, 0.05, z, v, t);
+  addTriangle({0.601, 0.001, -0.03}, {0.601, 0.001, 0.03}, {0.9, 0.001, 0.03}, v, t);
+  addTriangle({0.601, 0.001, -0.03}, {0.9, 0.001, 0.03}, {0.9, 0.001, -0.03}, v, t);
+  const auto far = object(meshOf(v, t));
+  v.clear();
+  t.clear();
+  for (const double z : {-0.02, 0.02}) addPlate(0.541, 0.57, 0.02, z, v, t);
+  addTriangle({0.5555, -0.003, -0.003}, {0.5555, -0.003, 0.003}, {0.5555, 0.003, 0}, v, t);
+  const auto near = object(meshOf(v, t));
+  cart.manager->registerObject(far.get(), "far");
+  cart.manager->registerObject(near.get(), "near");
+  cart.manager->setup();
+  CertifiedRequest request;
+  const CertifiedResult first = cart.run(0, 1, request);
+  ASSERT_TRUE(first.certain);
+  EXPECT_EQ(first.contacts.at(0).body2.name, "near");
+  EXPECT_LE(first.t_upper, 0.5546);
+  request.mode = ContactMode::any;
+  const CertifiedResult any = cart.run(0, 1, request);
+  ASSERT_EQ(any.status, Status::contact);
+  EXPECT_FALSE(any.certain) << "not the case that is meant";
+  EXPECT_LE(any.t_lower, 0.5545 + kRounding);
+  ASSERT_EQ(any.contacts.size(), 1u);
+  EXPECT_EQ(any.contacts[0].body2.name, "far");
+  EXPECT_GE(any.contacts[0].t_lower, any.t_lower);
+}
+
 // With ContactMode::any `certain` says that a contact is proven at or before t_upper, however early it may begin.
 TEST(ContactModes, AnyIsCertainWhateverTheWidthOfItsBracket) {
   Cart cart(cubeMesh(0.1));
