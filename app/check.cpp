@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,7 +31,7 @@ constexpr std::size_t kAllContacts = 1000000;
 
 struct Options {
   std::string robot, srdf, auto_srdf, image, trajectory, interpolation = "linear";
-  std::vector<std::string> scenes, packages, from, to;
+  std::vector<std::string> scenes, packages, solids, from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
   std::optional<std::size_t> max_contacts;
@@ -81,8 +82,35 @@ UrdfOptions urdfOptions(const Options& options) {
   return out;
 }
 
-Robot loadRobot(const Options& options) {
+/// The object with its mesh as a solid.
+/// @param name  of its link or obstacle.
+std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& object, const std::string& name) {
+  try {
+    return std::make_shared<fcl::CollisionObjectd>(makeSolid(*object.collisionGeometry()), object.getTransform());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("--solid {}: {}", name, error.what()));
+  }
+}
+
+/// Makes the meshes of links or obstacles with these names solids.
+/// @param nameOf  of an item of `bodies`, each of which has an `object`.
+/// @param[in,out] names  those that are found are taken out.
+template <class Bodies, class NameOf>
+void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& names) {
+  std::set<std::string> found;
+  for (auto& body : bodies) {
+    const std::string name = nameOf(body);
+    if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
+    body.object = solidOf(*body.object, name);
+    found.insert(name);
+  }
+  for (const std::string& name : found) names.erase(name);
+}
+
+/// @param[in,out] solids  names of links and obstacles whose meshes are to be solids; links are taken out.
+Robot loadRobot(const Options& options, std::set<std::string>& solids) {
   Robot robot = loadUrdf(options.robot, urdfOptions(options));
+  makeSolids(robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
   if (!options.srdf.empty()) robot.allowed = loadSrdf(options.srdf, *robot.tree);
   if (!options.auto_srdf.empty()) {
     const std::vector<AllowedPair> pairs = generateAllowedCollisions(robot);
@@ -105,7 +133,8 @@ int exitStatus(Status status) {
 
 int run(const Options& options) {
   if (!options.image.empty()) render::requirePictures();
-  const Robot robot = loadRobot(options);
+  std::set<std::string> solids(options.solids.begin(), options.solids.end());
+  const Robot robot = loadRobot(options, solids);
   const KinematicTree& tree = *robot.tree;
   // One of the two.
   std::optional<JointMotion> motion;
@@ -138,7 +167,11 @@ int run(const Options& options) {
   }
   std::vector<Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, options.scene));
-  const Scene scene = combineScenes(scenes, tree);
+  Scene scene = combineScenes(scenes, tree);
+  makeSolids(scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
+  if (!solids.empty()) {
+    throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh", *solids.begin()));
+  }
 
   ArticulatedCollisionManager manager(robot.tree);
   robot.addTo(manager);
@@ -227,6 +260,8 @@ void addCheck(CLI::App& program, int& exit_status) {
   check->add_flag("--solid-meshes", o.scene.solid_meshes,
                   "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
+  check->add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
+      ->group("Robot and scene")->type_name("NAME");
   check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");
 

@@ -26,9 +26,9 @@ namespace fcl_artic {
 //   contact. At time_of_contact fcl::collide mostly finds nothing yet; CertifiedPairResult has poses where it does.
 // - Any geometry that FCL has but point clouds, in any pairing: Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder,
 //   Convex, Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its occupancy
-//   threshold). Shapes and cells are solids; meshes, TriangleP and Plane are surfaces. Of an OcTree that stands still
-//   only the cells near the other object's path are read, so that a large map costs little; of one that moves, and
-//   against what is unbounded, all.
+//   threshold). Shapes and cells are solids; meshes, TriangleP and Plane are surfaces, a SolidMesh is a solid. Of an OcTree
+//   that stands still only the cells near the other object's path are read, so that a large map costs little; of one that
+//   moves, and against what is unbounded, all.
 // - Of the request, toc_err is the wanted tolerance of time (1e-12 where it is less, 0 say), and ccd_motion_type the
 //   way between two transforms. num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one
 //   answer.

@@ -37,7 +37,8 @@ struct CertifiedContact {
   const fcl::CollisionGeometryd* o1 = nullptr;
   const fcl::CollisionGeometryd* o2 = nullptr;
   /// Triangle index in a mesh, fcl::Contactd::NONE (-1) for a shape. With ContactMode::any also for a mesh: where contact
-  /// is proven by what closed meshes enclose, no triangle is known, and `point` lies within both bodies.
+  /// is proven by what closed meshes enclose, no triangle is known, and `point` lies within both bodies. The same where
+  /// one body lies within the other, a SolidMesh, at t = 0: `normal` is the shortest way out then, about.
   std::intptr_t b1 = -1, b2 = -1;
   FeatureKind feature = FeatureKind::volume;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< world, at t_upper when certain, else at t_lower

@@ -173,6 +173,41 @@ TEST_F(ProgramTest, GeneratedPairsAreWrittenAndReadBack) {
   EXPECT_EQ(this->run("check" + motion + "--no-self").status, 0);
 }
 
+// The arm stands within a box of 8 m: free of its surface, in contact at once where meshes are solids.
+TEST_F(ProgramTest, SolidMeshes) {
+  const std::string corners = "v -4 -4 -4\nv 4 -4 -4\nv 4 4 -4\nv -4 4 -4\nv -4 -4 4\nv 4 -4 4\nv 4 4 4\nv -4 4 4\n";
+  const std::string sides = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\n";
+  const std::string closed = write("closed.obj", corners + sides + "f 4 1 5 8\n"), open = write("open.obj", corners + sides);
+  const std::string motion = " --from 0,0 --to 10deg,0 ", check = "check --json --robot " + arm() + motion + "--scene ";
+  EXPECT_EQ(this->run(check + closed).status, 0);
+  const Outcome inside = this->run(check + closed + " --solid-meshes");
+  ASSERT_EQ(inside.status, 1) << inside.err;
+  const Json answer = Json::parse(inside.out);
+  EXPECT_EQ(answer.at("t_lower"), 0);
+  EXPECT_EQ(answer.at("t_upper"), 0);
+  EXPECT_EQ(answer.at("certain"), true);
+  EXPECT_EQ(answer.at("contacts").at(0).at("body2").at("name"), "closed");
+  EXPECT_EQ(this->run(check + closed + " --solid-meshes --ignore-initial-contact").status, 0);
+  EXPECT_EQ(this->run(check + open).status, 0);
+  const Outcome refused = this->run(check + open + " --solid-meshes");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("open.obj"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("not closed: 4 edges"), std::string::npos) << refused.err;
+  // One of them only.
+  const std::string both = check + open + " --scene " + closed;
+  EXPECT_EQ(this->run(both).status, 0);
+  EXPECT_EQ(this->run(both + " --solid closed").status, 1);
+  const Outcome open_one = this->run(both + " --solid open");
+  EXPECT_EQ(open_one.status, 2);
+  EXPECT_NE(open_one.err.find("--solid open: "), std::string::npos) << open_one.err;
+  for (const char* name : {"arm", "nobody"}) {  // a box; none
+    const Outcome none = this->run(both + " --solid " + name);
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find(std::string("--solid ") + name + ": no link or obstacle of that name has a mesh"), std::string::npos)
+        << none.err;
+  }
+}
+
 TEST_F(ProgramTest, PackagesAreFoundWhereTheyAreNamed) {
   const std::string robot = write("meshed.urdf", R"(<robot name="meshed"><link name="base"><collision><geometry>
     <mesh filename="package://parts/tetra.obj"/></geometry></collision></link></robot>)");

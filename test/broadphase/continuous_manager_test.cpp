@@ -24,6 +24,7 @@
 #include <gtest/gtest.h>
 
 #include "fcl_artic/continuous_collision.h"
+#include "fcl_artic/solid_mesh.h"
 
 namespace fcl_artic {
 namespace {
@@ -42,6 +43,23 @@ std::unique_ptr<Object> make(const std::shared_ptr<fcl::CollisionGeometryd>& geo
 }
 std::unique_ptr<Object> sphere(double radius, const fcl::Transform3d& from, const fcl::Transform3d& to) {
   return make(std::make_shared<fcl::Sphered>(radius), std::make_shared<fcl::TranslationMotiond>(from, to));
+}
+
+/// A cube of 2 m, closed.
+std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> cubeMesh() {
+  std::vector<Vector3d> v;
+  for (int i = 0; i < 8; ++i) v.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+  const std::size_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  std::vector<fcl::Triangle> t;
+  for (const auto& s : sides) {
+    t.emplace_back(s[0], s[1], s[2]);
+    t.emplace_back(s[0], s[2], s[3]);
+  }
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  mesh->beginModel();
+  mesh->addSubModel(v, t);
+  mesh->endModel();
+  return mesh;
 }
 
 class Scene {
@@ -155,6 +173,39 @@ void expectRefused(Operation&& operation, const std::string& why) {
     FAIL() << "not refused: " << why;
   } catch (const std::invalid_argument& e) {
     EXPECT_NE(std::string(e.what()).find(why), std::string::npos) << e.what();
+  }
+}
+
+// A ball on its way within a cube: free of its surface, not of the solid, whoever asks.
+TEST(ContinuousManager, SolidMeshes) {
+  for (const bool solid : {false, true}) {
+    const auto mesh = cubeMesh();
+    const std::shared_ptr<fcl::CollisionGeometryd> cube = solid ? makeSolid(*mesh) : mesh;
+    const auto still = std::make_shared<fcl::TranslationMotiond>(at(0, 0, 0), at(0, 0, 0));
+    const auto around = make(cube, still), within = sphere(0.1, at(-0.5, 0, 0), at(0.5, 0, 0)),
+               beside = sphere(0.1, at(2, 0, 0), at(3, 0, 0));
+    ContinuousCollisionManager manager, other;
+    manager.registerObjects({around.get(), beside.get()});
+    other.registerObject(within.get());
+    manager.setup();
+    other.setup();
+    const Status wanted = solid ? Status::contact : Status::free;
+    CertifiedPairsResult result;
+    manager.continuousCollide(CertifiedRequest(), result);
+    EXPECT_EQ(result.status, Status::free);
+    manager.continuousCollide(within.get(), CertifiedRequest(), result);
+    EXPECT_EQ(result.status, wanted);
+    manager.continuousCollide(&other, CertifiedRequest(), result);
+    EXPECT_EQ(result.status, wanted);
+    manager.registerObject(within.get());
+    manager.setup();
+    manager.continuousCollide(CertifiedRequest(), result);
+    EXPECT_EQ(result.status, wanted);
+    if (!solid) continue;
+    ASSERT_EQ(result.pairs.size(), 1u);
+    EXPECT_EQ(result.t_lower, 0);
+    EXPECT_EQ(result.t_upper, 0);
+    EXPECT_TRUE(result.certain);
   }
 }
 

@@ -67,6 +67,22 @@ TEST(MeshCache, SameMeshSameTree) {
   EXPECT_NE(readGeometry(model), tree);
 }
 
+// A solid and a surface of the same bytes, one after the other in the same place, are two.
+TEST(MeshCache, SolidsAreNoSurfaces) {
+  Blob blob;
+  blob.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  blob.triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  MeshCache cache(1 << 20);
+  MeshBytes bytes = blob.bytes();
+  const auto tree = ShapeTree::fromTriangles({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, true);
+  bytes.solid = true;
+  cache.keep(bytes, tree);
+  EXPECT_EQ(cache.find(bytes), tree);
+  bytes.solid = false;
+  EXPECT_EQ(cache.find(bytes), nullptr);
+}
+
 TEST(MeshCache, SeesWhatChangesInPlace) {
   Model<double> model;
   fill(model, 2);

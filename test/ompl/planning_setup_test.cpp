@@ -136,6 +136,27 @@ TEST_F(PlanningSetupTest, AnObstacleWithALinksNameIsMet) {
   expectContains(setup.notes[0], "'arm' is called 'arm#2'");
 }
 
+// The cart within a box of 8 m, a mesh: where it is a solid no state in it is valid, and no motion.
+TEST_F(PlanningSetupTest, SolidMeshes) {
+  const std::string box =
+      write("box.obj", "v -4 -4 -4\nv 4 -4 -4\nv 4 4 -4\nv -4 4 -4\nv -4 -4 4\nv 4 -4 4\nv 4 4 4\nv -4 4 4\n"
+                       "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+  for (const bool solid : {false, true}) {
+    SetupOptions options;
+    options.scene.solid_meshes = solid;
+    const PlanningSetup setup = setUpPlanning(urdf_, srdf_, box, "joints", options);
+    ob::ScopedState<> s1(setup.space), s2(setup.space), out(setup.space);
+    setup.setState(s1.get(), {0, 1.5});
+    setup.setState(s2.get(), {1, 1.5});
+    setup.setState(out.get(), {8, 1.5});
+    EXPECT_EQ(setup.si->isValid(s1.get()), !solid);
+    EXPECT_EQ(setup.si->checkMotion(s1.get(), s2.get()), !solid);
+    EXPECT_TRUE(setup.si->isValid(out.get()));
+    EXPECT_TRUE(setup.si->checkMotion(out.get(), out.get()));
+    EXPECT_FALSE(setup.si->checkMotion(out.get(), s1.get()));
+  }
+}
+
 TEST_F(PlanningSetupTest, JointsWithoutRoomStandStill) {
   std::string urdf = kUrdf;
   urdf.replace(urdf.find("lower=\"1\" upper=\"2\""), 19, "lower=\"1.5\" upper=\"1.5\"");

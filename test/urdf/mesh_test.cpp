@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcl/geometry/bvh/BVH_model.h>
 
+#include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "temp_folder.h"
 
@@ -75,6 +76,60 @@ TEST_F(MeshTest, DropsTrianglesWithoutAreaWithANote) {
   }
   // A needle 1e-6 as thin as long is a triangle.
   EXPECT_EQ(load(write("needle.obj", "v 0 0 0\nv 1 0 0\nv 1 0.000001 0\nf 1 2 3\n"))->num_tris, 1);
+}
+
+// As a solid: triangles without area stay, as they may be what closes it; one that is open is refused.
+TEST_F(MeshTest, SolidsMustBeClosed) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.5 0 0\n";
+  const std::string closed = write("closed.obj", corners + "f 1 3 2\nf 1 5 4\nf 5 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n");
+  const auto solid = loadMesh(closed, {1, -1, 1}, &notes_, true);
+  EXPECT_TRUE(std::dynamic_pointer_cast<SolidMesh<fcl::OBBRSSd>>(solid));
+  EXPECT_EQ(std::dynamic_pointer_cast<Model>(solid)->num_tris, 6);
+  EXPECT_TRUE(notes_.empty());
+  EXPECT_EQ(load(closed)->num_tris, 5);
+  EXPECT_FALSE(std::dynamic_pointer_cast<SolidMesh<fcl::OBBRSSd>>(loadMesh(closed, {1, 1, 1})));
+  const std::string open = write("open.obj", corners + "f 1 3 2\nf 1 5 4\nf 5 2 4\nf 2 3 4\nf 1 2 5\n");
+  const std::string message = messageOf([&] { loadMesh(open, {1, 1, 1}, nullptr, true); });
+  expectContains(message, "open.obj'");
+  expectContains(message, "not closed: 3 edges");
+}
+
+// A whole robot and scenes: a ball within a mesh is free of its surface, and not of the solid.
+TEST_F(MeshTest, RobotsAndScenesOfSolids) {
+  write("box.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+                   "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+  const std::string mesh = "(scene)\n* m\n1\nmesh\n4 4\n-1 -1 -1\n3 0 0\n0 3 0\n0 0 3\n0 2 1\n0 1 3\n0 3 2\n1 2 3\n"
+                           "0 0 0\n0 0 0 1\n0 0 0 0\n.\n";
+  const std::string robot = write("ball.urdf", R"(<robot name="r"><link name="base"/><link name="ball"><collision><geometry>
+      <sphere radius="0.1"/></geometry></collision></link><joint name="x" type="prismatic"><parent link="base"/>
+      <child link="ball"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>)");
+  const std::string boxes = write("box.urdf", R"(<robot name="b"><link name="box"><collision><geometry>
+      <mesh filename="box.obj"/></geometry></collision></link></robot>)");
+  const std::string cart = write("cart.urdf", R"(<robot name="c"><link name="base"/><link name="box"><collision><geometry>
+      <mesh filename="box.obj" scale="1 1 -1"/></geometry></collision></link><joint name="x" type="prismatic">
+      <parent link="base"/><child link="box"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
+      </robot>)");
+  const std::string small = write("small.scene", "(scene)\n* s\n1\nsphere\n0.1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n");
+  const auto status = [&](const std::string& urdf, const std::string& scene_file, bool solid) {
+    UrdfOptions options;
+    SceneOptions scene_options;
+    options.solid_meshes = scene_options.solid_meshes = solid;
+    const Robot r = loadUrdf(urdf, options);
+    const Scene scene = loadScene(scene_file, scene_options);
+    ArticulatedCollisionManager manager(r.tree);
+    r.addTo(manager);
+    scene.addTo(manager);
+    manager.setup();
+    CertifiedResult result;
+    manager.continuousCollide(JointMotion::linear(*r.tree, Eigen::VectorXd::Constant(1, 0), Eigen::VectorXd::Constant(1, 0.1)),
+                              CertifiedRequest(), result);
+    return result.status;
+  };
+  for (const auto& [urdf, scene] : {std::make_pair(robot, path("box.obj")), {robot, boxes},
+                                    {robot, write("mesh.scene", mesh)}, {cart, small}}) {
+    EXPECT_EQ(status(urdf, scene, false), Status::free) << urdf << " " << scene;
+    EXPECT_EQ(status(urdf, scene, true), Status::contact) << urdf << " " << scene;
+  }
 }
 
 TEST_F(MeshTest, ErrorsNameTheFile) {
