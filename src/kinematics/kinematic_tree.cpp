@@ -9,6 +9,7 @@
 
 #include "kinematics/joint_factors.h"
 #include "numerics/rotation.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 namespace {
@@ -363,7 +364,7 @@ void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>
     const double length = q.segment<4>(v).norm();
     if (std::abs(length - 1) <= kQuaternionLength) continue;
     throw std::invalid_argument(what + ": the quaternion of joint '" + joints_[j].name + "' has the length " +
-                                std::to_string(length) + " instead of 1");
+                                shown(length) + " instead of 1");
   }
 }
 

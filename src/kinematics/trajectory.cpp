@@ -10,6 +10,7 @@
 #include "kinematics/angles.h"
 #include "kinematics/rotation_vector.h"
 #include "narrowphase/problem.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 namespace {
@@ -27,8 +28,8 @@ void requireTimes(const std::vector<double>& times) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (!std::isfinite(times[k])) throw std::invalid_argument("trajectory: time " + number(k) + " is not finite");
     if (k > 0 && !(times[k] > times[k - 1] && std::isfinite(times[k] - times[k - 1]))) {
-      throw std::invalid_argument("trajectory: time " + number(k) + ", " + std::to_string(times[k]) +
-                                  ", is not later than the one before, " + std::to_string(times[k - 1]));
+      throw std::invalid_argument("trajectory: time " + number(k) + ", " + shown(times[k]) +
+                                  ", is not later than the one before, " + shown(times[k - 1]));
     }
   }
 }
@@ -142,8 +143,8 @@ JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> 
     for (int v = 0; v < tree.dof(); ++v) {
       if (std::abs(after[v] - before[v]) <= kJump + kJumpPart * std::max(std::abs(before[v]), std::abs(after[v]))) continue;
       throw std::invalid_argument("trajectory: piece " + number(k) + " begins elsewhere than piece " + number(k - 1) +
-                                  " ends: joint '" + tree.variableName(v) + "' jumps from " + std::to_string(before[v]) +
-                                  " to " + std::to_string(after[v]));
+                                  " ends: joint '" + tree.variableName(v) + "' jumps from " +
+                                  std::to_string(before[v]) + " to " + shown(after[v]));
     }
   }
 }
@@ -231,7 +232,7 @@ JointTrajectory JointTrajectory::parabolicBlends(const KinematicTree& tree, cons
   requireWaypoints(tree, times, waypoints);
   refuseQuaternions(tree, "parabolicBlends()");
   if (!std::isfinite(blend) || blend < 0) {
-    throw std::invalid_argument("trajectory: the blend " + std::to_string(blend) + " is not a number >= 0");
+    throw std::invalid_argument("trajectory: the blend " + shown(blend) + " is not a number >= 0");
   }
   if (blend == 0) return linear(tree, times, waypoints, unwrap);
   const std::vector<VectorXd> q = waypointsOf(tree, waypoints, unwrap);
@@ -243,8 +244,8 @@ JointTrajectory JointTrajectory::parabolicBlends(const KinematicTree& tree, cons
     const double h = times[k + 1] - times[k];
     const double blends = (k > 0 ? blend : 0) + (k + 1 < last ? blend : 0);
     if (blends > h) {
-      throw std::invalid_argument("trajectory: the blends of " + std::to_string(blend) + " overlap between waypoints " +
-                                  number(k) + " and " + number(k + 1) + ", which are " + std::to_string(h) + " apart");
+      throw std::invalid_argument("trajectory: the blends of " + shown(blend) + " overlap between waypoints " +
+                                  number(k) + " and " + number(k + 1) + ", which are " + shown(h) + " apart");
     }
     const VectorXd rate = (q[k + 1] - q[k]) / h;
     const auto add = [&](double end, const MatrixXd& c) {
@@ -287,14 +288,14 @@ JointTrajectory JointTrajectory::bspline(const KinematicTree& tree, int degree, 
   }
   for (std::size_t i = 0; i < knots.size(); ++i) {
     if (!std::isfinite(knots[i]) || (i > 0 && knots[i] < knots[i - 1])) {
-      throw std::invalid_argument("trajectory: knot " + number(i) + ", " + std::to_string(knots[i]) +
+      throw std::invalid_argument("trajectory: knot " + number(i) + ", " + shown(knots[i]) +
                                   ", is not finite or less than the one before");
     }
   }
   for (std::size_t i = 0; i < n; ++i) tree.requireConfiguration(control_points[i], "control point " + number(i));
   for (std::size_t i = p + 1; i + p < n; ++i) {
     if (knots[i + p] > knots[i]) continue;
-    throw std::invalid_argument("trajectory: inner knot " + std::to_string(knots[i]) + " is there more than " + number(p) +
+    throw std::invalid_argument("trajectory: inner knot " + shown(knots[i]) + " is there more than " + number(p) +
                                 " times: the B-spline jumps");
   }
 

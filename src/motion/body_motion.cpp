@@ -21,6 +21,7 @@
 #include <limits>
 
 #include "numerics/rotation.h"
+#include "numerics/sine_cosine.h"
 
 namespace fcl_artic {
 namespace {
@@ -30,14 +31,40 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Coefficients = Eigen::Matrix<double, 3, kMaxDegree + 1>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Sine and cosine of a and b, each off by at most 2.5 * 2^-52, and by 2 * 2^-52 of itself as far as pi / 4
+/// (doc/NUMERICS.md, section 7). NaN beyond kLargestAngle, where nothing is claimed: motions are refused before.
+struct SineCosine {
+  double sine_a, cosine_a, sine_b, cosine_b;
+};
+SineCosine sineCosineOf(double a, double b) {
+  if (!(std::abs(a) <= kLargestAngle && std::abs(b) <= kLargestAngle)) return {kNaN, kNaN, kNaN, kNaN};
+  __m128d sine, cosine;
+  sineCosine(_mm_set_pd(b, a), sine, cosine);
+  return {_mm_cvtsd_f64(sine), _mm_cvtsd_f64(cosine), _mm_cvtsd_f64(_mm_unpackhi_pd(sine, sine)),
+          _mm_cvtsd_f64(_mm_unpackhi_pd(cosine, cosine))};
+}
+
+/// c + (1 - c) z z^T + s [z], for a unit vector z.
+Matrix3d rotationAbout(const Vector3d& z, double angle) {
+  const SineCosine of = sineCosineOf(angle, 0);
+  const double s = of.sine_a, c = of.cosine_a;
+  Matrix3d R = (1 - c) * z * z.transpose();
+  R.diagonal().array() += c;
+  R(1, 0) += s * z[2], R(0, 1) -= s * z[2];
+  R(0, 2) += s * z[1], R(2, 0) -= s * z[1];
+  R(2, 1) += s * z[0], R(1, 2) -= s * z[0];
+  return R;
+}
 
 /// exp([w]) = 1 + a [w] + b [w]^2, a = sin(theta) / theta, b = (1 - cos(theta)) / theta^2 = 2 (sin(theta/2) / theta)^2:
 /// nothing cancels, however small the angle is. A theta that underflows to 0 leaves 1 + [w] + [w]^2 / 2.
 Matrix3d rotationBy(const Vector3d& w) {
   const double theta = w.norm();
-  const double a = theta > 0 ? std::sin(theta) / theta : 1;
-  const double half = theta > 0 ? std::sin(theta / 2) / theta : 0.5;
+  const SineCosine of = sineCosineOf(theta, theta / 2);
+  const double a = theta > 0 ? of.sine_a / theta : 1;
+  const double half = theta > 0 ? of.sine_b / theta : 0.5;
   const double b = 2 * half * half;
   Matrix3d W;
   W << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
@@ -175,7 +202,7 @@ Isometry3d BodyMotion::pose(double t) const {
     const Vector3d q = element.bounded ? Vector3d::Zero() : valueAt(element.coefficients, element.degree(), t);
     switch (element.kind) {
       case MotionElement::Kind::revolute:
-        turnBy(Eigen::AngleAxisd(q[0], element.axis).toRotationMatrix());
+        turnBy(rotationAbout(element.axis, q[0]));
         break;
       case MotionElement::Kind::prismatic:
         slideBy(q[0] * element.axis);
@@ -197,6 +224,36 @@ Isometry3d BodyMotion::pose(double t) const {
   M.translation() = p;
   M.makeAffine();
   return M;
+}
+
+/// From the body out to the world. A turn by a rotation vector q takes a unit vector v no farther than |q x v|: it is
+/// exp([q]) v - v = integral of exp(s [q]) (q x v) over s in [0, 1]. So with v where it stands at t = 0, c_k the
+/// coefficients of q and t <= 1, a turn about an axis takes it from there by the sum of |c_k x v|, k >= 1, at most:
+/// what the axis turns it by at t = 0 commutes with the rest. A turn by a vector may have another axis at t = 0, and
+/// takes it there and back: by 2 |c_0 x v| more, unless it stands still. Rotations farther out change no length.
+Heading headingOf(const BodyMotion& motion, const Vector3d& own) {
+  using Kind = MotionElement::Kind;
+  Heading heading{motion.after.linear() * own, 0};
+  Vector3d& v = heading.direction;
+  for (auto it = motion.elements.rbegin(); it != motion.elements.rend(); ++it) {
+    const MotionElement& element = *it;
+    if (element.kind == Kind::bounded) {
+      heading.deviation += element.bounded->bounds(0, 1).angular_speed;
+      v = element.bounded->state(0).pose.linear() * v;
+    } else if (element.kind == Kind::revolute || element.kind == Kind::turn) {
+      const bool about_axis = element.kind == Kind::revolute;
+      const Coefficients& c = element.coefficients;
+      double turned = 0;
+      for (int k = 1; k <= kMaxDegree; ++k) {
+        turned += about_axis ? std::abs(c(0, k)) * element.axis.cross(v).norm() : c.col(k).cross(v).norm();
+      }
+      if (!about_axis && element.degree() > 0) turned += 2 * c.col(0).cross(v).norm();
+      heading.deviation += turned;
+      v = (about_axis ? rotationAbout(element.axis, c(0, 0)) : rotationBy(c.col(0))) * v;
+    }
+    v = element.before.linear() * v;
+  }
+  return heading;
 }
 
 void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper, Vector3d& path_lower,

@@ -41,6 +41,14 @@ struct BodyMotion {
   Eigen::Isometry3d pose(double t) const;
 };
 
+/// A direction fixed in a body, as its motion has it in the world.
+struct Heading {
+  Eigen::Vector3d direction;  ///< at t = 0
+  double deviation;           ///< bound on |direction at t - direction at 0| for t in [0, 1]
+};
+/// @param own  unit vector in the geometry's frame.
+Heading headingOf(const BodyMotion& motion, const Eigen::Vector3d& own);
+
 /// Box in the world that certainly holds a body over all of the motion, rounding included.
 /// @param lower, upper  box of the body in its own frame; infinite where it is unbounded.
 void enclosePath(const BodyMotion& motion, const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,

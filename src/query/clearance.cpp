@@ -12,6 +12,7 @@
 
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/manager.h"
+#include "numerics/shown.h"
 #include "query/aspects.h"
 #include "query/engine_query.h"
 
@@ -25,8 +26,7 @@ constexpr double kStep = 4;
 constexpr double kOpen = 1.0 / 8;
 
 void require(bool good, const char* name, double value, const char* what) {
-  if (!good)
-    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(value) + ", not " + what);
+  if (!good) throw std::invalid_argument(std::string("request.") + name + " is " + shown(value) + ", not " + what);
 }
 
 class Search {

@@ -10,6 +10,7 @@
 
 #include "adapters/fcl/fcl_geometry.h"
 #include "adapters/fcl/fcl_motion.h"
+#include "numerics/shown.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/pair_query.h"
@@ -160,7 +161,7 @@ template <class S>
 CertifiedRequest certified(const fcl::ContinuousCollisionRequest<S>& request) {
   const double tolerance = static_cast<double>(request.toc_err);
   if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
-    throw std::invalid_argument("the request's toc_err is " + std::to_string(tolerance) + ", not a tolerance of time");
+    throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: what doubles can tell apart
   CertifiedRequest certified;

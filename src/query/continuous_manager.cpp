@@ -12,6 +12,7 @@
 #include "adapters/fcl/fcl_geometry.h"
 #include "adapters/fcl/fcl_motion.h"
 #include "culling/box_overlap.h"
+#include "numerics/shown.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/pair_query.h"
@@ -94,7 +95,7 @@ BoxBounds grown(const BoxBounds& box, double margin) {
 void requireQuery(ContinuousCollisionManager::Callback callback, double margin) {
   if (!callback) throw std::invalid_argument("collide: the callback is null");
   if (!(margin >= 0) || !std::isfinite(margin)) {
-    throw std::invalid_argument("collide: the margin is " + std::to_string(margin) + ", not a number >= 0");
+    throw std::invalid_argument("collide: the margin is " + shown(margin) + ", not a number >= 0");
   }
 }
 

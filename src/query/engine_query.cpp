@@ -11,13 +11,14 @@
 #include "adapters/fcl/fcl_geometry.h"
 #include "narrowphase/add_work.h"
 #include "narrowphase/elementary.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 namespace {
 
 void requireTolerance(double x, const char* name, bool positive) {
   if (!std::isfinite(x) || x < 0 || (positive && x == 0)) {
-    throw std::invalid_argument(std::string("request.") + name + " is " + std::to_string(x) +
+    throw std::invalid_argument(std::string("request.") + name + " is " + shown(x) +
                                 (positive ? ", not a positive number" : ", not a number >= 0"));
   }
 }

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "numerics/shown.h"
+
 namespace fcl_artic {
 namespace {
 
 void requireMargin(double margin, const std::string& of) {
   if (std::isfinite(margin) && margin >= 0) return;
-  throw std::invalid_argument("setMargin: the margin of " + of + " is " + std::to_string(margin) +
-                              ", not a number >= 0");
+  throw std::invalid_argument("setMargin: the margin of " + of + " is " + shown(margin) + ", not a number >= 0");
 }
 
 }  // namespace

@@ -61,14 +61,6 @@ const Piece* unboundedPiece(const ShapeTree& shape) {
   return shape.view().num_pieces == 1 && unbounded ? &piece : nullptr;
 }
 
-bool onlyTranslates(const BodyMotion& motion) {
-  return std::all_of(motion.elements.begin(), motion.elements.end(), [](const MotionElement& element) {
-    using Kind = MotionElement::Kind;
-    if (element.kind == Kind::slide || element.kind == Kind::prismatic) return true;
-    return element.kind != Kind::bounded && element.coefficients.rightCols<kMaxDegree>().isZero(0);
-  });
-}
-
 /// Poses at t_lower and t_upper.
 void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPairResult& result) {
   result.tf1_at_lower = motion1.pose(result.t_lower);
@@ -82,18 +74,21 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
                   CertifiedPairResult& result);
 
 /// Two half-spaces or planes. They meet, unless their normals are parallel and stay so: then the distance of the one's
-/// boundary from the other is that of any of its points, and a point takes its place. Normals within rounding of parallel
-/// count as parallel: bodies lie within 1e9 m of the origin, and there they cannot be told from parallel ones.
+/// boundary from the other is that of any of its points, and a point takes its place. Normals that stay within rounding
+/// of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md, "Unbounded
+/// pieces").
 void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
                     const CertifiedRequest& request, CertifiedPairResult& result) {
   constexpr double kParallel = 64 * 0x1p-52;
-  const Eigen::Isometry3d M1 = body1.motion.pose(0), M2 = body2.motion.pose(0);
-  const Eigen::Vector3d n1 = M1.linear() * Eigen::Vector3d::Map(piece1.size);
-  const Eigen::Vector3d n2 = M2.linear() * Eigen::Vector3d::Map(piece2.size);
-  const bool parallel = n1.cross(n2).norm() <= kParallel;
+  const Heading heading1 = headingOf(body1.motion, Eigen::Vector3d::Map(piece1.size));
+  const Heading heading2 = headingOf(body2.motion, Eigen::Vector3d::Map(piece2.size));
+  const Eigen::Vector3d &n1 = heading1.direction, &n2 = heading2.direction;
+  const double askew = n1.cross(n2).norm();
+  const bool parallel = askew <= kParallel;
+  const bool stay_parallel = askew + heading1.deviation + heading2.deviation <= kParallel;
   const bool solids = piece1.kind == PieceKind::halfspace && piece2.kind == PieceKind::halfspace;
   const bool alike = solids && n1.dot(n2) > 0;  // one holds the other, wherever they are
-  if (parallel && !alike && onlyTranslates(body1.motion) && onlyTranslates(body2.motion)) {
+  if (stay_parallel && !alike) {
     const bool keep_first = piece1.kind == PieceKind::halfspace || piece2.kind == PieceKind::plane;
     const Piece& other = keep_first ? piece2 : piece1;
     Piece point;
@@ -117,10 +112,11 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   contact.o1 = body1.geometry;
   contact.o2 = body2.geometry;
   contact.normal = n1;
-  contact.point = M1 * Eigen::Vector3d(piece1.center[0] * Eigen::Vector3d::Map(piece1.size));
+  contact.point = body1.motion.pose(0) * Eigen::Vector3d(piece1.center[0] * Eigen::Vector3d::Map(piece1.size));
   if (!parallel) {  // a point of both boundaries: the one nearest to the first's own
     const Eigen::Vector3d across = (n2 - n1.dot(n2) * n1).normalized();
-    const Eigen::Vector3d p2 = M2 * Eigen::Vector3d(piece2.center[0] * Eigen::Vector3d::Map(piece2.size));
+    const Eigen::Vector3d p2 =
+        body2.motion.pose(0) * Eigen::Vector3d(piece2.center[0] * Eigen::Vector3d::Map(piece2.size));
     contact.point += across * (n2.dot(p2 - contact.point) / n2.dot(across));
   }
   contact.t_lower = 0;

@@ -200,6 +200,116 @@ TEST(DropIn, UnboundedPairsMeetUnlessTheyStayParallel) {
   }
 }
 
+/// A body that goes from p by `way`, at constant velocity along n, and turns about n by `angle`.
+std::shared_ptr<fcl::MotionBased> turningWay(int kind, const Eigen::Matrix3d& R, const Vector3d& p, const Vector3d& way,
+                                             const Vector3d& n, double angle) {
+  const Eigen::Matrix3d to = Eigen::AngleAxisd(angle, n) * R;
+  if (kind == 0) {  // about a point off the origin
+    return std::make_shared<fcl::InterpMotion<double>>(R, p, to, p + way, Vector3d(0.3, 0.2, -0.1));
+  }
+  if (kind == 1) return std::make_shared<fcl::ScrewMotion<double>>(R, p, to, p + way);
+  // A spline's rotation vector stays along n where R is a turn about it, too: here none.
+  return std::make_shared<fcl::SplineMotion<double>>(p - way, p, p + way, p + 2 * way, -angle * n, Vector3d::Zero(),
+                                                     angle * n, 2 * angle * n);
+}
+
+// Half-spaces and planes that turn about their common normal stay parallel: in every order, whoever turns, wherever the
+// axis is, their distance goes along a line from 2 m to 1 m (free) or to -2 m (contact at 0.5). A turn about any other
+// axis takes them to where they meet.
+TEST(DropIn, UnboundedPairsThatTurnAboutTheirNormalStayParallel) {
+  struct Kinds {
+    bool half1, half2;
+  };
+  int free = 0, contacts = 0, askew = 0;
+  for (int kind = 0; kind < 3; ++kind) {
+    for (const double tilt : {0.0, 1e-9, 0.3}) {
+      // The world is turned but for splines, whose rotation is 1 at first.
+      const Eigen::Matrix3d W =
+          kind == 2 ? Eigen::Matrix3d::Identity() : Eigen::AngleAxisd(1.1, Vector3d(1, -2, 2) / 3).toRotationMatrix();
+      const Vector3d n = W.col(2), side = W.col(0), axis = (n + tilt * side).normalized();
+      for (const Kinds kinds : {Kinds{true, true}, {true, false}, {false, true}, {false, false}}) {
+        for (int mover = 1; mover < 4; ++mover) {
+          for (const bool hit : {false, true}) {
+            // Body 1 is below its boundary, at offset 0.25 along its normal, body 2 looks down on it.
+            const Vector3d n1(0, 0, 1), n2(0, 0, -1);
+            std::shared_ptr<CollisionGeometryd> g1, g2;
+            g1 = std::make_shared<fcl::Halfspaced>(n1, 0.25);
+            g2 = std::make_shared<fcl::Halfspaced>(n2, -0.5);
+            if (!kinds.half1) g1 = std::make_shared<fcl::Planed>(n1, 0.25);
+            if (!kinds.half2) g2 = std::make_shared<fcl::Planed>(n2, -0.5);
+            const double closing = hit ? 4 : 1;  // m along n
+            const double share1 = mover == 1 ? 1 : mover == 3 ? 0.25 : 0;
+            const Vector3d aside = 0.7 * side;
+            const Vector3d way1 = share1 * closing * n, way2 = (share1 - 1) * closing * n;
+            const auto m1 = turningWay(kind, W, Vector3d(0.1, 0.2, 0.3), way1, axis, mover != 2 ? 0.8 : 0);
+            const auto m2 =
+                turningWay(kind, W, Vector3d(0.1, 0.2, 0.3) + 1.75 * n + aside, way2, axis, mover != 1 ? 1.3 : 0);
+            fcl_artic::CertifiedRequest request;
+            fcl_artic::CertifiedPairResult result;
+            fcl_artic::continuousCollide(g1.get(), m1.get(), g2.get(), m2.get(), request, result);
+            const auto which = ::testing::Message()
+                               << "motion " << kind << ", tilt " << tilt << ", half-spaces " << kinds.half1
+                               << kinds.half2 << ", mover " << mover << ", hit " << hit;
+            if (tilt > 0) {
+              EXPECT_EQ(result.status, fcl_artic::Status::contact) << which;
+              EXPECT_EQ(result.t_lower, 0) << which;
+              ++askew;
+            } else if (hit) {
+              ASSERT_EQ(result.status, fcl_artic::Status::contact) << which;
+              // (That two planes pass each other no single pose proves.)
+              EXPECT_EQ(result.certain, kinds.half1 || kinds.half2) << which;
+              EXPECT_LE(result.t_lower, 0.5 + 1e-13) << which;
+              EXPECT_GE(result.t_lower, 0.5 - 1e-6 - 1e-13) << which;
+              EXPECT_GE(result.t_upper, 0.5 - 1e-13) << which;
+              ++contacts;
+            } else {
+              EXPECT_EQ(result.status, fcl_artic::Status::free) << which;
+              ++free;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(free, 36);
+  EXPECT_EQ(contacts, 36);
+  EXPECT_EQ(askew, 144);
+}
+
+// What is no tolerance is refused, 0 too, and the message has the number itself, however small.
+TEST(DropIn, TolerancesThatAreNoPositiveNumbersAreRefusedByValue) {
+  const fcl::Boxd box(1, 1, 1);
+  const TranslationMotiond rest(at(0), at(0)), go(at(3), at(2));
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  struct Bad {
+    double value;
+    const char* shown;
+    bool margin;  ///< as a margin, too
+  };
+  for (const Bad& bad :
+       {Bad{0.0, " 0,", false}, {-1e-12, " -1e-12,", true}, {inf, " inf,", true}, {nan, " nan,", true}}) {
+    for (double fcl_artic::CertifiedRequest::*field :
+         {&fcl_artic::CertifiedRequest::tolerance_time, &fcl_artic::CertifiedRequest::tolerance_distance,
+          &fcl_artic::CertifiedRequest::margin}) {
+      if (field == &fcl_artic::CertifiedRequest::margin && !bad.margin) continue;
+      fcl_artic::CertifiedRequest request;
+      request.*field = bad.value;
+      fcl_artic::CertifiedPairResult result;
+      try {
+        fcl_artic::continuousCollide(&box, &rest, &box, &go, request, result);
+        ADD_FAILURE() << bad.shown << " is accepted";
+      } catch (const std::invalid_argument& e) {
+        EXPECT_NE(std::string(e.what()).find(bad.shown), std::string::npos) << e.what();
+      }
+    }
+  }
+  fcl_artic::CertifiedRequest tiny;
+  tiny.tolerance_time = tiny.tolerance_distance = std::numeric_limits<double>::denorm_min();
+  fcl_artic::CertifiedPairResult result;
+  fcl_artic::continuousCollide(&box, &rest, &box, &go, tiny, result);
+  EXPECT_TRUE(result.isFree());
+}
+
 // One answer, to the bit, whatever of the request has no meaning.
 TEST(DropIn, SolversAndIterationsHaveNoEffect) {
   BallAndCube<double> s;

@@ -130,15 +130,14 @@ class Matrix {
   /// while they pass one another.
   void sweeps(const Cell& c, Sweep& s1, Sweep& s2) const {
     const auto &a = geometries_[c.geometry1], &b = geometries_[c.geometry2];
-    const bool unbounded = a.unbounded && b.unbounded, spline = c.way == Way::spline_motion;
+    const bool spline = c.way == Way::spline_motion;
     // The world is turned; a spline's only about x, as its rotation vector then stays on a line: exp(w) is a turn about
     // x.
     Matrix3d W =
         Eigen::AngleAxisd(0.7, spline ? Vector3d(1, 0, 0) : Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-    if (unbounded) W.setIdentity();
-    // What turns about x. Two unbounded ones don't: askew by rounding, they would meet.
+    // What turns about x. Of half-spaces and planes that is the normal, so that two of them stay parallel.
     const auto turns = [&](const auto& g) {
-      if (unbounded || c.way == Way::trans || c.way == Way::translation_motion) return false;
+      if (c.way == Way::trans || c.way == Way::translation_motion) return false;
       return !spline || g.turn.isIdentity();
     };
     // Object 2 is turned round; not where it must start from a turn about x, but there it reaches as far to the left.
@@ -153,7 +152,7 @@ class Matrix {
       way2 = 0.75 * relative;
       // Both drift along, but for screws, whose ways then would bend.
       const bool screw = c.way == Way::screw || c.way == Way::screw_motion;
-      if (!screw && !unbounded) {
+      if (!screw) {
         way1 += Vector3d(0.2, -0.3, 0.4);
         way2 += Vector3d(0.2, -0.3, 0.4);
       }

@@ -133,6 +133,54 @@ Vector3d corner(const Case& c, int i) {
   return {i & 1 ? c.upper[0] : c.lower[0], i & 2 ? c.upper[1] : c.lower[1], i & 4 ? c.upper[2] : c.lower[2]};
 }
 
+TEST(HeadingTest, DirectionsTurnNoFartherThanItsBound) {
+  Random random(3);
+  int tight = 0, still = 0, about_itself = 0;
+  for (int n = 0; n < 3000; ++n) {
+    Case c = randomCase(random);
+    const Vector3d own = randomDirection(random);
+    // A turn about the direction itself, wherever it is in a chain, leaves it as it is.
+    if (n % 3 == 0 && !c.bounded) {
+      MotionElement e;
+      e.kind = random.coin() ? Kind::revolute : Kind::turn;
+      e.axis = c.motion.after.linear() * own;
+      for (int k = 0; k < 3; ++k) {
+        const double q = random.uniform(-2, 2);
+        e.coefficients.col(k) = e.kind == Kind::turn ? Vector3d(q * e.axis) : Vector3d(q, 0, 0);
+      }
+      BodyMotion alone;
+      alone.elements = {e};
+      alone.after = c.motion.after;
+      EXPECT_LE(headingOf(alone, own).deviation, 1e-14);
+      for (const double t : {0.0, 0.3, 1.0}) {
+        EXPECT_LE((alone.pose(t).linear() * own - headingOf(alone, own).direction).norm(), 1e-14);
+      }
+      ++about_itself;
+      c.motion.elements.push_back(e);
+    }
+    const Heading heading = headingOf(c.motion, own);
+    EXPECT_LE((heading.direction - c.motion.pose(0).linear() * own).norm(), 2e-14);
+    double farthest = 0;
+    for (int i = 0; i <= 40; ++i) {
+      farthest = std::max(farthest, (c.motion.pose(i / 40.0).linear() * own - heading.direction).norm());
+    }
+    EXPECT_LE(farthest, heading.deviation + 1e-13) << n;
+    tight += farthest > 0.8 * heading.deviation && heading.deviation > 1e-3;
+    still += heading.deviation == 0;
+  }
+  EXPECT_GE(tight, 50);
+  EXPECT_GE(still, 200);
+  EXPECT_GE(about_itself, 500);
+}
+
+/// A turn by a vector that is along the direction only after t = 0 does turn it.
+TEST(HeadingTest, ATurnWhoseAxisChangesIsNotTakenForOneAboutTheDirection) {
+  BodyMotion motion;
+  motion.elements = {element(Kind::turn, {{M_PI / 2, 0, 0}, {0, 0, 1}})};
+  EXPECT_GE(headingOf(motion, Vector3d::UnitZ()).deviation, 1);
+  EXPECT_GE((motion.pose(1).linear().col(2) - motion.pose(0).linear().col(2)).norm(), 0.1);
+}
+
 TEST(EnclosePathTest, HoldsEverySampledPoint) {
   Random random(2);
   int outside = 0, checks = 0;

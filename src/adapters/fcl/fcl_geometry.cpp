@@ -24,6 +24,7 @@
 #include "adapters/fcl/mesh_cache.h"
 #include "fcl_artic/solid_mesh.h"
 #include "numerics/rotation.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 
@@ -108,7 +109,7 @@ std::shared_ptr<const ShapeTree> readMesh(const Mesh<S>& mesh) {
 
 double requireSize(double x, const char* what) {
   if (!(x > 0) || !std::isfinite(x)) {
-    throw std::invalid_argument(std::string("its ") + what + " is " + std::to_string(x) + ", not a positive number");
+    throw std::invalid_argument(std::string("its ") + what + " is " + shown(x) + ", not a positive number");
   }
   return x;
 }
@@ -347,8 +348,8 @@ Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, double most, const st
   const Eigen::Matrix3d R = M.linear();
   const double defect = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (defect > most || R.determinant() < 0) {
-    throw std::invalid_argument(what + " has a transform whose rotation is not orthonormal (defect " +
-                                std::to_string(defect) + ")");
+    throw std::invalid_argument(what + " has a transform whose rotation is not orthonormal (defect " + shown(defect) +
+                                ")");
   }
   if (M.translation().cwiseAbs().maxCoeff() > 1e9) throw std::invalid_argument(what + " is more than 1e9 m away");
   Eigen::Isometry3d rigid = M;

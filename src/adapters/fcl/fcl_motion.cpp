@@ -15,6 +15,7 @@
 #include <fcl/math/motion/translation_motion.h>
 
 #include "numerics/rotation.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 namespace {
@@ -90,7 +91,7 @@ Isometry3d readRigid(const fcl::Transform3<S>& M, const N& name) {
   const double largest = defect.cwiseAbs().maxCoeff();
   if (!(largest <= (std::is_same<S, float>::value ? 1e-4 : 1e-6) && R.determinant() > 0)) {
     throw std::invalid_argument(spelled(name) + " has a transform whose rotation is not orthonormal (defect " +
-                                std::to_string(largest) + ")");
+                                shown(largest) + ")");
   }
   Isometry3d rigid;
   rigid.linear() = orthonormal(R, defect);
@@ -291,7 +292,7 @@ BodyMotion readBounded(const BoundedMotion& motion, const Name& name) {
   Vector3d last = Vector3d::Zero();
   for (const double t : {0.0, 0.5, 1.0}) {
     const BoundedMotion::State state = motion.state(t);
-    const std::string at = spelled(name) + " at t = " + std::to_string(t);
+    const std::string at = spelled(name) + " at t = " + shown(t);
     const Matrix3d R = state.pose.linear();
     require(state.pose.matrix().allFinite(), at, "has a pose that is not finite");
     require((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-12 && R.determinant() > 0, at,
