@@ -470,21 +470,23 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   expectContains(refusal([&] { JointTrajectory::cubic(*ball.tree, {0, 1}, q, w); }), "'ball/rot_w' is not 0");
 }
 
-TEST(Trajectory, QueryRefusesWithoutTouchingTheResult) {
+TEST(Trajectory, QueryRefusesAndClaimsNothing) {
   Slider slider;
   const JointTrajectory x = slider.linear({0, 1}, {0, 1});
   slider.ready().setup();
   CertifiedResult r;
-  r.t_lower = 0.25;
   CertifiedRequest request;
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     request.tolerance_time = bad;
+    r.status = Status::free;
+    r.t_lower = 1;
     expectContains(refusal([&] { slider.manager->continuousCollide(x, request, r); }), "tolerance_time");
+    EXPECT_EQ(r.status, Status::undecided);
+    EXPECT_EQ(r.t_lower, 0);
   }
   const Scene other = twoJoints();
   const JointTrajectory foreign = JointTrajectory::linear(*other.tree, {0, 1}, {values({0, 0}), values({1, 1})});
-  expectContains(refusal([&] { slider.manager->continuousCollide(foreign, {}, r); }), "2 joint values");
-  EXPECT_EQ(r.t_lower, 0.25);
+  expectContains(refusal([&] { slider.manager->continuousCollide(foreign, {}, r); }), "the trajectory");
 }
 
 }  // namespace
