@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Batches over threads: the same bits as one by one.
+#include <algorithm>
 #include <cstring>
+#include <functional>
+#include <numeric>
 #include <random>
+#include <thread>
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/math/motion/translation_motion.h>
 
 #include "expect_time.h"
+#include "fcl_artic/continuous_collision.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::test;
@@ -114,6 +119,93 @@ TEST(Batch, FirstContactSameBitsAsOneByOneOverAnyThreads) { expectSameBits(Conta
 TEST(Batch, EveryPairSameBitsAsOneByOneOverAnyThreads) { expectSameBits(ContactMode::firstOfEveryPair); }
 // Not yet: where the engine finds overlap before it has a witness, the point of contact still depends on the last query.
 TEST(Batch, AnyContactSameBitsAsOneByOneOverAnyThreads) { expectSameBits(ContactMode::any); }
+
+// Every kind of query at once on one manager, each thread in an order of its own: what they share must not show. (This
+// is what the thread sanitizer is to see.)
+TEST(Batch, AllKindsOfQueriesAtOnceGiveTheBitsOfEachAlone) {
+  const Scene scene(6);
+  const ArticulatedCollisionManager& manager = *scene.manager;
+  struct Query {
+    std::function<void(CertifiedResult&, Clearance&)> ask;
+    CertifiedResult result;
+    Clearance clearance;
+  };
+  std::vector<Query> queries;
+  const auto add = [&](auto ask) { queries.push_back({ask, {}, {}}); };
+  for (const JointMotion& motion : scene.motions) {
+    for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
+      for (const Method method : {Method::standard, Method::Redon2004}) {
+        for (const VisibilityMode visibility : {VisibilityMode::off, VisibilityMode::on}) {
+          for (const bool ignore : {false, true}) {
+            CertifiedRequest request;
+            request.mode = mode;
+            request.method = method;
+            request.visibility = visibility;
+            request.ignore_initial_contact = ignore;
+            request.max_contacts = 3;
+            add([&manager, &motion, request](CertifiedResult& r, Clearance&) {
+              manager.continuousCollide(motion, request, r);
+            });
+          }
+        }
+      }
+    }
+    add([&manager, &motion](CertifiedResult&, Clearance& c) { c = manager.clearance(motion); });
+    add([&manager, &motion](CertifiedResult& r, Clearance&) { manager.collide(motion.configuration(0.5), {}, r); });
+    const VectorXd q0 = motion.configuration(0), q1 = motion.configuration(0.5), q2 = motion.configuration(0.25);
+    for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
+      const JointTrajectory way = JointTrajectory::linear(*scene.tree, {0, 1, 3}, {q0, q1, q2});
+      CertifiedRequest request;
+      request.mode = mode;
+      add([&manager, way, request](CertifiedResult& r, Clearance&) { manager.continuousCollide(way, request, r); });
+    }
+    const JointTrajectory way = JointTrajectory::linear(*scene.tree, {0, 1, 3}, {q0, q1, q2});
+    add([&manager, way](CertifiedResult&, Clearance& c) { c = manager.clearance(way); });
+  }
+  for (std::size_t i = 0; i + 1 < scene.objects.size(); ++i) {  // two objects by themselves
+    add([&scene, i](CertifiedResult& r, Clearance&) {
+      CertifiedPairResult pair;
+      const auto &a = *scene.objects[i], &b = *scene.objects[i + 1];
+      continuousCollide(&a, fcl::Transform3d(b.getTransform()), &b, b.getTransform(), fcl::CCDM_SCREW,
+                        CertifiedRequest(), pair);
+      r.status = pair.status;
+      r.t_lower = pair.t_lower;
+      r.t_upper = pair.t_upper;
+    });
+  }
+  int free = 0, contact = 0;
+  for (Query& query : queries) {
+    query.ask(query.result, query.clearance);
+    free += query.result.isFree();
+    contact += query.result.status == Status::contact;
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(contact, 20);
+
+  constexpr std::size_t kThreads = 4;
+  std::vector<std::string> differ(kThreads);
+  std::vector<std::thread> threads;
+  for (std::size_t k = 0; k < kThreads; ++k) {
+    threads.emplace_back([&, k] {
+      std::vector<std::size_t> order(queries.size());
+      std::iota(order.begin(), order.end(), std::size_t{0});
+      std::shuffle(order.begin(), order.end(), std::mt19937(static_cast<unsigned>(k)));
+      for (const std::size_t i : order) {
+        CertifiedResult result;
+        Clearance clearance;
+        queries[i].ask(result, clearance);
+        const auto equal = same(result, queries[i].result);
+        if (!equal) differ[k] += "query " + std::to_string(i) + ": " + equal.message() + "\n";
+        if (!sameBits(&clearance.lower, &queries[i].clearance.lower, 1) ||
+            !sameBits(&clearance.upper, &queries[i].clearance.upper, 1)) {
+          differ[k] += "query " + std::to_string(i) + ": clearances differ\n";
+        }
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& text : differ) EXPECT_EQ(text, "");
+}
 
 TEST(Batch, BadInputIsNamedBeforeAnythingIsAsked) {
   const Scene scene(4);

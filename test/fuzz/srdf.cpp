@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic/urdf/urdf.h"
+#include "fuzz.h"
+
+using namespace fcl_artic;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const KinematicTree tree = [] {
+    KinematicTree all("r");
+    for (const char* link : {"a", "b", "c", "d"}) all.addLink(link);
+    return all;
+  }();
+  const std::string path =
+      fuzz::Folder::instance().write("robot.srdf", std::string(reinterpret_cast<const char*>(data), size));
+  AllowedCollisionMatrix matrix;
+  if (!fuzz::loads(path, [&] { matrix = loadSrdf(path, tree); })) return 0;
+  std::vector<AllowedPair> pairs;
+  for (const auto& [a, b] : matrix.pairs()) pairs.push_back({a, b, "Never"});
+  writeSrdf(path, "r", pairs);
+  if (loadSrdf(path, tree).pairs() != matrix.pairs()) fuzz::fault("pairs that were written are not those read back");
+  return 0;
+}
