@@ -66,7 +66,8 @@ void ArticulatedCollisionManager::continuousCollide(const std::vector<JointMotio
   const auto reset = [&] {
     for (CertifiedResult& result : results) claimNothing(result);
   };
-  resetAndAnswer(reset, [&] {
+  for (CertifiedResult& result : results) withdrawClaims(result, 0, 1);
+  resetUnlessAnswered(reset, [&] {
     if (threads < 0) {
       throw std::invalid_argument("continuousCollide: the number of threads is " + std::to_string(threads));
     }

@@ -99,6 +99,14 @@ void requireQuery(ContinuousCollisionManager::Callback callback, double margin) 
   }
 }
 
+/// Runs a query; nothing is claimed before it has answered.
+template <class Query>
+void answerPairs(CertifiedPairsResult& result, Query&& query) {
+  const auto reset = [&] { result = CertifiedPairsResult(); };
+  reset();
+  resetUnlessAnswered(reset, query);
+}
+
 /// Collects the answers of pairs into one.
 class Earliest {
  public:
@@ -382,30 +390,27 @@ void ContinuousCollisionManager::collide(const ContinuousCollisionManager* other
 
 void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  resetAndAnswer([&] { result = CertifiedPairsResult(); },
-                 [&] {
-                   Earliest earliest(request, result);
-                   earliest.finish(impl_->visitOwn(marginsOf(request).largest(), earliest));
-                 });
+  answerPairs(result, [&] {
+    Earliest earliest(request, result);
+    earliest.finish(impl_->visitOwn(marginsOf(request).largest(), earliest));
+  });
 }
 
 void ContinuousCollisionManager::continuousCollide(Object* object, const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  resetAndAnswer([&] { result = CertifiedPairsResult(); },
-                 [&] {
-                   Earliest earliest(request, result);
-                   earliest.finish(impl_->visitObject(object, marginsOf(request).largest(), earliest));
-                 });
+  answerPairs(result, [&] {
+    Earliest earliest(request, result);
+    earliest.finish(impl_->visitObject(object, marginsOf(request).largest(), earliest));
+  });
 }
 
 void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other,
                                                    const CertifiedRequest& request,
                                                    CertifiedPairsResult& result) const {
-  resetAndAnswer([&] { result = CertifiedPairsResult(); },
-                 [&] {
-                   Earliest earliest(request, result);
-                   earliest.finish(impl_->visitOther(other, marginsOf(request).largest(), earliest));
-                 });
+  answerPairs(result, [&] {
+    Earliest earliest(request, result);
+    earliest.finish(impl_->visitOther(other, marginsOf(request).largest(), earliest));
+  });
 }
 
 }  // namespace fcl_artic

@@ -145,7 +145,7 @@ QueryStatistics workOf(const Solved& solved) {
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
-  resetAndAnswer([&] { claimNothing(result); }, [&] { collideMotion(motion, request, result); });
+  answerOrClaimNothing(result, 0, 1, [&] { collideMotion(motion, request, result); });
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
@@ -237,8 +237,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 
 void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
                                           CertifiedResult& result) const {
-  resetAndAnswer([&] { claimNothing(result); },
-                 [&] { collideMotion(JointMotion::linear(tree(), q, q), request, result); });
+  answerOrClaimNothing(result, 0, 1, [&] { collideMotion(JointMotion::linear(tree(), q, q), request, result); });
 }
 
 }  // namespace fcl_artic

@@ -79,8 +79,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
                                                     CertifiedResult& result) const {
   const bool none = trajectory.numPieces() == 0;  // moved from, refused below
   const double begin = none ? 0 : trajectory.beginTime(), end = none ? 1 : trajectory.endTime();
-  resetAndAnswer([&] { claimNothing(result, begin, end); },
-                 [&] { collideTrajectory(trajectory, request, true, result); });
+  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, true, result); });
 }
 
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,

@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 #include <tuple>
+#include <type_traits>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
@@ -535,6 +536,83 @@ TEST(FclOcTree, CellIdIsFcls) {
     ++compared;
   }
   EXPECT_GT(compared, 20);
+}
+
+// One bit of any number that makes a geometry makes it another one; a copy, and the bit put back, do not.
+TEST(GeometryContent, SeesEveryNumber) {
+  std::map<std::string, std::vector<double*>> numbers;
+  forEachShape<double>([&](const std::string& name, const auto& shape) {
+    using Shape = std::decay_t<decltype(*shape)>;
+    auto& g = *shape;
+    std::vector<double*>& all = numbers[name];
+    const auto add = [&](auto& v) {
+      for (int k = 0; k < 3; ++k) all.push_back(&v[k]);
+    };
+    if constexpr (std::is_same_v<Shape, fcl::Boxd>) add(g.side);
+    if constexpr (std::is_same_v<Shape, fcl::Sphered>) all = {&g.radius};
+    if constexpr (std::is_same_v<Shape, fcl::Capsuled> || std::is_same_v<Shape, fcl::Cylinderd> ||
+                  std::is_same_v<Shape, fcl::Coned>) {
+      all = {&g.radius, &g.lz};
+    }
+    if constexpr (std::is_same_v<Shape, fcl::Ellipsoidd>) add(g.radii);
+    if constexpr (std::is_same_v<Shape, fcl::Convexd>) {
+      for (const Vector3d& v : g.getVertices()) add(const_cast<Vector3d&>(v));
+    }
+    if constexpr (std::is_same_v<Shape, fcl::Halfspaced> || std::is_same_v<Shape, fcl::Planed>) {
+      add(g.n);
+      all.push_back(&g.d);
+    }
+    if constexpr (std::is_same_v<Shape, fcl::TrianglePd>) {
+      add(g.a);
+      add(g.b);
+      add(g.c);
+    }
+    const GeometryContent content(g);
+    EXPECT_TRUE(content.sameAs(g)) << name;
+    if constexpr (!std::is_base_of_v<fcl::ShapeBase<double>, Shape> && !std::is_same_v<Shape, fcl::OcTreed>) {
+      for (int i = 0; i < g.num_vertices; ++i) add(g.vertices[i]);
+      for (int i = 0; i < g.num_tris; ++i) {
+        const fcl::Triangle t = g.tri_indices[i];
+        for (const auto& changed : {fcl::Triangle(t[0] + 1, t[1], t[2]), fcl::Triangle(t[0], t[1] + 1, t[2]),
+                                    fcl::Triangle(t[0], t[1], t[2] + 1)}) {
+          g.tri_indices[i] = changed;
+          EXPECT_FALSE(content.sameAs(g)) << name << " triangle " << i;
+        }
+        g.tri_indices[i] = t;
+      }
+      --g.num_tris;
+      EXPECT_FALSE(content.sameAs(g)) << name;
+      ++g.num_tris;
+    }
+    for (double* x : all) {
+      const double before = *x;
+      *x = std::nextafter(before, 100.0);
+      EXPECT_FALSE(content.sameAs(g)) << name << ' ' << before;
+      *x = before;
+    }
+    EXPECT_TRUE(content.sameAs(g)) << name;
+  });
+  for (const auto& [name, all] : numbers) {
+    if (name != "OcTree") EXPECT_FALSE(all.empty()) << name;
+  }
+
+  // Other types with the same numbers; a map's cells and threshold.
+  EXPECT_FALSE(GeometryContent(fcl::Cylinderd(1, 2)).sameAs(fcl::Coned(1, 2)));
+  EXPECT_FALSE(GeometryContent(fcl::Boxd(1, 2, 3)).sameAs(fcl::Ellipsoidd(1, 2, 3)));
+  EXPECT_TRUE(GeometryContent(fcl::Boxd(1, 2, 3)).sameAs(fcl::Boxd(1, 2, 3)));
+  const auto cells = map(0.125);
+  fcl::OcTreed octree(cells);
+  const GeometryContent content(octree);
+  EXPECT_TRUE(content.sameAs(fcl::OcTreed(map(0.125))));
+  EXPECT_FALSE(content.sameAs(fcl::OcTreed(map(0.0625))));
+  octree.setOccupancyThres(0.9);
+  EXPECT_FALSE(content.sameAs(octree));
+  octree.setOccupancyThres(cells->getOccupancyThres());
+  EXPECT_TRUE(content.sameAs(octree));
+  cells->setNodeValue(octomap::point3d(5, 5, 5), -1.0f);  // free: none of the cells that count
+  EXPECT_TRUE(content.sameAs(octree));
+  cells->setNodeValue(octomap::point3d(5, 5, 5), 1.0f);
+  EXPECT_FALSE(content.sameAs(octree));
 }
 
 TEST(RequireRigid, TakesWhatFloatsAre) {

@@ -15,6 +15,7 @@
 #include "fcl_artic/bounded_motion.h"
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/continuous_manager.h"
+#include "meshes.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::test;
@@ -27,7 +28,7 @@ namespace {
 using Moving = fcl::ContinuousCollisionObjectd;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Comes from x = 3 to x = -1, until it throws.
+/// Comes from (3, y, 0) across to (-1, y + 4, 0), until it throws.
 struct Moody : fcl::MotionBased, BoundedMotion {
   bool integrate(double) const override { return true; }
   double computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const override { return 0; }
@@ -37,13 +38,13 @@ struct Moody : fcl::MotionBased, BoundedMotion {
   State state(double t) const override {
     if (throws) throw std::runtime_error("not today");
     State s;
-    s.pose.translation() = Vector3d(3 - 4 * t, y, 0);
-    s.velocity.x() = -4;
+    s.pose.translation() = Vector3d(3 - 4 * t, y + 4 * t, 0);
+    s.velocity = {-4, 4, 0};
     return s;
   }
   Bounds bounds(double, double) const override {
     Bounds b;
-    b.speed = 4;
+    b.speed = 6;
     return b;
   }
   bool throws = false;
@@ -106,15 +107,15 @@ bool throwsAnything(F&& f) {
   return false;
 }
 
-/// A cart before a wall, and a ball that flies by at y = 0.
+/// A cart before a wall, and a ball that flies by 0.7 m from the cart at x = 0: near enough that it has to be asked.
 struct Yard {
   Cart cart;
   std::shared_ptr<fcl::CollisionObjectd> wall = object(std::make_shared<fcl::Boxd>(1, 1, 1), pose({1, 0, 0}));
   std::shared_ptr<Moody> moody = std::make_shared<Moody>();
   Moving flies{std::make_shared<fcl::Sphered>(0.1), moody};
   ArticulatedCollisionManager& manager = *cart.manager;
-  explicit Yard(double y = 5) {
-    moody->y = y;
+  Yard() {
+    moody->y = -2;
     manager.registerObject(wall.get(), "wall");
     manager.registerObject(&flies, "ball");
     manager.setup();
@@ -195,31 +196,46 @@ TEST(ThrowingQuery, ManagerThatIsNotSetUpLeavesNothing) {
   for (const CertifiedResult& result : many) EXPECT_TRUE(claimsNothing(result));
 }
 
+// A crank that grazes posts for long, so that there is progress to tell.
 TEST(ThrowingQuery, ProgressThatThrowsLeavesNothing) {
-  Yard yard;
-  // Contact at t = 0.8; free up to there takes steps that are told.
-  const JointMotion motion = yard.motion(0, 0.5);
+  const Yard yard;
+  auto tree = std::make_shared<KinematicTree>("crank");
+  tree->addLink("base");
+  tree->addLink("arm");
+  tree->addJoint(makeJoint("turn", JointType::continuous, "base", "arm", Vector3d::UnitZ()));
+  const auto arm = object(cubeMesh(0.5));
+  ArticulatedCollisionManager crank(tree);
+  crank.bind("arm", arm.get());
+  std::vector<std::shared_ptr<fcl::CollisionObjectd>> posts;
+  for (int i = 0; i < 12; ++i) {
+    const double angle = 0.5236 * i;
+    posts.push_back(object(cubeMesh(0.1), pose({0.808 * std::cos(angle), 0.808 * std::sin(angle), 0.6001})));
+    crank.registerObject(posts.back().get());
+  }
+  crank.setup();
+  const VectorXd begin = VectorXd::Zero(1), end = VectorXd::Constant(1, 300.0);
+  const JointMotion motion = JointMotion::linear(*tree, begin, end);
   int calls = 0;
-  CertifiedResult looked_at;
+  CertifiedResult looked_at = yard.usedResults()[0];
   CertifiedRequest looking;
   looking.progress = [&](double) {
     ++calls;
-    EXPECT_TRUE(claimsNothing(looked_at)) << "while the query runs";
+    EXPECT_EQ(looked_at.status, Status::undecided) << "while the query runs";
+    EXPECT_EQ(looked_at.t_lower, 0);
   };
-  looked_at = yard.usedResults()[0];
-  yard.manager.continuousCollide(motion, looking, looked_at);
-  ASSERT_GT(calls, 0);
-  EXPECT_EQ(looked_at.status, Status::contact);
+  crank.continuousCollide(motion, looking, looked_at);
+  EXPECT_GT(calls, 0);
+  EXPECT_TRUE(looked_at.isFree());
   expectNothingLeft(yard, "progress",
-                    [&](CertifiedResult& r) { yard.manager.continuousCollide(motion, throwingProgress(), r); });
+                    [&](CertifiedResult& r) { crank.continuousCollide(motion, throwingProgress(), r); });
+  const JointTrajectory trajectory = JointTrajectory::linear(*tree, {-5, -4, -2}, {begin, begin, end});
   expectNothingLeft(
       yard, "progress of a trajectory",
-      [&](CertifiedResult& r) { yard.manager.continuousCollide(yard.trajectory(0, 0.5), throwingProgress(), r); }, -5,
-      -2);
+      [&](CertifiedResult& r) { crank.continuousCollide(trajectory, throwingProgress(), r); }, -5, -2);
   expectNothingLeft(yard, "progress by the paper's method", [&](CertifiedResult& r) {
     CertifiedRequest request = throwingProgress();
     request.method = Method::Redon2004;
-    yard.manager.continuousCollide(motion, request, r);
+    crank.continuousCollide(motion, request, r);
   });
 }
 
@@ -279,6 +295,7 @@ TEST(ThrowingQuery, ManyObjectsLeaveNothing) {
                                     std::make_shared<fcl::TranslationMotiond>(pose(from), pose(to)));
   };
   const auto moody = std::make_shared<Moody>();
+  moody->y = -2.8;  // over the others
   const auto a = slides({0, 0, 0}, {0, 0, 0}), b = slides({1, 0, 0}, {0, 0, 0});
   const auto last = std::make_unique<Moving>(std::make_shared<fcl::Sphered>(0.1), moody);
   Moving still(std::make_shared<fcl::Sphered>(0.1));  // has no motion: refused
@@ -312,7 +329,7 @@ TEST(ThrowingQuery, ManyObjectsLeaveNothing) {
 // FCL's callback gathers the answers of all pairs in one result. (The single queries' are in test/dropin.)
 TEST(ThrowingQuery, CallbackOfTheDropInLeavesAContact) {
   const auto moody = std::make_shared<Moody>();
-  moody->y = 1;
+  moody->y = -1;
   Moving far(std::make_shared<fcl::Sphered>(0.1), moody);
   Moving stays(std::make_shared<fcl::Sphered>(0.1),
                std::make_shared<fcl::TranslationMotiond>(pose({0, 0, 0}), pose({0, 0, 0})));
