@@ -49,10 +49,9 @@ inline Eigen::Vector3d nearestPoint(const MeshTriangle& t, const Eigen::Vector3d
   return a + vb * scale * ab + vc * scale * ac;
 }
 
-/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across the direction to the
-/// nearest one, wherever that came from. A corner's place along it errs by less than 8 kMeshUlp |n| |v - x|.
-inline double clearanceOf(const MeshTriangle& t, const Eigen::Vector3d& x, const Eigen::Vector3d& nearest) {
-  const Eigen::Vector3d n = nearest - x;
+/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across a direction n, whatever that
+/// is. A corner's place along it errs by less than 8 kMeshUlp |n| |v - x|.
+inline double clearanceAlong(const MeshTriangle& t, const Eigen::Vector3d& x, const Eigen::Vector3d& n) {
   const double length = n.norm();
   if (!(length > kLeastMeshLength)) return 0;
   double least = std::numeric_limits<double>::infinity(), far = 0;
@@ -62,6 +61,10 @@ inline double clearanceOf(const MeshTriangle& t, const Eigen::Vector3d& x, const
     far = std::max(far, d.norm());
   }
   return std::max(0.0, least / length - 32 * kMeshUlp * far);
+}
+/// Along the direction to the nearest point, wherever that came from.
+inline double clearanceOf(const MeshTriangle& t, const Eigen::Vector3d& x, const Eigen::Vector3d& nearest) {
+  return clearanceAlong(t, x, nearest - x);
 }
 
 /// Distance of x from a node's box, no larger than it is.

@@ -32,12 +32,15 @@ Vector3d nearestOfEdge(const Vector3d& a, const Vector3d& b, const Vector3d& x) 
   return square > 0 ? Vector3d(a + std::clamp((x - a).dot(along) / square, 0.0, 1.0) * along) : a;
 }
 
-/// Lower bound of x's distance from a triangle. Of one with hardly any area the nearest point may be computed wrongly,
-/// which makes the bound worse, not wrong; those of its edges are right.
+/// Lower bound of x's distance from a triangle. The direction to the nearest point is known badly for an x that is near,
+/// and so is that point for a triangle with hardly any area: the normal, and the edges' nearest points. Any direction is
+/// as right as another.
 double surelyApart(const MeshTriangle& t, const Vector3d& x, Vector3d& nearest) {
   nearest = nearestPoint(t, x);
   double most = clearanceOf(t, x, nearest);
   if (most > 0.9 * (nearest - x).norm()) return most;
+  const Vector3d normal = (t.corner[1] - t.corner[0]).cross(t.corner[2] - t.corner[0]);
+  most = std::max({most, clearanceAlong(t, x, normal), clearanceAlong(t, x, -normal)});
   for (int i = 0; i < 3; ++i) {
     const Vector3d y = nearestOfEdge(t.corner[i], t.corner[(i + 1) % 3], x);
     const double clearance = clearanceOf(t, x, y);
