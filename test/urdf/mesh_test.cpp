@@ -36,6 +36,17 @@ TEST_F(MeshTest, SumsPartsAndScalesEachAxis) {
   EXPECT_TRUE(notes_.empty());
 }
 
+// assimp's triangulation ends the process over such faces. Found by fuzzing.
+TEST_F(MeshTest, BrokenFacesAreRefused) {
+  const auto ply = [](const std::string& faces) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n" +
+           faces;
+  };
+  expectContains(errorOf(write("a.ply", ply("0\n"))), "has a face without a corner");
+  expectContains(errorOf(write("a.ply", ply("4 0 1 2 99999999\n"))), "has a face with vertex 99999999 of 3");
+}
+
 /// One triangle (0,0,0) (1,0,0) (0,2,0) under a node that moves it by (10, 0, 5).
 std::string collada(const std::string& unit, const std::string& up) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">

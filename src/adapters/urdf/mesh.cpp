@@ -141,6 +141,32 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
   for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], M, soup);
 }
 
+/// assimp's step that cuts polygons into triangles reads vertices that aren't there, and ends the process for a mesh
+/// that it takes for one of polygons though it has none: a face without a corner is enough.
+/// @return whether there is a polygon of more than three corners. @throws std::runtime_error naming `where`.
+bool requireFaces(const aiScene& scene, const std::string& where) {
+  bool all = false;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    bool polygons = false;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices == 0) detail::fail(where, "has a face without a corner");
+      polygons = polygons || face.mNumIndices > 3;
+      for (unsigned k = 0; k < face.mNumIndices; ++k) {
+        if (face.mIndices[k] < mesh.mNumVertices) continue;
+        detail::fail(where, "has a face with vertex " + std::to_string(face.mIndices[k]) + " of " +
+                                std::to_string(mesh.mNumVertices));
+      }
+    }
+    if (!polygons && (mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON)) {
+      detail::fail(where, "says that it has polygons, and has none");
+    }
+    all = all || polygons;
+  }
+  return all;
+}
+
 /// A file in memory, as assimp reads.
 class MemoryStream : public Assimp::IOStream {
  public:
@@ -217,7 +243,8 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   importer.SetIOHandler(read_by);
   // As in ROS, a COLLADA file's unit counts and its up axis does not.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (scene && requireFaces(*scene, where)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (!read_by->error().empty()) detail::fail(where, read_by->error());
   if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
 
