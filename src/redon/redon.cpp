@@ -53,7 +53,10 @@ struct Workspace::Impl {
   std::vector<double> free_until;       ///< by pair of the problem: proven free before
   std::vector<std::uint8_t> scene_allowed, link_allowed;
   std::vector<double> still;  ///< coefficients of a motion that rests at t = 0
-  Problem rest;               ///< the engine's part of the problem; stays for its pairMotion()
+  // The engine's part of the problem, and what it is asked: both stay for its pairMotion().
+  Problem rest;
+  Query first;       ///< the query, for the first contact
+  Query rest_query;  ///< the same with progress no later than what is known of all pairs
 };
 
 Workspace::Workspace() : impl_(std::make_unique<Impl>()) {}
@@ -284,7 +287,8 @@ void Run::solve(Answer& answer) {
   }
   // Of the paper's pairs nothing is known while the engine looks at its own.
   Progress progress{query_.progress, query_.progress_context};
-  Query query = query_;
+  Query& query = w_.rest_query;
+  query = query_;
   if (query.progress) {
     query.progress = &Progress::update;
     query.progress_context = &progress;
@@ -337,8 +341,9 @@ void Run::solve(Answer& answer) {
 void solve(Workspace& workspace, void* engine_workspace, const Problem& problem, const Query& query,
            const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf, Answer& answer,
            Counts& counts) {
-  Query first = query;  // a contact is looked for in the order of time, wherever any would do
-  first.any = false;
+  Query& first = workspace.impl().first;
+  first = query;
+  first.any = false;  // where any contact would do, the first one is looked for
   first.likely = nullptr;
   first.num_likely = 0;
   Run(workspace.impl(), engine_workspace, problem, first, options, treeOf, counts).solve(answer);
