@@ -139,6 +139,7 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
     }
     // An equation by itself says nothing of the others.
     if (query_->progress && (counts_->intervals & 255) == 0) {
+      const RoundToNearest usual;  // for the caller's code
       query_->progress(query_->progress_context, options_->simultaneous ? task.begin : 0);
     }
     ++counts_->intervals;

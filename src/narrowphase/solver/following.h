@@ -49,6 +49,7 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
       if (g.overlap) return false;
       for (int k = 0; k < 3; ++k) f.normal[k] = witness_[k] = g.n[k];
       f.gap = g.lower - radii;
+      f.apart = g.distance - radii;
       return f.have_normal = have_witness_ = true;
     };
     if (!f.have_normal && !look(first ? __builtin_ctz(first_lanes) : 0, -1)) break;
@@ -362,7 +363,13 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
   for (int i = 0; i < finals_.size(); ++i) {
     const Final& f = finals_[i];
     if (!f.stuck || f.certain || f.t_lower >= limit_) continue;
-    if (!narrow && (!last || (f.have_normal && f.gap > 0.5 * query_->tolerance_distance))) {
+    // Near are those of which points are: a direction along which little is proven says nothing. Where there is none,
+    // GJK claimed overlap, and is believed as far as to kOverlapAccuracy of the smaller body.
+    const PairParts pair = parts(f.entry.pair);
+    const double size = min(problem_->bodies[pair.a].tree->extent, problem_->bodies[pair.b].tree->extent);
+    const double apart = f.have_normal ? f.apart : kOverlapAccuracy * size;
+    const bool near = apart <= 0.5 * query_->tolerance_distance;
+    if (!narrow && (!last || !near)) {
       *refine = true;
       return Step::free;
     }

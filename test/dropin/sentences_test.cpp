@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Sentences of doc/PROMISE.md that no other test has: what is a solid and what a surface, near misses with fine
+// tolerances, short separations after an ignored contact, and the processor's modes.
+#include <immintrin.h>
+
+#include <cfenv>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/halfspace.h>
+#include <fcl/geometry/shape/plane.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/geometry/shape/triangle_p.h>
+#include <fcl/math/motion/translation_motion.h>
+#include <gtest/gtest.h>
+
+#include "fcl_artic/continuous_collision.h"
+#include "fcl_artic/fcl_artic.h"
+#include "random.h"
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using fcl_artic::CertifiedPairResult;
+using fcl_artic::CertifiedRequest;
+using fcl_artic::Status;
+using GeometryPtr = std::shared_ptr<fcl::CollisionGeometryd>;
+using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
+
+Isometry3d at(const Vector3d& x, const Matrix3d& R = Matrix3d::Identity()) {
+  Isometry3d M = Isometry3d::Identity();
+  M.linear() = R;
+  M.translation() = x;
+  return M;
+}
+
+GeometryPtr mesh(const std::vector<Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles) {
+  auto model = std::make_shared<Mesh>();
+  model->beginModel();
+  model->addSubModel(vertices, triangles);
+  model->endModel();
+  return model;
+}
+
+/// Of half sides x, y, z.
+GeometryPtr boxMesh(double x, double y, double z) {
+  std::vector<Vector3d> v;
+  for (int c = 0; c < 8; ++c) v.emplace_back(c & 1 ? x : -x, c & 2 ? y : -y, c & 4 ? z : -z);
+  const std::size_t sides[12][3] = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  std::vector<fcl::Triangle> t;
+  for (const auto& s : sides) t.emplace_back(s[0], s[1], s[2]);
+  return mesh(v, t);
+}
+
+/// The second body goes straight.
+CertifiedPairResult slide(const GeometryPtr& still, const GeometryPtr& moving, const Isometry3d& from,
+                          const Vector3d& way, const CertifiedRequest& request) {
+  const fcl::TranslationMotiond rest(at(Vector3d::Zero()), at(Vector3d::Zero()));
+  const fcl::TranslationMotiond go(from, at(from.translation() + way, from.linear()));
+  CertifiedPairResult result;
+  fcl_artic::continuousCollide(still.get(), &rest, moving.get(), &go, request, result);
+  return result;
+}
+
+/// "Meshes, TriangleP and Plane are surfaces; Box, Sphere, ... are solids": a small ball well within each of them.
+TEST(PromiseSentences, SolidsAndSurfaces) {
+  const auto faces =
+      std::make_shared<std::vector<int>>(std::vector<int>{3, 0, 2, 1, 3, 0, 1, 3, 3, 0, 3, 2, 3, 1, 2, 3});
+  const auto corners = std::make_shared<std::vector<Vector3d>>(
+      std::vector<Vector3d>{{-1, -1, -1}, {3, -1, -1}, {-1, 3, -1}, {-1, -1, 3}});
+  auto cells = std::make_shared<octomap::OcTree>(1.0);
+  cells->updateNode(octomap::point3d(0.5f, 0.5f, 0.5f), true);
+  struct Case {
+    const char* name;
+    GeometryPtr geometry;
+    Vector3d place;
+    bool solid;
+  };
+  const std::vector<Case> cases = {
+      {"Box", std::make_shared<fcl::Boxd>(2, 2, 2), {0.2, 0.1, 0}, true},
+      {"Sphere", std::make_shared<fcl::Sphered>(1), {0.2, 0.1, 0}, true},
+      {"Capsule", std::make_shared<fcl::Capsuled>(1, 1), {0.2, 0.1, 0}, true},
+      {"Cylinder", std::make_shared<fcl::Cylinderd>(1, 2), {0.2, 0.1, 0}, true},
+      {"Cone", std::make_shared<fcl::Coned>(1, 2), {0.1, 0.1, -0.3}, true},
+      {"Ellipsoid", std::make_shared<fcl::Ellipsoidd>(1, 0.8, 0.9), {0.2, 0.1, 0}, true},
+      {"Convex", std::make_shared<fcl::Convexd>(corners, 4, faces), {-0.3, -0.2, -0.1}, true},
+      {"Halfspace", std::make_shared<fcl::Halfspaced>(Vector3d::UnitZ(), 5), {0.2, 0.1, 0}, true},
+      {"OcTree", std::make_shared<fcl::OcTreed>(cells), {0.5, 0.4, 0.5}, true},
+      {"mesh", boxMesh(1, 1, 1), {0.2, 0.1, 0}, false},
+      {"TriangleP",
+       std::make_shared<fcl::TrianglePd>(Vector3d(-1, -1, 0.4), Vector3d(2, -1, 0.4), Vector3d(-1, 2, 0.4)),
+       {0.2, 0.1, 0},
+       false},
+      {"Plane", std::make_shared<fcl::Planed>(Vector3d::UnitZ(), 5), {0.2, 0.1, 0}, false},
+  };
+  const GeometryPtr ball = std::make_shared<fcl::Sphered>(0.01), grain = boxMesh(0.01, 0.01, 0.01);
+  for (const Case& c : cases) {
+    for (const GeometryPtr& small : {ball, grain}) {
+      const CertifiedPairResult result =
+          slide(c.geometry, small, at(c.place), Vector3d(1e-3, 0, 0), CertifiedRequest());
+      if (c.solid) {
+        EXPECT_EQ(result.status, Status::contact) << c.name;
+        EXPECT_EQ(result.t_lower, 0) << c.name;
+        EXPECT_TRUE(result.certain) << c.name;
+      } else {
+        EXPECT_EQ(result.status, Status::free) << c.name;
+      }
+    }
+  }
+}
+
+/// "Contact without certain: nearer than tolerance_distance, or too near for rounding to tell": a body of 1 m that
+/// slides past another one at 1e-11 to 1e-8 m is neither, where the tolerance is 1e-12 m. A plane between them, through
+/// the farthest points of both, says how far apart they are, whatever the engine says.
+TEST(PromiseSentences, NearMissesAreFreeWithAFineTolerance) {
+  struct Body {
+    GeometryPtr geometry;
+    std::function<Vector3d(const Vector3d&)> farthest;  ///< along a unit vector
+  };
+  const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
+  const auto corner = [&](const Vector3d& n) { return Vector3d(0.5 * sign(n[0]), 0.3 * sign(n[1]), 0.4 * sign(n[2])); };
+  const auto onRim = [](const Vector3d& n, double radius, double z) {
+    const double across = std::hypot(n[0], n[1]);
+    return across > 0 ? Vector3d(radius * n[0] / across, radius * n[1] / across, z) : Vector3d(0, 0, z);
+  };
+  const std::vector<Body> bodies = {
+      {boxMesh(0.5, 0.3, 0.4), corner},
+      {std::make_shared<fcl::Boxd>(1, 0.6, 0.8), corner},
+      {std::make_shared<fcl::Cylinderd>(0.3, 0.8), [&](const Vector3d& n) { return onRim(n, 0.3, 0.4 * sign(n[2])); }},
+      {std::make_shared<fcl::Capsuled>(0.2, 0.6),
+       [&](const Vector3d& n) { return Vector3d(0.2 * n + Vector3d(0, 0, 0.3 * sign(n[2]))); }}};
+  pairs::Random random(11);
+  int asked = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const std::size_t first = static_cast<std::size_t>(random.below(4)),
+                      second = static_cast<std::size_t>(random.below(4));
+    const Body &a = bodies[first], &b = bodies[random.chance(0.7) ? first : second];
+    const Vector3d n = random.direction();
+    const Matrix3d R = random.chance(0.25) ? Matrix3d(Matrix3d::Identity()) : random.rotation();
+    const double gap = std::pow(10, random.uniform(-11, -8));
+    const Vector3d place = a.farthest(n) + gap * n - R * b.farthest(R.transpose() * -n);
+    const Vector3d way = n.cross(random.direction()).normalized();
+    CertifiedRequest request;
+    request.tolerance_distance = 1e-12;
+    request.tolerance_time = random.chance(0.5) ? 1e-6 : 1e-9;
+    const CertifiedPairResult result = slide(a.geometry, b.geometry, at(place - 0.3 * way, R), way, request);
+    EXPECT_EQ(result.status, Status::free) << "case " << i << ", gap " << gap << ", t " << result.t_lower;
+    ++asked;
+  }
+  EXPECT_EQ(asked, 4000);
+}
+
+/// "Pairs not proven apart at t = 0 are left out until the start of the first of the time intervals examined (of 1/8,
+/// 1/64, 1/512) on which they are proven apart; shorter separations are not looked for": a ball between two walls of
+/// one mesh, of which it touches the first one at t = 0 and is apart from both for a while.
+TEST(PromiseSentences, ShortSeparationsAreNotLookedFor) {
+  const GeometryPtr ball = std::make_shared<fcl::Sphered>(0.1);
+  for (const double apart : {0.0005, 0.0015, 0.0045, 0.02, 0.3}) {
+    const double wall = 0.2 + apart;
+    const GeometryPtr walls = mesh({{0, -1, -1}, {0, 2, -1}, {0, -1, 2}, {wall, -1, -1}, {wall, 2, -1}, {wall, -1, 2}},
+                                   {{0, 1, 2}, {3, 4, 5}});
+    CertifiedRequest request;
+    request.ignore_initial_contact = true;
+    const CertifiedPairResult result = slide(walls, ball, at(Vector3d::Zero()), Vector3d(1, 0, 0), request);
+    EXPECT_TRUE(result.ignored_initial_contact);
+    if (apart < 1.0 / 512) {
+      EXPECT_EQ(result.status, Status::free) << apart;
+    } else {  // an interval of 1/512 lies within
+      ASSERT_EQ(result.status, Status::contact) << apart;
+      EXPECT_TRUE(result.certain);
+      EXPECT_LE(result.t_lower, 0.1 + apart + 1e-12);
+      EXPECT_GE(result.t_upper, 0.1 + apart - 1e-12);
+    }
+  }
+}
+
+/// "Any rounding mode on entry, also when trees and managers are built; subnormals may be flushed", and each caller has
+/// his mode back, also in what is called meanwhile.
+TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
+  const auto ball = std::make_shared<fcl::Sphered>(0.1);
+  const auto grain = std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2);
+  int asked = 0, told = 0, certain = 0;
+  for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    for (const unsigned flush : {0u, 0x8040u}) {  // flush to zero, and subnormal operands are zero
+      const unsigned before = _mm_getcsr();
+      const int rounding_before = std::fegetround();
+      std::fesetround(rounding);
+      _mm_setcsr(_mm_getcsr() | flush);
+      const unsigned mode = _mm_getcsr() & ~0x3fu;
+      std::vector<unsigned> seen;
+      std::vector<std::pair<double, double>> brackets;
+      bool free = true;
+      {
+        auto tree = std::make_shared<fcl_artic::KinematicTree>("slide");
+        tree->addLink("base");
+        tree->addLink("link");
+        fcl_artic::Joint joint;
+        joint.name = "joint";
+        joint.type = fcl_artic::JointType::prismatic;
+        joint.axis = Vector3d::UnitX();
+        joint.parent = "base";
+        joint.child = "link";
+        tree->addJoint(joint);
+        for (const GeometryPtr& geometry : {GeometryPtr(ball), GeometryPtr(grain)}) {
+          fcl_artic::ArticulatedCollisionManager manager(tree);
+          fcl::CollisionObjectd moving(geometry, Isometry3d::Identity()), still(geometry, at({0.7, 0, 0}));
+          manager.bind("link", &moving);
+          manager.registerObject(&still);
+          manager.setup();
+          for (const auto method : {fcl_artic::Method::standard, fcl_artic::Method::Redon2004}) {
+            for (const double to : {1.0, 0.4}) {
+              CertifiedRequest request;
+              request.method = method;
+              request.progress = [&](double) {
+                ++told;
+                const unsigned here = _mm_getcsr() & ~0x3fu;
+                seen.push_back(here == 0x1f80 ? mode : here);  // his own, or the usual one
+              };
+              fcl_artic::CertifiedResult result;
+              manager.continuousCollide(
+                  fcl_artic::JointMotion::linear(*tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, to)),
+                  request, result);
+              seen.push_back(_mm_getcsr() & ~0x3fu);
+              ++asked;
+              if (to < 0.5) free = free && result.isFree();
+              if (to > 0.5) brackets.emplace_back(result.t_lower, result.certain ? result.t_upper : 2);
+            }
+          }
+        }
+      }
+      std::fesetround(rounding_before);
+      _mm_setcsr(before);
+      for (const unsigned m : seen) EXPECT_EQ(m, mode);
+      EXPECT_TRUE(free);
+      for (const auto& [lower, upper] : brackets) {
+        EXPECT_LE(lower, 0.5);
+        EXPECT_GE(upper, 0.5);
+        if (upper < 2) EXPECT_LE(upper - lower, 1e-6);
+        certain += upper < 2;
+      }
+    }
+  }
+  EXPECT_EQ(asked, 64);
+  EXPECT_GE(certain, 24);  // faces head on are not, in the paper's method
+  EXPECT_GE(told, 8);
+}
+
+}  // namespace
