@@ -11,6 +11,7 @@ namespace fcl_artic {
 /// What ArticulatedCollisionManager::clearance() is asked. All defaults are safe: nothing has to be tuned.
 struct ClearanceRequest {
   /// Wanted: upper - lower is below the larger one of this part of `upper` and this length, m.
+  /// From 0 to below 1, and above 0.
   double tolerance_relative = 0.01, tolerance_distance = 1e-4;
   /// Nothing farther apart than this, in m, is of interest: where nothing comes so near, that is the answer.
   double most = 1;

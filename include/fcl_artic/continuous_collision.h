@@ -100,8 +100,8 @@ bool DefaultContinuousCollisionFunction(fcl::ContinuousCollisionObject<S>* o1, f
 // --- The same queries with this library's request and result: contacts, [t_lower, t_upper], `certain`, margin, budget,
 // statistics.
 //
-// They throw what the functions above throw, and std::invalid_argument for a tolerance or margin that is negative or
-// not finite. The result then is reset: Status::undecided on [0, 1].
+// They throw what the functions above throw, and std::invalid_argument for a tolerance that is not a positive number
+// (0 is none) and a margin that is negative or not finite. The result then is reset: Status::undecided on [0, 1].
 //
 // Contacts name a mesh's triangle and an OcTree's cell as FCL's own do (b1, b2; OcTree::getNodeByQueryCellId).
 

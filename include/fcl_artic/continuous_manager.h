@@ -110,7 +110,8 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// @param request  check_scene and check_self have no meaning here, progress is not called. max_contacts is per pair,
   ///   work_budget for all of them together.
   /// When it throws, the result is reset: undecided on [0, 1].
-  /// @throws std::invalid_argument for a tolerance or margin that is negative or not finite.
+  /// @throws std::invalid_argument for a tolerance that is not a positive number (0 is none), and a margin that is negative
+  ///   or not finite.
   /// @throws std::logic_error as collide().
   void continuousCollide(const CertifiedRequest& request, CertifiedPairsResult& result) const;
   /// The same for the pairs that the corresponding collide() asks about.

@@ -145,8 +145,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///
   /// A query that throws, whatever it is, claims nothing: its result is reset, to `undecided` with t_lower at the
   /// beginning of the motion and no contacts. (So is it while the query runs, for callbacks that look.)
-  /// @throws std::invalid_argument when the motion is not one of this tree's joint variables (JointMotion::isOf()), or
-  ///   for a tolerance or margin that is negative or not finite.
+  /// @throws std::invalid_argument when the motion is not one of this tree's joint variables (JointMotion::isOf()), for a
+  ///   tolerance that is not a positive number (0 is none), and a margin that is negative or not finite.
   /// @throws std::logic_error when changes were made after the last setup() or update(), of the tree too.
   void continuousCollide(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
 

@@ -55,9 +55,9 @@ struct RedonOptions {
 
 /// What a certified continuous query is asked. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest {
-  /// Wanted width of [t_lower, t_upper]; t runs from 0 to 1. (ContactMode::any does not ask for it.)
+  /// Wanted width of [t_lower, t_upper], above 0; t runs from 0 to 1.
   double tolerance_time = 1e-6;
-  /// A pair counts as touching (with certain = false) only when its gap is below this, in m.
+  /// A pair counts as touching (with certain = false) only when its gap is below this, in m; above 0.
   double tolerance_distance = 1e-6;
   /// Bodies nearer than this, in m, count as touching (pairs with a margin of their own go by that:
   /// ArticulatedCollisionManager::setMargin).
