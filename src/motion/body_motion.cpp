@@ -239,6 +239,8 @@ Heading headingOf(const BodyMotion& motion, const Vector3d& own) {
     const MotionElement& element = *it;
     if (element.kind == Kind::bounded) {
       heading.deviation += element.bounded->bounds(0, 1).angular_speed;
+      heading.author += kBoundedUlps * std::numeric_limits<double>::epsilon();
+      heading.analytic = false;
       v = element.bounded->state(0).pose.linear() * v;
     } else if (element.kind == Kind::revolute || element.kind == Kind::turn) {
       const bool about_axis = element.kind == Kind::revolute;

@@ -45,6 +45,8 @@ struct BodyMotion {
 struct Heading {
   Eigen::Vector3d direction;  ///< at t = 0
   double deviation;           ///< bound on |direction at t - direction at 0| for t in [0, 1]
+  double author = 0;          ///< what the poses of bounded motions on the way may be off by, as their authors may be
+  bool analytic = true;       ///< no bounded motion is on the way: what moves at all does not stand still for a while
 };
 /// @param own  unit vector in the geometry's frame.
 Heading headingOf(const BodyMotion& motion, const Eigen::Vector3d& own);

@@ -83,9 +83,9 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   const Heading heading1 = headingOf(body1.motion, Eigen::Vector3d::Map(piece1.size));
   const Heading heading2 = headingOf(body2.motion, Eigen::Vector3d::Map(piece2.size));
   const Eigen::Vector3d &n1 = heading1.direction, &n2 = heading2.direction;
-  const double askew = n1.cross(n2).norm();
-  const bool parallel = askew <= kParallel;
-  const bool stay_parallel = askew + heading1.deviation + heading2.deviation <= kParallel;
+  const double askew = n1.cross(n2).norm(), least = kParallel + heading1.author + heading2.author;
+  const bool parallel = askew <= least;
+  const bool stay_parallel = askew + heading1.deviation + heading2.deviation <= least;
   const bool solids = piece1.kind == PieceKind::halfspace && piece2.kind == PieceKind::halfspace;
   const bool alike = solids && n1.dot(n2) > 0;  // one holds the other, wherever they are
   if (stay_parallel && !alike) {
@@ -101,10 +101,15 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   }
   result = CertifiedPairResult();
   result.status = Status::contact;
-  result.ignored_initial_contact = request.ignore_initial_contact && (!parallel || alike);
-  if (result.ignored_initial_contact) result.status = Status::free;  // and they never separate for good
+  // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
+  // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then
+  // anything may follow: that is left open, as a contact that is not certain.
+  const bool never_apart = (alike && stay_parallel) || ((!parallel || alike) && heading1.analytic && heading2.analytic);
+  result.ignored_initial_contact = request.ignore_initial_contact && never_apart;
+  if (result.ignored_initial_contact) result.status = Status::free;
   result.t_lower = result.status == Status::free ? 1 : 0;
-  result.certain = result.status == Status::contact && (!parallel || alike);
+  const bool left_open = request.ignore_initial_contact && !never_apart;
+  result.certain = result.status == Status::contact && (!parallel || alike) && !left_open;
   result.t_upper = result.certain ? 0 : 1;
   setPoses(body1.motion, body2.motion, result);
   if (result.status == Status::free || request.max_contacts == 0) return;

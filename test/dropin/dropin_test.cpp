@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <thread>
 
@@ -17,6 +18,7 @@
 #include <fcl/narrowphase/collision.h>
 #include <gtest/gtest.h>
 
+#include "fcl_artic/bounded_motion.h"
 #include "geometries.h"
 
 namespace {
@@ -198,6 +200,67 @@ TEST(DropIn, UnboundedPairsMeetUnlessTheyStayParallel) {
     EXPECT_LE(t, c.time + 1e-14) << &c - cases;
     EXPECT_GE(t, c.time - 1.1e-4) << &c - cases;
   }
+}
+
+/// A pose at each time, which only its author knows.
+struct OwnMotion : fcl::MotionBased, fcl_artic::BoundedMotion {
+  std::function<Transform3d(double)> pose;
+  Bounds of_all;
+  bool integrate(double) const override { return true; }
+  double computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const override { return 0; }
+  double computeMotionBound(const fcl::TriangleMotionBoundVisitor<double>&) const override { return 0; }
+  void getCurrentTransform(Transform3d& M) const override { M = pose(0); }
+  void getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&) const override {}
+  State state(double t) const override {
+    State s;
+    s.pose = pose(t);
+    return s;
+  }
+  Bounds bounds(double, double) const override { return of_all; }
+  bool hasDerivatives() const override { return false; }
+};
+
+// A bounded motion may stop turning: a half-space that faces the other one 1 m away from t = 0.3 on, and comes down on
+// it at 0.8. That they meet at first, and are not parallel then, does not mean that they never part.
+TEST(DropIn, UnboundedPairsAlongABoundedMotion) {
+  const fcl::Halfspaced below(Vector3d(0, 0, 1), 0);
+  const TranslationMotiond still(at(0), at(0));
+  OwnMotion turns;
+  turns.of_all.speed = 5.01;
+  turns.of_all.angular_speed = 1.68;
+  const double pi = 2 * std::acos(0.0);
+  turns.pose = [&](double t) {
+    Transform3d M = at(0, 0, t < 0.6 ? 1 : 1 - 5 * (t - 0.6));
+    if (t < 0.3) M.linear() = Eigen::AngleAxisd(pi - 0.5 * (1 - t / 0.3), Vector3d::UnitX()).toRotationMatrix();
+    if (t >= 0.3) M.linear() = Vector3d(1, -1, -1).asDiagonal();
+    return M;
+  };
+  for (const bool ignore : {false, true}) {
+    CertifiedRequest request;
+    request.ignore_initial_contact = ignore;
+    CertifiedPairResult result;
+    fcl_artic::continuousCollide(&below, &still, &below, &turns, request, result);
+    EXPECT_EQ(result.status, Status::contact) << ignore;
+    EXPECT_EQ(result.t_lower, 0) << ignore;
+    EXPECT_EQ(result.certain, !ignore);
+    EXPECT_FALSE(result.ignored_initial_contact);
+  }
+  // Its rotation may be off by 5e-13: two that face each other 2 m apart are no proven contact for that.
+  int no_contact = 0;
+  for (const double off : {0.0, 1e-15, 1e-13, 4e-13}) {
+    OwnMotion rests;
+    rests.pose = [&](double) {
+      Transform3d M = at(0, 0, 2);
+      M.linear() = Vector3d(1, -1, -1).asDiagonal();
+      M.linear()(1, 2) = M.linear()(2, 1) = off;
+      return M;
+    };
+    CertifiedPairResult result;
+    fcl_artic::continuousCollide(&below, &still, &below, &rests, {}, result);
+    EXPECT_FALSE(result.certain) << off;
+    no_contact += result.isFree();
+  }
+  EXPECT_EQ(no_contact, 4);
 }
 
 /// A body that goes from p by `way`, at constant velocity along n, and turns about n by `angle`.
