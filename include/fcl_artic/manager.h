@@ -59,7 +59,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Adds an obstacle that moves: its motion's time is the query's, t in [0, 1], whatever the robot does. Links are
   /// checked against it as against any obstacle (CertifiedRequest::check_scene); obstacles are not checked against each
   /// other. The geometry may be unbounded. Object, geometry and motion must outlive the manager's use of them; the motion is
-  /// read by registerObject() and update(), a BoundedMotion is asked in queries too.
+  /// read by registerObject(), setup() and update(); a BoundedMotion is asked in queries too.
   /// @throws std::invalid_argument as above, and for a motion that fcl_artic::continuousCollide refuses.
   void registerObject(fcl::ContinuousCollisionObjectd* object, const std::string& name = {});
   void unregisterObject(fcl::ContinuousCollisionObjectd* object);
