@@ -31,7 +31,10 @@ inline Solver::Step Solver::solveOpenLane(double start, double width, int begin,
 inline Solver::Step Solver::solveInterval(double start, double width, int begin, int end, int parent_lane) {
   const double w = width / kLanes;
   beginBatch(start, width);
-  if (query_->progress && (statistics_.batches & 63) == 0) query_->progress(query_->progress_context, front_);
+  if (query_->progress && (statistics_.batches & 63) == 0) {
+    // With every pair front_ is the present pair's: of those that are still to come nothing is known.
+    query_->progress(query_->progress_context, query_->every_pair ? 0 : front_);
+  }
   const int out_begin = entries_.size();
   setupPair(entries_[begin].pair);
   for (int i = begin; i < end; ++i) {
