@@ -428,7 +428,7 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   };
   expectContains(linear({0}, {zero}), "1 waypoints");
   expectContains(linear({0, 1, 2}, {zero, one}), "3 times for 2 waypoints");
-  expectContains(linear({0, 1, 1}, {zero, one, zero}), "time 2, 1.000000, is not later");
+  expectContains(linear({0, 1, 1}, {zero, one, zero}), "time 2, 1, is not later than the one before, 1");
   expectContains(linear({0, nan}, {zero, one}), "time 1 is not finite");
   expectContains(linear({0, 1}, {zero, VectorXd::Zero(3)}), "waypoint 1 has 3 entries, robot 'robot' has 2");
   expectContains(linear({0, 1}, {zero, values({0, nan})}), "joint 'slide' is not finite");
