@@ -56,7 +56,8 @@ std::optional<std::array<double, 2>> numberPair(const std::string& text, char se
 
 std::string requireSize(const std::string& text) {
   const auto size = numberPair(text, 'x');
-  const bool good = size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= kMaxPixels && (*size)[1] <= kMaxPixels;
+  const bool good =
+      size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= kMaxPixels && (*size)[1] <= kMaxPixels;
   return good ? "" : "'" + text + "' is not a size WxH in pixels from 64x64 to 4096x4096";
 }
 
@@ -110,23 +111,27 @@ void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& nam
 /// @param[in,out] solids  names of links and obstacles whose meshes are to be solids; links are taken out.
 Robot loadRobot(const Options& options, std::set<std::string>& solids) {
   Robot robot = loadUrdf(options.robot, urdfOptions(options));
-  makeSolids(robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
+  makeSolids(
+      robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
   if (!options.srdf.empty()) robot.allowed = loadSrdf(options.srdf, *robot.tree);
   if (!options.auto_srdf.empty()) {
     const std::vector<AllowedPair> pairs = generateAllowedCollisions(robot);
     writeSrdf(options.auto_srdf, robot.tree->name(), pairs);
     for (const AllowedPair& pair : pairs) robot.allowed.allow(pair.link1, pair.link2);
-    robot.notes.push_back(fmt::format("{} allowed pairs, found by sampling and not proven, written to {}",
-                                      pairs.size(), options.auto_srdf));
+    robot.notes.push_back(fmt::format("{} allowed pairs, found by sampling and not proven, written to {}", pairs.size(),
+                                      options.auto_srdf));
   }
   return robot;
 }
 
 int exitStatus(Status status) {
   switch (status) {
-    case Status::free: return kExitFree;
-    case Status::contact: return kExitContact;
-    case Status::undecided: return kExitUndecided;
+    case Status::free:
+      return kExitFree;
+    case Status::contact:
+      return kExitContact;
+    case Status::undecided:
+      return kExitUndecided;
   }
   return kExitError;
 }
@@ -168,9 +173,11 @@ int run(const Options& options) {
   std::vector<Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, options.scene));
   Scene scene = combineScenes(scenes, tree);
-  makeSolids(scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
+  makeSolids(
+      scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
   if (!solids.empty()) {
-    throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh", *solids.begin()));
+    throw std::invalid_argument(
+        fmt::format("--solid {}: no link or obstacle of that name has a mesh", *solids.begin()));
   }
 
   ArticulatedCollisionManager manager(robot.tree);
@@ -187,10 +194,16 @@ int run(const Options& options) {
   CertifiedResult result;
   {
     ProgressBar bar;
-    request.progress = [&bar](double t_lower) { bar.show(t_lower); };
+    request.progress = [&bar](double t_lower) {
+      bar.show(t_lower);
+      return true;
+    };
     if (trajectory) {
       const double begin = trajectory->beginTime(), length = trajectory->endTime() - begin;
-      request.progress = [&bar, begin, length](double t_lower) { bar.show((t_lower - begin) / length); };
+      request.progress = [&bar, begin, length](double t_lower) {
+        bar.show((t_lower - begin) / length);
+        return true;
+      };
       manager.continuousCollide(*trajectory, request, result);
     } else {
       manager.continuousCollide(*motion, request, result);
@@ -209,7 +222,9 @@ int run(const Options& options) {
   std::vector<std::string> notes = robot.notes;
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
-  const auto configuration = [&](double t) { return trajectory ? trajectory->configuration(t) : motion->configuration(t); };
+  const auto configuration = [&](double t) {
+    return trajectory ? trajectory->configuration(t) : motion->configuration(t);
+  };
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
   const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
 
@@ -240,37 +255,58 @@ void addCheck(CLI::App& program, int& exit_status) {
   Options& o = *options;
   CertifiedRequest& request = o.request;
   CLI::App* check = program.add_subcommand(
-      "check", "Does anything touch while every joint goes straight from one configuration to another, or along a trajectory?");
+      "check",
+      "Does anything touch while every joint goes straight from one configuration to another, or along a trajectory?");
   check->footer(
       "A configuration is a list of all joint values (\"0, 1.57, -90deg\") or name=value pairs, joints that are not\n"
       "named at 0; rad or m, angles also as 90deg.\n"
-      "A trajectory is a CSV file: its first line names the columns, 'time' and joints; times in the answer are the file's.\n"
+      "A trajectory is a CSV file: its first line names the columns, 'time' and joints; times in the answer are the "
+      "file's.\n"
       "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget).");
 
   check->add_option("--robot", o.robot, "Robot (URDF)")->required()->group("Robot and scene")->type_name("FILE");
   CLI::Option* srdf = check->add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
-                          ->group("Robot and scene")->type_name("FILE");
-  check->add_option("--auto-srdf", o.auto_srdf, "Find the pairs of links that may touch by sampling, write them to "
-                                                "FILE and use them")
-      ->group("Robot and scene")->type_name("FILE")->excludes(srdf);
+                          ->group("Robot and scene")
+                          ->type_name("FILE");
+  check
+      ->add_option("--auto-srdf", o.auto_srdf,
+                   "Find the pairs of links that may touch by sampling, write them to "
+                   "FILE and use them")
+      ->group("Robot and scene")
+      ->type_name("FILE")
+      ->excludes(srdf);
   check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
-      ->group("Robot and scene")->type_name("FILE...");
+      ->group("Robot and scene")
+      ->type_name("FILE...");
   check->add_flag("--unknown-cells", o.scene.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
-  check->add_flag("--solid-meshes", o.scene.solid_meshes,
-                  "Meshes are solids: what lies within one touches it. They must be closed")
+  check
+      ->add_flag("--solid-meshes", o.scene.solid_meshes,
+                 "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
   check->add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
-      ->group("Robot and scene")->type_name("NAME");
+      ->group("Robot and scene")
+      ->type_name("NAME");
   check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
-      ->check(requirePackage)->group("Robot and scene")->type_name("NAME=DIR");
+      ->check(requirePackage)
+      ->group("Robot and scene")
+      ->type_name("NAME=DIR");
 
   CLI::Option* from = check->add_option("--from", o.from, "Configuration at t = 0")->group("Motion")->type_name("Q");
   CLI::Option* to = check->add_option("--to", o.to, "Configuration at t = 1")->group("Motion")->type_name("Q");
-  CLI::Option* trajectory = check->add_option("--trajectory", o.trajectory, "Waypoints (CSV) instead of --from and --to")
-                                ->excludes(from)->excludes(to)->group("Motion")->type_name("FILE");
-  check->add_option("--interpolation", o.interpolation, "Between waypoints: linear, or cubic (smooth, from rest to rest)")
-      ->check(CLI::IsMember({"linear", "cubic"}))->needs(trajectory)->group("Motion")->capture_default_str();
+  CLI::Option* trajectory =
+      check->add_option("--trajectory", o.trajectory, "Waypoints (CSV) instead of --from and --to")
+          ->excludes(from)
+          ->excludes(to)
+          ->group("Motion")
+          ->type_name("FILE");
+  check
+      ->add_option("--interpolation", o.interpolation,
+                   "Between waypoints: linear, or cubic (smooth, from rest to rest)")
+      ->check(CLI::IsMember({"linear", "cubic"}))
+      ->needs(trajectory)
+      ->group("Motion")
+      ->capture_default_str();
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   const auto number = [&](const std::string& name, double& value, const std::string& help) {
@@ -278,38 +314,59 @@ void addCheck(CLI::App& program, int& exit_status) {
   };
   number("--margin", request.margin, "Nearer than this counts as touching, in m");
   CLI::Option* clearance =
-      check->add_flag("--clearance", o.clearance, "Also the smallest distance over the whole motion, proven")->group("Query");
+      check->add_flag("--clearance", o.clearance, "Also the smallest distance over the whole motion, proven")
+          ->group("Query");
   check->add_option("--clearance-most", o.clearance_request.most, "Distances beyond this are of no interest, in m")
-      ->check(CLI::PositiveNumber)->needs(clearance)->group("Query")->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->needs(clearance)
+      ->group("Query")
+      ->capture_default_str();
   number("--tolerance-time", request.tolerance_time, "Wanted width of the bracket of the contact time");
   number("--tolerance-distance", request.tolerance_distance,
          "A gap below this, in m, may be taken for a contact that is not certain");
   check->add_option("--budget", request.work_budget, "Tests after which the answer is 'undecided'; 0: no limit")
-      ->group("Query")->capture_default_str();
+      ->group("Query")
+      ->capture_default_str();
   check->add_option("--max-contacts", o.max_contacts, "Contacts to report at most (1; with --every-pair: all)")
-      ->check(CLI::PositiveNumber)->group("Query");
+      ->check(CLI::PositiveNumber)
+      ->group("Query");
   check->add_flag("--every-pair", o.every_pair, "The first contact of every pair of bodies that touches")
       ->group("Query");
-  check->add_flag("--ignore-initial-contact", request.ignore_initial_contact,
-                  "Pairs that touch at t = 0 may separate; they are watched from then on")->group("Query");
+  check
+      ->add_flag("--ignore-initial-contact", request.ignore_initial_contact,
+                 "Pairs that touch at t = 0 may separate; they are watched from then on")
+      ->group("Query");
   check->add_flag("--no-self", o.no_self, "Do not check links against links")->group("Query");
   check->add_flag("--no-scene", o.no_scene, "Do not check links against obstacles")->group("Query");
 
-  check->add_option_function<std::string>(
-           "--method", [&request](const std::string& name) {
-             request.method = name == "redon2004" ? Method::Redon2004 : Method::standard;
-           }, "standard, or redon2004: the paper's own, with the options below")
-      ->check(CLI::IsMember({"standard", "redon2004"}))->group("Query");
+  check
+      ->add_option_function<std::string>(
+          "--method",
+          [&request](const std::string& name) {
+            request.method = name == "redon2004" ? Method::redon2004 : Method::standard;
+          },
+          "standard, or redon2004: the paper's own, with the options below")
+      ->check(CLI::IsMember({"standard", "redon2004"}))
+      ->group("Query");
   addRedonOptions(*check, request.redon);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
-  CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and contact as PNG")
-                           ->group("Output")->type_name("FILE");
+  CLI::Option* image =
+      check->add_option("--image", o.image, "Draw robot, sweep and contact as PNG")->group("Output")->type_name("FILE");
   check->add_option("--size", o.size, "Size of the picture in pixels")
-      ->check(requireSize)->needs(image)->group("Output")->type_name("WxH")->capture_default_str();
-  check->add_option("--camera", o.camera, "Where the picture is seen from: azimuth from +x and elevation, in degrees; "
-                                          "without it a view that shows the contact is chosen")
-      ->check(requireCamera)->needs(image)->group("Output")->type_name("AZ,EL");
+      ->check(requireSize)
+      ->needs(image)
+      ->group("Output")
+      ->type_name("WxH")
+      ->capture_default_str();
+  check
+      ->add_option("--camera", o.camera,
+                   "Where the picture is seen from: azimuth from +x and elevation, in degrees; "
+                   "without it a view that shows the contact is chosen")
+      ->check(requireCamera)
+      ->needs(image)
+      ->group("Output")
+      ->type_name("AZ,EL");
 
   check->callback([options, from, to, trajectory, &exit_status] {
     for (const CLI::Option* end : {from, to}) {
@@ -318,7 +375,8 @@ void addCheck(CLI::App& program, int& exit_status) {
     try {
       exit_status = run(*options);
     } catch (const std::exception& error) {
-      if (options->json) fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));
+      if (options->json)
+        fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));
       throw;
     }
   });

@@ -231,7 +231,9 @@ SetReport compareSet(const std::string& name, Bodies bodies, const Options& opti
   return report;
 }
 
-std::size_t widthOf(const std::string& column) { return std::max<std::size_t>(6, column.size() + 1); }
+std::size_t widthOf(const std::string& column) {
+  return std::max<std::size_t>(6, column.size() + 1);
+}
 
 std::string textOf(const SetReport& r) {
   std::string out =

@@ -43,15 +43,15 @@ double parseValue(const KinematicTree& tree, int variable, std::string_view text
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw std::invalid_argument(
-        fmt::format("{}: '{}' for joint '{}' is not a finite number (rad or m, or an angle as 90deg)", option, whole,
-                    name));
+    throw std::invalid_argument(fmt::format(
+        "{}: '{}' for joint '{}' is not a finite number (rad or m, or an angle as 90deg)", option, whole, name));
   }
   if (degrees && !tree.isAngle(variable)) {
     const bool prismatic = tree.joint(tree.variableJoint(variable)).type == JointType::prismatic;
     throw std::invalid_argument(
-        prismatic ? fmt::format("{}: '{}' for joint '{}': the joint is prismatic, its value is in m", option, whole, name)
-                  : fmt::format("{}: '{}' for '{}', which is no angle", option, whole, name));
+        prismatic
+            ? fmt::format("{}: '{}' for joint '{}': the joint is prismatic, its value is in m", option, whole, name)
+            : fmt::format("{}: '{}' for '{}', which is no angle", option, whole, name));
   }
   return degrees ? value * kRadiansPerDegree : value;
 }
@@ -69,10 +69,9 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
       throw std::invalid_argument(fmt::format("{}: joint '{}' has {} values, from '{}' on", option, name,
                                               tree.numVariables(j), tree.variableName(tree.jointVariable(j))));
     }
-    throw std::invalid_argument(
-        joint.mimics ? fmt::format("{}: joint '{}' follows joint '{}' and takes no value", option, name,
-                                   joint.mimic.master)
-                     : fmt::format("{}: joint '{}' is fixed and takes no value", option, name));
+    throw std::invalid_argument(joint.mimics ? fmt::format("{}: joint '{}' follows joint '{}' and takes no value",
+                                                           option, name, joint.mimic.master)
+                                             : fmt::format("{}: joint '{}' is fixed and takes no value", option, name));
   }
   throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}", option, tree.name(),
                                           name, variableNames(tree)));

@@ -11,8 +11,8 @@
 namespace fcl_artic::app {
 
 /// Reads a configuration as it is typed: values of all joint variables in the tree's order ("0, 1.57 -90deg"), or
-/// name=value pairs in any order ("elbow=1.57, wrist=-90deg"), joints that are not named at 0 (a quaternion at no rotation). Separators are commas
-/// and white space. Values are rad or m; the ending "deg" is for angles.
+/// name=value pairs in any order ("elbow=1.57, wrist=-90deg"), joints that are not named at 0 (a quaternion at no
+/// rotation). Separators are commas and white space. Values are rad or m; the ending "deg" is for angles.
 /// @param words  the words that followed the option.
 /// @param option  name of the option, for messages.
 /// @throws std::invalid_argument naming option, joint and reason. A wrong number of values lists the joints.

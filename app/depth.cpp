@@ -117,7 +117,7 @@ int runDepth(const DepthOptions& o) {
     const Snake s = makeSnake(joints);
     const std::vector<JointMotion> motions = collidingSteps(s, joints, o);
     CertifiedRequest request;
-    request.method = Method::Redon2004;
+    request.method = Method::redon2004;
     request.redon = o.redon;
     chart.groups.push_back(std::to_string(joints));
     for (BarChart::Series& series : chart.series) {

@@ -18,7 +18,8 @@ struct PlanningBenchOptions {
 
 /// Plans all problems with each validator in turn, and prints the table.
 /// @return exit status: 1 when a plan made with our validator collides.
-/// @throws std::runtime_error naming a file that is missing or can't be written; that this program was built without OMPL.
+/// @throws std::runtime_error naming a file that is missing or can't be written; that this program was built without
+/// OMPL.
 int benchPlanning(const PlanningBenchOptions& options);
 
 }  // namespace fcl_artic::app

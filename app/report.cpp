@@ -13,22 +13,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
-const char* featureName(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::vertexVertex: return "vertex-vertex";
-    case FeatureKind::vertexEdge: return "vertex-edge";
-    case FeatureKind::edgeVertex: return "edge-vertex";
-    case FeatureKind::vertexFace: return "vertex-face";
-    case FeatureKind::faceVertex: return "face-vertex";
-    case FeatureKind::edgeEdge: return "edge-edge";
-    case FeatureKind::edgeFace: return "edge-face";
-    case FeatureKind::faceEdge: return "face-edge";
-    case FeatureKind::faceFace: return "face-face";
-    case FeatureKind::volume: return "volume";
-  }
-  return "volume";
-}
-
 std::string vectorText(const Eigen::Vector3d& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // + 0.0: no "-0"
 }
@@ -76,15 +60,22 @@ std::string entry(const std::string& label, const std::string& text) {
 }
 
 /// The shortest decimals that still tell the ends of the bracket apart.
-std::string bracketText(double lower, double upper) { return fmt::format("[{:.12g}, {:.12g}]", lower, upper); }
+std::string bracketText(double lower, double upper) {
+  return fmt::format("[{:.12g}, {:.12g}]", lower, upper);
+}
 
 std::string contactText(const CertifiedContact& c) {
   std::string text = entry("pair", fmt::format("{} and {}", bodyText(c.body1, c.b1), bodyText(c.body2, c.b2)));
   text += entry("time", fmt::format("t in {}, {}", bracketText(c.t_lower, c.t_upper),
                                     c.certain ? "contact proven" : "contact not proven: nearer than can be decided"));
-  text += entry("point", fmt::format("{} m in the world, at t = {:.12g}", vectorText(c.point), c.certain ? c.t_upper : c.t_lower));
+  text += entry("point", fmt::format("{} m in the world, at t = {:.12g}", vectorText(c.point),
+                                     c.certain ? c.t_upper : c.t_lower));
+  if (c.approach_speed != 0) {
+    text += entry("witness", fmt::format("nearest at t = {:.12g}: {} and {} m, approaching at {:.6g} m per unit of t",
+                                         c.t_lower, vectorText(c.nearest1), vectorText(c.nearest2), c.approach_speed));
+  }
   text += entry("normal", fmt::format("{} from '{}' to '{}', {}", vectorText(c.normal), c.body1.name, c.body2.name,
-                                      c.feature == FeatureKind::volume ? "volume" : featureName(c.feature)));
+                                      toString(c.feature)));
   return text;
 }
 
@@ -93,7 +84,8 @@ std::string headline(const Report& r) {
   switch (result.status) {
     case Status::free:
       return r.request.margin > 0
-                 ? fmt::format("FREE: proven, no checked pair comes within {:g} m anywhere on the motion.", r.request.margin)
+                 ? fmt::format("FREE: proven, no checked pair comes within {:g} m anywhere on the motion.",
+                               r.request.margin)
                  : "FREE: proven, no checked pair touches anywhere on the motion.";
     case Status::contact: {
       const std::string what =
@@ -103,9 +95,10 @@ std::string headline(const Report& r) {
       }
       return result.certain
                  ? fmt::format("CONTACT: {} at t = {:.6g}, proven; free before.", what, result.t_lower)
-                 : fmt::format("CONTACT (not certain): at t = {:.6g} a pair is nearer than can be decided within the "
-                               "tolerances; free before, proven.",
-                               result.t_lower);
+                 : fmt::format(
+                       "CONTACT (not certain): at t = {:.6g} a pair is nearer than can be decided within the "
+                       "tolerances; free before, proven.",
+                       result.t_lower);
     }
     case Status::undecided:
       return fmt::format("UNDECIDED: the work budget of {} tests ran out; proven free only for t < {:.6g}.",
@@ -135,15 +128,23 @@ std::string statisticsText(const QueryStatistics& s) {
 
 /// Work of the paper's own method; null where another one was asked for.
 Json redonJson(const Report& r) {
-  if (r.request.method != Method::Redon2004) return {};
+  if (r.request.method != Method::redon2004) return {};
   const RedonStatistics& s = r.result.statistics.redon;
-  return {{"pairs_by_standard", s.pairs_by_standard}, {"box_tests", s.box_tests},     {"leaf_pairs", s.leaf_pairs},
-          {"equations", s.equations},                 {"intervals", s.intervals},     {"evaluations", s.evaluations},
-          {"steps_bounded", s.steps_bounded},         {"culling_us", s.culling_us},   {"boxes_us", s.boxes_us},
+  return {{"pairs_by_standard", s.pairs_by_standard},
+          {"box_tests", s.box_tests},
+          {"leaf_pairs", s.leaf_pairs},
+          {"equations", s.equations},
+          {"intervals", s.intervals},
+          {"evaluations", s.evaluations},
+          {"steps_bounded", s.steps_bounded},
+          {"culling_us", s.culling_us},
+          {"boxes_us", s.boxes_us},
           {"equations_us", s.equations_us}};
 }
 
-Json vectorJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+Json vectorJson(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 Json valuesJson(const KinematicTree& tree, const Eigen::VectorXd& q) {
   Json out = Json::object();
@@ -175,7 +176,10 @@ Json contactJson(const CertifiedContact& c) {
           {"certain", c.certain},
           {"point", vectorJson(c.point)},
           {"normal", vectorJson(c.normal)},
-          {"feature", featureName(c.feature)}};
+          {"nearest1", vectorJson(c.nearest1)},
+          {"nearest2", vectorJson(c.nearest2)},
+          {"approach_speed", c.approach_speed},
+          {"feature", toString(c.feature)}};
 }
 
 Json posesJson(const Report& r) {
@@ -185,28 +189,19 @@ Json posesJson(const Report& r) {
   for (LinkId link = 0; link < r.tree.numLinks(); ++link) {
     const Eigen::Isometry3d& M_0 = at_lower[static_cast<std::size_t>(link)];
     const Eigen::Quaterniond rotation(M_0.linear());
-    out[r.tree.linkName(link)] = {
-        {"position", vectorJson(M_0.translation())},
-        {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
+    out[r.tree.linkName(link)] = {{"position", vectorJson(M_0.translation())},
+                                  {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
   }
   return out;
 }
 
 }  // namespace
 
-const char* statusName(Status status) {
-  switch (status) {
-    case Status::free: return "free";
-    case Status::contact: return "contact";
-    case Status::undecided: return "undecided";
-  }
-  return "undecided";
-}
-
 std::string titleLine(const Report& r) {
   const CertifiedResult& result = r.result;
   if (result.status == Status::free) return "free: proven for the whole motion";
-  if (result.status == Status::undecided) return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
+  if (result.status == Status::undecided)
+    return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
   std::string text = fmt::format("first contact at t = {:.4f}", result.t_lower);
   if (!result.contacts.empty()) {
     const CertifiedContact& c = result.contacts.front();
@@ -241,7 +236,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
   Json ignored = Json::array(), contacts = Json::array();
   for (const auto& [a, b] : result.ignored_initial_contacts) ignored.push_back({a.name, b.name});
   for (const CertifiedContact& c : result.contacts) contacts.push_back(contactJson(c));
-  return {{"status", statusName(result.status)},
+  return {{"status", toString(result.status)},
           {"t_lower", result.t_lower},
           {"t_upper", result.t_upper},
           {"certain", result.certain},

@@ -21,7 +21,7 @@ struct Report {
   const CertifiedResult& result;
   const std::vector<std::string>& notes;  ///< one line each
   std::function<Eigen::VectorXd(double t)> configuration;
-  double begin = 0, end = 1;  ///< of the motion
+  double begin = 0, end = 1;             ///< of the motion
   const Clearance* clearance = nullptr;  ///< null: not asked for
 };
 
@@ -30,9 +30,6 @@ std::string textReport(const Report& report);
 
 /// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
 nlohmann::ordered_json jsonReport(const Report& report);
-
-/// "free", "contact" or "undecided".
-const char* statusName(Status status);
 
 /// Names of the two sides and the time: one line, for a picture's title.
 std::string titleLine(const Report& report);

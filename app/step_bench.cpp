@@ -17,7 +17,7 @@ std::uint64_t Random::next() {
 StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
                        CertifiedRequest request, int passes, bool contact, std::size_t& differ) {
   request.measure_times = true;
-  const bool paper = request.method == Method::Redon2004, stage2 = request.visibility != VisibilityMode::off;
+  const bool paper = request.method == Method::redon2004, stage2 = request.visibility != VisibilityMode::off;
   StepCosts sum;
   std::vector<double> totals;
   CertifiedResult result;

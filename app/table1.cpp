@@ -160,7 +160,7 @@ std::vector<Variant> variantsOf(const Table1Options& o) {
   for (const std::string& name : o.methods) {
     CertifiedRequest request;
     request.tolerance_time = o.tolerance;
-    request.method = name == kStandard ? Method::standard : Method::Redon2004;
+    request.method = name == kStandard ? Method::standard : Method::redon2004;
     request.redon = o.redon;
     if (name == kAsWritten) request.redon.early_validity = request.redon.in_time_order = false;
     if (o.executor != kNoExecutor) {
@@ -229,7 +229,7 @@ Table tableOf(const std::vector<Group>& groups, const std::vector<Variant>& vari
       row.push_back(written > 0 ? fmt::format("{:.1f}", written / c.total) : "");
       for (const double count : {c.sv_pairs, c.sv_culled}) row.push_back(c.sv < 0 ? "" : fmt::format("{:.1f}", count));
       for (const double count : {c.box_tests, c.leaf_pairs, c.equations, c.intervals, c.evaluations, c.steps}) {
-        row.push_back(variants[v].request.method == Method::Redon2004 ? fmt::format("{:.1f}", count) : "");
+        row.push_back(variants[v].request.method == Method::redon2004 ? fmt::format("{:.1f}", count) : "");
       }
       table.rows.push_back(row);
     }

@@ -46,13 +46,15 @@ double parseNumber(std::string_view text, const std::string& where, const std::s
 constexpr int kTime = -1;
 
 /// Variable of each column.
-std::vector<int> readHeader(const KinematicTree& tree, const std::vector<std::string_view>& names, const std::string& where) {
+std::vector<int> readHeader(const KinematicTree& tree, const std::vector<std::string_view>& names,
+                            const std::string& where) {
   std::vector<int> columns;
   std::set<int> seen;
   for (const std::string_view text : names) {
     const std::string name(text);
     const int column = name == "time" || name == "t" ? kTime : variableOf(tree, name, where);
-    if (!seen.insert(column).second) throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, name));
+    if (!seen.insert(column).second)
+      throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, name));
     columns.push_back(column);
   }
   if (!seen.count(kTime)) throw std::invalid_argument(where + ": no column 'time'");
@@ -84,7 +86,8 @@ Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, co
       continue;
     }
     if (fields.size() != columns.size()) {
-      throw std::invalid_argument(fmt::format("{} has {} columns, the first line names {}", where, fields.size(), columns.size()));
+      throw std::invalid_argument(
+          fmt::format("{} has {} columns, the first line names {}", where, fields.size(), columns.size()));
     }
     Eigen::VectorXd q = tree.neutralConfiguration();
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -121,7 +124,8 @@ JointTrajectory interpolate(const KinematicTree& tree, const Waypoints& waypoint
   if (interpolation == Interpolation::linear) return JointTrajectory::linear(tree, t, q, unwrap);
   std::vector<Eigen::VectorXd> slopes, velocities(q.size(), Eigen::VectorXd::Zero(tree.dof()));
   for (std::size_t k = 0; k + 1 < q.size(); ++k) {
-    const JointMotion way = shortest ? JointMotion::shortest(tree, q[k], q[k + 1]) : JointMotion::linear(tree, q[k], q[k + 1]);
+    const JointMotion way =
+        shortest ? JointMotion::shortest(tree, q[k], q[k + 1]) : JointMotion::linear(tree, q[k], q[k + 1]);
     slopes.push_back(way.dq() / (t[k + 1] - t[k]));  // of a quaternion: its angular velocity
   }
   for (std::size_t k = 1; k + 1 < q.size(); ++k) {

@@ -56,8 +56,9 @@ struct BumpyEllipsoid {
 
   double wave(double polar, double azimuth) const {
     const double fade = std::sin(polar);  // the poles stay smooth
-    return 1 + bump * fade * (std::sin(5 * azimuth) * std::sin(4 * polar) +
-                              0.5 * std::sin(11 * azimuth + 1) * std::sin(9 * polar));
+    return 1 +
+           bump * fade *
+               (std::sin(5 * azimuth) * std::sin(4 * polar) + 0.5 * std::sin(11 * azimuth + 1) * std::sin(9 * polar));
   }
   fcl::Vector3d point(double polar, double azimuth) const {
     const fcl::Vector3d direction(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
@@ -78,7 +79,9 @@ struct BumpyEllipsoid {
     }
     mesh.vertices.push_back(point(kPi, 0));
     const std::size_t south = mesh.vertices.size() - 1;
-    const auto vertex = [&](int ring, int j) { return static_cast<std::size_t>(1 + (ring - 1) * meridians + j % meridians); };
+    const auto vertex = [&](int ring, int j) {
+      return static_cast<std::size_t>(1 + (ring - 1) * meridians + j % meridians);
+    };
     for (int j = 0; j < meridians; ++j) {
       mesh.triangles.emplace_back(0, vertex(1, j), vertex(1, j + 1));
       for (int i = 1; i + 1 < bands; ++i) {
@@ -98,8 +101,8 @@ struct DhRow {
 
 /// PUMA 560 (Corke and Armstrong-Helouvry 1994), with a flange of 56 mm.
 inline std::vector<DhRow> pumaRows() {
-  return {{0, 0, kPi / 2},       {0.4318, 0, 0},          {0.0203, 0.15005, -kPi / 2},
-          {0, 0.4318, kPi / 2}, {0, 0, -kPi / 2},        {0, 0.056, 0}};
+  return {{0, 0, kPi / 2},      {0.4318, 0, 0},   {0.0203, 0.15005, -kPi / 2},
+          {0, 0.4318, kPi / 2}, {0, 0, -kPi / 2}, {0, 0.056, 0}};
 }
 
 /// A chain of `joints` revolute joints whose links share out `reach`, with random right-angled twists.
@@ -135,11 +138,11 @@ struct ArmScene {
 struct ArmSceneOptions {
   std::uint64_t seed = 11;
   std::vector<DhRow> rows = pumaRows();
-  int first_link = 2;             ///< links before carry no geometry (1 = the link after the first joint)
-  double thickness = 0.055;       ///< smallest half axis of a link, m
+  int first_link = 2;        ///< links before carry no geometry (1 = the link after the first joint)
+  double thickness = 0.055;  ///< smallest half axis of a link, m
   int link_meridians = 24, link_bands = 22;
   int spheres = 10;
-  int scene_triangles = 100000;   ///< about; a sphere has 2 n^2 of them, n = half its meridians rounded
+  int scene_triangles = 100000;  ///< about; a sphere has 2 n^2 of them, n = half its meridians rounded
 };
 
 inline ArmScene makeArmScene(const ArmSceneOptions& options) {

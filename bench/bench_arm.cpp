@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
   app.add_option("--queries", count, "free queries, and as many colliding ones, per step")->capture_default_str();
   app.add_option("--rival-queries", rival_count, "the first so many of them for FCL")->capture_default_str();
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--steps", steps, "degrees, every joint")->capture_default_str();
   app.add_option("--triangles", options.scene_triangles, "of the scene")->capture_default_str();
   app.add_option("--seed", options.seed, "of scene and queries")->capture_default_str();

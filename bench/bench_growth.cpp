@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the certified query grows: the motions of bench_arm (5 degrees, chosen in the scene of 100k triangles) in the same
-// scene at 1k to 1M triangles; and seeded random chains of 2 to 30 joints of the same reach amid the 100k triangles.
+// How the certified query grows: the motions of bench_arm (5 degrees, chosen in the scene of 100k triangles) in the
+// same scene at 1k to 1M triangles; and seeded random chains of 2 to 30 joints of the same reach amid the 100k
+// triangles.
 
 #include <optional>
 
@@ -56,7 +57,8 @@ int main(int argc, char** argv) {
   std::vector<int> sizes = {1000, 10000, 100000, 1000000}, joints = {2, 4, 6, 10, 14, 20, 30};
   app.add_option("--queries", count, "free queries, and as many colliding ones, per size")->capture_default_str();
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--seed", seed, "of scenes and queries")->capture_default_str();
   app.add_option("--triangles", sizes, "sizes of the scene")->capture_default_str();
   app.add_option("--joints", joints, "lengths of the chain")->capture_default_str();
@@ -89,18 +91,19 @@ int main(int argc, char** argv) {
   bool chosen = false;
   for (const int triangles : sizes) {
     for (std::size_t set = 0; set < 2; ++set) {
-      report.add(kTriangles, set ? "hit" : "free", fmt::format("fcl_artic, {} triangles", triangles), [&, triangles, set] {
-        ArmSceneOptions options;
-        options.seed = seed;
-        if (!chosen) {
-          build(options, "choice");
-          choose();
-          chosen = true;
-        }
-        options.scene_triangles = triangles;
-        build(options, fmt::format("{} triangles", triangles));
-        return measureSet(set, static_cast<double>(scene.sceneTriangles()));
-      });
+      report.add(kTriangles, set ? "hit" : "free", fmt::format("fcl_artic, {} triangles", triangles),
+                 [&, triangles, set] {
+                   ArmSceneOptions options;
+                   options.seed = seed;
+                   if (!chosen) {
+                     build(options, "choice");
+                     choose();
+                     chosen = true;
+                   }
+                   options.scene_triangles = triangles;
+                   build(options, fmt::format("{} triangles", triangles));
+                   return measureSet(set, static_cast<double>(scene.sceneTriangles()));
+                 });
     }
   }
   for (const int length : joints) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Interval kernels, the test of oriented boxes alone and in batches per instruction set, and bounds down a PUMA's chain.
-// Times are of one element: a product, a pair of boxes, one interval of time for all six links.
+// Interval kernels, the test of oriented boxes alone and in batches per instruction set, and bounds down a PUMA's
+// chain. Times are of one element: a product, a pair of boxes, one interval of time for all six links.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,12 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "interval/chain_bounds.h"
 #include "interval/sine_cosine.h"
 #include "motion/frame_sweep.h"
 #include "options.h"
 #include "random.h"
 #include "redon/box_batch.h"
+#include "redon/chain_bounds.h"
 #include "redon/overlap.h"
 
 namespace {
@@ -40,8 +40,15 @@ struct Operands {
   std::vector<const ObbNode*> pointers[2];
   IntervalTransform motion;  ///< of the second boxes, by a few hundredths
 
-  explicit Operands(Random& random) : a(kElements), b(kElements), product(kElements), x(kElements + 3), y(kElements + 3),
-                                      angle(kElements), value(kElements), rate(kElements) {
+  explicit Operands(Random& random)
+      : a(kElements),
+        b(kElements),
+        product(kElements),
+        x(kElements + 3),
+        y(kElements + 3),
+        angle(kElements),
+        value(kElements),
+        rate(kElements) {
     for (auto* set : {&a, &b}) {
       for (IntervalTransform& M : *set) fill(random, M);
     }
@@ -95,7 +102,8 @@ int main(int argc, char** argv) {
   int passes = 5;
   std::uint64_t seed = 3;
   app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--seed", seed, "of the operands")->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
 
@@ -191,8 +199,9 @@ int main(int argc, char** argv) {
   }
   ChainBounds chain;
   FrameBounds frames[kJoints];
-  const std::pair<const char*, Enclosure> enclosures[] = {
-      {"interval chain", Enclosure::intervalChain}, {"mean value", Enclosure::meanValue}, {"Taylor", Enclosure::taylor}};
+  const std::pair<const char*, Enclosure> enclosures[] = {{"interval chain", Enclosure::intervalChain},
+                                                          {"mean value", Enclosure::meanValue},
+                                                          {"Taylor", Enclosure::taylor}};
   for (const auto& [name, enclosure] : enclosures) {
     for (const auto& [order, derivatives] :
          {std::pair("poses", Derivatives::none), std::pair("poses and rates", Derivatives::first)}) {

@@ -2,7 +2,8 @@
 //
 // Edges that a planner asked for: a Panda amid boxes and cylinders, world and self collision together, first contact
 // bracketed to 2^-12 of the edge. FCL_ARTIC_DATA names the folder with robots/, problems/ and edges/. The edges come
-// labelled by dense sampling with FCL: every one that was seen to collide must be reported, not later than sampling saw it.
+// labelled by dense sampling with FCL: every one that was seen to collide must be reported, not later than sampling saw
+// it.
 //
 // Exit status 1 when a collision is missed or reported late.
 
@@ -14,8 +15,8 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <thread>
 #include <stdexcept>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -59,8 +60,8 @@ class Worlds {
   std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers_;
 };
 
-/// Motions of one scene as batches over 1, 2, 4 ... threads, in turn; the least times of the passes count. On a machine that
-/// others use too, the processors' time for a motion tells what threads cost each other.
+/// Motions of one scene as batches over 1, 2, 4 ... threads, in turn; the least times of the passes count. On a machine
+/// that others use too, the processors' time for a motion tells what threads cost each other.
 void noteThreads(Report& report, const std::vector<Asked>& edges, const CertifiedRequest& request, int passes) {
   constexpr std::size_t kMotions = 8000;
   std::vector<JointMotion> motions;
@@ -85,9 +86,10 @@ void noteThreads(Report& report, const std::vector<Asked>& edges, const Certifie
     }
   }
   for (const auto& [threads, s] : seconds) {
-    report.note(fmt::format("batch of {} motions over {} thread{}: {:.0f} motions per second, {:.2f} times those of one; {:.2f} us of processors' time each",
-                            kMotions, threads, threads == 1 ? "" : "s", kMotions / s, seconds[1] / s,
-                            1e6 * busy[threads] / kMotions));
+    report.note(fmt::format(
+        "batch of {} motions over {} thread{}: {:.0f} motions per second, {:.2f} times those of one; {:.2f} us of "
+        "processors' time each",
+        kMotions, threads, threads == 1 ? "" : "s", kMotions / s, seconds[1] / s, 1e6 * busy[threads] / kMotions));
   }
 }
 
@@ -103,7 +105,8 @@ int main(int argc, char** argv) try {
   CLI::App app("Certified queries on a planner's edges (FCL_ARTIC_DATA names the data)");
   int passes = 3;
   app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   const std::filesystem::path data = sharedData();
   if (data.empty()) {
@@ -124,8 +127,8 @@ int main(int argc, char** argv) try {
     return result.status == Status::contact ? (mode == ContactMode::any ? result.t_upper : result.t_lower) : kFree;
   };
 
-  std::map<std::string, Agreement> agreements;                       // by method
-  std::map<std::pair<std::string, std::string>, Measured> all;       // by method and set
+  std::map<std::string, Agreement> agreements;                  // by method
+  std::map<std::pair<std::string, std::string>, Measured> all;  // by method and set
   const auto addMode = [&](const std::string& environment, const std::string& set, const std::vector<Asked>& edges,
                            ContactMode mode, const char* method) {
     report.add("panda " + environment, set, method, [&, set, mode, method] {
@@ -143,7 +146,8 @@ int main(int argc, char** argv) try {
         agreement.rejected += !seen && reported;
         agreement.uncertain += reported && !result.certain;
         if (seen && !reported) report.note(edges[i].name + ": MISSED, seen at " + std::to_string(edges[i].seen_at));
-        if (late) report.note(fmt::format("{}: LATE, {} after {}", edges[i].name, measured.answers[i], edges[i].seen_at));
+        if (late)
+          report.note(fmt::format("{}: LATE, {} after {}", edges[i].name, measured.answers[i], edges[i].seen_at));
         if (!seen && reported) {
           report.note(fmt::format("{}: labelled free, contact{} at {:.6f} between {} and {}", edges[i].name,
                                   result.certain ? " proven" : " not excluded", result.t_lower,
@@ -205,9 +209,9 @@ int main(int argc, char** argv) try {
   }
   std::size_t faults = 0;
   for (const auto& [method, agreement] : agreements) {
-    report.note(fmt::format("{}: labelled hit {}: missed {}, late {}; labelled free {}: rejected {}; uncertain contacts {}",
-                            method, agreement.hit, agreement.missed, agreement.late, agreement.free, agreement.rejected,
-                            agreement.uncertain));
+    report.note(fmt::format(
+        "{}: labelled hit {}: missed {}, late {}; labelled free {}: rejected {}; uncertain contacts {}", method,
+        agreement.hit, agreement.missed, agreement.late, agreement.free, agreement.rejected, agreement.uncertain));
     faults += agreement.missed + agreement.late;
   }
   const int status = report.finish();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What a planner pays for a motion: through the manager, through OMPL's checkMotion() with our validator, and through
-// OMPL's own discrete validator (1 %, the end point first, then bisection) over FCL's check of a state, on the same edges
-// in one run. Then whole plans by RRTConnect with either validator, looked at 100 times more closely.
+// OMPL's own discrete validator (1 %, the end point first, then bisection) over FCL's check of a state, on the same
+// edges in one run. Then whole plans by RRTConnect with either validator, looked at 100 times more closely.
 // FCL_ARTIC_DATA names the folder with robots/, problems/ and edges/.
 //
 // Exit status 1 when an edge that was seen to collide is accepted.
@@ -34,8 +34,8 @@ namespace ob = ompl::base;
 namespace {
 
 constexpr Answer kFree = 2;
-constexpr const char* kEnvironments[] = {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box",
-                                         "cage", "table_pick", "table_under_pick", "thin"};
+constexpr const char* kEnvironments[] = {
+    "bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick", "table_under_pick", "thin"};
 
 /// One problem, set up for us and for FCL over the same space.
 struct World {
@@ -55,8 +55,11 @@ struct Query {
 
   Query(const World& w, const Environment& environment, const KinematicTree& tree, const std::vector<double>& from,
         const std::vector<double>& to, double seen)
-      : world(&w), q0(environment.configuration(tree, from)), q1(environment.configuration(tree, to)),
-        s1(std::make_shared<ob::ScopedState<>>(w.ours.space)), s2(std::make_shared<ob::ScopedState<>>(w.ours.space)),
+      : world(&w),
+        q0(environment.configuration(tree, from)),
+        q1(environment.configuration(tree, to)),
+        s1(std::make_shared<ob::ScopedState<>>(w.ours.space)),
+        s2(std::make_shared<ob::ScopedState<>>(w.ours.space)),
         seen_at(seen) {
     w.ours.setState(s1->get(), from);
     w.ours.setState(s2->get(), to);
@@ -80,20 +83,20 @@ std::vector<Method> methods() {
   };
   return {{"manager, any contact", through(ContactMode::any)},
           {"manager, first within 1/4096", through(ContactMode::first)},
-          {"checkMotion", [](const Query& query) -> Answer {
+          {"checkMotion",
+           [](const Query& query) -> Answer {
              return query.world->ours.si->checkMotion(query.s1->get(), query.s2->get()) ? kFree : 0;
            }},
-          {"checkMotion with lastValid", [](const Query& query) -> Answer {
+          {"checkMotion with lastValid",
+           [](const Query& query) -> Answer {
              std::pair<ob::State*, double> last{nullptr, kFree};
              query.world->ours.si->checkMotion(query.s1->get(), query.s2->get(), last);
              return last.second;
            }},
-          {"state check of the end", [](const Query& query) -> Answer {
-             return query.world->ours.si->isValid(query.s2->get()) ? kFree : 1;
-           }},
-          {"FCL, state check of the end", [](const Query& query) -> Answer {
-             return query.world->fcl->isValid(query.s2->get()) ? kFree : 1;
-           }},
+          {"state check of the end",
+           [](const Query& query) -> Answer { return query.world->ours.si->isValid(query.s2->get()) ? kFree : 1; }},
+          {"FCL, state check of the end",
+           [](const Query& query) -> Answer { return query.world->fcl->isValid(query.s2->get()) ? kFree : 1; }},
           {"FCL, OMPL's 1 %", [](const Query& query) -> Answer {
              return query.world->fcl->checkMotion(query.s1->get(), query.s2->get()) ? kFree : 0;
            }}};
@@ -147,12 +150,15 @@ class Bench {
   void notes() {
     for (const auto& [where, by_method] : us_) note(where.first + " " + where.second, by_method);
     for (const auto& [set, by_method] : all_us_) note("ALL " + set, by_method);
-    report_.note(fmt::format("seen to collide and accepted by us: {}; reported later than seen: {}; labelled free and rejected: {} of {}",
-                             missed_, late_, rejected_, free_));
+    report_.note(fmt::format(
+        "seen to collide and accepted by us: {}; reported later than seen: {}; labelled free and rejected: {} of {}",
+        missed_, late_, rejected_, free_));
     report_.note(fmt::format("two states read and their motion made, mean: {:.3f} us", mappingTime()));
-    report_.note(fmt::format("FCL at OMPL's 1 % accepts {} edges on which contact is proven or seen", sampling_missed_));
+    report_.note(
+        fmt::format("FCL at OMPL's 1 % accepts {} edges on which contact is proven or seen", sampling_missed_));
   }
-  /// What the adapter does before the manager is asked, us per motion; making a JointMotion from joint values is part of it.
+  /// What the adapter does before the manager is asked, us per motion; making a JointMotion from joint values is part
+  /// of it.
   double mappingTime() const {
     std::map<const World*, planning::JointMapping> mappings;
     for (const Query& query : adapted_) {
@@ -173,7 +179,8 @@ class Bench {
   bool sound() const { return missed_ + late_ == 0; }
 
  private:
-  void judge(const std::string& where, const std::string& method, const std::vector<Query>& queries, const Measured& measured) {
+  void judge(const std::string& where, const std::string& method, const std::vector<Query>& queries,
+             const Measured& measured) {
     if (method.find("state check") != std::string::npos) return;
     for (std::size_t i = 0; i < queries.size(); ++i) {
       const bool seen = queries[i].seen_at <= 1, free = measured.answers[i] == kFree;
@@ -192,12 +199,15 @@ class Bench {
 
   void note(const std::string& where, const std::map<std::string, std::vector<double>>& us) {
     const auto find = [&](const char* method) { return us.count(method) ? us.at(method) : std::vector<double>(); };
-    const std::vector<double> any = find("manager, any contact"), check = find("checkMotion"), fcl = find("FCL, OMPL's 1 %");
+    const std::vector<double> any = find("manager, any contact"), check = find("checkMotion"),
+                              fcl = find("FCL, OMPL's 1 %");
     if (any.empty() || check.size() != any.size() || fcl.size() != any.size()) return;
     std::vector<double> adapter;
     for (std::size_t i = 0; i < any.size(); ++i) adapter.push_back(check[i] - any[i]);
-    report_.note(fmt::format("{}: FCL's median is {:.0f} times the manager's, {:.0f} times checkMotion's; checkMotion adds {:.2f} us (median)",
-                             where, median(fcl) / median(any), median(fcl) / median(check), median(adapter)));
+    report_.note(
+        fmt::format("{}: FCL's median is {:.0f} times the manager's, {:.0f} times checkMotion's; checkMotion adds "
+                    "{:.2f} us (median)",
+                    where, median(fcl) / median(any), median(fcl) / median(check), median(adapter)));
   }
 
   Report& report_;
@@ -233,7 +243,8 @@ void addRandom(Bench& bench, const std::string& name, const Robot& robot, const 
 }
 
 /// Times plans with simplification; counts those that FCL sees collide at 1/100 of OMPL's default step.
-void addPlans(Report& report, const std::string& scene, const Environment& environment, const std::map<int, World>& worlds) {
+void addPlans(Report& report, const std::string& scene, const Environment& environment,
+              const std::map<int, World>& worlds) {
   for (const bool ours : {true, false}) {
     const char* method = ours ? "RRTConnect with our validator" : "RRTConnect with FCL, OMPL's 1 %";
     report.add(scene, "plan and simplify", method, [&report, &environment, &worlds, scene, method, ours] {
@@ -254,8 +265,8 @@ void addPlans(Report& report, const std::string& scene, const Environment& envir
                        return !all[i]->fcl->isValid(state.get());
                      }) >= 0;
       }
-      report.note(fmt::format("{}, {}: {} of {} solved, {} simplified plans collide when sampled 100 times finer", scene,
-                              method, solved, all.size(), colliding));
+      report.note(fmt::format("{}, {}: {} of {} solved, {} simplified plans collide when sampled 100 times finer",
+                              scene, method, solved, all.size(), colliding));
       return measured;
     });
   }
@@ -270,7 +281,8 @@ int main(int argc, char** argv) try {
   std::size_t random = 200;
   bool with_plans = false, no_other_robots = false;
   app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_option("--random", random, "random motions of each kind for the UR5 and the Fanuc")->capture_default_str();
   app.add_flag("--plans", with_plans, "time whole plans too");
   app.add_flag("--panda-only", no_other_robots, "leave out the UR5 and the Fanuc");
@@ -301,16 +313,17 @@ int main(int argc, char** argv) try {
     open(name, "panda");
     std::vector<Query> free, hit;
     for (const Edge& edge : readTrace(data / "edges" / ("panda_trace." + name + ".json"))) {
-      (edge.hit ? hit : free).emplace_back(worlds[name].at(edge.problem), environments[name], *robots["panda"].tree, edge.from,
-                                           edge.to, edge.seen_at);
+      (edge.hit ? hit : free)
+          .emplace_back(worlds[name].at(edge.problem), environments[name], *robots["panda"].tree, edge.from, edge.to,
+                        edge.seen_at);
     }
     bench.add("panda " + name, "free", std::move(free));
     bench.add("panda " + name, "hit", std::move(hit));
   }
   std::vector<Query> missed;
   for (const Edge& edge : readMissed(data / "edges/panda_missed.json")) {
-    missed.emplace_back(worlds[edge.environment].at(edge.problem), environments[edge.environment], *robots["panda"].tree,
-                        edge.from, edge.to, edge.seen_at);
+    missed.emplace_back(worlds[edge.environment].at(edge.problem), environments[edge.environment],
+                        *robots["panda"].tree, edge.from, edge.to, edge.seen_at);
   }
   bench.add("panda missed by 1 %", "hit", std::move(missed));
 

@@ -67,19 +67,26 @@ std::string load() {
 }
 
 nlohmann::json circumstances() {
-  return {{"machine", machineName()}, {"cpu", cpuField("model name")}, {"compiler", "g++ " __VERSION__},
-          {"flags", BENCH_FLAGS},     {"fcl", FCL_VERSION},
+  return {{"machine", machineName()},
+          {"cpu", cpuField("model name")},
+          {"compiler", "g++ " __VERSION__},
+          {"flags", BENCH_FLAGS},
+          {"fcl", FCL_VERSION},
           {"load", load()}};
 }
 
 }  // namespace
 
 void addCounters(Row& row, const QueryStatistics& s) {
-  const std::pair<const char*, std::uint64_t> all[] = {
-      {"pairs", s.pairs},           {"pairs_after_culling", s.pairs_after_culling},
-      {"batches", s.batches},       {"motion_evaluations", s.motion_evaluations},
-      {"node_tests", s.node_tests}, {"leaf_tests", s.leaf_tests},
-      {"certificates", s.certificates}, {"gjk", s.gjk}, {"contact_proofs", s.contact_proofs}};
+  const std::pair<const char*, std::uint64_t> all[] = {{"pairs", s.pairs},
+                                                       {"pairs_after_culling", s.pairs_after_culling},
+                                                       {"batches", s.batches},
+                                                       {"motion_evaluations", s.motion_evaluations},
+                                                       {"node_tests", s.node_tests},
+                                                       {"leaf_tests", s.leaf_tests},
+                                                       {"certificates", s.certificates},
+                                                       {"gjk", s.gjk},
+                                                       {"contact_proofs", s.contact_proofs}};
   row.per_query.resize(std::size(all));
   for (std::size_t i = 0; i < std::size(all); ++i) {
     row.per_query[i].first = all[i].first;
@@ -175,9 +182,10 @@ void Report::add(const std::string& scene, const std::string& set, const std::st
 
 std::string Report::table() const {
   const auto about = circumstances();
-  std::string out = fmt::format("{}\n{}; {}; {}; FCL {}; load average {}\n\n", program_, about["cpu"].get<std::string>(),
-                                about["compiler"].get<std::string>(), about["flags"].get<std::string>(),
-                                about["fcl"].get<std::string>(), about["load"].get<std::string>());
+  std::string out =
+      fmt::format("{}\n{}; {}; {}; FCL {}; load average {}\n\n", program_, about["cpu"].get<std::string>(),
+                  about["compiler"].get<std::string>(), about["flags"].get<std::string>(),
+                  about["fcl"].get<std::string>(), about["load"].get<std::string>());
   out += fmt::format("{:<18} {:<6} {:<30} {:>7} {:>5} {:>11} {:>11} {:>11} {:>9} {:>16}\n", "scene", "set", "method",
                      "queries", "hits", "median us", "mean us", "p95 us", "mean toc", "answers");
   for (const Row& r : rows_) {

@@ -23,8 +23,8 @@ struct Row {
   std::size_t queries = 0, hits = 0;
   int passes = 0;
   double median_us = 0, mean_us = 0, p95_us = 0, max_us = 0;
-  double mean_toc = 0;      ///< over the hits
-  std::uint64_t hash = 0;   ///< of the bits of all answers, in order
+  double mean_toc = 0;                                    ///< over the hits
+  std::uint64_t hash = 0;                                 ///< of the bits of all answers, in order
   std::vector<std::pair<std::string, double>> per_query;  ///< mean work counters
 };
 
@@ -57,8 +57,7 @@ class Report {
   explicit Report(std::string program) : program_(std::move(program)) {}
 
   /// Adds a row that Google Benchmark will run.
-  void add(const std::string& scene, const std::string& set, const std::string& method,
-           std::function<Measured()> run);
+  void add(const std::string& scene, const std::string& set, const std::string& method, std::function<Measured()> run);
   /// Runs what the filter leaves.
   void run();
   /// Prints the table and, with --results, writes PROGRAM.json and PROGRAM.txt.
@@ -67,7 +66,7 @@ class Report {
   /// Writes one more file of results, beside the others; nothing without --results.
   void write(const std::string& file, const std::string& content) const;
 
-  std::string results_folder;         ///< with the machine's name, made on demand; empty: no files
+  std::string results_folder;  ///< with the machine's name, made on demand; empty: no files
   /// Adds a row that was put together from others.
   void addRow(Row row) { rows_.push_back(std::move(row)); }
   const std::vector<Row>& rows() const { return rows_; }

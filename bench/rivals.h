@@ -36,10 +36,9 @@ inline double orientedAdvancement(const fcl::BVHModel<fcl::RSSd>& o1, const fcl:
   const fcl::CollisionRequestd request;
   fcl::CollisionResultd result;
   double toc = 1;
-  const bool contact =
-      fcl::detail::conservativeAdvancementMeshOriented<fcl::RSSd,
-                                                       fcl::detail::MeshConservativeAdvancementTraversalNodeRSS<double>>(
-          o1, &motion1, o2, &motion2, request, result, toc);
+  const bool contact = fcl::detail::conservativeAdvancementMeshOriented<
+      fcl::RSSd, fcl::detail::MeshConservativeAdvancementTraversalNodeRSS<double>>(o1, &motion1, o2, &motion2, request,
+                                                                                   result, toc);
   return contact ? toc : kFree;
 }
 

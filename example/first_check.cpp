@@ -17,14 +17,8 @@ int main() {
   Eigen::VectorXd q0(6), q1(6);  // rad
   q0 << -2.1, 1.0, -1.0, -0.1, -0.1, 0.0;
   q1 << -0.1, 0.3, -2.3, -1.0, 1.1, 0.0;
-  CertifiedResult result;
-  manager.continuousCollide(JointMotion::linear(*robot.tree, q0, q1), CertifiedRequest(), result);
+  const CertifiedResult result = manager.continuousCollide(q0, q1);
 
-  if (result.isFree()) {
-    std::cout << "proven free from q0 to q1\n";
-  } else {
-    const CertifiedContact& c = result.contacts.front();
-    std::cout << c.body1.name << " meets " << c.body2.name << " at t = " << result.t_lower
-              << ", x = " << c.point.transpose() << "; proven free before\n";
-  }
+  std::cout << result << '\n';  // "free: proven", or "contact within [t_lower, t_upper], proven"
+  if (const CertifiedContact* c = result.first()) std::cout << *c << '\n';  // who, when, where
 }

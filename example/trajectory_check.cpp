@@ -51,7 +51,8 @@ int main() {
       return;
     }
     const CertifiedContact& contact = result.contacts.front();
-    std::cout << what << ": " << contact.body1.name << " meets " << contact.body2.name << " at " << result.t_lower << " s\n";
+    std::cout << what << ": " << contact.body1.name << " meets " << contact.body2.name << " at " << result.t_lower
+              << " s\n";
   };
   check("empty-handed");
 

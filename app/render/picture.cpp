@@ -31,7 +31,8 @@ Vector3f color(unsigned hex) {
 }
 
 // Links in cool colours, the scene in sand: red and amber are left for what touches.
-constexpr unsigned kLinkColors[] = {0x64748B, 0x3F7CAC, 0x5AA9A2, 0x6C83C9, 0x8FB8DE, 0x4C956C, 0x8E7DBE, 0x2F6690, 0x7FB69A};
+constexpr unsigned kLinkColors[] = {0x64748B, 0x3F7CAC, 0x5AA9A2, 0x6C83C9, 0x8FB8DE,
+                                    0x4C956C, 0x8E7DBE, 0x2F6690, 0x7FB69A};
 constexpr unsigned kObstacleColors[] = {0xD3CCBF, 0xC6BFB2, 0xDAD5CB, 0xBDB8AE};
 constexpr unsigned kTouchingLink = 0xE4572E, kTouchingObstacle = 0xF2A93B, kMarker = 0xC1121F;
 constexpr unsigned kGhostBefore = 0x4A90D9, kGhostAfter = 0xA8A29A, kTrace = 0xE4572E;
@@ -63,7 +64,8 @@ class Surfaces {
 /// Some corners of a body in the world: enough to frame it.
 void addSample(const Surface& surface, const Isometry3d& M_0, std::vector<Vector3d>& points) {
   const std::size_t step = std::max<std::size_t>(1, surface.corners.size() / 300);
-  for (std::size_t i = 0; i < surface.corners.size(); i += step) points.push_back(M_0 * surface.corners[i].cast<double>());
+  for (std::size_t i = 0; i < surface.corners.size(); i += step)
+    points.push_back(M_0 * surface.corners[i].cast<double>());
 }
 
 Ball ballAround(const std::vector<Vector3d>& points) {
@@ -122,7 +124,8 @@ void addRod(Triangles& out, const Vector3d& a, const Vector3d& b, double ra, dou
   out.vertices.push_back(b);
   for (int s = 0; s < sectors; ++s) {
     const int i = base + 2 * s, j = base + 2 * ((s + 1) % sectors), ends = base + 2 * sectors;
-    for (const std::array<int, 3>& face : {std::array{i, j, j + 1}, {i, j + 1, i + 1}, {ends, j, i}, {ends + 1, i + 1, j + 1}}) {
+    for (const std::array<int, 3>& face :
+         {std::array{i, j, j + 1}, {i, j + 1, i + 1}, {ends, j, i}, {ends + 1, i + 1, j + 1}}) {
       out.faces.push_back(face);
     }
   }
@@ -156,8 +159,10 @@ class Composer {
     }
     for (const CertifiedContact& c : result.contacts) {
       for (const BodyRef* body : {&c.body1, &c.body2}) {
-        if (body->link >= 0) touching_links_.insert(body->link);
-        else touching_objects_.insert(body->object);
+        if (body->link >= 0)
+          touching_links_.insert(body->link);
+        else
+          touching_objects_.insert(body->object);
       }
     }
     pose_ = posesAt(result.t_lower);
@@ -218,8 +223,10 @@ class Composer {
         double score = share(kRobotGroup) - 0.5 * clutter + 0.02 * std::cos((azimuth + 55) * kPi / 180);
         if (const CertifiedContact* c = contact()) {
           // Of the contact what counts is not hidden by anything, the robot included.
-          const double full = kPi * std::pow(0.035 * ball_.radius / ((camera.eye - c->point).norm() *
-                                                                     std::tan(kFieldOfView / 2)) * kHeight / 2, 2);
+          const double full =
+              kPi * std::pow(0.035 * ball_.radius / ((camera.eye - c->point).norm() * std::tan(kFieldOfView / 2)) *
+                                 kHeight / 2,
+                             2);
           const double contact_seen =
               seen.size() > kContactGroup ? std::min(1.0, seen[kContactGroup] / std::max(0.4 * full, 1.0)) : 0.0;
           const Vector3d view = (camera.eye - c->point).normalized();
@@ -302,7 +309,8 @@ class Composer {
         std::vector<Vector3d> sample;
         addSample(*body.surface, body.M_0, sample);
         const double size = ballAround(sample).radius;
-        body.highlight_floor = static_cast<float>(std::clamp(1.1 - size / (0.6 * ballAround(points_).radius), 0.0, 0.9));
+        body.highlight_floor =
+            static_cast<float>(std::clamp(1.1 - size / (0.6 * ballAround(points_).radius), 0.0, 0.9));
       }
       addSample(*body.surface, body.M_0, scene_points_);
       add(std::move(body), kSceneGroup);
@@ -332,7 +340,8 @@ class Composer {
       Body body;
       body.surface = part.surface;
       body.M_0 = there;
-      body.color = 0.25f * color(kLinkColors[static_cast<std::size_t>(part.link) % std::size(kLinkColors)]) + 0.75f * color(tint);
+      body.color = 0.25f * color(kLinkColors[static_cast<std::size_t>(part.link) % std::size(kLinkColors)]) +
+                   0.75f * color(tint);
       addSample(*part.surface, there, points_);
       ghost.bodies.push_back(std::move(body));
     }

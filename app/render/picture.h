@@ -16,9 +16,9 @@ namespace fcl_artic::render {
 using JointPath = std::function<Eigen::VectorXd(double t)>;
 
 struct PictureOptions {
-  int width = 1600, height = 1000;                ///< pixels
-  std::optional<std::array<double, 2>> camera;    ///< azimuth from +x and elevation, degrees; none: chosen
-  std::string title;                              ///< one line; empty: none
+  int width = 1600, height = 1000;              ///< pixels
+  std::optional<std::array<double, 2>> camera;  ///< azimuth from +x and elevation, degrees; none: chosen
+  std::string title;                            ///< one line; empty: none
 };
 
 /// @throws std::runtime_error when this program was built without the component visibility.

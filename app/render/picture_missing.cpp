@@ -7,7 +7,8 @@
 namespace fcl_artic::render {
 
 void requirePictures() {
-  throw std::runtime_error("--image: this program was built without the component visibility or libpng and can't draw pictures");
+  throw std::runtime_error(
+      "--image: this program was built without the component visibility or libpng and can't draw pictures");
 }
 
 void writePicture(const std::string&, const Robot&, const std::vector<Scene::Obstacle>&, const JointPath&,

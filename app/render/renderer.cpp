@@ -25,7 +25,9 @@ constexpr float kSeeThrough = 0.38f;    // of the robot behind obstacles
 
 /// OpenGL of the renderer at work on this thread.
 thread_local const visibility::GlFunctions* bound = nullptr;
-const visibility::GlFunctions& api() { return *bound; }
+const visibility::GlFunctions& api() {
+  return *bound;
+}
 
 /// OSMesa's, or, where there is none, EGL's.
 std::unique_ptr<OffscreenContext> openContext() {
@@ -124,7 +126,7 @@ struct Buffers {
     for (GLuint i = 0; i < 2; ++i) {
       api().BindBuffer(GL_ARRAY_BUFFER, data[i]);
       api().BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sources[i]->size() * sizeof(Vector3f)),
-                   sources[i]->data(), GL_STATIC_DRAW);
+                       sources[i]->data(), GL_STATIC_DRAW);
       api().VertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
       api().EnableVertexAttribArray(i);
     }
@@ -236,7 +238,8 @@ std::shared_ptr<const Surface> makeSurface(const Triangles& triangles) {
       Vector3f normal = area_normal[f];
       for (const int other : around[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]) {
         const Vector3f& n = area_normal[static_cast<std::size_t>(other)];
-        if (static_cast<std::size_t>(other) != f && n.dot(area_normal[f]) > kCreaseCosine * n.norm() * size) normal += n;
+        if (static_cast<std::size_t>(other) != f && n.dot(area_normal[f]) > kCreaseCosine * n.norm() * size)
+          normal += n;
       }
       surface->corners.push_back(triangles.vertices[static_cast<std::size_t>(i)].cast<float>());
       surface->normals.push_back(size > 0 ? normal.normalized() : Vector3f::UnitZ());
@@ -253,7 +256,8 @@ struct Renderer::Impl {
     Program depth{shaders::kBodyVertex, shaders::kEmptyFragment};
     Program group{shaders::kBodyVertex, shaders::kGroupFragment};
     Program normal{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kFacing + shaders::kNormalFragment};
-    Program body{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kFacing + shaders::kLight + shaders::kBodyFragment};
+    Program body{shaders::kBodyVertex,
+                 std::string(shaders::kVersion) + shaders::kFacing + shaders::kLight + shaders::kBodyFragment};
     Program ground{shaders::kBodyVertex, std::string(shaders::kVersion) + shaders::kLight + shaders::kGroundFragment};
     Program background{shaders::kScreenVertex, shaders::kBackgroundFragment};
     Program occlusion{shaders::kScreenVertex, shaders::kOcclusionFragment};
@@ -360,12 +364,12 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     throw std::runtime_error("a picture has at most " + std::to_string(limit / kSupersampling) + " pixels a side");
   }
 
-  const Matrix4f view_projection = perspective(static_cast<double>(width) / height, camera.near, camera.far) *
-                                   lookAt(camera.eye, camera.target);
+  const Matrix4f view_projection =
+      perspective(static_cast<double>(width) / height, camera.near, camera.far) * lookAt(camera.eye, camera.target);
   const Vector3d sun = sunFor(camera);
   const double shadow_radius = 1.8 * stage.radius, sun_distance = 20 * stage.radius;
-  const Matrix4f shadow_matrix = orthographic(shadow_radius, 0, 2 * sun_distance) *
-                                 lookAt(stage.focus + sun_distance * sun, stage.focus);
+  const Matrix4f shadow_matrix =
+      orthographic(shadow_radius, 0, 2 * sun_distance) * lookAt(stage.focus + sun_distance * sun, stage.focus);
   const Vector3f eye = camera.eye.cast<float>();
 
   Body ground;

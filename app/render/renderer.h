@@ -25,9 +25,9 @@ struct Body {
   Eigen::Isometry3d M_0 = Eigen::Isometry3d::Identity();  ///< body to world
   Eigen::Vector3f color = Eigen::Vector3f::Constant(0.5f);
   Eigen::Vector3f highlight = Eigen::Vector3f::Zero();  ///< mixed in around the picture's focus
-  float highlight_radius = 1e-6f;                        ///< m
-  float highlight_floor = 0;                             ///< share mixed in everywhere
-  float glow = 0;                                        ///< 0: shaded, 1: flat colour
+  float highlight_radius = 1e-6f;                       ///< m
+  float highlight_floor = 0;                            ///< share mixed in everywhere
+  float glow = 0;                                       ///< 0: shaded, 1: flat colour
   bool throws_shadow = true;
   bool clear_of_ghosts = false;  ///< ghosts in front of it are nearly invisible, and it shimmers through obstacles
 };
@@ -48,10 +48,10 @@ constexpr double kFieldOfView = 0.56;
 /// What there is to see, world frame with z up.
 struct Stage {
   std::vector<Body> solid;
-  std::vector<Ghost> ghosts;      ///< first one lies lowest
-  std::vector<Body> annotations;  ///< on top of everything, with a light rim
+  std::vector<Ghost> ghosts;                        ///< first one lies lowest
+  std::vector<Body> annotations;                    ///< on top of everything, with a light rim
   Eigen::Vector3d focus = Eigen::Vector3d::Zero();  ///< middle of interest
-  double radius = 1;              ///< of the ball around `focus` that matters, m
+  double radius = 1;                                ///< of the ball around `focus` that matters, m
   Eigen::Vector3d highlight_center = Eigen::Vector3d::Zero();
   double ground_z = 0;
 };

@@ -26,8 +26,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kSectors = 64;      // around an axis
-constexpr int kRings = 16;        // pole to equator
+constexpr int kSectors = 64;            // around an axis
+constexpr int kRings = 16;              // pole to equator
 constexpr double kPlaneHalfWidth = 10;  // m
 
 template <typename BV>
@@ -49,7 +49,8 @@ void addBox(Triangles& out, const Vector3d& center, const Vector3d& size) {
     const Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
     out.vertices.push_back(center + 0.5 * sign.cwiseProduct(size));
   }
-  static constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  static constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                       {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
   for (const auto& q : kQuads) {
     out.faces.push_back({base + q[0], base + q[1], base + q[2]});
     out.faces.push_back({base + q[0], base + q[2], base + q[3]});
@@ -102,7 +103,8 @@ Triangles fromConvex(const fcl::Convexd& convex) {
   for (int f = 0; f < convex.getFaceCount(); ++f) {
     const int n = code[at];
     for (int i = 2; i < n; ++i) {
-      out.faces.push_back({code[at + 1], code[at + static_cast<std::size_t>(i)], code[at + static_cast<std::size_t>(i) + 1]});
+      out.faces.push_back(
+          {code[at + 1], code[at + static_cast<std::size_t>(i)], code[at + static_cast<std::size_t>(i) + 1]});
     }
     at += static_cast<std::size_t>(n) + 1;
   }
@@ -124,20 +126,29 @@ Triangles planeSquare(const Vector3d& normal, double distance) {
 
 Triangles triangulate(const fcl::CollisionGeometryd& geometry) {
   switch (geometry.getNodeType()) {
-    case fcl::BV_AABB: return fromMesh<fcl::AABBd>(geometry);
-    case fcl::BV_OBB: return fromMesh<fcl::OBBd>(geometry);
-    case fcl::BV_RSS: return fromMesh<fcl::RSSd>(geometry);
-    case fcl::BV_kIOS: return fromMesh<fcl::kIOSd>(geometry);
-    case fcl::BV_OBBRSS: return fromMesh<fcl::OBBRSSd>(geometry);
-    case fcl::BV_KDOP16: return fromMesh<fcl::KDOPd<16>>(geometry);
-    case fcl::BV_KDOP18: return fromMesh<fcl::KDOPd<18>>(geometry);
-    case fcl::BV_KDOP24: return fromMesh<fcl::KDOPd<24>>(geometry);
+    case fcl::BV_AABB:
+      return fromMesh<fcl::AABBd>(geometry);
+    case fcl::BV_OBB:
+      return fromMesh<fcl::OBBd>(geometry);
+    case fcl::BV_RSS:
+      return fromMesh<fcl::RSSd>(geometry);
+    case fcl::BV_kIOS:
+      return fromMesh<fcl::kIOSd>(geometry);
+    case fcl::BV_OBBRSS:
+      return fromMesh<fcl::OBBRSSd>(geometry);
+    case fcl::BV_KDOP16:
+      return fromMesh<fcl::KDOPd<16>>(geometry);
+    case fcl::BV_KDOP18:
+      return fromMesh<fcl::KDOPd<18>>(geometry);
+    case fcl::BV_KDOP24:
+      return fromMesh<fcl::KDOPd<24>>(geometry);
     case fcl::GEOM_BOX: {
       Triangles out;
       addBox(out, Vector3d::Zero(), static_cast<const fcl::Boxd&>(geometry).side);
       return out;
     }
-    case fcl::GEOM_SPHERE: return turned(capsuleProfile(static_cast<const fcl::Sphered&>(geometry).radius, 0));
+    case fcl::GEOM_SPHERE:
+      return turned(capsuleProfile(static_cast<const fcl::Sphered&>(geometry).radius, 0));
     case fcl::GEOM_ELLIPSOID: {
       Triangles out = turned(capsuleProfile(1, 0));
       for (Vector3d& v : out.vertices) v = v.cwiseProduct(static_cast<const fcl::Ellipsoidd&>(geometry).radii);
@@ -155,7 +166,8 @@ Triangles triangulate(const fcl::CollisionGeometryd& geometry) {
       const auto& c = static_cast<const fcl::Coned&>(geometry);
       return turned({{0, -c.lz / 2}, {c.radius, -c.lz / 2}, {0, c.lz / 2}});
     }
-    case fcl::GEOM_CONVEX: return fromConvex(static_cast<const fcl::Convexd&>(geometry));
+    case fcl::GEOM_CONVEX:
+      return fromConvex(static_cast<const fcl::Convexd&>(geometry));
     case fcl::GEOM_TRIANGLE: {
       const auto& t = static_cast<const fcl::TrianglePd&>(geometry);
       return {{t.a, t.b, t.c}, {{0, 1, 2}}};
@@ -178,7 +190,8 @@ Triangles triangulate(const fcl::CollisionGeometryd& geometry) {
       return out;
     }
 #endif
-    default: break;
+    default:
+      break;
   }
   throw std::invalid_argument("can't draw a geometry of FCL's node type " +
                               std::to_string(static_cast<int>(geometry.getNodeType())));

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include <Eigen/Core>
 #include <fcl/geometry/collision_geometry.h>
+#include <Eigen/Core>
 
 namespace fcl_artic::render {
 

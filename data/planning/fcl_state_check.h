@@ -11,8 +11,8 @@
 
 namespace fcl_artic::planning_data {
 
-/// Whether one state collides, as a planner over FCL asks: links against the scene through FCL's dynamic AABB tree, then
-/// the pairs of links that may not touch. Knows nothing of this library's queries. One thread at a time.
+/// Whether one state collides, as a planner over FCL asks: links against the scene through FCL's dynamic AABB tree,
+/// then the pairs of links that may not touch. Knows nothing of this library's queries. One thread at a time.
 class FclStateCheck {
  public:
   /// Copies what it moves; geometry is shared.

@@ -26,9 +26,9 @@ namespace fcl_artic {
 //   contact. At time_of_contact fcl::collide mostly finds nothing yet; CertifiedPairResult has poses where it does.
 // - Any geometry that FCL has but point clouds, in any pairing: Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder,
 //   Convex, Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its occupancy
-//   threshold). Shapes and cells are solids; meshes, TriangleP and Plane are surfaces, a SolidMesh is a solid. Of an OcTree
-//   that stands still only the cells near the other object's path are read, so that a large map costs little; of one that
-//   moves, and against what is unbounded, all.
+//   threshold). Shapes and cells are solids; meshes, TriangleP and Plane are surfaces, a SolidMesh is a solid. Of an
+//   OcTree that stands still only the cells near the other object's path are read, so that a large map costs little; of
+//   one that moves, and against what is unbounded, all.
 // - Of the request, toc_err is the wanted tolerance of time (1e-12 where it is less, 0 say), and ccd_motion_type the
 //   way between two transforms. num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one
 //   answer.
@@ -108,24 +108,24 @@ bool DefaultContinuousCollisionFunction(fcl::ContinuousCollisionObject<S>* o1, f
 /// Along two motions, as above.
 FCL_ARTIC_EXPORT Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBased* motion1,
                                           const fcl::CollisionGeometryd* o2, const fcl::MotionBased* motion2,
-                                          const CertifiedRequest& request, CertifiedPairResult& result);
+                                          const CertifiedPairRequest& request, CertifiedPairResult& result);
 
 /// From pose to pose, in the world. The way between them has no default here: FCL's, CCDM_TRANS, drops the end's
 /// rotation.
 FCL_ARTIC_EXPORT Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::Transform3d& tf1_beg,
                                           const fcl::Transform3d& tf1_end, const fcl::CollisionGeometryd* o2,
                                           const fcl::Transform3d& tf2_beg, const fcl::Transform3d& tf2_end,
-                                          fcl::CCDMotionType motion_type, const CertifiedRequest& request,
+                                          fcl::CCDMotionType motion_type, const CertifiedPairRequest& request,
                                           CertifiedPairResult& result);
 
 /// From two objects' own transforms on. The contacts' BodyRef::object are o1 and o2.
 FCL_ARTIC_EXPORT Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d& tf1_end,
                                           const fcl::CollisionObjectd* o2, const fcl::Transform3d& tf2_end,
-                                          fcl::CCDMotionType motion_type, const CertifiedRequest& request,
+                                          fcl::CCDMotionType motion_type, const CertifiedPairRequest& request,
                                           CertifiedPairResult& result);
 
 /// Along two objects' own motions.
 FCL_ARTIC_EXPORT Status collide(const fcl::ContinuousCollisionObjectd* o1, const fcl::ContinuousCollisionObjectd* o2,
-                                const CertifiedRequest& request, CertifiedPairResult& result);
+                                const CertifiedPairRequest& request, CertifiedPairResult& result);
 
 }  // namespace fcl_artic

@@ -29,23 +29,14 @@ struct MovingPair {
 };
 
 /// The answer for many moving objects. Always written in full.
-struct CertifiedPairsResult {
-  Status status = Status::undecided;
-  /// All pairs that were asked about are proven free on [0, t_lower).
-  double t_lower = 0;
-  /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise 1, or the time of a later
-  /// proven contact.
-  double t_upper = 1;
-  bool certain = false;
+struct CertifiedPairsResult : Bracket {
   /// Empty when free. Otherwise the pair with the earliest t_lower comes first; with ContactMode::first it is the only
   /// one, with firstOfEveryPair all that are not proven free follow. Pairs of the same t_lower are in order of
   /// registration.
   std::vector<MovingPair> pairs;
-  /// Pairs that touch at t = 0, where that was ignored (CertifiedRequest::ignore_initial_contact).
+  /// Pairs that touch at t = 0, where that was ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
   QueryStatistics statistics;  ///< summed over the pairs
-
-  bool isFree() const { return status == Status::free; }
 };
 
 /// Continuous collision of many moving objects, in FCL's manager idiom: boxes around whole motions tell which pairs may
@@ -110,13 +101,13 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// @param request  check_scene and check_self have no meaning here, progress is not called. max_contacts is per pair,
   ///   work_budget for all of them together.
   /// When it throws, the result is reset: undecided on [0, 1].
-  /// @throws std::invalid_argument for a tolerance that is not a positive number (0 is none), and a margin that is negative
-  ///   or not finite.
+  /// @throws std::invalid_argument for a tolerance that is not a positive number (0 is none), and a margin that is
+  ///   negative or not finite.
   /// @throws std::logic_error as collide().
-  void continuousCollide(const CertifiedRequest& request, CertifiedPairsResult& result) const;
+  void continuousCollide(const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
   /// The same for the pairs that the corresponding collide() asks about.
-  void continuousCollide(Object* object, const CertifiedRequest& request, CertifiedPairsResult& result) const;
-  void continuousCollide(const ContinuousCollisionManager* other, const CertifiedRequest& request,
+  void continuousCollide(Object* object, const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
+  void continuousCollide(const ContinuousCollisionManager* other, const CertifiedPairRequest& request,
                          CertifiedPairsResult& result) const;
 
  private:

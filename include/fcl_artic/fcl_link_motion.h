@@ -48,8 +48,8 @@ class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
   double computeMotionBound(const fcl::BVMotionBoundVisitor<double>& visitor) const override;
   double computeMotionBound(const fcl::TriangleMotionBoundVisitor<double>& visitor) const override;
 
-  /// A constant with a remainder that holds for all of [0, 1]: fcl::ContinuousCollisionObjectd::computeAABB() then gives
-  /// a box that contains the motion (wide for long motions). FCL's own trigonometric Taylor models don't.
+  /// A constant with a remainder that holds for all of [0, 1]: fcl::ContinuousCollisionObjectd::computeAABB() then
+  /// gives a box that contains the motion (wide for long motions). FCL's own trigonometric Taylor models don't.
   void getTaylorModel(fcl::TMatrix3<double>& R, fcl::TVector3<double>& T) const override;
 
  private:

@@ -19,8 +19,7 @@ namespace fcl_artic {
 FCL_ARTIC_EXPORT std::shared_ptr<const KinematicTree> inBetweenTree(const KinematicTree& tree);
 
 /// @param tree  made by inBetweenTree().
-/// @param M_0_begin, M_0_end  poses of all links in the world at t = 0 and t = 1, in the order of the links; without
-/// the
+/// @param M_0_begin, M_0_end poses of all links in the world at t = 0 and t = 1, in the order of the links; without the
 ///   further link, which rests at the origin.
 /// @throws std::invalid_argument for another number of poses, one that is not rigid, or a tree that was not made so.
 FCL_ARTIC_EXPORT JointMotion inBetweenMotion(const KinematicTree& tree, const std::vector<Eigen::Isometry3d>& M_0_begin,

@@ -23,13 +23,14 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// are one orientation, the nearer is meant.
   /// @throws std::invalid_argument for wrong sizes, values that are not finite, or beyond 1e5 rad or 1e5 m.
   static JointMotion linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
-  /// As linear(), but continuous joints and a planar joint's angle take the shorter way: their Δq is wrapped to [-π, π].
+  /// As linear(), but continuous joints and a planar joint's angle take the shorter way: their Δq is wrapped to [-π,
+  /// π].
   /// @throws also when a joint mimics a wrapped continuous one with a multiplier that is no integer: its end pose
   ///   would not be the one of q1.
   static JointMotion shortest(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
   /// The polynomials themselves, up to the fifth degree.
-  /// @param coefficients  dof() rows; column 0 is the configuration at t = 0, column k belongs to t^k. From column 1 on the
-  ///   rows x, y, z of a quaternion hold the rotation vector w, and its row w is 0.
+  /// @param coefficients  dof() rows; column 0 is the configuration at t = 0, column k belongs to t^k. From column 1 on
+  ///   the rows x, y, z of a quaternion hold the rotation vector w, and its row w is 0.
   /// @throws std::invalid_argument for wrong sizes, values that are not finite, or where the absolute coefficients of a
   ///   joint, mimic joints too, sum to more than 1e5 rad or 1e5 m.
   static JointMotion polynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients);
@@ -55,7 +56,8 @@ class FCL_ARTIC_EXPORT JointMotion {
 
   /// As the queries take them: coefficients(), but w(0) = 0 in place of quaternions, which are in orientations().
   const Eigen::MatrixXd& variables() const { return variables_; }
-  /// Orientations at t = 0 of the joints that have a quaternion, in the order of the joints: rotation matrices, row-major.
+  /// Orientations at t = 0 of the joints that have a quaternion, in the order of the joints: rotation matrices,
+  /// row-major.
   const std::vector<double>& orientations() const { return orientations_; }
 
  private:

@@ -49,6 +49,47 @@ struct Joint {
   double lower = 0, upper = 0;  ///< rad or m; see hasLimits()
   bool mimics = false;
   Mimic mimic;
+
+  /// A turn about `axis` by q rad, from `lower` to `upper`; both 0: without limits.
+  /// @param axis  in the joint's frame, of any length but 0.
+  /// @param origin  pose of the joint's frame in the parent link's frame at q = 0.
+  static Joint revolute(std::string name, std::string parent, std::string child, const Eigen::Vector3d& axis,
+                        const Eigen::Isometry3d& origin = Eigen::Isometry3d::Identity(), double lower = 0,
+                        double upper = 0) {
+    return make(JointType::revolute, std::move(name), std::move(parent), std::move(child), axis, origin, lower, upper);
+  }
+  /// A turn about `axis` by q rad without limits, which JointMotion::shortest() takes the shorter way round.
+  static Joint continuous(std::string name, std::string parent, std::string child, const Eigen::Vector3d& axis,
+                          const Eigen::Isometry3d& origin = Eigen::Isometry3d::Identity()) {
+    return make(JointType::continuous, std::move(name), std::move(parent), std::move(child), axis, origin, 0, 0);
+  }
+  /// A slide along `axis` by q m, from `lower` to `upper`; both 0: without limits.
+  static Joint prismatic(std::string name, std::string parent, std::string child, const Eigen::Vector3d& axis,
+                         const Eigen::Isometry3d& origin = Eigen::Isometry3d::Identity(), double lower = 0,
+                         double upper = 0) {
+    return make(JointType::prismatic, std::move(name), std::move(parent), std::move(child), axis, origin, lower, upper);
+  }
+  /// No motion: the child stands at `origin` in the parent link's frame.
+  static Joint fixed(std::string name, std::string parent, std::string child,
+                     const Eigen::Isometry3d& origin = Eigen::Isometry3d::Identity()) {
+    return make(JointType::fixed, std::move(name), std::move(parent), std::move(child), Eigen::Vector3d::UnitX(),
+                origin, 0, 0);
+  }
+
+ private:
+  static Joint make(JointType type, std::string&& name, std::string&& parent, std::string&& child,
+                    const Eigen::Vector3d& axis, const Eigen::Isometry3d& origin, double lower, double upper) {
+    Joint joint;
+    joint.type = type;
+    joint.name = std::move(name);
+    joint.parent = std::move(parent);
+    joint.child = std::move(child);
+    joint.axis = axis;
+    joint.origin = origin;
+    joint.lower = lower;
+    joint.upper = upper;
+    return joint;
+  }
 };
 
 /// Whether the joint stays between lower and upper: those of one variable do, but continuous ones, and but for
@@ -97,16 +138,18 @@ class FCL_ARTIC_EXPORT KinematicTree {
   const std::string& name() const { return name_; }
   int numLinks() const { return static_cast<int>(link_names_.size()); }
   int numJoints() const { return static_cast<int>(joints_.size()); }
-  /// Number of joint variables, the entries of a configuration: those of all joints that are neither fixed nor mimic, in
-  /// the order of addJoint(). (A quaternion has four.)
+  /// Number of joint variables, the entries of a configuration: those of all joints that are neither fixed nor mimic,
+  /// in the order of addJoint(). (A quaternion has four.)
   int dof() const { return static_cast<int>(variables_.size()); }
 
   const std::string& linkName(LinkId link) const { return link_names_.at(static_cast<std::size_t>(link)); }
   const Joint& joint(JointId joint) const { return joints_.at(static_cast<std::size_t>(joint)); }
+  /// @throws std::out_of_range naming the joint and the robot.
+  const Joint& joint(std::string_view name) const { return joint(jointId(name)); }
   /// Joint that variable v drives (mimic joints follow it).
   JointId variableJoint(int v) const { return variables_.at(static_cast<std::size_t>(v)); }
-  /// Name of the joint, or with MoveIt's endings "JOINT/x", "/y", "/theta" (planar), "/trans_x" to "/trans_z" and "/rot_x"
-  /// to "/rot_w" (floating; spherical: the latter).
+  /// Name of the joint, or with MoveIt's endings "JOINT/x", "/y", "/theta" (planar), "/trans_x" to "/trans_z" and
+  /// "/rot_x" to "/rot_w" (floating; spherical: the latter).
   const std::string& variableName(int v) const { return variable_names_.at(static_cast<std::size_t>(v)); }
   /// True for an angle (rad), false for a length (m) or a part of a quaternion.
   bool isAngle(int v) const;
@@ -125,7 +168,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   const std::vector<LinkId>& topologicalOrder() const { return order_; }
 
   /// @throws std::out_of_range naming the link and the robot.
-  LinkId link(std::string_view name) const;
+  LinkId linkId(std::string_view name) const;
   /// @throws std::out_of_range naming the joint and the robot.
   JointId jointId(std::string_view name) const;
   bool hasLink(std::string_view name) const { return findLink(name) >= 0; }
@@ -155,8 +198,8 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// @throws std::invalid_argument as requireConfiguration(); std::out_of_range for a link that is not there.
   Eigen::Isometry3d linkPose(LinkId link, const Eigen::Ref<const Eigen::VectorXd>& q) const;
 
-  /// Refuses a configuration of the wrong size, with a value that is not finite, or with a quaternion whose length is not
-  /// 1 within 1e-3, naming `what` and the joint.
+  /// Refuses a configuration of the wrong size, with a value that is not finite, or with a quaternion whose length is
+  /// not 1 within 1e-3, naming `what` and the joint.
   /// @throws std::invalid_argument
   void requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const;
   /// One line for each variable that is beyond its limits (they are accepted).

@@ -8,12 +8,12 @@
 
 namespace fcl_artic {
 
-/// A trajectory in joint space: motions one after the other, each a polynomial of time up to the fifth degree. Times are
-/// in any unit, seconds mostly; they are finite and increase.
+/// A trajectory in joint space: motions one after the other, each a polynomial of time up to the fifth degree. Times
+/// are in any unit, seconds mostly; they are finite and increase.
 ///
 /// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. Where one
-/// piece ends and the next begins they may differ by rounding, 1e-9 rad or m (and 1e-12 of the values); more is refused as
-/// a jump.
+/// piece ends and the next begins they may differ by rounding, 1e-9 rad or m (and 1e-12 of the values); more is refused
+/// as a jump.
 class FCL_ARTIC_EXPORT JointTrajectory {
  public:
   /// What a list of waypoints means for joints that turn forever (continuous ones, a planar joint's angle).
@@ -25,13 +25,14 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   /// Polynomials of t - times[k] on [times[k], times[k + 1]].
   /// @param times  one more than pieces.
   /// @param coefficients  of each piece, as JointMotion::polynomial() takes them; column j belongs to (t - times[k])^j.
-  /// @throws std::invalid_argument, naming piece and joint: as JointMotion::polynomial(), wrong sizes, times that do not
-  ///   increase, a jump from one piece to the next.
+  /// @throws std::invalid_argument, naming piece and joint: as JointMotion::polynomial(), wrong sizes, times that do
+  ///   not increase, a jump from one piece to the next.
   static JointTrajectory piecewise(const KinematicTree& tree, const std::vector<double>& times,
                                    const std::vector<Eigen::MatrixXd>& coefficients);
 
   /// Straight from waypoint to waypoint, quaternions by the shortest rotation, as JointMotion::linear().
-  /// @throws std::invalid_argument, naming the waypoint: fewer than two, as JointMotion::linear(), times that do not increase.
+  /// @throws std::invalid_argument, naming the waypoint: fewer than two, as JointMotion::linear(), times that do not
+  /// increase.
   static JointTrajectory linear(const KinematicTree& tree, const std::vector<double>& times,
                                 const std::vector<Eigen::VectorXd>& waypoints, Unwrap unwrap = Unwrap::no);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "narrowphase/problem.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 

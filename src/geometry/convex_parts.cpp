@@ -2,6 +2,7 @@
 #include "geometry/convex_parts.h"
 
 #include "geometry/outer_hull.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 namespace {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/packed_hulls.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 

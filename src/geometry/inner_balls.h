@@ -9,7 +9,7 @@
 #include "geometry/closed_parts.h"
 #include "geometry/line_swept_sphere.h"
 #include "geometry/mesh_triangle.h"
-#include "narrowphase/problem.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 

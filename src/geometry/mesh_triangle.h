@@ -11,7 +11,7 @@
 
 #include <Eigen/Geometry>
 
-#include "narrowphase/problem.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 
@@ -49,8 +49,8 @@ inline Eigen::Vector3d nearestPoint(const MeshTriangle& t, const Eigen::Vector3d
   return a + vb * scale * ab + vc * scale * ac;
 }
 
-/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across a direction n, whatever that
-/// is. A corner's place along it errs by less than 8 kMeshUlp |n| |v - x|.
+/// Lower bound of x's distance from a triangle: all of its points lie beyond the plane across a direction n, whatever
+/// that is. A corner's place along it errs by less than 8 kMeshUlp |n| |v - x|.
 inline double clearanceAlong(const MeshTriangle& t, const Eigen::Vector3d& x, const Eigen::Vector3d& n) {
   const double length = n.norm();
   if (!(length > kLeastMeshLength)) return 0;

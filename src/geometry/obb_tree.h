@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "narrowphase/problem.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 

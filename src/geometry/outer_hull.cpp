@@ -6,11 +6,9 @@
 #include <set>
 
 #include "geometry/spread_directions.h"
+#include "numerics/baseline_isa.h"
 
-// GJK as the engine has it; the portable instruction set serves here.
-#define FCL_ARTIC_ISA sse2
-#define FCL_ARTIC_ISA_BITS 128
-#include "narrowphase/contact_proof.h"
+#include "convex/contact_proof.h"
 
 namespace fcl_artic {
 namespace {

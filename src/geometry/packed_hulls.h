@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "narrowphase/problem.h"
+#include "model/piece.h"
 
 namespace fcl_artic {
 

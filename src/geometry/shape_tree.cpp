@@ -14,6 +14,9 @@
 #include "geometry/closed_parts.h"
 #include "geometry/outer_hull.h"
 #include "geometry/solid_space.h"
+#include "numerics/baseline_isa.h"
+
+#include "convex/piece_kinds.h"
 
 namespace fcl_artic {
 namespace {
@@ -130,40 +133,11 @@ class Builder {
   std::size_t used_ = 0;
 };
 
-bool isUnbounded(const Piece& p) {
-  return p.kind == PieceKind::halfspace || p.kind == PieceKind::plane;
-}
-
-/// Half sizes of a shape's core along the axes.
-void coreHalf(const Piece& p, double* half) {
-  const double* e = p.size;
-  switch (p.kind) {
-    case PieceKind::box:
-    case PieceKind::ellipsoid:
-      for (int k = 0; k < 3; ++k) half[k] = e[k];
-      return;
-    case PieceKind::cylinder:
-    case PieceKind::cone:
-      half[0] = half[1] = e[0];
-      half[2] = e[2];
-      return;
-    case PieceKind::segment:
-      half[0] = half[1] = 0;
-      half[2] = e[2];
-      return;
-    case PieceKind::point:
-      half[0] = half[1] = half[2] = 0;
-      return;
-    default:
-      throw std::invalid_argument("this kind of piece has no size of its own");
-  }
-}
-
 /// Box of a bounded shape; sets its reach.
 BoxBounds measure(Piece& piece) {
   BoxBounds box;
   double half[3], sum = 0;
-  coreHalf(piece, half);
+  if (!sse2::coreHalfSizes(piece, half)) throw std::invalid_argument("this kind of piece has no size of its own");
   for (int k = 0; k < 3; ++k) {
     const double far = std::abs(piece.center[k]) + half[k];
     sum += far * far;
@@ -278,7 +252,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Ve
 std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
   auto tree = std::make_shared<ShapeTree>(Private());
   tree->outer_ = piece;
-  if (!isUnbounded(piece)) {
+  if (!sse2::unbounded(piece)) {
     tree->root_[0] = makeLeaf(measure(tree->outer_), 0);
     tree->show();
     return tree;
@@ -405,17 +379,14 @@ LineSweptSphere ShapeTree::makeLineSweptSphere() const {
   for (std::size_t i = 0; i + 2 < vertices_.size(); i += 3) points.push_back(Eigen::Vector3d::Map(&vertices_[i]));
   for (int i = 0; i < std::max(1, view_.num_pieces); ++i) {
     const Piece& p = view_.pieces[i];
-    if (isUnbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
+    if (sse2::unbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
     radius = std::max(radius, p.radius);
-    if (p.kind == PieceKind::vertices) continue;
-    if (p.kind == PieceKind::hull) {
-      const double* x = view_.hulls + p.first_vertex;
-      for (int j = 0; j < p.num_vertices; ++j)
-        points.emplace_back(x[j], x[p.num_vertices + j], x[2 * p.num_vertices + j]);
+    if (p.kind == PieceKind::vertices) continue;  // added above
+    double half[3];
+    if (!sse2::coreHalfSizes(p, half)) {
+      sse2::coverCore(view_, p, [&](double x, double y, double z) { points.emplace_back(x, y, z); });
       continue;
     }
-    double half[3];
-    coreHalf(p, half);
     for (int corner = 0; corner < 8; ++corner) {
       Eigen::Vector3d x;
       for (int k = 0; k < 3; ++k) x[k] = p.center[k] + ((corner >> k & 1) ? half[k] : -half[k]);

@@ -14,9 +14,12 @@
 #include "geometry/line_swept_sphere.h"
 #include "geometry/obb_tree.h"
 #include "geometry/packed_hulls.h"
-#include "narrowphase/problem.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
+
+class SolidSpace;
+class SurfacePoints;
 
 /// A geometry as a tree of boxes over convex pieces: owner of what engine::TreeView shows. Constant once built.
 ///

@@ -10,6 +10,9 @@
 #include "geometry/closed_parts.h"
 #include "geometry/mesh_triangle.h"
 #include "geometry/shape_tree.h"
+#include "numerics/baseline_isa.h"
+
+#include "convex/piece_kinds.h"
 
 namespace fcl_artic {
 namespace {
@@ -32,9 +35,9 @@ Vector3d nearestOfEdge(const Vector3d& a, const Vector3d& b, const Vector3d& x) 
   return square > 0 ? Vector3d(a + std::clamp((x - a).dot(along) / square, 0.0, 1.0) * along) : a;
 }
 
-/// Lower bound of x's distance from a triangle. The direction to the nearest point is known badly for an x that is near,
-/// and so is that point for a triangle with hardly any area: the normal, and the edges' nearest points. Any direction is
-/// as right as another.
+/// Lower bound of x's distance from a triangle. The direction to the nearest point is known badly for an x that is
+/// near, and so is that point for a triangle with hardly any area: the normal, and the edges' nearest points. Any
+/// direction is as right as another.
 double surelyApart(const MeshTriangle& t, const Vector3d& x, Vector3d& nearest) {
   nearest = nearestPoint(t, x);
   double most = clearanceOf(t, x, nearest);
@@ -62,16 +65,6 @@ Vector3d someDirection(std::uint32_t number) {
     d[k] = (static_cast<double>(bits) * 0x1p-31 - 1) * 0.577;
   }
   return d;
-}
-
-/// A point of a shape, at this fraction of its half sizes from its middle.
-Vector3d pointWithin(const Piece& p, const Vector3d& part) {
-  Vector3d x = Vector3d::Map(p.center) + p.radius * part;
-  if (p.kind == PieceKind::point) return x;
-  // A cylinder's and a cone's second half size is the first one, a segment has the third one only.
-  const bool round = p.kind == PieceKind::cylinder || p.kind == PieceKind::cone;
-  for (int k = 0; k < 3; ++k) x[k] += part[k] * p.size[round && k == 1 ? 0 : k];
-  return x;
 }
 
 }  // namespace
@@ -177,11 +170,10 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Piece& piece = tree.pieces[i];
       if (piece.kind == PieceKind::hull) {
-        const double* x = tree.hulls + piece.first_vertex;
-        const int n = piece.num_vertices;
-        for (int j = 0; j < n; ++j) add(i, {x[j], x[n + j], x[2 * n + j]});
+        sse2::coverCore(tree, piece, [&](double x, double y, double z) { add(i, {x, y, z}); });
       } else {
-        for (std::size_t k = 0; k < kPerPart; ++k) parts_[i].points[k] = pointWithin(piece, kPlaces[k]);
+        for (std::size_t k = 0; k < kPerPart; ++k)
+          sse2::pointWithin(tree, piece, kPlaces[k].data(), parts_[i].points[k].data());
       }
     }
   }

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "narrowphase/problem.h"
+#include "model/problem.h"
 
 namespace fcl_artic {
 

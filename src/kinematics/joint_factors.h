@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A joint as a product of moving factors, each of one kind that the engine knows. Their constant transforms are none: the
-// joint's origin stands before the first.
+// A joint as a product of moving factors, each of one kind that the engine knows. Their constant transforms are none:
+// the joint's origin stands before the first.
 #pragma once
 
 #include <vector>
@@ -26,7 +26,7 @@ struct JointFactor {
     turn,       ///< the three variables' rotation vector, behind it the orientation at t = 0: exp([w]) R0
   };
   Kind kind;
-  int variable;  ///< offset of its first variable from the joint's
+  int variable;                                     ///< offset of its first variable from the joint's
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint's frame
 };
 
@@ -34,16 +34,21 @@ struct JointFactor {
 inline std::vector<JointFactor> factorsOf(const Joint& joint) {
   using Kind = JointFactor::Kind;
   switch (joint.type) {
-    case JointType::fixed: return {};
+    case JointType::fixed:
+      return {};
     case JointType::revolute:
-    case JointType::continuous: return {{Kind::revolute, 0, joint.axis}};
-    case JointType::prismatic: return {{Kind::prismatic, 0, joint.axis}};
+    case JointType::continuous:
+      return {{Kind::revolute, 0, joint.axis}};
+    case JointType::prismatic:
+      return {{Kind::prismatic, 0, joint.axis}};
     case JointType::planar: {
       const Eigen::Matrix3d frame = planeFrame(joint.axis);
       return {{Kind::prismatic, 0, frame.col(0)}, {Kind::prismatic, 1, frame.col(1)}, {Kind::revolute, 2, joint.axis}};
     }
-    case JointType::spherical: return {{Kind::turn, 0}};
-    case JointType::floating: return {{Kind::slide, 0}, {Kind::turn, 3}};
+    case JointType::spherical:
+      return {{Kind::turn, 0}};
+    case JointType::floating:
+      return {{Kind::slide, 0}, {Kind::turn, 3}};
   }
   return {};
 }

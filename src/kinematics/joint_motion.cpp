@@ -7,7 +7,7 @@
 
 #include "kinematics/angles.h"
 #include "kinematics/rotation_vector.h"
-#include "narrowphase/problem.h"
+#include "model/sweep.h"
 #include "numerics/rotation.h"
 
 namespace fcl_artic {

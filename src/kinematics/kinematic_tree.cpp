@@ -29,12 +29,16 @@ constexpr double kQuaternionLength = 1e-3;
 
 std::vector<const char*> variableEndings(JointType type) {
   switch (type) {
-    case JointType::fixed: return {};
-    case JointType::planar: return {"/x", "/y", "/theta"};
-    case JointType::spherical: return {"/rot_x", "/rot_y", "/rot_z", "/rot_w"};
+    case JointType::fixed:
+      return {};
+    case JointType::planar:
+      return {"/x", "/y", "/theta"};
+    case JointType::spherical:
+      return {"/rot_x", "/rot_y", "/rot_z", "/rot_w"};
     case JointType::floating:
       return {"/trans_x", "/trans_y", "/trans_z", "/rot_x", "/rot_y", "/rot_z", "/rot_w"};
-    default: return {""};
+    default:
+      return {""};
   }
 }
 
@@ -78,11 +82,16 @@ bool hasLimits(const Joint& joint) {
 
 int KinematicTree::numVariables(JointType type) {
   switch (type) {
-    case JointType::fixed: return 0;
-    case JointType::planar: return 3;
-    case JointType::spherical: return 4;
-    case JointType::floating: return 7;
-    default: return 1;
+    case JointType::fixed:
+      return 0;
+    case JointType::planar:
+      return 3;
+    case JointType::spherical:
+      return 4;
+    case JointType::floating:
+      return 7;
+    default:
+      return 1;
   }
 }
 
@@ -209,9 +218,12 @@ bool KinematicTree::isAngle(int v) const {
   const JointId j = variableJoint(v);
   switch (joints_[j].type) {
     case JointType::revolute:
-    case JointType::continuous: return true;
-    case JointType::planar: return v == joint_variable_[j] + 2;
-    default: return false;
+    case JointType::continuous:
+      return true;
+    case JointType::planar:
+      return v == joint_variable_[j] + 2;
+    default:
+      return false;
   }
 }
 
@@ -247,7 +259,7 @@ void KinematicTree::sortLinks() {
   }
 }
 
-LinkId KinematicTree::link(std::string_view name) const {
+LinkId KinematicTree::linkId(std::string_view name) const {
   const LinkId id = findLink(name);
   if (id < 0) throw std::out_of_range("robot '" + name_ + "' has no link '" + std::string(name) + "'");
   return id;

@@ -9,7 +9,7 @@
 
 #include "kinematics/angles.h"
 #include "kinematics/rotation_vector.h"
-#include "narrowphase/problem.h"
+#include "model/sweep.h"
 #include "numerics/shown.h"
 
 namespace fcl_artic {
@@ -22,7 +22,9 @@ using Eigen::VectorXd;
 /// Between two pieces a difference up to this, rad or m, and this part of the values is rounding.
 constexpr double kJump = 1e-9, kJumpPart = 1e-12;
 
-std::string number(std::size_t k) { return std::to_string(k); }
+std::string number(std::size_t k) {
+  return std::to_string(k);
+}
 
 void requireTimes(const std::vector<double>& times) {
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -32,11 +34,17 @@ void requireTimes(const std::vector<double>& times) {
                                   ", is not later than the one before, " + shown(times[k - 1]));
     }
   }
+  // Parts of the whole are what obstacles that move go by.
+  if (times.size() > 1 && !std::isfinite(times.back() - times.front())) {
+    throw std::invalid_argument("trajectory: the time from " + shown(times.front()) + " to " + shown(times.back()) +
+                                " is not finite");
+  }
 }
 
 void requireWaypoints(const KinematicTree& tree, const std::vector<double>& times,
                       const std::vector<VectorXd>& waypoints) {
-  if (waypoints.size() < 2) throw std::invalid_argument("trajectory: " + number(waypoints.size()) + " waypoints, not 2 or more");
+  if (waypoints.size() < 2)
+    throw std::invalid_argument("trajectory: " + number(waypoints.size()) + " waypoints, not 2 or more");
   if (times.size() != waypoints.size()) {
     throw std::invalid_argument("trajectory: " + number(times.size()) + " times for " + number(waypoints.size()) +
                                 " waypoints");
@@ -46,9 +54,11 @@ void requireWaypoints(const KinematicTree& tree, const std::vector<double>& time
 }
 
 /// Velocities or accelerations.
-void requireRates(const KinematicTree& tree, const std::vector<VectorXd>& rates, std::size_t waypoints, const char* what) {
+void requireRates(const KinematicTree& tree, const std::vector<VectorXd>& rates, std::size_t waypoints,
+                  const char* what) {
   if (rates.size() != waypoints) {
-    throw std::invalid_argument("trajectory: " + number(rates.size()) + " " + what + " for " + number(waypoints) + " waypoints");
+    throw std::invalid_argument("trajectory: " + number(rates.size()) + " " + what + " for " + number(waypoints) +
+                                " waypoints");
   }
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const std::string where = std::string("trajectory: ") + what + " of waypoint " + number(k);
@@ -96,8 +106,8 @@ std::vector<VectorXd> unwrapped(const KinematicTree& tree, std::vector<VectorXd>
         if (!other.mimics || tree.jointVariable(j) != v) continue;
         const double m = other.mimic.multiplier;
         if (m == 0 || (other.type != JointType::prismatic && m == std::round(m))) continue;
-        throw std::invalid_argument("trajectory: joint '" + other.name + "' mimics the continuous joint '" + joint.name +
-                                    "', which cannot be unwrapped: '" + other.name +
+        throw std::invalid_argument("trajectory: joint '" + other.name + "' mimics the continuous joint '" +
+                                    joint.name + "', which cannot be unwrapped: '" + other.name +
                                     "' would not come to waypoint " + number(k));
       }
     }
@@ -121,12 +131,14 @@ JointMotion pieceOf(const KinematicTree& tree, MatrixXd coefficients, double dur
   }
 }
 
-/// w' at the end of a turn by exp([w]) where the angular velocity is W: W = w' + b w x w' + c w x (w x w') solved for w',
-/// which is W - w x W / 2 + e w x (w x W), e = 1/g - (1 + cos) / (2 theta sin), g = theta^2 (Bullo and Murray 1995).
+/// w' at the end of a turn by exp([w]) where the angular velocity is W: W = w' + b w x w' + c w x (w x w') solved for
+/// w', which is W - w x W / 2 + e w x (w x W), e = 1/g - (1 + cos) / (2 theta sin), g = theta^2 (Bullo and Murray
+/// 1995).
 Vector3d rateOfRotationVector(const Vector3d& w, const Vector3d& W) {
   const double g = w.squaredNorm(), theta = std::sqrt(g), half = theta / 2;
   // 1/g - cot(theta/2) / (2 theta); where that cancels, its series.
-  const double e = g < 1e-2 ? 1.0 / 12 + g / 720 + g * g / 30240 : 1 / g - std::cos(half) / (2 * theta * std::sin(half));
+  const double e =
+      g < 1e-2 ? 1.0 / 12 + g / 720 + g * g / 30240 : 1 / g - std::cos(half) / (2 * theta * std::sin(half));
   return W - 0.5 * w.cross(W) + e * w.cross(w.cross(W));
 }
 
@@ -134,6 +146,7 @@ Vector3d rateOfRotationVector(const Vector3d& w, const Vector3d& W) {
 
 JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> times, std::vector<JointMotion> pieces)
     : times_(std::move(times)), pieces_(std::move(pieces)) {
+  requireTimes(times_);
   for (std::size_t k = 1; k < pieces_.size(); ++k) {
     VectorXd before = pieces_[k - 1].configuration(1), after = pieces_[k].configuration(0);
     for (JointId j = 0; j < tree.numJoints(); ++j) {
@@ -141,7 +154,8 @@ JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> 
       if (v >= 0 && before.segment<4>(v).dot(after.segment<4>(v)) < 0) after.segment<4>(v) = -after.segment<4>(v);
     }
     for (int v = 0; v < tree.dof(); ++v) {
-      if (std::abs(after[v] - before[v]) <= kJump + kJumpPart * std::max(std::abs(before[v]), std::abs(after[v]))) continue;
+      if (std::abs(after[v] - before[v]) <= kJump + kJumpPart * std::max(std::abs(before[v]), std::abs(after[v])))
+        continue;
       throw std::invalid_argument("trajectory: piece " + number(k) + " begins elsewhere than piece " + number(k - 1) +
                                   " ends: joint '" + tree.variableName(v) + "' jumps from " +
                                   std::to_string(before[v]) + " to " + shown(after[v]));
@@ -207,7 +221,8 @@ JointTrajectory JointTrajectory::cubic(const KinematicTree& tree, const std::vec
 }
 
 JointTrajectory JointTrajectory::quintic(const KinematicTree& tree, const std::vector<double>& times,
-                                         const std::vector<VectorXd>& waypoints, const std::vector<VectorXd>& velocities,
+                                         const std::vector<VectorXd>& waypoints,
+                                         const std::vector<VectorXd>& velocities,
                                          const std::vector<VectorXd>& accelerations, Unwrap unwrap) {
   requireWaypoints(tree, times, waypoints);
   refuseQuaternions(tree, "quintic()");
@@ -304,8 +319,8 @@ JointTrajectory JointTrajectory::bspline(const KinematicTree& tree, int degree, 
   for (std::size_t s = p; s < n; ++s) {  // the span [knots[s], knots[s + 1]] is ruled by points s - p to s
     const double u = knots[s], h = knots[s + 1] - u;
     if (!(h > 0)) continue;
-    // The m-th derivative is a B-spline of degree p - m with the points P_m,i = (p - m + 1) (P_(m-1),i - P_(m-1),i-1) over
-    // the knots' difference; de Boor's scheme gives its value at u.
+    // The m-th derivative is a B-spline of degree p - m with the points P_m,i = (p - m + 1) (P_(m-1),i - P_(m-1),i-1)
+    // over the knots' difference; de Boor's scheme gives its value at u.
     std::vector<VectorXd> points(control_points.begin() + static_cast<std::ptrdiff_t>(s - p),
                                  control_points.begin() + static_cast<std::ptrdiff_t>(s + 1));
     MatrixXd c(tree.dof(), degree + 1);

@@ -23,10 +23,14 @@ Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
 
 engine::StepKind stepKind(JointFactor::Kind kind) {
   switch (kind) {
-    case JointFactor::Kind::revolute: return engine::StepKind::revolute;
-    case JointFactor::Kind::prismatic: return engine::StepKind::prismatic;
-    case JointFactor::Kind::slide: return engine::StepKind::slide;
-    case JointFactor::Kind::turn: return engine::StepKind::turn;
+    case JointFactor::Kind::revolute:
+      return engine::StepKind::revolute;
+    case JointFactor::Kind::prismatic:
+      return engine::StepKind::prismatic;
+    case JointFactor::Kind::slide:
+      return engine::StepKind::slide;
+    case JointFactor::Kind::turn:
+      return engine::StepKind::turn;
   }
   return engine::StepKind::revolute;
 }
@@ -74,7 +78,9 @@ FrameSweep FrameSweep::fromWorld(const KinematicTree& tree) {
   return sweep;
 }
 
-FrameSweep FrameSweep::fromLink(const KinematicTree& tree, LinkId base) { return FrameSweep(tree, base); }
+FrameSweep FrameSweep::fromLink(const KinematicTree& tree, LinkId base) {
+  return FrameSweep(tree, base);
+}
 
 Carrier FrameSweep::carrier(LinkId link) {
   // Up from the base to the common ancestor, then down to the link.

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Moving bodies as seen from one base frame: the moving factors on the way to every body of interest, constant transforms
-// multiplied in, each joint's axis turned to z. World motion is the sweep from the world; relative motion of two links
-// is a sweep along the path between them, so that joints which do not move them apart drop out exactly; relative motion of
-// two free bodies goes up the one's motion and down the other's.
+// Moving bodies as seen from one base frame: the moving factors on the way to every body of interest, constant
+// transforms multiplied in, each joint's axis turned to z. World motion is the sweep from the world; relative motion of
+// two links is a sweep along the path between them, so that joints which do not move them apart drop out exactly;
+// relative motion of two free bodies goes up the one's motion and down the other's.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "fcl_artic/kinematic_tree.h"
+#include "model/sweep.h"
 #include "motion/body_motion.h"
-#include "narrowphase/problem.h"
 
 namespace fcl_artic {
 
@@ -22,8 +22,8 @@ struct Carrier {
   double length = 0, ulps = 0;  ///< of the offset, as in engine::Placement
 };
 
-/// How far a stored rotation may be from a proper one, and the error of one more factor in a product (that and 9 for the
-/// product), in 2^-52 and in any rounding mode (doc/NUMERICS.md, "Pads").
+/// How far a stored rotation may be from a proper one, and the error of one more factor in a product (that and 9 for
+/// the product), in 2^-52 and in any rounding mode (doc/NUMERICS.md, "Pads").
 constexpr double kStoredUlps = 12, kTransformUlps = 24;
 
 class FrameSweep {
@@ -60,7 +60,8 @@ class FrameSweep {
   explicit FrameSweep(const KinematicTree& tree, LinkId base) : tree_(&tree), base_(base) {}
   /// Crosses a joint: downwards (parent to child) or upwards.
   Carrier cross(const Carrier& from, JointId joint, bool down);
-  /// Adds a step behind `at` and goes there: its frame is turned so that the axis is z. What moves it is still to be set.
+  /// Adds a step behind `at` and goes there: its frame is turned so that the axis is z. What moves it is still to be
+  /// set.
   engine::SweepStep& append(Carrier& at, const Eigen::Vector3d& axis);
 
   const KinematicTree* tree_ = nullptr;

@@ -4,14 +4,15 @@
 //
 // Symbols: interval of lane i: [tm_i - d, tm_i + d], the same d in all lanes; tau = (t - tm) / d in [-1, 1].
 //   X(t) = X0 + tau X1 + tau^2 X2 + e,   |e| <= D3 d^3 / 6   (X a rotation or a position; X1 = d X', X2 = d^2/2 X'')
-//   Rates (a, b, c): bounds on the first three derivatives of the angles of the factors passed, summed, over the intervals;
+//   Rates (a, b, c): bounds on the first three derivatives of the angles of the factors passed, summed, over the
+//   intervals;
 //     |R^(n)| <= B_n = a, a^2 + b, a^3 + 3ab + c (doc/NUMERICS.md, Lemma 1)
 //   D1, D2, D3: |o^(n)| <= Dn for the frame's origin o, over the intervals (Lemma 2)
 //   b_k: Bernstein points X0 - X1 + X2, X0 - X2, X0 + X1 + X2: X0 + tau X1 + tau^2 X2 lies in their hull
 #pragma once
 
-#include "narrowphase/buffer.h"
-#include "narrowphase/problem.h"
+#include "model/query.h"
+#include "numerics/buffer.h"
 #include "numerics/lanes.h"
 
 namespace fcl_artic {
@@ -38,8 +39,8 @@ struct FrameLanes {
   Lanes R[9], o[3], w[3], al[3], v[3], a[3];
 };
 
-/// Bounds on first, second and third derivatives of angles, summed over the factors of a rotation, and what they come to
-/// for the rotation's own derivatives (doc/NUMERICS.md, Lemma 1).
+/// Bounds on first, second and third derivatives of angles, summed over the factors of a rotation, and what they come
+/// to for the rotation's own derivatives (doc/NUMERICS.md, Lemma 1).
 struct Rates {
   double a = 0, b = 0, c = 0;
   double first() const { return a; }
@@ -61,14 +62,14 @@ struct StepBounds {
 
 /// Upper bounds over the intervals of what a step's variables do.
 struct VariableBounds {
-  double m[4];       ///< of |q| and its first three derivatives (Euclidean norms of three rows)
-  double size;       ///< of the numbers that q is computed from, summed
-  double terms[2];   ///< of those that its first two derivatives are computed from
+  double m[4];      ///< of |q| and its first three derivatives (Euclidean norms of three rows)
+  double size;      ///< of the numbers that q is computed from, summed
+  double terms[2];  ///< of those that its first two derivatives are computed from
 };
 
-/// By Taylor's formula about the middle c, |q^(n)(t)| <= sum_j |q^(n+j)(c)| h^j / j!, a sum that ends with the degree. A
-/// computed derivative is off by less than 16 kUlp of the sum of its absolute terms (Horner: two roundings a power, and the
-/// factors); |t| <= 1 + 8 kUlp on all intervals.
+/// By Taylor's formula about the middle c, |q^(n)(t)| <= sum_j |q^(n+j)(c)| h^j / j!, a sum that ends with the degree.
+/// A computed derivative is off by less than 16 kUlp of the sum of its absolute terms (Horner: two roundings a power,
+/// and the factors); |t| <= 1 + 8 kUlp on all intervals.
 inline void boundPolynomials(const StepBounds& b, int rows, double begin, double end, VariableBounds& out) {
   const double c = 0.5 * (begin + end), h = 0.5 * (end - begin);
   double at[engine::kMaxDegree + 1];
@@ -218,15 +219,14 @@ struct FactorLanes {
 /// exp([q]) with its angular velocity and acceleration, from q and its derivatives. With g = |q|^2:
 /// R = cos + a [q] + b q q^T, w = q' + b q x q' + c q x (q x q'), a = sin/theta, b = (1 - cos)/g, c = (1 - a)/g.
 inline void turnFactor(const VariableLanes* x, FactorLanes& f) {
-  const Lanes q[3] = {x[0].q, x[1].q, x[2].q}, q1[3] = {x[0].q1, x[1].q1, x[2].q1},
-              q2[3] = {x[0].q2, x[1].q2, x[2].q2};
+  const Lanes q[3] = {x[0].q, x[1].q, x[2].q}, q1[3] = {x[0].q1, x[1].q1, x[2].q1}, q2[3] = {x[0].q2, x[1].q2, x[2].q2};
   const Lanes g = dot(q, q), theta = sqrt(g);
   Lanes sine, cosine, a, b, c, bg, cg;  // bg, cg: derivatives by g
   sineCosine(theta, sine, cosine);
   for (int i = 0; i < kLanes; ++i) {
     const double y = g[i];
     double A = 0, B = 0, C = 0, Bg = 0, Cg = 0;
-    if (y < 0.5) {  // the series; 10 terms leave less than 1e-22
+    if (y < 0.5) {      // the series; 10 terms leave less than 1e-22
       double term = 1;  // (-y)^k / (2k + 1)!
       for (int k = 0; k < 10; ++k) {
         A += term;
@@ -492,9 +492,9 @@ inline void evaluateSweep(const SweepView& sweep, const StepBounds* bounds, cons
 
 /// Motion of a body's tree frame in another's: quadratic and Bernstein points. Entry [k][...]: order k, or point k.
 struct RigidLanes {
-  Lanes R[3][9], c[3][3];    ///< X0, X1, X2
-  Lanes Rb[3][9], cb[3][3];  ///< Bernstein points
-  Lanes spread[9];           ///< largest |Rb| of the three, entry by entry
+  Lanes R[3][9], c[3][3];       ///< X0, X1, X2
+  Lanes Rb[3][9], cb[3][3];     ///< Bernstein points
+  Lanes spread[9];              ///< largest |Rb| of the three, entry by entry
   double rem_c = 0, rem_R = 0;  ///< |error| of a point p: rem_c + rem_R |p|
 
   void makeBernstein() {
@@ -602,13 +602,14 @@ inline void invert(const RigidLanes& m, RigidLanes& inverse) {
 }
 
 /// Rounding of all that a certificate or swept box is made of, as a part of the sizes. The error of X0, X1 and X2 is at
-/// most e, 2 e x and 2.25 e x^2 with e = kUlp * ulps and x = rounding_rate * d; inverting makes that 2 e, 6 e x, 9.5 e x^2.
+/// most e, 2 e x and 2.25 e x^2 with e = kUlp * ulps and x = rounding_rate * d; inverting makes that 2 e, 6 e x, 9.5 e
+/// x^2.
 inline double roundingPart(double ulps, double x) {
   return kUlp * (2 * ulps + kCertificateUlps) * ((1 + 2.5 * x) * (1 + 2.5 * x));
 }
 
-/// What the quadratic leaves out of a motion with these bounds: |error| of a point p is at most c + R |p|. Where no derivative
-/// is known (first_order) the quadratic is a constant.
+/// What the quadratic leaves out of a motion with these bounds: |error| of a point p is at most c + R |p|. Where no
+/// derivative is known (first_order) the quadratic is a constant.
 struct Remainder {
   double R, c;
 };
@@ -626,7 +627,8 @@ struct PairPads {
   double pose;  ///< of a difference point at tm
 };
 
-/// B seen from A: quadratic, remainders and pads. Of the way back, A seen from B, the remainder only: invert() makes the rest.
+/// B seen from A: quadratic, remainders and pads. Of the way back, A seen from B, the remainder only: invert() makes
+/// the rest.
 /// @param frame  of the step that carries B, seen from the base frame; null where B stands still in it.
 /// @param b  of that step; all zero where B stands still.
 /// @param extents  largest distances of points of A and of B from their frames' origins, summed.
@@ -646,8 +648,9 @@ inline PairPads relateBodies(const FrameLanes* frame, const StepBounds& b, bool 
   m.rem_c = there.c;
   m.rem_R = there.R;
   // -R^T c: Leibniz with |R^(n)| <= B_n, |c| <= length, |c^(n)| <= Dn.
-  const Remainder back = remainderOf(r, D1 + r.first() * length,
-                                     D3 + 3 * r.first() * D2 + 3 * r.second() * D1 + r.third() * length, first_order, ulps, d);
+  const Remainder back =
+      remainderOf(r, D1 + r.first() * length, D3 + 3 * r.first() * D2 + 3 * r.second() * D1 + r.third() * length,
+                  first_order, ulps, d);
   inverse.rem_c = back.c;
   inverse.rem_R = back.R;
   const double sizes = length + D1 * d + extents;

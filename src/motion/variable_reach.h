@@ -3,14 +3,15 @@
 
 #include <functional>
 
-#include "narrowphase/problem.h"
+#include "model/sweep.h"
+#include "model/tree_view.h"
 
 namespace fcl_artic {
 
 /// How far a point of a body goes at most, seen from the base of its sweep, per unit of one joint variable while the
 /// others stand still: an upper bound (Lemma 2 of doc/NUMERICS.md for n = 1, with that variable in the place of time).
-/// It holds where every variable that drives a slide, the moved one included, stays within its `size`, and nowhere else:
-/// a turn's lever grows with the slides after it (section 10).
+/// It holds where every variable that drives a slide, the moved one included, stays within its `size`, and nowhere
+/// else: a turn's lever grows with the slides after it (section 10).
 /// @param sweep, step  that carry the body; the path there turns about and slides along axes only.
 /// @param size  per variable: the largest absolute value that it has wherever the bound is used.
 /// @return m per rad or m.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof that anything is free (doc/NUMERICS.md, section 4): a direction n, fixed in one body's frame, keeps two convex pieces
-// apart over a whole time interval. Where n comes from needs no trust; this file and lane_motion.h carry all of it.
+// The proof that anything is free (doc/NUMERICS.md, section 4): a direction n, fixed in one body's frame, keeps two
+// convex pieces apart over a whole time interval. Where n comes from needs no trust; this file and lane_motion.h carry
+// all of it.
 #pragma once
 
+#include "convex/piece_kinds.h"
 #include "motion/lane_motion.h"
-#include "narrowphase/piece_support.h"
+#include "numerics/assertion.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -17,8 +19,8 @@ struct Side {
   const TreeView* moving;
 };
 
-/// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and pad
-/// are left to the caller.
+/// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and
+/// pad are left to the caller.
 /// @param lanes  those that matter.
 ///
 /// n.x(t) over the core is n.c + range of the core along R^T n. With R and c in the hull of their Bernstein points
@@ -44,12 +46,12 @@ FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piec
   return margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
 }
 
-/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart over the whole interval.
+/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart
+/// over the whole interval.
 /// @param n  in the frame of side.still.
 /// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
-FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
-                                             const double* n, unsigned lanes, double margin, double pad,
-                                             double& sign) {
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const double* n,
+                                             unsigned lanes, double margin, double pad, double& sign) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
@@ -84,6 +86,7 @@ inline double positivePrefix(const double* G) {
     const double z = max(0.0, min(guess, 1.0)) * part;
     const double left = g0 + z * (g1 - g0), right = g1 + z * (g2 - g1), middle = left + z * (right - left);
     if (!(left >= 0 && middle >= 0)) continue;
+    FCL_ARTIC_ASSERT(z >= 0 && z <= 1);
     return right >= 0 && g2 >= 0 ? 1 : z;
   }
   return 0;
@@ -91,8 +94,8 @@ inline double positivePrefix(const double* G) {
 
 /// Bernstein coefficients of a lower bound of the gap beyond `margin` along n, over each lane's interval.
 /// @param n  in the frame of side.still, from still to moving.
-FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n, double margin,
-                               double pad, Lanes* G) {
+FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n,
+                               double margin, double pad, Lanes* G) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
@@ -106,11 +109,12 @@ struct TurningDirection {
   Lanes begin[3], end[3];
 };
 
-/// The same along a direction that turns, as the gap's own does between edges and curved surfaces, in neither body's frame. The
-/// product of a linear n and a quadratic motion is a cubic: Bernstein points (R_0 n_0, (R_0 n_1 + 2 R_1 n_0) / 3,
-/// (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line between its values
-/// at both ends; |n| does too, and all that is taken off is multiplied by the larger of both. The quadratic with the points
-/// (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to degree 3 none of its points is higher.
+/// The same along a direction that turns, as the gap's own does between edges and curved surfaces, in neither body's
+/// frame. The product of a linear n and a quadratic motion is a cubic: Bernstein points (R_0 n_0, (R_0 n_1 + 2 R_1 n_0)
+/// / 3, (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line between
+/// its values at both ends; |n| does too, and all that is taken off is multiplied by the larger of both. The quadratic
+/// with the points (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to degree 3 none
+/// of its points is higher.
 /// @param side  B seen from A: the pad is derived for the direct motion (doc/NUMERICS.md, "Pads").
 FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const TurningDirection& n,
                                double margin, double pad, Lanes* G) {

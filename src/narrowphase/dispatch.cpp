@@ -3,7 +3,7 @@
 #include <cstring>
 #include <initializer_list>
 
-#include "narrowphase/problem.h"
+#include "narrowphase/engine.h"
 
 namespace fcl_artic {
 namespace engine {

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "fcl_artic/result.h"
-#include "narrowphase/problem.h"
+#include "model/sweep.h"
 
 namespace fcl_artic {
 

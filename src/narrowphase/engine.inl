@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <new>
 
+#include "narrowphase/engine.h"
 #include "narrowphase/solver.h"
 
 #define FCL_ARTIC_STRING2(x) #x
@@ -11,7 +12,8 @@ namespace FCL_ARTIC_ISA {
 namespace {
 
 void* createWorkspace() {
-  void* memory = std::aligned_alloc(alignof(Solver), (sizeof(Solver) + alignof(Solver) - 1) / alignof(Solver) * alignof(Solver));
+  void* memory =
+      std::aligned_alloc(alignof(Solver), (sizeof(Solver) + alignof(Solver) - 1) / alignof(Solver) * alignof(Solver));
   if (!memory) std::abort();
   return ::new (memory) Solver();
 }

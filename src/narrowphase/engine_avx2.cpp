@@ -3,4 +3,5 @@
 #define FCL_ARTIC_ISA avx2
 #define FCL_ARTIC_ISA_BITS 256
 #define FCL_ARTIC_ISA_ENGINE kEngineAvx2
+#include "narrowphase/engine.h"
 #include "narrowphase/engine.inl"

@@ -3,4 +3,5 @@
 #define FCL_ARTIC_ISA avx512
 #define FCL_ARTIC_ISA_BITS 512
 #define FCL_ARTIC_ISA_ENGINE kEngineAvx512
+#include "narrowphase/engine.h"
 #include "narrowphase/engine.inl"

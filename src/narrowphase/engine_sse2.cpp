@@ -3,4 +3,5 @@
 #define FCL_ARTIC_ISA sse2
 #define FCL_ARTIC_ISA_BITS 128
 #define FCL_ARTIC_ISA_ENGINE kEngineSse2
+#include "narrowphase/engine.h"
 #include "narrowphase/engine.inl"

@@ -2,47 +2,51 @@
 //
 // The solver: first contact over all pairs, eight time intervals at once.
 //
-//   solve            stage 1 (cull), the query's own stage (refine), then all pairs left on one batch, [0, 1] in eight lanes:
-//                    boxes and hulls of whole bodies
-//   solveLane        lane by lane from the earliest, the pairs that may touch in it: hulls followed to where they meet
-//                    (advance), then the pieces below from there on, the pair that meets first before the others
-//   solveInterval    one pair: eight equal parts of an interval; dual traversal; then, lane by lane from the earliest, the
-//                    same again on what that lane left undecided
-//   traverse         node pairs by swept boxes, leaf pairs by certificates; where GJK claims overlap, later lanes are put off
-//   finishLane       a few leaf pairs are left in a lane: each is followed by itself (advance: t_lower by the certificate's
-//                    first root, a Newton step), then t_upper by proofs of contact
+//   solve            stage 1 (cull); then all pairs left, [0, 1] in eight lanes: boxes and hulls of whole bodies
+//   solveLane        lane by lane from the earliest, the pairs that may touch in it: their hulls are followed to where
+//                    they meet (advance), then the pieces below; the pair that meets first is solved first
+//   solveInterval    one pair, eight equal parts of an interval: dual traversal, then, lane by lane from the earliest,
+//                    the same again on what that lane left undecided
+//   traverse         node pairs by swept boxes, leaf pairs by certificates; where GJK claims overlap, later lanes are
+//                    put off
+//   finishLane       a few leaf pairs left in a lane, each followed by itself: t_lower by the certificate's first root
+//                    (advance: Newton's steps), then t_upper by proofs of contact
 //
-// Each of these has a file in solver/. What is discarded is discarded by the certificate (certificate.h) or by a swept box (boxes along the frames' axes are the
-// same certificate with n an axis). Everything else here is order and effort.
+// Each of these has a file in solver/. What is discarded is discarded by the certificate (certificate.h) or by a swept
+// box, which is the same certificate with the frames' axes as directions. All else here is order and effort.
 #pragma once
 
 #include <time.h>
 
-#include "narrowphase/bracket.h"
-#include "narrowphase/buffer.h"
+#include "convex/chord.h"
+#include "convex/contact_proof.h"
+#include "model/answer.h"
+#include "model/bracket.h"
+#include "model/query.h"
 #include "narrowphase/certificate.h"
-#include "narrowphase/chord.h"
-#include "narrowphase/contact_proof.h"
 #include "narrowphase/solver/swept_box.h"
 #include "narrowphase/solver/swept_lss.h"
 #include "narrowphase/swept_difference.h"
+#include "numerics/assertion.h"
+#include "numerics/buffer.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
 using engine::Answer;
 using engine::Body;
-using engine::Node;
 using engine::Ignored;
 using engine::LeafContact;
 using engine::LinkPair;
+using engine::Node;
 using engine::Problem;
 using engine::Query;
 using engine::Statistics;
-using engine::Verdict;
 
 /// Pieces whose `size` is a direction worth trying.
-FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) { return piece.kind == PieceKind::vertices || unbounded(piece); }
+FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) {
+  return piece.kind == PieceKind::vertices || unbounded(piece);
+}
 
 /// The middle one of some lanes.
 FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
@@ -177,17 +181,18 @@ class Solver {
   Lanes tm_;
   double lane_start_[kLanes], lane_end_[kLanes], tm_at_[kLanes], d_ = 0;
   double begin_ = 0, end_ = 1;  ///< hull of all intervals
-  unsigned live_ = 0;   ///< lanes that are worth work: not behind a contact that is proven or claimed
-  unsigned contact_lane_ = 0;  ///< the lane with the earliest of these: it is split whatever else is found in it
-  bool last_ = false;   ///< lanes are as narrow as the tolerance: descend to the leaves
-  unsigned overlaps_ = 0;  ///< lanes in whose middles hulls overlap, as far as looked at
-  double claimed_ = 2;  ///< earliest time at which GJK claimed overlap; 2: none. Lanes behind it are put off, not dropped.
+  unsigned live_ = 0;           ///< lanes that are worth work: not behind a contact that is proven or claimed
+  unsigned contact_lane_ = 0;   ///< the lane with the earliest of these: it is split whatever else is found in it
+  bool last_ = false;           ///< lanes are as narrow as the tolerance: descend to the leaves
+  unsigned overlaps_ = 0;       ///< lanes in whose middles hulls overlap, as far as looked at
+  /// Earliest time at which GJK claimed overlap; 2: none. Lanes after it are put off, not dropped.
+  double claimed_ = 2;
   bool decide_only_ = false;  ///< only which lanes are free matters (initial contacts)
   /// It is known from when on each pair is watched. Before, with initial contacts to be ignored, no contact counts.
   bool watching_ = true;
-  unsigned blocked_ = 0;      ///< lanes found not free, with decide_only_
+  unsigned blocked_ = 0;  ///< lanes found not free, with decide_only_
 
-  Buffer<FrameLanes> frames_;       ///< of all sweeps, one after the other
+  Buffer<FrameLanes> frames_;        ///< of all sweeps, one after the other
   Buffer<std::int32_t> first_step_;  ///< per sweep, into frames_ and bounds_
   Buffer<std::int32_t> sweep_epoch_;
   Buffer<StepBounds> bounds_;
@@ -195,14 +200,15 @@ class Solver {
   std::int32_t batch_ = 0;
 
   // The present pair.
-  Side side_[2];  ///< [0]: B seen from A; [1]: A seen from B. Certificates take them from side(), which makes what is missing.
+  /// [0]: B seen from A; [1]: A seen from B. Certificates take them from side(), which makes what is missing.
+  Side side_[2];
   bool side_ready_[2] = {false, false};
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
-  double witness_[3];          ///< the last direction that GJK found between pieces of this pair
+  double witness_[3];  ///< the last direction that GJK found between pieces of this pair
   bool have_witness_ = false;
   std::int32_t witness_pair_ = -1;
   std::int32_t present_ = -1, present_batch_ = -1;  ///< the pair, and the batch it was set up for
-  const std::uint64_t* free_nodes_ = nullptr;  ///< of A, a bit each; null: none (engine::CullCandidate)
+  const std::uint64_t* free_nodes_ = nullptr;       ///< of A, a bit each; null: none (engine::CullCandidate)
   /// The last simplices of pairs' hulls: a small direct-mapped cache; what is pushed out is found again.
   static constexpr int kHullSimplices = 32;
   struct HullSimplex {
@@ -213,8 +219,8 @@ class Solver {
   HullSimplex hull_simplices_[kHullSimplices] = {};
   std::uint64_t query_number_ = 0;
   std::int32_t roots_batch_ = -1;  ///< the batch whose node pairs (0, 0) have been tested
-  /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in the
-  /// processor's own; what is pushed out is made again.
+  /// Swept boxes of this pair and batch, by node of the moving tree of each side: a small direct-mapped cache stays in
+  /// the processor's own; what is pushed out is made again.
   static constexpr int kCached = 2048;
   struct Cached {
     std::int32_t node, epoch, slot;
@@ -256,32 +262,33 @@ class Solver {
   struct Final {
     Entry entry;
     std::int32_t piece_a, piece_b;  ///< of a leaf pair
-    bool hulls;        ///< the hulls, not a leaf pair
-    bool pieces;       ///< neither: the entries only
-    std::int32_t first, count;  ///< of a lane of the first batch: its entries
-    double t_lower;    ///< free before
-    double normal[3];  ///< GJK's witness at t_lower
-    double gap;        ///< along it: a lower bound, when GJK ends early far below
-    double apart;      ///< an upper bound of the gap, from points of both
-    double speed;      ///< of the one body seen from the other, about
+    bool hulls;                     ///< the hulls, not a leaf pair
+    bool pieces;                    ///< neither: the entries only
+    std::int32_t first, count;      ///< of a lane of the first batch: its entries
+    double t_lower;                 ///< free before
+    double normal[3];               ///< GJK's witness at t_lower
+    double gap;                     ///< along it: a lower bound, when GJK ends early far below
+    double apart;                   ///< an upper bound of the gap, from points of both
+    double speed;                   ///< of the one body seen from the other, about
     bool have_normal;
-    Simplex simplex;   ///< GJK's last
-    bool stuck;        ///< the gap is gone at t_lower, as far as can be told
+    Simplex simplex;  ///< GJK's last
+    bool stuck;       ///< the gap is gone at t_lower, as far as can be told
     bool certain;
     double t_upper, point[3];  ///< a proven contact
   };
   Buffer<Final> finals_, candidates_;
   Buffer<LeafContact> contacts_;
 
-  double front_ = 0;   ///< all pairs are proven free before
-  double t_upper_ = 2;  ///< earliest proven contact so far (with every pair: of the present one); 2: none
-  engine::Bracket found_;  ///< of all contacts of this query
-  double limit_ = 2;    ///< what lies behind does not matter any more: t_upper_, or the tolerance behind an undecided contact
-  bool out_of_budget_ = false;
+  double front_ = 0;            ///< all pairs are proven free before
+  double t_upper_ = 2;          ///< earliest proven contact so far (with every pair: of the present one); 2: none
+  engine::FirstContact found_;  ///< of all contacts of this query
+  /// What lies after it does not matter any more: t_upper_, or the tolerance after an undecided contact.
+  double limit_ = 2;
+  bool out_of_budget_ = false;  ///< or the caller has ended the query
 };
 
-/// A node so many times larger than its partner is not seen from that one, unless it has been already. Measured: a quarter less time
-/// for a link amid one large mesh, nothing elsewhere; 1 is slower.
+/// A node so many times larger than its partner is not seen from that one, unless it has been already. Measured: a
+/// quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
 /// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
@@ -293,8 +300,8 @@ constexpr double kNarrowestLane = 1.0 / (1ull << 45);
 constexpr double kLaneSlack = 8 * kUlp;
 /// Hulls that overlap in so many lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;
-/// A traversal that has left so many pairs open leaves the others as they are: that lane is to be split anyway. Measured: 128
-/// are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
+/// A traversal that has left so many pairs open leaves the others as they are: that lane is to be split anyway.
+/// Measured: 128 are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
 constexpr int kMostOpen = 512;
 /// What GJK claims to overlap is nearer than this part of the smaller body, about: rounding is 1e-15 of it, flat
 /// simplices may lose more. Finer tolerances have such lanes divided on, which with the usual one costs what rests on
@@ -302,27 +309,28 @@ constexpr int kMostOpen = 512;
 constexpr double kOverlapAccuracy = 1e-9;
 /// So many leaf pairs in a lane are followed one by one; more are split in time first.
 constexpr int kFewLeaves = 12;
-/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius. Measured: from 0.7 on
-/// to 1 it makes no difference, below contacts are found later.
+/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius.
+/// Measured: from 0.7 on to 1 it makes no difference, below contacts are found later.
 constexpr double kDeep = 0.7;
 /// The same where its vertices do not.
 constexpr double kVeryDeep = 0.35;
 /// Links are expected to touch whose line swept spheres' segments are nearer than this part of the radii.
 constexpr double kDeepLinks = 0.7;
-/// So many pairs of boxes are looked at in one pose where any contact will do. Measured: twice as many prove more contacts of a UR5,
-/// and make its free motions 5 % slower.
+/// So many pairs of boxes are looked at in one pose where any contact will do. Measured: twice as many prove more
+/// contacts of a UR5, and make its free motions 5 % slower.
 constexpr int kMostAtPose = 512;
 /// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
 constexpr double kThin = 0.5;
-/// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion covers
-/// in it.
+/// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion
+/// covers in it.
 constexpr double kFirstWindow = 0.4;
-/// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not looked at.
+/// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not
+/// looked at.
 constexpr double kLongMotion = 0.2;
 /// GJK stops when it knows the gap to this part: enough for a direction.
 constexpr double kWitnessAccuracy = 0.1;
-/// The same where two directions are to tell how they turn. Measured: 0.1 takes 20 % more rounds, 0.001 a few per cent fewer at
-/// more expense.
+/// The same where two directions are to tell how they turn. Measured: 0.1 takes 20 % more rounds, 0.001 a few per cent
+/// fewer at more expense.
 constexpr double kFollowingAccuracy = 0.02;
 
 }  // namespace FCL_ARTIC_ISA
@@ -343,6 +351,8 @@ namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
 inline void Solver::solve(const Problem& problem, const Query& query, Answer& answer) {
+  FCL_ARTIC_ASSERT(query.tolerance_time > 0 && query.tolerance_distance > 0 && query.max_contacts >= 0);
+  FCL_ARTIC_ASSERT(query.degree >= 1 && query.degree <= engine::kMaxDegree);
   problem_ = &problem;
   query_ = &query;
   ++query_number_;
@@ -399,23 +409,23 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
 
   if (!out_of_budget_ && limit_ > 0) solvePairs();
 
-  // A pose proven in contact and a proof that all of [0, 1] is free would contradict each other: a fault of ours, and then
-  // contact is the answer that harms nobody.
+  // A pose proven in contact before the time up to which all is proven free would be a contradiction: a fault of ours,
+  // and then contact is the answer that harms nobody.
+  FCL_ARTIC_ASSERT(out_of_budget_ || found_.t_lower <= found_.t_upper);
   if (found_.t_upper < found_.t_lower) found_.t_lower = 0;
   const bool contact = found_.t_lower < engine::kNever;
   const bool certain = engine::isCertain(found_, query.tolerance_time, query.any);
   if (!query.every_pair) orderContacts(0, certain ? found_.t_upper : found_.t_lower + query.tolerance_time);
   // Where any contact ends the search, proven or not, other pairs have come to front_ only.
   if (query.any && contact) engine::joinLower(found_, front_);
-  double t_lower = found_.t_lower;
   // Where the budget ended among the initial contacts, nothing is known of when they are over.
-  if (out_of_budget_) t_lower = query.ignore_initial ? 0 : min(front_, t_lower);
-  answer.verdict = out_of_budget_ ? Verdict::undecided : contact ? Verdict::contact : Verdict::free;
-  answer.certain = answer.verdict == Verdict::contact && certain;
-  answer.t_lower = answer.verdict == Verdict::free ? 1 : t_lower;
-  answer.t_upper = answer.verdict == Verdict::free ? 1 : min(1.0, found_.t_upper);
+  const double proven_free = query.ignore_initial ? 0 : min(front_, found_.t_lower);
+  static_cast<Bracket&>(answer) = out_of_budget_ ? engine::undecidedBracket(proven_free, found_)
+                                                 : engine::bracketOf(found_, query.tolerance_time, query.any);
+  FCL_ARTIC_ASSERT(answer.t_lower >= 0 && answer.t_lower <= answer.t_upper && answer.t_upper <= 1);
   answer.contacts = contacts_.data();
-  answer.num_contacts = answer.verdict == Verdict::contact ? contacts_.size() : 0;
+  answer.num_contacts = answer.status == Status::contact ? contacts_.size() : 0;
+  FCL_ARTIC_ASSERT(answer.status != Status::contact || answer.num_contacts || !query.max_contacts);
   answer.ignored = ignored_.data();
   answer.num_ignored = ignored_.size();
   statistics_.narrowphase_us = now() - time1;

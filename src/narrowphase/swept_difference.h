@@ -7,8 +7,8 @@
 // (doc/NUMERICS.md, section 4). A heuristic, as gjk.h: the certificate checks what it finds.
 #pragma once
 
+#include "convex/gjk.h"
 #include "narrowphase/certificate.h"
-#include "narrowphase/gjk.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

@@ -21,56 +21,104 @@ namespace FCL_ARTIC_ISA {
 #define FCL_ARTIC_INLINE inline __attribute__((always_inline))
 
 // Scalars get the vocabulary of lanes, so that one text serves both.
-FCL_ARTIC_INLINE double min(double a, double b) { return a < b ? a : b; }
-FCL_ARTIC_INLINE double max(double a, double b) { return a > b ? a : b; }
+FCL_ARTIC_INLINE double min(double a, double b) {
+  return a < b ? a : b;
+}
+FCL_ARTIC_INLINE double max(double a, double b) {
+  return a > b ? a : b;
+}
 FCL_ARTIC_INLINE float min(float a, float b) {
   return a < b ? a : b;
 }
 FCL_ARTIC_INLINE float max(float a, float b) {
   return a > b ? a : b;
 }
-FCL_ARTIC_INLINE int max(int a, int b) { return a > b ? a : b; }
-FCL_ARTIC_INLINE int min(int a, int b) { return a < b ? a : b; }
-FCL_ARTIC_INLINE double abs(double a) { return __builtin_fabs(a); }
-FCL_ARTIC_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
-FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) { return a * b + c; }
-FCL_ARTIC_INLINE double dot(const double* a, const double* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+FCL_ARTIC_INLINE int max(int a, int b) {
+  return a > b ? a : b;
+}
+FCL_ARTIC_INLINE int min(int a, int b) {
+  return a < b ? a : b;
+}
+FCL_ARTIC_INLINE double abs(double a) {
+  return __builtin_fabs(a);
+}
+FCL_ARTIC_INLINE double sqrt(double a) {
+  return __builtin_sqrt(a);
+}
+FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) {
+  return a * b + c;
+}
+FCL_ARTIC_INLINE double dot(const double* a, const double* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
   o[0] = a[1] * b[2] - a[2] * b[1];
   o[1] = a[2] * b[0] - a[0] * b[2];
   o[2] = a[0] * b[1] - a[1] * b[0];
 }
-FCL_ARTIC_INLINE double norm(const double* a) { return __builtin_sqrt(dot(a, a)); }
+FCL_ARTIC_INLINE double norm(const double* a) {
+  return __builtin_sqrt(dot(a, a));
+}
 
 constexpr int kLanes = 8;
 constexpr unsigned kAllLanes = 0xff;
 
 #if FCL_ARTIC_ISA_BITS == 512
 using Register = __m512d;
-FCL_ARTIC_INLINE Register regSet(double x) { return _mm512_set1_pd(x); }
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm512_min_pd(a, b); }
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm512_max_pd(a, b); }
-FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm512_abs_pd(a); }
-FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm512_sqrt_pd(a); }
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm512_fmadd_pd(a, b, c); }
-FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) { return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ); }
+FCL_ARTIC_INLINE Register regSet(double x) {
+  return _mm512_set1_pd(x);
+}
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
+  return _mm512_min_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
+  return _mm512_max_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regAbs(Register a) {
+  return _mm512_abs_pd(a);
+}
+FCL_ARTIC_INLINE Register regSqrt(Register a) {
+  return _mm512_sqrt_pd(a);
+}
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
+  return _mm512_fmadd_pd(a, b, c);
+}
+FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
+  return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ);
+}
 FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
   return _mm512_mask_mov_pd(y, _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ), x);
 }
 using Integers = __m256i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm512_cvttpd_epi32(a); }
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm256_add_epi32(a, _mm256_set1_epi32(b)); }
+FCL_ARTIC_INLINE Integers regTruncate(Register a) {
+  return _mm512_cvttpd_epi32(a);
+}
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
+  return _mm256_add_epi32(a, _mm256_set1_epi32(b));
+}
 FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
   return _mm512_cvtepi32_pd(_mm256_and_si256(a, _mm256_set1_epi32(bits)));
 }
 #elif FCL_ARTIC_ISA_BITS == 256
 using Register = __m256d;
-FCL_ARTIC_INLINE Register regSet(double x) { return _mm256_set1_pd(x); }
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm256_min_pd(a, b); }
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm256_max_pd(a, b); }
-FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
-FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm256_sqrt_pd(a); }
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm256_fmadd_pd(a, b, c); }
+FCL_ARTIC_INLINE Register regSet(double x) {
+  return _mm256_set1_pd(x);
+}
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
+  return _mm256_min_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
+  return _mm256_max_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regAbs(Register a) {
+  return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+FCL_ARTIC_INLINE Register regSqrt(Register a) {
+  return _mm256_sqrt_pd(a);
+}
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
+  return _mm256_fmadd_pd(a, b, c);
+}
 FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
   return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)));
 }
@@ -78,17 +126,35 @@ FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Re
   return _mm256_blendv_pd(y, x, _mm256_cmp_pd(a, b, _CMP_GT_OQ));
 }
 using Integers = __m128i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm256_cvttpd_epi32(a); }
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
-FCL_ARTIC_INLINE Register regBits(Integers a, int bits) { return _mm256_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits))); }
+FCL_ARTIC_INLINE Integers regTruncate(Register a) {
+  return _mm256_cvttpd_epi32(a);
+}
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
+  return _mm_add_epi32(a, _mm_set1_epi32(b));
+}
+FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
+  return _mm256_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits)));
+}
 #else
 using Register = __m128d;
-FCL_ARTIC_INLINE Register regSet(double x) { return _mm_set1_pd(x); }
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) { return _mm_min_pd(a, b); }
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) { return _mm_max_pd(a, b); }
-FCL_ARTIC_INLINE Register regAbs(Register a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
-FCL_ARTIC_INLINE Register regSqrt(Register a) { return _mm_sqrt_pd(a); }
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) { return _mm_add_pd(_mm_mul_pd(a, b), c); }
+FCL_ARTIC_INLINE Register regSet(double x) {
+  return _mm_set1_pd(x);
+}
+FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
+  return _mm_min_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
+  return _mm_max_pd(a, b);
+}
+FCL_ARTIC_INLINE Register regAbs(Register a) {
+  return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
+}
+FCL_ARTIC_INLINE Register regSqrt(Register a) {
+  return _mm_sqrt_pd(a);
+}
+FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
+  return _mm_add_pd(_mm_mul_pd(a, b), c);
+}
 FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
   return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(a, b)));
 }
@@ -97,9 +163,15 @@ FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Re
   return _mm_or_pd(_mm_and_pd(which, x), _mm_andnot_pd(which, y));
 }
 using Integers = __m128i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) { return _mm_cvttpd_epi32(a); }
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
-FCL_ARTIC_INLINE Register regBits(Integers a, int bits) { return _mm_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits))); }
+FCL_ARTIC_INLINE Integers regTruncate(Register a) {
+  return _mm_cvttpd_epi32(a);
+}
+FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
+  return _mm_add_epi32(a, _mm_set1_epi32(b));
+}
+FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
+  return _mm_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits)));
+}
 #endif
 constexpr int kRegisterLanes = sizeof(Register) / sizeof(double);
 constexpr int kRegisters = kLanes / kRegisterLanes;
@@ -114,21 +186,41 @@ struct alignas(64) Lanes {
   FCL_ARTIC_INLINE void set(int i, double x) { reinterpret_cast<double*>(r)[i] = x; }
 };
 
-#define FCL_ARTIC_EACH(expression)                        \
-  Lanes o;                                                \
+#define FCL_ARTIC_EACH(expression)                          \
+  Lanes o;                                                  \
   for (int i = 0; i < kRegisters; ++i) o.r[i] = expression; \
   return o
-FCL_ARTIC_INLINE Lanes operator+(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] + b.r[i]); }
-FCL_ARTIC_INLINE Lanes operator-(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] - b.r[i]); }
-FCL_ARTIC_INLINE Lanes operator-(Lanes a) { FCL_ARTIC_EACH(-a.r[i]); }
-FCL_ARTIC_INLINE Lanes operator*(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] * b.r[i]); }
-FCL_ARTIC_INLINE Lanes operator/(Lanes a, Lanes b) { FCL_ARTIC_EACH(a.r[i] / b.r[i]); }
-FCL_ARTIC_INLINE Lanes min(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMin(a.r[i], b.r[i])); }
-FCL_ARTIC_INLINE Lanes max(Lanes a, Lanes b) { FCL_ARTIC_EACH(regMax(a.r[i], b.r[i])); }
-FCL_ARTIC_INLINE Lanes abs(Lanes a) { FCL_ARTIC_EACH(regAbs(a.r[i])); }
-FCL_ARTIC_INLINE Lanes sqrt(Lanes a) { FCL_ARTIC_EACH(regSqrt(a.r[i])); }
+FCL_ARTIC_INLINE Lanes operator+(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(a.r[i] + b.r[i]);
+}
+FCL_ARTIC_INLINE Lanes operator-(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(a.r[i] - b.r[i]);
+}
+FCL_ARTIC_INLINE Lanes operator-(Lanes a) {
+  FCL_ARTIC_EACH(-a.r[i]);
+}
+FCL_ARTIC_INLINE Lanes operator*(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(a.r[i] * b.r[i]);
+}
+FCL_ARTIC_INLINE Lanes operator/(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(a.r[i] / b.r[i]);
+}
+FCL_ARTIC_INLINE Lanes min(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(regMin(a.r[i], b.r[i]));
+}
+FCL_ARTIC_INLINE Lanes max(Lanes a, Lanes b) {
+  FCL_ARTIC_EACH(regMax(a.r[i], b.r[i]));
+}
+FCL_ARTIC_INLINE Lanes abs(Lanes a) {
+  FCL_ARTIC_EACH(regAbs(a.r[i]));
+}
+FCL_ARTIC_INLINE Lanes sqrt(Lanes a) {
+  FCL_ARTIC_EACH(regSqrt(a.r[i]));
+}
 /// a b + c
-FCL_ARTIC_INLINE Lanes mulAdd(Lanes a, Lanes b, Lanes c) { FCL_ARTIC_EACH(regMulAdd(a.r[i], b.r[i], c.r[i])); }
+FCL_ARTIC_INLINE Lanes mulAdd(Lanes a, Lanes b, Lanes c) {
+  FCL_ARTIC_EACH(regMulAdd(a.r[i], b.r[i], c.r[i]));
+}
 #undef FCL_ARTIC_EACH
 /// Lanes with a > b; a lane with NaN is not among them.
 FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
@@ -136,8 +228,8 @@ FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
   for (int i = 0; i < kRegisters; ++i) mask |= regGreater(a.r[i], b.r[i]) << (i * kRegisterLanes);
   return mask;
 }
-/// Eight floats: ends of boxes, rounded outward, that only get compared. A comparison sets all bits of the lanes where it
-/// holds (never with NaN); lanesOf() makes a mask of them.
+/// Eight floats: ends of boxes, rounded outward, that only get compared. A comparison sets all bits of the lanes where
+/// it holds (never with NaN); lanesOf() makes a mask of them.
 struct alignas(32) FloatLanes {
 #if FCL_ARTIC_ISA_BITS == 128
   __m128 r[2];
@@ -151,7 +243,9 @@ FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
   for (int i = 0; i < 2; ++i) o.r[i] = _mm_movelh_ps(_mm_cvtpd_ps(a.r[2 * i]), _mm_cvtpd_ps(a.r[2 * i + 1]));
   return o;
 }
-FCL_ARTIC_INLINE FloatLanes spread(float x) { return {{_mm_set1_ps(x), _mm_set1_ps(x)}}; }
+FCL_ARTIC_INLINE FloatLanes spread(float x) {
+  return {{_mm_set1_ps(x), _mm_set1_ps(x)}};
+}
 FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
   return {{_mm_cmpgt_ps(a.r[0], b.r[0]), _mm_cmpgt_ps(a.r[1], b.r[1])}};
 }
@@ -169,17 +263,27 @@ FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
   return {_mm256_set_m128(_mm256_cvtpd_ps(a.r[1]), _mm256_cvtpd_ps(a.r[0]))};
 #endif
 }
-FCL_ARTIC_INLINE FloatLanes spread(float x) { return {_mm256_set1_ps(x)}; }
+FCL_ARTIC_INLINE FloatLanes spread(float x) {
+  return {_mm256_set1_ps(x)};
+}
 FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
   return {_mm256_cmp_ps(a.r, b.r, _CMP_GT_OQ)};
 }
-FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) { return {_mm256_or_ps(a.r, b.r)}; }
-FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) { return static_cast<unsigned>(_mm256_movemask_ps(a.r)); }
+FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) {
+  return {_mm256_or_ps(a.r, b.r)};
+}
+FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) {
+  return static_cast<unsigned>(_mm256_movemask_ps(a.r));
+}
 #endif
 /// Conversion to float errs by at most 2^-23 of the value in any rounding mode; twice that, and a normal number for
 /// values that would vanish, make the result a bound.
-FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) { return narrow(a - mulAdd(abs(a), 0x1p-22, 1e-37)); }
-FCL_ARTIC_INLINE FloatLanes narrowUp(Lanes a) { return narrow(a + mulAdd(abs(a), 0x1p-22, 1e-37)); }
+FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) {
+  return narrow(a - mulAdd(abs(a), 0x1p-22, 1e-37));
+}
+FCL_ARTIC_INLINE FloatLanes narrowUp(Lanes a) {
+  return narrow(a + mulAdd(abs(a), 0x1p-22, 1e-37));
+}
 
 /// Where a > b lanes of x, else of y.
 FCL_ARTIC_INLINE Lanes whereGreater(Lanes a, Lanes b, Lanes x, Lanes y) {
@@ -188,8 +292,8 @@ FCL_ARTIC_INLINE Lanes whereGreater(Lanes a, Lanes b, Lanes x, Lanes y) {
   return o;
 }
 
-/// Values whose lowest bits are replaced by their number, `first` + lane: the largest one then tells which it is. They change
-/// by less than 2^-42 of themselves.
+/// Values whose lowest bits are replaced by their number, `first` + lane: the largest one then tells which it is. They
+/// change by less than 2^-42 of themselves.
 constexpr int kNumbered = 1024;  ///< numbers lie below
 FCL_ARTIC_INLINE Lanes numbered(Lanes a, int first) {
   typedef long long Bits __attribute__((vector_size(sizeof(Register))));
@@ -221,7 +325,9 @@ FCL_ARTIC_INLINE double maxLane(Lanes a) {
 #endif
   return m[0] > m[1] ? m[0] : m[1];
 }
-FCL_ARTIC_INLINE double minLane(Lanes a) { return -maxLane(-a); }
+FCL_ARTIC_INLINE double minLane(Lanes a) {
+  return -maxLane(-a);
+}
 
 FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const Lanes* b) {
   return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * b[0]));

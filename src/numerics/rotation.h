@@ -22,8 +22,8 @@ inline Eigen::Matrix3d orthonormalityDefect(const Eigen::Matrix3d& R) {
   return Eigen::Matrix3d::Identity() - R.transpose() * R;
 }
 
-/// The rotation next to R, whose columns may be off by up to 1e-6, with an error that the pads allow for (doc/NUMERICS.md,
-/// "Pads"). R itself where it is orthonormal to rounding already.
+/// The rotation next to R, whose columns may be off by up to 1e-6, with an error that the pads allow for
+/// (doc/NUMERICS.md, "Pads"). R itself where it is orthonormal to rounding already.
 /// @param defect  orthonormalityDefect(R).
 inline Eigen::Matrix3d orthonormal(Eigen::Matrix3d R, Eigen::Matrix3d defect) {
   for (int round = 0; round < 3 && !(defect.cwiseAbs().maxCoeff() <= 4e-16); ++round) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Sine and cosine of two doubles at once. No library function is trusted: none promises its error, and glibc's switches
-// the rounding mode at every call. The reduction and polynomials are those of numerics/lanes.h, whose error is proven for
-// every rounding mode (doc/NUMERICS.md, section 7).
+// the rounding mode at every call. The reduction and polynomials are those of numerics/lanes.h, whose error is proven
+// for every rounding mode (doc/NUMERICS.md, section 7).
 #pragma once
 
 #include <emmintrin.h>

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "fcl_artic/manager.h"
-#include "query/motion_part.h"
+#include "motion/part_of_motion.h"
 
 namespace fcl_artic {
 
 /// What queries of other kinds ask of one motion, beyond the request.
 struct ArticulatedCollisionManager::Aspects {
-  TimePart time;  ///< of the moving obstacles' motions, over the query's [0, 1]
-  bool own_margins = true;   ///< pairs may have margins of their own; false: all have the request's
+  TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
+  bool own_margins = true;  ///< pairs may have margins of their own; false: all have the request's
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<std::int32_t>* may_ignore = nullptr;
   std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1

@@ -27,7 +27,8 @@ namespace {
 template <class F>
 void parallelFor(std::size_t n, int threads, const F& f) {
 #ifdef FCL_ARTIC_TBB
-  if (threads >= tbb::info::default_concurrency()) return tbb::parallel_for(std::size_t{0}, n, f);  // oneTBB's own arena
+  if (threads >= tbb::info::default_concurrency())
+    return tbb::parallel_for(std::size_t{0}, n, f);  // oneTBB's own arena
   tbb::task_arena arena(threads);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, f); });
 #else
@@ -48,7 +49,8 @@ void parallelFor(std::size_t n, int threads, const F& f) {
   };
   std::vector<std::thread> others;
   try {
-    for (std::size_t k = 1; k < std::min<std::size_t>(static_cast<std::size_t>(threads), n); ++k) others.emplace_back(work);
+    for (std::size_t k = 1; k < std::min<std::size_t>(static_cast<std::size_t>(threads), n); ++k)
+      others.emplace_back(work);
   } catch (const std::system_error&) {
     // No more threads to be had: those that there are do it.
   }

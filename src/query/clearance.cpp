@@ -2,8 +2,8 @@
 //
 // The clearance of a motion by queries with margins. One that is free proves that nothing comes nearer than its margin;
 // a pose proven in contact shows a pair and a time with no more than that between them. The margin goes down by kStep
-// until a query is free, then halves the bracket (by ratio: the tolerance is relative). Measured on a planner's motions: looking
-// at single poses in between, for a tighter upper bound, costs as much as it saves.
+// until a query is free, then halves the bracket (by ratio: the tolerance is relative). Measured on a planner's
+// motions: looking at single poses in between, for a tighter upper bound, costs as much as it saves.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +12,7 @@
 
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/manager.h"
+#include "numerics/assertion.h"
 #include "numerics/shown.h"
 #include "query/aspects.h"
 #include "query/engine_query.h"
@@ -74,7 +75,7 @@ class Search {
     request.check_self = request_.check_self;
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
     if (request_.work_budget) {
-      const std::uint64_t used = found_.statistics.node_tests + found_.statistics.leaf_tests;
+      const std::uint64_t used = countedWork(found_.statistics);
       spent_ = used >= request_.work_budget;
       if (spent_) return Found::open;
       request.work_budget = request_.work_budget - used;
@@ -91,6 +92,7 @@ class Search {
     const auto proven = std::find_if(result_.contacts.begin(), result_.contacts.end(),
                                      [](const CertifiedContact& contact) { return contact.certain; });
     if (spent_ || proven == result_.contacts.end()) return Found::open;
+    FCL_ARTIC_ASSERT(found_.lower <= margin);
     found_.upper = margin;
     found_.time = proven->t_upper;
     found_.body1 = proven->body1;

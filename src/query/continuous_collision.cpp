@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "adapters/fcl/fcl_geometry.h"
-#include "adapters/fcl/fcl_motion.h"
+#include "fcl/fcl_geometry.h"
+#include "fcl/fcl_motion.h"
 #include "numerics/shown.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
@@ -84,9 +84,8 @@ const fcl::CollisionGeometryd* reported(const fcl::CollisionGeometry<float>*) {
 }
 
 bool standsStill(const BodyMotion& motion) {
-  return std::all_of(motion.elements.begin(), motion.elements.end(), [](const MotionElement& element) {
-    return !element.bounded && element.degree() == 0;
-  });
+  return std::all_of(motion.elements.begin(), motion.elements.end(),
+                     [](const MotionElement& element) { return !element.bounded && element.degree() == 0; });
 }
 
 /// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
@@ -119,7 +118,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin) {
 }
 
 template <class S>
-void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedRequest& request, CertifiedPairResult& result) {
+void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
   const double margin = marginsOf(request).largest();
   if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin);
   if (!body1.shape) readCells(body1, body2, margin);
@@ -158,13 +157,13 @@ auto answering(Result& result, Query&& query) {
 }
 
 template <class S>
-CertifiedRequest certified(const fcl::ContinuousCollisionRequest<S>& request) {
+CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request) {
   const double tolerance = static_cast<double>(request.toc_err);
   if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: what doubles can tell apart
-  CertifiedRequest certified;
+  CertifiedPairRequest certified;
   certified.tolerance_time = std::max(tolerance, kFinest);
   return certified;
 }
@@ -221,7 +220,7 @@ S collide(const fcl::ContinuousCollisionObject<S>* o1, const fcl::ContinuousColl
 
 Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBased* motion1,
                          const fcl::CollisionGeometryd* o2, const fcl::MotionBased* motion2,
-                         const CertifiedRequest& request, CertifiedPairResult& result) {
+                         const CertifiedPairRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
     answer(body<double>(1, o1, motion1), body<double>(2, o2, motion2), request, result);
     return result.status;
@@ -231,7 +230,8 @@ Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBas
 Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::Transform3d& tf1_beg,
                          const fcl::Transform3d& tf1_end, const fcl::CollisionGeometryd* o2,
                          const fcl::Transform3d& tf2_beg, const fcl::Transform3d& tf2_end,
-                         fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
+                         fcl::CCDMotionType motion_type, const CertifiedPairRequest& request,
+                         CertifiedPairResult& result) {
   return answering(result, [&] {
     answer(body<double>(1, o1, tf1_beg, tf1_end, motion_type), body<double>(2, o2, tf2_beg, tf2_end, motion_type),
            request, result);
@@ -241,7 +241,8 @@ Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::Transform
 
 Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d& tf1_end,
                          const fcl::CollisionObjectd* o2, const fcl::Transform3d& tf2_end,
-                         fcl::CCDMotionType motion_type, const CertifiedRequest& request, CertifiedPairResult& result) {
+                         fcl::CCDMotionType motion_type, const CertifiedPairRequest& request,
+                         CertifiedPairResult& result) {
   return answering(result, [&] {
     answer(body<double>(1, o1, tf1_end, motion_type), body<double>(2, o2, tf2_end, motion_type), request, result);
     for (CertifiedContact& contact : result.contacts) {
@@ -253,7 +254,7 @@ Status continuousCollide(const fcl::CollisionObjectd* o1, const fcl::Transform3d
 }
 
 Status collide(const fcl::ContinuousCollisionObjectd* o1, const fcl::ContinuousCollisionObjectd* o2,
-               const CertifiedRequest& request, CertifiedPairResult& result) {
+               const CertifiedPairRequest& request, CertifiedPairResult& result) {
   return answering(result, [&] {
     answer(body<double>(1, o1), body<double>(2, o2), request, result);
     return result.status;

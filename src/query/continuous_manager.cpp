@@ -9,9 +9,10 @@
 #include <string>
 #include <unordered_map>
 
-#include "adapters/fcl/fcl_geometry.h"
-#include "adapters/fcl/fcl_motion.h"
-#include "culling/box_overlap.h"
+#include "fcl/fcl_geometry.h"
+#include "fcl/fcl_motion.h"
+#include "geometry/box_overlap.h"
+#include "model/bracket.h"
 #include "numerics/shown.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
@@ -111,7 +112,7 @@ void answerPairs(CertifiedPairsResult& result, Query&& query) {
 class Earliest {
  public:
   /// @throws std::invalid_argument for a request that solvePair() refuses.
-  Earliest(const CertifiedRequest& request, CertifiedPairsResult& result) : request_(request), result_(result) {
+  Earliest(const CertifiedPairRequest& request, CertifiedPairsResult& result) : request_(request), result_(result) {
     makeQuery(request);
     if (request.measure_times) begin_ = Clock::now();
     request_.progress = nullptr;
@@ -122,7 +123,7 @@ class Earliest {
     MovingPair pair;
     pair.object1 = a.object;
     pair.object2 = b.object;
-    const std::uint64_t work = result_.statistics.node_tests + result_.statistics.leaf_tests;
+    const std::uint64_t work = countedWork(result_.statistics);
     const std::uint64_t budget = request_.work_budget;
     const bool spent = budget != 0 && work >= budget;
     if (spent) {  // the pair stays undecided from t = 0 on
@@ -140,8 +141,8 @@ class Earliest {
     if (pair.result.isFree()) return false;
 
     const CertifiedPairResult& r = pair.result;
-    proven_ = proven_ || r.certain || r.t_upper < 1;
-    result_.t_upper = std::min(result_.t_upper, r.t_upper);
+    engine::joinLower(first_, r.t_lower);
+    engine::joinUpper(first_, engine::provenBy(r));
     if (request_.mode == ContactMode::firstOfEveryPair || result_.pairs.empty()) {
       result_.pairs.push_back(std::move(pair));
     } else if (r.t_lower < result_.pairs[0].result.t_lower) {
@@ -162,7 +163,8 @@ class Earliest {
       const CertifiedPairResult& first = result_.pairs[0].result;
       result_.status = first.status;
       result_.t_lower = first.t_lower;
-      const bool close = proven_ && result_.t_upper - result_.t_lower <= request_.tolerance_time;
+      result_.t_upper = std::min(1.0, first_.t_upper);
+      const bool close = engine::isCertain(first_, request_.tolerance_time, false);
       result_.certain = first.status == Status::contact && (first.certain || close);
     }
     result_.statistics.pairs = pairs;
@@ -179,9 +181,9 @@ class Earliest {
     addWork(s, result_.statistics);
   }
 
-  CertifiedRequest request_;
+  CertifiedPairRequest request_;
   CertifiedPairsResult& result_;
-  bool proven_ = false;  ///< some pair certainly touches, by result_.t_upper
+  engine::FirstContact first_;  ///< of all pairs that are not free
   Clock::time_point begin_;
 };
 
@@ -388,7 +390,7 @@ void ContinuousCollisionManager::collide(const ContinuousCollisionManager* other
   impl_->visitOther(other, margin, [&](const Item& a, const Item& b) { return callback(a.object, b.object, cdata); });
 }
 
-void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& request,
+void ContinuousCollisionManager::continuousCollide(const CertifiedPairRequest& request,
                                                    CertifiedPairsResult& result) const {
   answerPairs(result, [&] {
     Earliest earliest(request, result);
@@ -396,7 +398,7 @@ void ContinuousCollisionManager::continuousCollide(const CertifiedRequest& reque
   });
 }
 
-void ContinuousCollisionManager::continuousCollide(Object* object, const CertifiedRequest& request,
+void ContinuousCollisionManager::continuousCollide(Object* object, const CertifiedPairRequest& request,
                                                    CertifiedPairsResult& result) const {
   answerPairs(result, [&] {
     Earliest earliest(request, result);
@@ -405,7 +407,7 @@ void ContinuousCollisionManager::continuousCollide(Object* object, const Certifi
 }
 
 void ContinuousCollisionManager::continuousCollide(const ContinuousCollisionManager* other,
-                                                   const CertifiedRequest& request,
+                                                   const CertifiedPairRequest& request,
                                                    CertifiedPairsResult& result) const {
   answerPairs(result, [&] {
     Earliest earliest(request, result);

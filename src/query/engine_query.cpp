@@ -8,10 +8,11 @@
 #include <string>
 #include <utility>
 
-#include "adapters/fcl/fcl_geometry.h"
-#include "narrowphase/add_work.h"
-#include "narrowphase/elementary.h"
+#include "fcl/fcl_geometry.h"
+#include "model/add_work.h"
+#include "narrowphase/engine.h"
 #include "numerics/shown.h"
+#include "redon/options.h"
 
 namespace fcl_artic {
 namespace {
@@ -32,14 +33,14 @@ WorkspaceLoan::WorkspaceLoan() {
   workspace_->busy_ = true;
 }
 
-engine::Margins marginsOf(const CertifiedRequest& request) {
+engine::Margins marginsOf(const Tolerances& request) {
   requireTolerance(request.margin, "margin", false);
   requireTolerance(request.added_margin, "added_margin", false);
   requireTolerance(request.margin + request.added_margin, "margin + added_margin", false);
   return engine::Margins(request.margin, request.added_margin);
 }
 
-engine::Query makeQuery(const CertifiedRequest& request) {
+engine::Query makeQuery(const CertifiedPairRequest& request) {
   requireTolerance(request.tolerance_time, "tolerance_time", true);
   requireTolerance(request.tolerance_distance, "tolerance_distance", true);
   const engine::Margins margins = marginsOf(request);
@@ -51,10 +52,9 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   query.tolerance_time = request.tolerance_time;
   query.tolerance_distance = request.tolerance_distance;
   query.margins = margins;
-  query.check_scene = request.check_scene;
-  query.check_self = request.check_self;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  // The paper's method looks for the first contact; the pairs that it leaves to the standard one then take part in that.
+  // The paper's method looks for the first contact; the pairs that it leaves to the standard one then take part in
+  // that.
   query.any = request.mode == ContactMode::any && request.method == Method::standard;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
@@ -62,9 +62,9 @@ engine::Query makeQuery(const CertifiedRequest& request) {
   query.work_budget = request.work_budget;
   if (request.progress) {
     query.progress = [](void* context, double t_lower) {
-      static_cast<const CertifiedRequest*>(context)->progress(t_lower);
+      return static_cast<const CertifiedPairRequest*>(context)->progress(t_lower);
     };
-    query.progress_context = const_cast<CertifiedRequest*>(&request);
+    query.progress_context = const_cast<CertifiedPairRequest*>(&request);
   }
   return query;
 }
@@ -106,6 +106,10 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum) {
   addWork(s.redon, sum.redon);
 }
 
+std::uint64_t countedWork(const QueryStatistics& s) {
+  return s.node_tests + s.leaf_tests + redon::workOf(s.redon);
+}
+
 void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts) {
   struct Place {
     std::size_t contact;
@@ -126,58 +130,6 @@ void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std:
   kept.reserve(places.size());
   for (const Place& place : places) kept.push_back(std::move(contacts[place.contact]));
   contacts = std::move(kept);
-}
-
-Status statusOf(engine::Verdict verdict) {
-  switch (verdict) {
-    case engine::Verdict::free: return Status::free;
-    case engine::Verdict::contact: return Status::contact;
-    default: return Status::undecided;
-  }
-}
-
-std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece) {
-  if (piece < 0) return fcl::Contactd::NONE;
-  const engine::Piece& p = shape.view().pieces[piece];
-#if FCL_HAVE_OCTOMAP
-  if (geometry && geometry->getNodeType() == fcl::GEOM_OCTREE) {
-    return ocTreeCellId(static_cast<const fcl::OcTreed&>(*geometry), Eigen::Vector3d::Map(p.center));
-  }
-#endif
-  return p.primitive;
-}
-
-void refineContact(void* engine_workspace, const engine::TreeView& a, const engine::TreeView& b, double tolerance_time,
-                   engine::LeafContact& leaf, FeatureKind& feature) {
-  static_assert(static_cast<int>(FeatureKind::edgeFace) == engine::kEdgeFace &&
-                static_cast<int>(FeatureKind::faceEdge) == engine::kFaceEdge &&
-                static_cast<int>(FeatureKind::volume) == engine::kVolume);
-  if (leaf.feature >= 0) {  // its solver has done so
-    feature = static_cast<FeatureKind>(leaf.feature);
-    return;
-  }
-  const engine::Piece &x = a.pieces[leaf.piece_a], &y = b.pieces[leaf.piece_b];
-  if (x.num_vertices != 3 || y.num_vertices != 3) return;
-  Eigen::Vector3d p[3], q[3];
-  for (int i = 0; i < 3; ++i) {
-    p[i] = Eigen::Vector3d::Map(a.vertices + 3 * (x.first_vertex + i));
-    q[i] = Eigen::Vector3d::Map(b.vertices + 3 * (y.first_vertex + i));
-  }
-  const MotionAt motion = [&](double tm, double d, ScalarMotion& out) {
-    engine::engine().pairMotion(engine_workspace, leaf.pair, tm, d, out);
-  };
-  RefinedContact refined;
-  const double end = leaf.certain ? leaf.t_upper : std::min(1.0, leaf.t_lower + tolerance_time);
-  if (!refineTriangleContact(p, q, motion, leaf.t_lower, end, refined)) return;
-  feature = refined.feature;
-  leaf.t_lower = refined.t_lower;
-  if (refined.certain) {
-    leaf.certain = true;
-    leaf.t_upper = refined.t_upper;
-  }
-  leaf.t = refined.certain ? refined.t_upper : refined.t_lower;
-  Eigen::Vector3d::Map(leaf.point) = refined.point;
-  Eigen::Vector3d::Map(leaf.normal) = refined.normal;
 }
 
 }  // namespace fcl_artic

@@ -15,17 +15,26 @@ ArticulatedCollisionManager::~ArticulatedCollisionManager() = default;
 ArticulatedCollisionManager::ArticulatedCollisionManager(ArticulatedCollisionManager&&) noexcept = default;
 ArticulatedCollisionManager& ArticulatedCollisionManager::operator=(ArticulatedCollisionManager&&) noexcept = default;
 
-const KinematicTree& ArticulatedCollisionManager::tree() const { return *impl_->registry.tree(); }
+const KinematicTree& ArticulatedCollisionManager::tree() const {
+  return *impl_->registry.tree();
+}
 std::shared_ptr<const KinematicTree> ArticulatedCollisionManager::sharedTree() const {
   return impl_->registry.tree();
 }
 
-void ArticulatedCollisionManager::registerObject(fcl::CollisionObjectd* object, const std::string& name) {
+void ArticulatedCollisionManager::registerObject(const fcl::CollisionObjectd* object, const std::string& name) {
   impl_->registry.registerObject(object, name);
   impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::registerObject(fcl::ContinuousCollisionObjectd* object, const std::string& name) {
+void ArticulatedCollisionManager::registerObject(std::shared_ptr<const fcl::CollisionObjectd> object,
+                                                 const std::string& name) {
+  impl_->registry.registerObject(object.get(), name, object);
+  impl_->setup.obstaclesChanged();
+}
+
+void ArticulatedCollisionManager::registerObject(const fcl::ContinuousCollisionObjectd* object,
+                                                 const std::string& name) {
   impl_->registry.registerObject(object, name);
   impl_->setup.obstaclesChanged();
 }
@@ -35,54 +44,76 @@ void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::Collisi
   if (!objects.empty()) impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::unregisterObject(fcl::CollisionObjectd* object) {
+void ArticulatedCollisionManager::unregisterObject(const fcl::CollisionObjectd* object) {
   const bool carried = impl_->registry.unregisterObject(object);
   carried ? impl_->setup.robotChanged() : impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::unregisterObject(fcl::ContinuousCollisionObjectd* object) {
+void ArticulatedCollisionManager::unregisterObject(const fcl::ContinuousCollisionObjectd* object) {
   impl_->registry.unregisterObject(object);
   impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::bind(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset) {
+void ArticulatedCollisionManager::bind(LinkId link, const fcl::CollisionObjectd* object,
+                                       const Eigen::Isometry3d& offset) {
   impl_->registry.bind(link, object, offset);
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::bind(const std::string& link, fcl::CollisionObjectd* object,
+void ArticulatedCollisionManager::bind(const std::string& link, const fcl::CollisionObjectd* object,
                                        const Eigen::Isometry3d& offset) {
   bind(impl_->registry.requireLink(link, "bind"), object, offset);
 }
 
-void ArticulatedCollisionManager::unbind(fcl::CollisionObjectd* object) {
+void ArticulatedCollisionManager::bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
+                                       const Eigen::Isometry3d& offset) {
+  impl_->registry.bind(link, object.get(), offset, object);
+  impl_->setup.robotChanged();
+}
+
+void ArticulatedCollisionManager::bind(const std::string& link, std::shared_ptr<const fcl::CollisionObjectd> object,
+                                       const Eigen::Isometry3d& offset) {
+  bind(impl_->registry.requireLink(link, "bind"), std::move(object), offset);
+}
+
+void ArticulatedCollisionManager::unbind(const fcl::CollisionObjectd* object) {
   impl_->registry.unbind(object);
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::attach(LinkId link, fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
-                                         const std::vector<std::string>& touch_links) {
+void ArticulatedCollisionManager::attach(LinkId link, const fcl::CollisionObjectd* object,
+                                         const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links) {
   impl_->registry.attach(link, object, offset, touch_links);
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::attach(const std::string& link, fcl::CollisionObjectd* object,
+void ArticulatedCollisionManager::attach(const std::string& link, const fcl::CollisionObjectd* object,
                                          const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links) {
   attach(impl_->registry.requireLink(link, "attach"), object, offset, touch_links);
 }
 
-void ArticulatedCollisionManager::detach(fcl::CollisionObjectd* object) {
+void ArticulatedCollisionManager::detach(const fcl::CollisionObjectd* object) {
   impl_->registry.detach(object);
   impl_->setup.robotChanged();
 }
 
 void ArticulatedCollisionManager::setAllowedCollisions(AllowedCollisionMatrix matrix) {
-  impl_->registry.allowed = std::move(matrix);
+  impl_->registry.setAllowed(std::move(matrix));
+  impl_->setup.robotChanged();
+}
+
+void ArticulatedCollisionManager::allow(const std::string& a, const std::string& b) {
+  impl_->registry.allow(a, b);
+  impl_->setup.robotChanged();
+}
+
+void ArticulatedCollisionManager::disallow(const std::string& a, const std::string& b) {
+  impl_->registry.disallow(a, b);
   impl_->setup.robotChanged();
 }
 
 const AllowedCollisionMatrix& ArticulatedCollisionManager::allowedCollisions() const {
-  return impl_->registry.allowed;
+  return impl_->registry.allowed();
 }
 
 void ArticulatedCollisionManager::setMargin(const std::string& body, double margin) {
@@ -112,15 +143,15 @@ void ArticulatedCollisionManager::update() {
   impl_->use(impl_->registry.readAgain());
 }
 
-void ArticulatedCollisionManager::update(fcl::CollisionObjectd* object) {
-  update(std::vector<fcl::CollisionObjectd*>{object});
+void ArticulatedCollisionManager::update(const fcl::CollisionObjectd* object) {
+  impl_->use(impl_->registry.readAgain(std::vector<const fcl::CollisionObjectd*>{object}));
 }
 
 void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd*>& objects) {
-  impl_->use(impl_->registry.readAgain(objects));
+  impl_->use(impl_->registry.readAgain(std::vector<const fcl::CollisionObjectd*>(objects.begin(), objects.end())));
 }
 
-void ArticulatedCollisionManager::update(fcl::ContinuousCollisionObjectd* object) {
+void ArticulatedCollisionManager::update(const fcl::ContinuousCollisionObjectd* object) {
   impl_->use(impl_->registry.readAgain(object));
 }
 
@@ -129,18 +160,18 @@ void ArticulatedCollisionManager::clear() {
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::getObjects(std::vector<fcl::CollisionObjectd*>& objects) const {
+void ArticulatedCollisionManager::getObjects(std::vector<const fcl::CollisionObjectd*>& objects) const {
   objects.clear();
   for (const ManagedBody& b : impl_->registry.obstacles()) objects.push_back(b.object);
 }
 
-void ArticulatedCollisionManager::getObjects(std::vector<fcl::ContinuousCollisionObjectd*>& objects) const {
+void ArticulatedCollisionManager::getObjects(std::vector<const fcl::ContinuousCollisionObjectd*>& objects) const {
   objects.clear();
   for (const ManagedBody& b : impl_->registry.moving()) objects.push_back(b.moving);
 }
 
-std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> ArticulatedCollisionManager::boundObjects() const {
-  std::vector<std::pair<LinkId, fcl::CollisionObjectd*>> bound;
+std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> ArticulatedCollisionManager::boundObjects() const {
+  std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> bound;
   for (const ManagedBody& b : impl_->registry.links()) bound.emplace_back(b.link, b.object);
   return bound;
 }

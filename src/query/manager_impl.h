@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "fcl_artic/manager.h"
-#include "query/registry.h"
-#include "query/setup.h"
+#include "setup/registry.h"
+#include "setup/setup.h"
 #include "visibility/choice.h"
 #include "visibility/culler.h"
 
@@ -17,7 +17,8 @@ namespace fcl_artic {
 /// Who does stage 2, and what it was measured to be worth to each solver.
 struct Stage2 {
   explicit Stage2(std::shared_ptr<const VisibilityCuller> by)
-      : culler(std::move(by)), standard(visibility::ExecutorLoan::firstUse(*culler)),
+      : culler(std::move(by)),
+        standard(visibility::ExecutorLoan::firstUse(*culler)),
         redon(visibility::ExecutorLoan::firstUse(*culler)) {}
   std::shared_ptr<const VisibilityCuller> culler;
   visibility::Choice standard, redon;

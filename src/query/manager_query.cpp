@@ -6,10 +6,12 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "narrowphase/engine_workspace.h"
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
+#include "query/report.h"
 #include "visibility/solve.h"
 
 namespace fcl_artic {
@@ -60,11 +62,11 @@ struct Solved {
 
 void solve(const Registry& registry, Stage2& stage2, const CertifiedRequest& request, const engine::Problem& problem,
            engine::Query& query, Workspace& workspace, Solved& solved) {
-  if (request.method == Method::Redon2004) {
+  if (request.method == Method::redon2004) {
     const auto treeOf = [&](std::int32_t body) { return registry.body(body).shape->obbTree(); };
     const auto method = [&](const engine::Query& asked, engine::Answer& out) {
       RedonStatistics work;
-      redon::solve(workspace.redon(), workspace.engine(), problem, asked, request.redon, treeOf, out, work);
+      redon::solve(workspace.redon(), workspace.engine, problem, asked, request.redon, treeOf, out, work);
       addWork(work, solved.redon);  // of both solves, where there are two
       solved.redon.pairs_by_standard = work.pairs_by_standard;
     };
@@ -72,56 +74,29 @@ void solve(const Registry& registry, Stage2& stage2, const CertifiedRequest& req
                       solved.stage);
   } else {
     const auto method = [&](const engine::Query& asked, engine::Answer& out) {
-      engine::engine().solve(workspace.engine(), problem, asked, out);
+      workspace.engine.solve(problem, asked, out);
     };
     visibility::solve(*stage2.culler, stage2.standard, request.visibility, method, problem, query, solved.answer,
                       solved.stage);
   }
 }
 
-FeatureKind swapped(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::vertexEdge: return FeatureKind::edgeVertex;
-    case FeatureKind::edgeVertex: return FeatureKind::vertexEdge;
-    case FeatureKind::vertexFace: return FeatureKind::faceVertex;
-    case FeatureKind::faceVertex: return FeatureKind::vertexFace;
-    case FeatureKind::edgeFace: return FeatureKind::faceEdge;
-    case FeatureKind::faceEdge: return FeatureKind::edgeFace;
-    default: return kind;
-  }
-}
-
-/// A contact as users see it: features named, in world axes, links before obstacles.
+/// A contact as users see it, links before obstacles.
 /// @param time  of the obstacles' motions.
-CertifiedContact report(const Registry& registry, void* workspace, const JointMotion& motion,
-                        const engine::Query& query, const TimePart& time, engine::LeafContact leaf) {
+CertifiedContact report(const Registry& registry, const JointMotion& motion, const TimePart& time,
+                        const engine::LeafContact& leaf) {
+  const auto poseAt = [&](const ManagedBody& body, double t) -> Eigen::Isometry3d {
+    if (body.link < 0) return body.pose(time.at(t));
+    return registry.tree()->linkPose(body.link, motion.configuration(t)) * body.offset;
+  };
+  const auto reported = [&](const ManagedBody& body) -> ReportedBody {
+    return {body.reference(), body.geometry.get(), *body.shape};
+  };
   const ManagedBody &a = registry.body(leaf.body_a), &b = registry.body(leaf.body_b);
-  CertifiedContact contact;
-  if (query.margins.of(leaf.pair) == 0) {
-    refineContact(workspace, a.shape->view(), b.shape->view(), query.tolerance_time, leaf, contact.feature);
-  }
-  const Eigen::Isometry3d M_0a = a.link >= 0
-                                     ? registry.tree()->linkPose(a.link, motion.configuration(leaf.t)) * a.offset
-                                     : a.pose(time.at(leaf.t));
-  contact.point = M_0a * Eigen::Vector3d::Map(leaf.point);
-  contact.normal = (M_0a.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
-  contact.body1 = a.reference();
-  contact.body2 = b.reference();
-  contact.o1 = a.geometry.get();
-  contact.o2 = b.geometry.get();
-  contact.b1 = primitiveId(a.geometry.get(), *a.shape, leaf.piece_a);
-  contact.b2 = primitiveId(b.geometry.get(), *b.shape, leaf.piece_b);
-  if (a.link < 0) {
-    contact.feature = swapped(contact.feature);
-    std::swap(contact.body1, contact.body2);
-    std::swap(contact.o1, contact.o2);
-    std::swap(contact.b1, contact.b2);
-    contact.normal = -contact.normal;
-  }
-  contact.t_lower = leaf.t_lower;
-  contact.t_upper = leaf.t_upper;
-  contact.certain = leaf.certain;
-  return contact;
+  const Eigen::Isometry3d M_0a = poseAt(a, leaf.t);
+  const Eigen::Isometry3d M_0a_nearest = leaf.t_nearest == leaf.t ? M_0a : poseAt(a, leaf.t_nearest);
+  const CertifiedContact contact = reportContact(leaf, reported(a), reported(b), M_0a, M_0a_nearest);
+  return a.link < 0 ? swapBodies(contact) : contact;
 }
 
 /// The solver's work and stage 2's.
@@ -169,6 +144,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   motion.requireOf(robot);
   engine::Query query = makeQuery(request);
+  query.check_scene = request.check_scene;
 
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point t) {
@@ -202,15 +178,11 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const engine::Answer& answer = solved.answer;
   const Clock::time_point end = request.measure_times ? Clock::now() : Clock::time_point();
 
-  result.status = statusOf(answer.verdict);
-  result.t_lower = answer.t_lower;
-  result.t_upper = answer.t_upper;
-  result.certain = answer.certain;
+  static_cast<Bracket&>(result) = answer;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(report(registry, workspace->engine(), motion, query, aspects.time, answer.contacts[i]));
+    result.contacts.push_back(report(registry, motion, aspects.time, answer.contacts[i]));
   }
-  sharpenBracket(request, query.every_pair, result);
   result.M_0_at_lower.clear();
   if (!result.isFree()) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
@@ -238,6 +210,35 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
                                           CertifiedResult& result) const {
   answerOrClaimNothing(result, 0, 1, [&] { collideMotion(JointMotion::linear(tree(), q, q), request, result); });
+}
+
+CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointMotion& motion,
+                                                               const CertifiedRequest& request) const {
+  CertifiedResult result;
+  continuousCollide(motion, request, result);
+  return result;
+}
+
+CertifiedResult ArticulatedCollisionManager::continuousCollide(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                                               const CertifiedRequest& request) const {
+  return continuousCollide(JointMotion::linear(tree(), q0, q1), request);
+}
+
+bool ArticulatedCollisionManager::isFree(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                         const CertifiedRequest& request) const {
+  return isFree(JointMotion::linear(tree(), q0, q1), request);
+}
+
+bool ArticulatedCollisionManager::isFree(const JointMotion& motion, const CertifiedRequest& request) const {
+  CertifiedRequest any = request;
+  any.mode = ContactMode::any;
+  return continuousCollide(motion, any).isFree();
+}
+
+CertifiedResult ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request) const {
+  CertifiedResult result;
+  collide(q, request, result);
+  return result;
 }
 
 }  // namespace fcl_artic

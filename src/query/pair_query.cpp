@@ -6,8 +6,13 @@
 
 #include "geometry/solid_space.h"
 #include "motion/frame_sweep.h"
+#include "motion/variables.h"
+#include "narrowphase/engine_workspace.h"
+#include "numerics/baseline_isa.h"
 #include "query/engine_query.h"
-#include "query/motion_variables.h"
+#include "query/report.h"
+
+#include "convex/piece_kinds.h"
 
 namespace fcl_artic {
 namespace {
@@ -57,8 +62,7 @@ engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motio
 
 const Piece* unboundedPiece(const ShapeTree& shape) {
   const Piece& piece = shape.view().pieces[0];
-  const bool unbounded = piece.kind == PieceKind::halfspace || piece.kind == PieceKind::plane;
-  return shape.view().num_pieces == 1 && unbounded ? &piece : nullptr;
+  return shape.view().num_pieces == 1 && sse2::unbounded(piece) ? &piece : nullptr;
 }
 
 /// Poses at t_lower and t_upper.
@@ -70,7 +74,7 @@ void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPai
   result.tf2_at_upper = same ? result.tf2_at_lower : motion2.pose(result.t_upper);
 }
 
-void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                   CertifiedPairResult& result);
 
 /// Two half-spaces or planes. They meet, unless their normals are parallel and stay so: then the distance of the one's
@@ -78,7 +82,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
 /// of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md, "Unbounded
 /// pieces").
 void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
-                    const CertifiedRequest& request, CertifiedPairResult& result) {
+                    const CertifiedPairRequest& request, CertifiedPairResult& result) {
   constexpr double kParallel = 64 * 0x1p-52;
   const Heading heading1 = headingOf(body1.motion, Eigen::Vector3d::Map(piece1.size));
   const Heading heading2 = headingOf(body2.motion, Eigen::Vector3d::Map(piece2.size));
@@ -97,7 +101,8 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
     const std::shared_ptr<const ShapeTree> shape = ShapeTree::fromPiece(point);
     const MovingShape &stays = keep_first ? body1 : body2, &goes = keep_first ? body2 : body1;
     const MovingShape pointwise{*shape, goes.motion, goes.geometry};
-    return keep_first ? solveBounded(stays, pointwise, request, result) : solveBounded(pointwise, stays, request, result);
+    return keep_first ? solveBounded(stays, pointwise, request, result)
+                      : solveBounded(pointwise, stays, request, result);
   }
   result = CertifiedPairResult();
   result.status = Status::contact;
@@ -124,6 +129,7 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
         body2.motion.pose(0) * Eigen::Vector3d(piece2.center[0] * Eigen::Vector3d::Map(piece2.size));
     contact.point += across * (n2.dot(p2 - contact.point) / n2.dot(across));
   }
+  contact.nearest1 = contact.nearest2 = contact.point;
   contact.t_lower = 0;
   contact.t_upper = result.t_upper;
   contact.certain = result.certain;
@@ -131,14 +137,14 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
 }
 
 /// At least one of the bodies is bounded.
-void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                   CertifiedPairResult& result) {
   engine::Query query = makeQuery(request);
   query.check_scene = false;
   query.check_self = true;
   query.every_pair = false;
   const WorkspaceLoan workspace;
-  engine::Body (&bodies)[2] = workspace->bodies;
+  engine::Body(&bodies)[2] = workspace->bodies;
   bodies[0].tree = &body1.shape.view();
   bodies[1].tree = &body2.shape.view();
   engine::LinkPair pair;
@@ -160,47 +166,29 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
   }
   engine::Answer answer;
   RedonStatistics redon_work;
-  if (request.method == Method::Redon2004) {
+  if (request.method == Method::redon2004) {
     const auto treeOf = [&](std::int32_t body) { return (body == 0 ? body1 : body2).shape.obbTree(); };
-    redon::solve(workspace->redon(), workspace->engine(), problem, query, request.redon, treeOf, answer, redon_work);
+    redon::solve(workspace->redon(), workspace->engine, problem, query, request.redon, treeOf, answer, redon_work);
   } else {
-    engine::engine().solve(workspace->engine(), problem, query, answer);
+    workspace->engine.solve(problem, query, answer);
   }
 
-  result.status = statusOf(answer.verdict);
-  result.t_lower = answer.t_lower;
-  result.t_upper = answer.t_upper;
-  result.certain = answer.certain;
+  static_cast<Bracket&>(result) = answer;
   result.ignored_initial_contact = answer.num_ignored > 0;
   result.statistics = statisticsOf(answer.statistics);
   result.statistics.redon = redon_work;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    engine::LeafContact leaf = answer.contacts[i];
-    result.contacts.emplace_back();
-    CertifiedContact& contact = result.contacts.back();
-    if (query.margins.largest() == 0) {
-      refineContact(workspace->engine(), body1.shape.view(), body2.shape.view(), request.tolerance_time, leaf,
-                    contact.feature);
-    }
-    const Eigen::Isometry3d M_01 = body1.motion.pose(leaf.t);
-    contact.point = M_01 * Eigen::Vector3d::Map(leaf.point);
-    contact.normal = (M_01.linear() * Eigen::Vector3d::Map(leaf.normal)).normalized();
-    contact.o1 = body1.geometry;
-    contact.o2 = body2.geometry;
-    contact.b1 = primitiveId(body1.geometry, body1.shape, leaf.piece_a);
-    contact.b2 = primitiveId(body2.geometry, body2.shape, leaf.piece_b);
-    contact.t_lower = leaf.t_lower;
-    contact.t_upper = leaf.t_upper;
-    contact.certain = leaf.certain;
+    const engine::LeafContact& leaf = answer.contacts[i];
+    const ReportedBody a = {{}, body1.geometry, body1.shape}, b = {{}, body2.geometry, body2.shape};
+    result.contacts.push_back(reportContact(leaf, a, b, body1.motion.pose(leaf.t), body1.motion.pose(leaf.t_nearest)));
   }
-  sharpenBracket(request, false, result);
   setPoses(body1.motion, body2.motion, result);
 }
 
 }  // namespace
 
-void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                CertifiedPairResult& result) {
   if (!body1.shape.view().num_pieces || !body2.shape.view().num_pieces) {  // an OcTree without an occupied cell
     makeQuery(request);

@@ -18,9 +18,9 @@ struct MovingShape {
 };
 
 /// First contact of two bodies, or the proof that there is none. Bodies may be unbounded (half-spaces, planes).
-/// CertifiedRequest::check_scene and check_self have no meaning here; mode firstOfEveryPair is first.
+/// CertifiedPairRequest::check_scene and check_self have no meaning here; mode firstOfEveryPair is first.
 /// @throws std::invalid_argument for a tolerance or margin that is negative or not finite.
-void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedRequest& request,
+void solvePair(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                CertifiedPairResult& result);
 
 }  // namespace fcl_artic

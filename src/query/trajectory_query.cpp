@@ -14,48 +14,20 @@
 // next one too (Query::may_ignore), all others are watched. A pair that has separated is never ignored again.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
+#include "model/trajectory_time.h"
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 
 namespace fcl_artic {
 namespace {
-
-/// The next double below x, from its bits, so that no rounding mode matters. A sum, difference or product of doubles
-/// that is computed as x, in any mode, is no less. (Below 2^-1000, where products underflow, times count as 0.)
-double below(double x) {
-  if (std::abs(x) < 0x1p-1000) return -0x1p-1000;
-  std::int64_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  bits += x > 0 ? -1 : 1;
-  std::memcpy(&x, &bits, sizeof bits);
-  return x;
-}
-double above(double x) {
-  return -below(-x);
-}
-
-/// From the time of a piece to that of the trajectory.
-struct Clock {
-  double begin, end;
-  double lower(double s) const {
-    const double t = below(begin + below(below(end - begin) * s));
-    return s <= 0 ? begin : s >= 1 ? end : std::min(end, std::max(begin, t));
-  }
-  double upper(double s) const {
-    const double t = above(begin + above(above(end - begin) * s));
-    return s <= 0 ? begin : s >= 1 ? end : std::min(end, std::max(begin, t));
-  }
-};
 
 /// Part of the whole trajectory's time that a piece takes.
 TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
@@ -82,6 +54,13 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
   answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, true, result); });
 }
 
+CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory,
+                                                               const CertifiedRequest& request) const {
+  CertifiedResult result;
+  continuousCollide(trajectory, request, result);
+  return result;
+}
+
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
                                                     bool own_margins, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
@@ -95,18 +74,18 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   bool contact_found = false;
   CertifiedResult part;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) {
-    const Clock clock = {trajectory.times()[k], trajectory.times()[k + 1]};
+    const PieceTime clock(trajectory.times()[k], trajectory.times()[k + 1]);
     CertifiedRequest own = request;
-    own.tolerance_time = std::min(1.0, std::max(request.tolerance_time / (clock.end - clock.begin), 0x1p-1000));
+    own.tolerance_time = std::min(1.0, std::max(request.tolerance_time / clock.duration(), 0x1p-1000));
     own.ignore_initial_contact = k == 0 ? request.ignore_initial_contact : !in_contact.empty();
-    if (request.progress) own.progress = [&](double s) { request.progress(clock.lower(s)); };
-    const std::uint64_t used = sum.statistics.node_tests + sum.statistics.leaf_tests;
+    if (request.progress) own.progress = [&](double s) { return request.progress(clock.lower(s)); };
+    const std::uint64_t used = countedWork(sum.statistics);
     if (request.work_budget) {
       if (used >= request.work_budget) {
         sum.status = Status::undecided;
         sum.certain = false;
         if (contact_found) break;  // not of every pair
-        sum.t_lower = clock.begin;
+        sum.t_lower = clock.begin();
         tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
         break;
       }
@@ -137,13 +116,14 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       sum.certain = part.certain;
       sum.M_0_at_lower = part.M_0_at_lower;
     }
-    // 1 may mean that nothing is proven.
-    if (part.certain || part.t_upper < 1) sum.t_upper = std::min(sum.t_upper, clock.upper(part.t_upper));
+    const double proven_by = engine::provenBy(part);
+    if (proven_by <= 1) sum.t_upper = std::min(sum.t_upper, clock.upper(proven_by));
     for (std::size_t i = 0; i < part.contacts.size(); ++i) {
       if (every_pair && seen.count(pairs_of_part[i])) continue;
       CertifiedContact& contact = part.contacts[i];
       contact.t_lower = clock.lower(contact.t_lower);
       contact.t_upper = contact.certain ? clock.upper(contact.t_upper) : trajectory.endTime();
+      contact.approach_speed /= clock.duration();
       sum.contacts.push_back(contact);
       if (every_pair) pairs.push_back(pairs_of_part[i]);
     }

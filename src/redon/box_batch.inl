@@ -115,6 +115,7 @@ unsigned boxesApart(const IntervalTransform& M, const ObbNode* const* a, const O
 }  // namespace
 }  // namespace FCL_ARTIC_ISA
 
-const redon::BoxBatch redon::FCL_ARTIC_ISA_BATCH = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), FCL_ARTIC_ISA::kFewest, &FCL_ARTIC_ISA::boxesApart};
+const redon::BoxBatch redon::FCL_ARTIC_ISA_BATCH = {FCL_ARTIC_STRING(FCL_ARTIC_ISA), FCL_ARTIC_ISA::kFewest,
+                                                    &FCL_ARTIC_ISA::boxesApart};
 
 }  // namespace fcl_artic

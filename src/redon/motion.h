@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "interval/chain_bounds.h"
+#include "redon/chain_bounds.h"
 #include "redon/options.h"
 
 namespace fcl_artic {
@@ -36,8 +36,7 @@ IntervalTransform relateRate(const IntervalTransform& inverse_a, const IntervalT
 class SweepChains {
  public:
   /// @param only_paths  each time that a step is asked for, the path to it is bounded anew: what an equation on its own
-  /// pays
-  ///   (Redon 2004, eq. 15).
+  ///   pays (Redon 2004, eq. 15).
   void begin(const engine::Problem& problem, const engine::Query& query, Enclosure enclosure, bool only_paths,
              Counts& counts);
   void setInterval(double begin, double end, Derivatives derivatives);

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <vector>
 
-#include "narrowphase/bracket.h"
+#include "model/bracket.h"
+#include "narrowphase/engine_workspace.h"
+#include "numerics/assertion.h"
 #include "redon/solver.h"
 #include "redon/swept_volumes.h"
 
@@ -14,10 +16,10 @@ namespace redon {
 namespace {
 
 using engine::Answer;
+using engine::FirstContact;
 using engine::LeafContact;
 using engine::Problem;
 using engine::Query;
-using engine::Verdict;
 using Clock = std::chrono::steady_clock;
 
 /// Adds up the time of stages, where it is asked for.
@@ -66,12 +68,12 @@ namespace {
 
 /// Passes progress on, no later than what is proven of the pairs that the solver at work knows nothing of.
 struct Progress {
-  void (*tell)(void* context, double t_lower);
+  bool (*tell)(void* context, double t_lower);
   void* context;
   double others = 0;
-  static void update(void* self, double t_lower) {
+  static bool update(void* self, double t_lower) {
     const auto& progress = *static_cast<const Progress*>(self);
-    progress.tell(progress.context, std::min(progress.others, t_lower));
+    return progress.tell(progress.context, std::min(progress.others, t_lower));
   }
 };
 
@@ -80,15 +82,9 @@ struct Progress {
 /// no stage has come to, for whatever reason, counts as not free.
 class Run {
  public:
-  Run(Workspace::Impl& w, void* engine_workspace, const Problem& problem, const Query& query, const Options& options,
-      const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
-      : w_(w),
-        engine_(engine_workspace),
-        problem_(problem),
-        query_(query),
-        options_(options),
-        treeOf_(treeOf),
-        counts_(counts) {}
+  Run(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
+      const Options& options, const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
+      : w_(w), engine_(engine), problem_(problem), query_(query), options_(options), treeOf_(treeOf), counts_(counts) {}
 
   void solve(Answer& answer);
 
@@ -104,12 +100,13 @@ class Run {
   Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
   void keepFirst(std::size_t begin, double bracket);
   void provenFree(std::int32_t pair, double until) {
+    FCL_ARTIC_ASSERT(pair >= 0 && pair < numPairs() && until >= 0 && until <= 1);
     double& known = w_.free_until[static_cast<std::size_t>(pair)];
     known = std::max(known, until);
   }
 
   Workspace::Impl& w_;
-  void* engine_;
+  engine::EngineWorkspace& engine_;
   const Problem& problem_;
   const Query& query_;
   const Options& options_;
@@ -161,14 +158,15 @@ bool Run::touchesAtStart(Answer& answer) {
   still.max_contacts = 1;
   still.progress = nullptr;
   still.refine = nullptr;
+  still.describe_contacts = false;
   still.link_free = nullptr;  // of the motion itself
   // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
   // When they part is no question at rest: no interval is divided.
   still.every_pair = false;
   still.ignore_initial = query_.every_pair || query_.ignore_initial;
   if (still.ignore_initial) still.tolerance_time = 1;
-  engine::engine().solve(engine_, problem_, still, answer);
-  if (answer.verdict != Verdict::free) return true;
+  engine_.solve(problem_, still, answer);
+  if (!answer.isFree()) return true;
   for (int i = 0; i < answer.num_ignored; ++i) w_.by_engine[static_cast<std::size_t>(answer.ignored[i].pair)] = 1;
   return false;
 }
@@ -188,8 +186,8 @@ void Run::solveRest(const Query& query, Answer& answer) {
   w_.rest = problem_;
   w_.rest.scene_allowed = w_.scene_allowed.data();
   w_.rest.link_allowed = w_.link_allowed.data();
-  engine::engine().solve(engine_, w_.rest, query, answer);
-  const double until = answer.verdict == Verdict::free ? 1 : answer.t_lower;
+  engine_.solve(w_.rest, query, answer);
+  const double until = answer.isFree() ? 1 : answer.t_lower;
   for (std::int32_t p = 0; p < numPairs(); ++p) {
     if (w_.by_engine[static_cast<std::size_t>(p)]) provenFree(p, until);
   }
@@ -269,10 +267,7 @@ void Run::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
   all.erase(std::remove_if(first, all.end(), [&](const LeafContact& c) { return c.t_lower > bracket; }), all.end());
-  std::stable_sort(first, all.end(), [](const LeafContact& x, const LeafContact& y) {
-    if (x.certain != y.certain) return x.certain;
-    return x.certain ? x.t_upper < y.t_upper : x.t_lower < y.t_lower;
-  });
+  std::stable_sort(first, all.end(), engine::comesBefore);
   all.resize(std::min(all.size(), begin + static_cast<std::size_t>(query_.max_contacts)));
 }
 
@@ -282,7 +277,7 @@ void Run::solve(Answer& answer) {
   if (!choosePairs() || touchesAtStart(answer)) {
     counts_.pairs_by_standard = 0;
     for (std::int32_t p = 0; p < numPairs(); ++p) counts_.pairs_by_standard += asked(p);
-    engine::engine().solve(engine_, problem_, query_, answer);
+    engine_.solve(problem_, query_, answer);
     return;
   }
   // Of the paper's pairs nothing is known while the engine looks at its own.
@@ -294,9 +289,8 @@ void Run::solve(Answer& answer) {
     query.progress_context = &progress;
   }
   solveRest(query, answer);
-  bool contact = answer.verdict == Verdict::contact, out_of_budget = answer.verdict == Verdict::undecided;
-  double t_upper = answer.certain || answer.t_upper < 1 ? answer.t_upper : 2;
-  if (answer.verdict == Verdict::free) t_upper = 2;
+  bool contact = answer.status == Status::contact, out_of_budget = answer.status == Status::undecided;
+  double t_upper = engine::provenBy(answer);
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
   const RoundUpward upward;
@@ -309,7 +303,7 @@ void Run::solve(Answer& answer) {
   };
   findPairs();
   if (!query_.every_pair) {
-    progress.others = answer.verdict == Verdict::free ? 1 : answer.t_lower;
+    progress.others = answer.isFree() ? 1 : answer.t_lower;
     take(w_.pairs, search(w_.pairs, contact ? (answer.certain ? answer.t_upper : answer.t_lower) : 2));
   } else {
     std::sort(w_.pairs.begin(), w_.pairs.end(), [](const BodyPair& x, const BodyPair& y) { return x.index < y.index; });
@@ -322,23 +316,24 @@ void Run::solve(Answer& answer) {
     }
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
-  const bool certain = contact && engine::isCertain({t_lower, t_upper}, query_.tolerance_time, false);
+  const bool certain = contact && engine::isCertain(FirstContact{t_lower, t_upper}, query_.tolerance_time, false);
   // Nothing is dropped before t_lower and t_upper are known. (With every pair max_contacts is of each.)
   if (!query_.every_pair) keepFirst(0, certain ? t_upper : t_lower + query_.tolerance_time);
-  answer.verdict = out_of_budget ? Verdict::undecided
-                   : contact     ? Verdict::contact
-                   : t_lower < 1 ? Verdict::undecided
-                                 : Verdict::free;
-  answer.certain = answer.verdict == Verdict::contact && certain;
-  answer.t_lower = t_lower;
-  answer.t_upper = answer.verdict == Verdict::free ? 1 : std::min(1.0, t_upper);
+  const bool undecided = out_of_budget || (!contact && t_lower < 1);
+  const FirstContact first = contact || undecided ? FirstContact{t_lower, t_upper} : FirstContact();
+  static_cast<Bracket&>(answer) =
+      undecided ? engine::undecidedBracket(t_lower, first) : engine::bracketOf(first, query_.tolerance_time, false);
+  if (answer.status != Status::contact) w_.contacts.clear();
+  for (LeafContact& own : w_.contacts) {
+    if (!w_.by_engine[static_cast<std::size_t>(own.pair)]) engine_.addWitness(problem_, query_, own);
+  }
   answer.contacts = w_.contacts.data();
-  answer.num_contacts = answer.verdict == Verdict::contact ? static_cast<std::int32_t>(w_.contacts.size()) : 0;
+  answer.num_contacts = static_cast<std::int32_t>(w_.contacts.size());
 }
 
 }  // namespace
 
-void solve(Workspace& workspace, void* engine_workspace, const Problem& problem, const Query& query,
+void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
            const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf, Answer& answer,
            Counts& counts) {
   Query& first = workspace.impl().first;
@@ -346,7 +341,7 @@ void solve(Workspace& workspace, void* engine_workspace, const Problem& problem,
   first.any = false;  // where any contact would do, the first one is looked for
   first.likely = nullptr;
   first.num_likely = 0;
-  Run(workspace.impl(), engine_workspace, problem, first, options, treeOf, counts).solve(answer);
+  Run(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 
 }  // namespace redon

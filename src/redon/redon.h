@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "geometry/obb_tree.h"
-#include "narrowphase/problem.h"
+#include "narrowphase/engine_workspace.h"
 #include "redon/options.h"
 
 namespace fcl_artic {
@@ -32,12 +32,12 @@ class Workspace {
 /// Answers as engine::Engine::solve does. What the paper has no method for, its pairs with curved or unbounded pieces,
 /// with a margin, or with a motion known by bounds only, and whatever touches at t = 0, is left to the engine. Stage 2
 /// (engine::Query::refine) is asked once for the paper's pairs, and by the engine for its own.
-/// @param engine_workspace  its workspace. Contacts that it finds have no `feature`.
+/// @param engine  its workspace. Contacts that it finds have no `feature`.
 /// @param treeOf  a body's tree of oriented boxes, null where it has none.
 /// @param[out] counts  work; the answer's own statistics count what the engine did.
-void solve(Workspace& workspace, void* engine_workspace, const engine::Problem& problem, const engine::Query& query,
-           const Options& options, const std::function<const ObbTree*(std::int32_t body)>& treeOf,
-           engine::Answer& answer, Counts& counts);
+void solve(Workspace& workspace, engine::EngineWorkspace& engine, const engine::Problem& problem,
+           const engine::Query& query, const Options& options,
+           const std::function<const ObbTree*(std::int32_t body)>& treeOf, engine::Answer& answer, Counts& counts);
 
 }  // namespace redon
 }  // namespace fcl_artic

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "model/answer.h"
+
 namespace fcl_artic {
 namespace redon {
 namespace {
@@ -140,7 +142,8 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
     // An equation by itself says nothing of the others.
     if (query_->progress && (counts_->intervals & 255) == 0) {
       const RoundToNearest usual;  // for the caller's code
-      query_->progress(query_->progress_context, options_->simultaneous ? task.begin : 0);
+      found.out_of_budget = !query_->progress(query_->progress_context, options_->simultaneous ? task.begin : 0);
+      if (found.out_of_budget) return found;
     }
     ++counts_->intervals;
     setInterval(task.begin, task.end);

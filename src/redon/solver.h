@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "model/answer.h"
 #include "redon/equations.h"
 
 namespace fcl_artic {

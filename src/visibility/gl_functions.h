@@ -15,37 +15,40 @@ namespace visibility {
 
 /// One context's functions, under their names without "gl".
 struct GlFunctions {
-#define FCL_ARTIC_GL_FUNCTIONS(X)                                                                                     \
-  X(ActiveTexture, ACTIVETEXTURE) X(AttachShader, ATTACHSHADER) X(BeginQuery, BEGINQUERY) X(BindBuffer, BINDBUFFER)   \
-  X(BindBufferBase, BINDBUFFERBASE) X(BindFramebuffer, BINDFRAMEBUFFER) X(BindTexture, BINDTEXTURE)                   \
-  X(BindVertexArray, BINDVERTEXARRAY) X(BlendEquation, BLENDEQUATION) X(BlendFunc, BLENDFUNC)                         \
-  X(BlitFramebuffer, BLITFRAMEBUFFER) X(BufferData, BUFFERDATA) X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)     \
-  X(Clear, CLEAR) X(ClearBufferfv, CLEARBUFFERFV) X(ClearColor, CLEARCOLOR) X(ClearDepth, CLEARDEPTH)                 \
-  X(ColorMask, COLORMASK) X(CompileShader, COMPILESHADER) X(CreateProgram, CREATEPROGRAM) X(CreateShader, CREATESHADER) \
-  X(DeleteBuffers, DELETEBUFFERS) X(DeleteFramebuffers, DELETEFRAMEBUFFERS) X(DeleteProgram, DELETEPROGRAM)           \
-  X(DeleteShader, DELETESHADER) X(DeleteTextures, DELETETEXTURES) X(DeleteVertexArrays, DELETEVERTEXARRAYS)           \
-  X(DepthFunc, DEPTHFUNC) X(DepthMask, DEPTHMASK) X(Disable, DISABLE) X(DrawArrays, DRAWARRAYS) X(DrawBuffer, DRAWBUFFER) \
-  X(Enable, ENABLE) X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) X(EndQuery, ENDQUERY)                         \
-  X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D) X(GenBuffers, GENBUFFERS) X(GenFramebuffers, GENFRAMEBUFFERS)         \
-  X(GenQueries, GENQUERIES) X(GenTextures, GENTEXTURES) X(GenVertexArrays, GENVERTEXARRAYS)                           \
-  X(GetBufferSubData, GETBUFFERSUBDATA) X(GetError, GETERROR) X(GetIntegerv, GETINTEGERV)                             \
-  X(GetProgramInfoLog, GETPROGRAMINFOLOG) X(GetProgramiv, GETPROGRAMIV) X(GetQueryObjectuiv, GETQUERYOBJECTUIV)       \
-  X(GetShaderInfoLog, GETSHADERINFOLOG) X(GetShaderiv, GETSHADERIV) X(GetUniformLocation, GETUNIFORMLOCATION)         \
-  X(LinkProgram, LINKPROGRAM) X(PixelStorei, PIXELSTOREI) X(ReadBuffer, READBUFFER) X(ReadPixels, READPIXELS)         \
-  X(ShaderSource, SHADERSOURCE) X(TexImage2D, TEXIMAGE2D) X(TexParameteri, TEXPARAMETERI) X(Uniform1f, UNIFORM1F)     \
-  X(Uniform1i, UNIFORM1I) X(Uniform2f, UNIFORM2F) X(Uniform3fv, UNIFORM3FV) X(UniformMatrix4fv, UNIFORMMATRIX4FV)     \
-  X(UseProgram, USEPROGRAM) X(VertexAttribIPointer, VERTEXATTRIBIPOINTER) X(VertexAttribPointer, VERTEXATTRIBPOINTER) \
-  X(Viewport, VIEWPORT)
+// clang-format off
+#define FCL_ARTIC_GL_FUNCTIONS(X)                                                                                 \
+  X(ActiveTexture, ACTIVETEXTURE) X(AttachShader, ATTACHSHADER) X(BeginQuery, BEGINQUERY) X(BindBuffer, BINDBUFFER)\
+  X(BindBufferBase, BINDBUFFERBASE) X(BindFramebuffer, BINDFRAMEBUFFER) X(BindTexture, BINDTEXTURE)               \
+  X(BindVertexArray, BINDVERTEXARRAY) X(BlendEquation, BLENDEQUATION) X(BlendFunc, BLENDFUNC)                     \
+  X(BlitFramebuffer, BLITFRAMEBUFFER) X(BufferData, BUFFERDATA) X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS) \
+  X(Clear, CLEAR) X(ClearBufferfv, CLEARBUFFERFV) X(ClearColor, CLEARCOLOR) X(ClearDepth, CLEARDEPTH)             \
+  X(ColorMask, COLORMASK) X(CompileShader, COMPILESHADER) X(CreateProgram, CREATEPROGRAM)                         \
+  X(CreateShader, CREATESHADER) X(DeleteBuffers, DELETEBUFFERS) X(DeleteFramebuffers, DELETEFRAMEBUFFERS)         \
+  X(DeleteProgram, DELETEPROGRAM) X(DeleteShader, DELETESHADER) X(DeleteTextures, DELETETEXTURES)                 \
+  X(DeleteVertexArrays, DELETEVERTEXARRAYS) X(DepthFunc, DEPTHFUNC) X(DepthMask, DEPTHMASK) X(Disable, DISABLE)   \
+  X(DrawArrays, DRAWARRAYS) X(DrawBuffer, DRAWBUFFER) X(Enable, ENABLE)                                           \
+  X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) X(EndQuery, ENDQUERY)                                       \
+  X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D) X(GenBuffers, GENBUFFERS) X(GenFramebuffers, GENFRAMEBUFFERS)     \
+  X(GenQueries, GENQUERIES) X(GenTextures, GENTEXTURES) X(GenVertexArrays, GENVERTEXARRAYS)                       \
+  X(GetBufferSubData, GETBUFFERSUBDATA) X(GetError, GETERROR) X(GetIntegerv, GETINTEGERV)                         \
+  X(GetProgramInfoLog, GETPROGRAMINFOLOG) X(GetProgramiv, GETPROGRAMIV) X(GetQueryObjectuiv, GETQUERYOBJECTUIV)   \
+  X(GetShaderInfoLog, GETSHADERINFOLOG) X(GetShaderiv, GETSHADERIV) X(GetUniformLocation, GETUNIFORMLOCATION)     \
+  X(LinkProgram, LINKPROGRAM) X(PixelStorei, PIXELSTOREI) X(ReadBuffer, READBUFFER) X(ReadPixels, READPIXELS)     \
+  X(ShaderSource, SHADERSOURCE) X(TexImage2D, TEXIMAGE2D) X(TexParameteri, TEXPARAMETERI) X(Uniform1f, UNIFORM1F) \
+  X(Uniform1i, UNIFORM1I) X(Uniform2f, UNIFORM2F) X(Uniform3fv, UNIFORM3FV) X(UniformMatrix4fv, UNIFORMMATRIX4FV) \
+  X(UseProgram, USEPROGRAM) X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)                                         \
+  X(VertexAttribPointer, VERTEXATTRIBPOINTER) X(Viewport, VIEWPORT)
+// clang-format on
 #define FCL_ARTIC_GL_DECLARE(name, NAME) PFNGL##NAME##PROC name = nullptr;
   FCL_ARTIC_GL_FUNCTIONS(FCL_ARTIC_GL_DECLARE)
 #undef FCL_ARTIC_GL_DECLARE
-  PFNGLMEMORYBARRIERPROC MemoryBarrier = nullptr;                      ///< OpenGL 4.2
-  PFNGLGETGRAPHICSRESETSTATUSPROC GetGraphicsResetStatus = nullptr;    ///< OpenGL 4.5, may be absent
+  PFNGLMEMORYBARRIERPROC MemoryBarrier = nullptr;                    ///< OpenGL 4.2
+  PFNGLGETGRAPHICSRESETSTATUSPROC GetGraphicsResetStatus = nullptr;  ///< OpenGL 4.5, may be absent
 
   /// @param context  is current.
   /// @throws std::runtime_error naming a function that is missing.
   explicit GlFunctions(const OffscreenContext& context) {
-#define FCL_ARTIC_GL_LOAD(name, NAME)                                        \
+#define FCL_ARTIC_GL_LOAD(name, NAME)                                       \
   name = reinterpret_cast<PFNGL##NAME##PROC>(context.function("gl" #name)); \
   if (!name) throw std::runtime_error("the driver lacks gl" #name);
     FCL_ARTIC_GL_FUNCTIONS(FCL_ARTIC_GL_LOAD)

@@ -28,15 +28,15 @@ void main() {
 })";
 
 /// Depth of the volume in this pixel: from depths().x to depths().y.
-#define FCL_ARTIC_DEPTHS                                \
-  "#version 430 core\n"                                 \
-  "flat in vec2 tile;\n"                                \
-  "flat in vec4 q;\n"                                   \
-  "flat in vec2 z;\n"                                   \
-  "flat in uint object;\n"                              \
-  "vec2 depths() {\n"                                   \
-  "  vec2 p = gl_FragCoord.xy - tile;\n"                \
-  "  float t = q.x * p.x + q.y * p.y;\n"                \
+#define FCL_ARTIC_DEPTHS                                   \
+  "#version 430 core\n"                                    \
+  "flat in vec2 tile;\n"                                   \
+  "flat in vec4 q;\n"                                      \
+  "flat in vec2 z;\n"                                      \
+  "flat in uint object;\n"                                 \
+  "vec2 depths() {\n"                                      \
+  "  vec2 p = gl_FragCoord.xy - tile;\n"                   \
+  "  float t = q.x * p.x + q.y * p.y;\n"                   \
   "  return vec2(max(z.x, t + q.z), min(z.y, t + q.w));\n" \
   "}\n"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "narrowphase/add_work.h"
+#include "model/add_work.h"
 #include "visibility/stage.h"
 
 namespace fcl_artic {
@@ -19,13 +19,13 @@ double since(Clock::time_point begin) {
 
 /// Passes progress on. A second solve begins at 0 again; what is proven stays proven.
 struct Progress {
-  void (*tell)(void* context, double t_lower);
+  bool (*tell)(void* context, double t_lower);
   void* context;
   double proven = 0;
-  static void update(void* self, double t_lower) {
+  static bool update(void* self, double t_lower) {
     auto& progress = *static_cast<Progress*>(self);
     progress.proven = std::max(progress.proven, t_lower);
-    progress.tell(progress.context, progress.proven);
+    return progress.tell(progress.context, progress.proven);
   }
 };
 
@@ -45,7 +45,7 @@ bool solveShortened(const VisibilityCuller& culler, const Solver& solver, engine
   report.elapsed_us = stage.elapsed_us;
   report.executor = stage.executor;
   report.fallback = culler.fallbackReason();
-  const bool free = answer.verdict == engine::Verdict::free && answer.num_ignored == 0;
+  const bool free = answer.isFree() && answer.num_ignored == 0;
   return free || (stage.culled == 0 && stage.nodes == 0);
 }
 

@@ -7,7 +7,8 @@
 
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
-#include "narrowphase/problem.h"
+#include "model/answer.h"
+#include "model/query.h"
 #include "visibility/choice.h"
 #include "visibility/culler.h"
 
@@ -29,7 +30,6 @@ using Solver = std::function<void(const engine::Query& query, engine::Answer& an
 /// where it has taken something out and the answer is another one, the query is solved again without. What a work
 /// budget is enough for would depend on it, so that a query with one is solved without.
 /// @param choice  of this solver: what stage 2 is worth depends on it.
-/// @param query  must outlive the use of the solver's workspace (engine::Engine::pairMotion).
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report);
 

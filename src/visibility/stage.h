@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "narrowphase/problem.h"
+#include "model/query.h"
 #include "visibility/culler.h"
 
 namespace fcl_artic {

@@ -5,28 +5,21 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/baseline_isa.h"
+
+#include "convex/piece_kinds.h"
+
 namespace fcl_artic {
 namespace visibility {
 namespace {
 
 using engine::Node;
 using engine::Piece;
-using engine::PieceKind;
 
-/// Corners of a regular octagon around the unit circle: at 22.5 degrees and so on, 1 / cos(22.5 degrees) out.
-constexpr double kOctagonLong = 1.0000000000001, kOctagonShort = 0.41421356237313;
-constexpr double kOctagon[8][2] = {{kOctagonLong, kOctagonShort},   {kOctagonShort, kOctagonLong},
-                                   {-kOctagonShort, kOctagonLong},  {-kOctagonLong, kOctagonShort},
-                                   {-kOctagonLong, -kOctagonShort}, {-kOctagonShort, -kOctagonLong},
-                                   {kOctagonShort, -kOctagonLong},  {kOctagonLong, -kOctagonShort}};
 /// Of the directions of Bounds.
 constexpr double kSqrt2 = 1.41421356237310, kSqrt3 = 1.73205080756888;
 constexpr double kLengths[Bounds::kDirections] = {1,      1,      1,      kSqrt2, kSqrt2, kSqrt2, kSqrt2,
                                                   kSqrt2, kSqrt2, kSqrt3, kSqrt3, kSqrt3, kSqrt3};
-/// Corners of an icosahedron around the unit ball: (0, +-a, +-b) and its cyclic shifts, b / a the golden section. Its
-/// faces are at a phi^2 / sqrt(3) from the middle.
-constexpr double kIcosahedronA = 0.66158453886, kIcosahedronB = 1.07046626935;
-
 /// A vector along the directions of Bounds.
 void along(double x, double y, double z, double* at) {
   const double values[Bounds::kDirections] = {x,     y,     z,         x + y,     x - y,     y + z,    y - z,
@@ -143,51 +136,7 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
     batch.points.insert(batch.points.end(), x, x + 3);
     ++volume.count;
   };
-  const double* e = piece.size;
-  switch (piece.kind) {
-    case PieceKind::vertices: {
-      const double* p = body_.tree->vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
-      for (int i = 0; i < piece.num_vertices; ++i) add(p[3 * i], p[3 * i + 1], p[3 * i + 2]);
-      break;
-    }
-    case PieceKind::hull: {
-      const double* p = body_.tree->hulls + piece.first_vertex;
-      const int n = piece.num_vertices;
-      for (int i = 0; i < n; ++i) add(p[i], p[n + i], p[2 * n + i]);
-      break;
-    }
-    case PieceKind::point:
-      add(0, 0, 0);
-      break;
-    case PieceKind::segment:
-      add(0, 0, e[2]);
-      add(0, 0, -e[2]);
-      break;
-    case PieceKind::box:
-      for (int c = 0; c < 8; ++c) add(c & 1 ? e[0] : -e[0], c & 2 ? e[1] : -e[1], c & 4 ? e[2] : -e[2]);
-      break;
-    case PieceKind::cylinder:
-      for (const double* corner : kOctagon) {
-        add(e[0] * corner[0], e[0] * corner[1], e[2]);
-        add(e[0] * corner[0], e[0] * corner[1], -e[2]);
-      }
-      break;
-    case PieceKind::cone:
-      add(0, 0, e[2]);
-      for (const double* corner : kOctagon) add(e[0] * corner[0], e[0] * corner[1], -e[2]);
-      break;
-    case PieceKind::ellipsoid:
-      for (int i = 0; i < 4; ++i) {
-        const double a = i & 1 ? kIcosahedronA : -kIcosahedronA, b = i & 2 ? kIcosahedronB : -kIcosahedronB;
-        add(0, a * e[1], b * e[2]);
-        add(a * e[0], b * e[1], 0);
-        add(b * e[0], 0, a * e[2]);
-      }
-      break;
-    case PieceKind::halfspace:
-    case PieceKind::plane:
-      break;  // no points: the projector finds it unusable
-  }
+  sse2::coverCore(*body_.tree, piece, add);  // of an unbounded piece no points: the projector finds it unusable
   return volume;
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "narrowphase/problem.h"
+#include "model/query.h"
 #include "visibility/batch.h"
 
 namespace fcl_artic {

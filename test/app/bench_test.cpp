@@ -14,10 +14,10 @@
 namespace {
 
 TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
-  const Outcome run = this->run("bench table1 --queries 2 --passes 1 --angles 5 --triangles 2000 --csv " + path("table1.csv") +
-                                " --svg " + path("table1.svg"));
+  const Outcome run = this->run("bench table1 --queries 2 --passes 1 --angles 5 --triangles 2000 --csv " +
+                                path("table1.csv") + " --svg " + path("table1.svg"));
   EXPECT_EQ(run.status, 0) << run.out << run.err;  // the verdicts agree
-  expectContains(run.out, "32.3713");  // Redon 2004, Table 1: 5 degrees, colliding, total
+  expectContains(run.out, "32.3713");              // Redon 2004, Table 1: 5 degrees, colliding, total
   expectContains(run.out, "8.0184");
   expectContains(run.out, "redon2004-as-written");
   expectContains(run.out, "standard");

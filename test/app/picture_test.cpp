@@ -117,8 +117,12 @@ std::size_t countPixels(const Image& image, bool (*is)(int r, int g, int b)) {
   return count;
 }
 
-bool isRed(int r, int g, int b) { return r > 120 && 2 * g < r && 2 * b < r; }
-bool isAmber(int r, int g, int b) { return r > 150 && g > 90 && 2 * b < r && g < r; }
+bool isRed(int r, int g, int b) {
+  return r > 120 && 2 * g < r && 2 * b < r;
+}
+bool isAmber(int r, int g, int b) {
+  return r > 150 && g > 90 && 2 * b < r && g < r;
+}
 
 TEST_F(ProgramTest, PictureShowsTheContact) {
   const std::string file = path("contact.png");

@@ -31,14 +31,17 @@ TEST_F(ProgramTest, ContactIsOneAndTellsWhatAndWhere) {
 }
 
 TEST_F(ProgramTest, ThePapersMethodIsAskedForByName) {
-  const Outcome run = this->run("check --json --method redon2004 --enclosure taylor --refinement 2 --independent --no-newton " +
-                                armAndBall() + " --from 0,0 --to 90deg,0");
+  const Outcome run =
+      this->run("check --json --method redon2004 --enclosure taylor --refinement 2 --independent --no-newton " +
+                armAndBall() + " --from 0,0 --to 90deg,0");
   ASSERT_EQ(run.status, 1) << run.err;
   const Json answer = Json::parse(run.out);
   EXPECT_NEAR(answer.at("t_lower").get<double>(), kContactAngle / (M_PI / 2), 2e-6);
-  EXPECT_EQ(answer.at("statistics").at("redon2004").at("pairs_by_standard"), 2);  // of two links: a ball has no triangles
+  EXPECT_EQ(answer.at("statistics").at("redon2004").at("pairs_by_standard"),
+            2);  // of two links: a ball has no triangles
   EXPECT_EQ(this->run("check --method redon2003 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
-  EXPECT_EQ(this->run("check --method redon2004 --refinement 7 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
+  EXPECT_EQ(this->run("check --method redon2004 --refinement 7 " + armAndBall() + " --from 0,0 --to 90deg,0").status,
+            2);
 }
 
 TEST_F(ProgramTest, JsonHasItsKeysAndAllDigits) {
@@ -101,7 +104,8 @@ TEST_F(ProgramTest, ClearanceOfAFreeMotion) {
   EXPECT_EQ(clearance.at("body2").at("name"), "ball");
   EXPECT_EQ(clearance.at("within_tolerance"), true);
 
-  const Outcome far = this->run("check --json --clearance --clearance-most 0.01 " + armAndBall() + " --from 0,0 --to 40deg,0");
+  const Outcome far =
+      this->run("check --json --clearance --clearance-most 0.01 " + armAndBall() + " --from 0,0 --to 40deg,0");
   EXPECT_EQ(Json::parse(far.out).at("clearance").at("lower"), 0.01);
   EXPECT_TRUE(Json::parse(far.out).at("clearance").at("upper").is_null());
   const Outcome text = this->run("check --clearance " + armAndBall() + " --from 0,0 --to 90deg,0");
@@ -177,7 +181,8 @@ TEST_F(ProgramTest, GeneratedPairsAreWrittenAndReadBack) {
 TEST_F(ProgramTest, SolidMeshes) {
   const std::string corners = "v -4 -4 -4\nv 4 -4 -4\nv 4 4 -4\nv -4 4 -4\nv -4 -4 4\nv 4 -4 4\nv 4 4 4\nv -4 4 4\n";
   const std::string sides = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\n";
-  const std::string closed = write("closed.obj", corners + sides + "f 4 1 5 8\n"), open = write("open.obj", corners + sides);
+  const std::string closed = write("closed.obj", corners + sides + "f 4 1 5 8\n"),
+                    open = write("open.obj", corners + sides);
   const std::string motion = " --from 0,0 --to 10deg,0 ", check = "check --json --robot " + arm() + motion + "--scene ";
   EXPECT_EQ(this->run(check + closed).status, 0);
   const Outcome inside = this->run(check + closed + " --solid-meshes");
@@ -203,7 +208,8 @@ TEST_F(ProgramTest, SolidMeshes) {
   for (const char* name : {"arm", "nobody"}) {  // a box; none
     const Outcome none = this->run(both + " --solid " + name);
     EXPECT_EQ(none.status, 2);
-    EXPECT_NE(none.err.find(std::string("--solid ") + name + ": no link or obstacle of that name has a mesh"), std::string::npos)
+    EXPECT_NE(none.err.find(std::string("--solid ") + name + ": no link or obstacle of that name has a mesh"),
+              std::string::npos)
         << none.err;
   }
 }
@@ -224,7 +230,8 @@ TEST_F(ProgramTest, PackagesAreFoundWhereTheyAreNamed) {
 TEST_F(ProgramTest, ErrorsAreTwoAndNameTheThing) {
   const std::string robot = "--robot " + arm(), motion = " --from 0,0 --to 1,0";
   const std::string broken = write("broken.urdf", "<robot name=\"x\"><link");
-  const std::string srdf = write("bad.srdf", R"(<robot name="arm"><disable_collisions link1="arm" link2="leg"/></robot>)");
+  const std::string srdf =
+      write("bad.srdf", R"(<robot name="arm"><disable_collisions link1="arm" link2="leg"/></robot>)");
   const std::string empty = write("empty.obj", "v 0 0 0\n");
   const struct {
     std::string arguments, named;
@@ -272,11 +279,30 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   EXPECT_EQ(version.out, std::string("fcl_artic ") + FCL_ARTIC_VERSION + "\n");
   const Outcome help = this->run("check --help");
   EXPECT_EQ(help.status, 0);
-  for (const char* option :
-       {"--robot", "--srdf", "--auto-srdf", "--scene", "--package", "--from", "--to", "--shortest", "--margin",
-        "--tolerance-time", "--tolerance-distance", "--budget", "--max-contacts", "--every-pair",
-        "--ignore-initial-contact", "--no-self", "--no-scene", "--json", "--image", "--size", "--camera",
-        "--trajectory", "--clearance", "--unknown-cells"}) {
+  for (const char* option : {"--robot",
+                             "--srdf",
+                             "--auto-srdf",
+                             "--scene",
+                             "--package",
+                             "--from",
+                             "--to",
+                             "--shortest",
+                             "--margin",
+                             "--tolerance-time",
+                             "--tolerance-distance",
+                             "--budget",
+                             "--max-contacts",
+                             "--every-pair",
+                             "--ignore-initial-contact",
+                             "--no-self",
+                             "--no-scene",
+                             "--json",
+                             "--image",
+                             "--size",
+                             "--camera",
+                             "--trajectory",
+                             "--clearance",
+                             "--unknown-cells"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
   const Outcome unknown = this->run("chek --robot " + arm());
@@ -308,8 +334,9 @@ TEST_F(ProgramTest, PandaOfTheDataFolder) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
   if (!data) GTEST_SKIP() << "PandaOfTheDataFolder: FCL_ARTIC_DATA is not set";
   const std::string panda = std::string(data) + "/robots/panda/panda";
-  const Outcome run = this->run("check --json --robot " + panda + ".urdf --srdf " + panda +
-                                ".srdf --from 0,-0.785,0,-2.356,0,1.571,0.785,0 --to 0.2,-0.785,0,-2.356,0,1.571,0.785,0");
+  const Outcome run =
+      this->run("check --json --robot " + panda + ".urdf --srdf " + panda +
+                ".srdf --from 0,-0.785,0,-2.356,0,1.571,0.785,0 --to 0.2,-0.785,0,-2.356,0,1.571,0.785,0");
   EXPECT_EQ(run.status, 0) << run.out << run.err;
 }
 

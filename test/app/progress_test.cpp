@@ -39,7 +39,8 @@ void shortThenLong() {
 
 TEST(ProgressBar, ShowsOnATerminalAfterASecond) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) || unlockpt(terminal)) GTEST_SKIP() << "ProgressBar: no terminal to be had here";
+  if (terminal < 0 || grantpt(terminal) || unlockpt(terminal))
+    GTEST_SKIP() << "ProgressBar: no terminal to be had here";
   const int side = open(ptsname(terminal), O_RDWR | O_NOCTTY);
   ASSERT_GE(side, 0);
   const std::string text = written(side, terminal, shortThenLong);

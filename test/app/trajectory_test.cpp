@@ -45,7 +45,8 @@ TEST_F(TrajectoryProgramTest, ContactIsInTheTimeOfTheFile) {
 
 /// From rest to rest between two waypoints: q = 1.5 (3 s^2 - 2 s^3), half way at half the time.
 TEST_F(TrajectoryProgramTest, CubicStartsAndEndsAtRest) {
-  const Outcome run = check("t,hinge\n10,0\n14," + std::to_string(2 * kContactAngle) + "\n", "--interpolation cubic --json");
+  const Outcome run =
+      check("t,hinge\n10,0\n14," + std::to_string(2 * kContactAngle) + "\n", "--interpolation cubic --json");
   ASSERT_EQ(run.status, 1) << run.err;
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 12, 1e-5);  // std::to_string has six digits
 }
@@ -85,8 +86,9 @@ TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
   <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
   <joint name="base" type="floating"><parent link="world"/><child link="body"/></joint></robot>)");
   // To the ball at (0.3, 0.52, 0) along y: they are 0.2 apart at y = 0.3196.
-  const Outcome run = this->run("check --json --robot " + robot + " --scene " + ball() + " --trajectory " +
-                                write("fly.csv", "t,base/trans_x,base/trans_y,base/rot_z,base/rot_w\n0,0.3,0,0,1\n1,0.3,1,1,0\n"));
+  const Outcome run =
+      this->run("check --json --robot " + robot + " --scene " + ball() + " --trajectory " +
+                write("fly.csv", "t,base/trans_x,base/trans_y,base/rot_z,base/rot_w\n0,0.3,0,0,1\n1,0.3,1,1,0\n"));
   ASSERT_EQ(run.status, 1) << run.err;
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 0.519615242270663 - 0.2, 1e-5);
   // Of the cube of edge 2 at the origin octants 0, 1 and 7 are known, and 1 and 7 occupied.

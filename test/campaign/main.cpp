@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   bool redon = false;
   app.add_flag("--redon2004", redon, "ask for the paper's method");
   CLI11_PARSE(app, argc, argv);
-  if (redon) options.how.method = fcl_artic::Method::Redon2004;
+  if (redon) options.how.method = fcl_artic::Method::redon2004;
   try {
     if (*again) {
       if (options.family.empty()) {

@@ -170,7 +170,7 @@ KinematicTree hinge() {
 TEST(FclLinkMotionTest, BoundsAreAttainedByOneJoint) {
   const KinematicTree tree = hinge();
   const JointMotion turn = JointMotion::linear(tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, 0.5));
-  const FclLinkMotion motion(tree, turn, tree.link("bar"));
+  const FclLinkMotion motion(tree, turn, tree.linkId("bar"));
   EXPECT_DOUBLE_EQ(motion.speedBound(2), 1);           // 0.5 rad at 2 m
   EXPECT_DOUBLE_EQ(motion.accelerationBound(2), 0.5);  // 0.5^2 * 2
 }
@@ -228,13 +228,14 @@ TEST(FclLinkMotionTest, OrientedAdvancementFindsAKnownContactEveryTime) {
   const KinematicTree tree = hinge();
   const JointMotion turn =
       JointMotion::linear(tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, bench::kPi / 2));
-  const FclLinkMotion motion(tree, turn, tree.link("bar"));
+  const FclLinkMotion motion(tree, turn, tree.linkId("bar"));
 
   bench::TriangleMesh bar, wall;
   bar.vertices = {{0.3, 0, 0}, {1, 0, 0}, {1, -0.1, 0}, {0.3, -0.1, 0}};
   bar.triangles = {{0, 1, 2}, {0, 2, 3}};
   const double c = std::cos(1.1), s = std::sin(1.1);
-  wall.vertices = {{0.5 * c, 0.5 * s, -0.3}, {0.8 * c, 0.8 * s, -0.3}, {0.8 * c, 0.8 * s, 0.3}, {0.5 * c, 0.5 * s, 0.3}};
+  wall.vertices = {
+      {0.5 * c, 0.5 * s, -0.3}, {0.8 * c, 0.8 * s, -0.3}, {0.8 * c, 0.8 * s, 0.3}, {0.5 * c, 0.5 * s, 0.3}};
   wall.triangles = {{0, 1, 2}, {0, 2, 3}};
   const auto bar_bvh = bench::toBvh<fcl::RSSd>(bar), wall_bvh = bench::toBvh<fcl::RSSd>(wall);
   const double expected = 1.1 / (bench::kPi / 2);

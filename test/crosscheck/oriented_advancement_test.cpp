@@ -2,11 +2,11 @@
 //
 // Certified answers beside FCL's oriented conservative advancement on RSS trees, on the same motions.
 //
-// What FCL's answer means. It advances by d / bound, where d is a distance and bound the one of FclLinkMotion, and stops
-// when that step is at most 1e-5: so it never passes a contact, and when it reports one at t > 0 the gap there is at
-// most 1e-5 times the speed bound of the pair. It may thus be early, by much where bodies approach slowly, or report a
-// near miss: then the pair is sampled from there on. It says free also when the step that would reach the contact ends past t = 1, or when it stands within
-// 1e-5 of the end. All that is allowed for below; nothing else is.
+// What FCL's answer means. It advances by d / bound, where d is a distance and bound the one of FclLinkMotion, and
+// stops when that step is at most 1e-5: so it never passes a contact, and when it reports one at t > 0 the gap there is
+// at most 1e-5 times the speed bound of the pair. It may thus be early, by much where bodies approach slowly, or report
+// a near miss: then the pair is sampled from there on. It says free also when the step that would reach the contact
+// ends past t = 1, or when it stands within 1e-5 of the end. All that is allowed for below; nothing else is.
 //
 // FCL_ARTIC_CROSSCHECK_QUERIES sets the number of queries of each test.
 
@@ -67,7 +67,9 @@ LinkId rigidGroup(const KinematicTree& tree, LinkId link) {
 
 bool adjacent(const KinematicTree& tree, LinkId a, LinkId b) {
   const LinkId ga = rigidGroup(tree, a), gb = rigidGroup(tree, b);
-  const auto parentGroup = [&](LinkId g) { return tree.parentJoint(g) < 0 ? -1 : rigidGroup(tree, tree.parentLink(g)); };
+  const auto parentGroup = [&](LinkId g) {
+    return tree.parentJoint(g) < 0 ? -1 : rigidGroup(tree, tree.parentLink(g));
+  };
   return ga == gb || parentGroup(ga) == gb || parentGroup(gb) == ga;
 }
 
@@ -121,8 +123,7 @@ FclAnswer askFcl(const Query& query) {
   FclAnswer answer;
   for (const auto& [a, b] : query.pairs) {
     const auto motion_a = motionOf(query, query.bodies[a]), motion_b = motionOf(query, query.bodies[b]);
-    const double toc =
-        bench::orientedAdvancement(*query.bodies[a].mesh, *motion_a, *query.bodies[b].mesh, *motion_b);
+    const double toc = bench::orientedAdvancement(*query.bodies[a].mesh, *motion_a, *query.bodies[b].mesh, *motion_b);
     if (toc < answer.toc) answer = {toc, a, b};
   }
   return answer;
@@ -167,12 +168,13 @@ Body makeBody(LinkId link, const Isometry3d& offset, std::shared_ptr<Mesh> mesh)
   return {link, offset, std::move(mesh), std::move(object)};
 }
 
-// A robot of up to six moving joints with meshes on some links. An obstacle stands near where a link passes, so that about half
-// of the motions meet it.
+// A robot of up to six moving joints with meshes on some links. An obstacle stands near where a link passes, so that
+// about half of the motions meet it.
 Query randomQuery(Random& random, bool self) {
   Query query;
   query.tree = test::randomTree(random, self ? 4 + random.index(3) : 1 + random.index(6), self ? 0.35 : 0.4);
-  query.motion = test::randomMotion(*query.tree, random, std::pow(10, self ? random.uniform(0, 0.7) : random.uniform(-1, 0.5)));
+  query.motion =
+      test::randomMotion(*query.tree, random, std::pow(10, self ? random.uniform(0, 0.7) : random.uniform(-1, 0.5)));
   for (LinkId link = self ? 0 : 1; link < query.tree->numLinks(); ++link) {
     if (self || random.coin(0.6) || link + 1 == query.tree->numLinks()) {
       query.bodies.push_back(makeBody(link, test::randomPose(random, 0.1), randomMesh(random, self ? 0.15 : 0.2)));
@@ -184,8 +186,8 @@ Query randomQuery(Random& random, bool self) {
       const Body& near = query.bodies[static_cast<std::size_t>(random.index(static_cast<int>(links)))];
       const FclLinkMotion passing(*query.tree, *query.motion, near.link, near.offset);
       Isometry3d at = test::randomPose(random, 0);
-      at.translation() = passing.pose(random.uniform(0.2, 1)).translation() +
-                         random.uniform(0, 0.4) * test::randomDirection(random);
+      at.translation() =
+          passing.pose(random.uniform(0.2, 1)).translation() + random.uniform(0, 0.4) * test::randomDirection(random);
       query.bodies.push_back(makeBody(-1, at, randomMesh(random, 0.2)));
     }
   }
@@ -288,9 +290,13 @@ void run(bool self, std::uint64_t seed, int count) {
   EXPECT_LE(tally.fcl_near_miss + tally.fcl_end + tally.undecidable, 0.05 * count);
 }
 
-TEST(OrientedAdvancementTest, AgreesOnArmsAmidObstacles) { run(false, 20040401, queries(300)); }
+TEST(OrientedAdvancementTest, AgreesOnArmsAmidObstacles) {
+  run(false, 20040401, queries(300));
+}
 
-TEST(OrientedAdvancementTest, AgreesOnArmsAgainstThemselves) { run(true, 20040402, queries(100)); }
+TEST(OrientedAdvancementTest, AgreesOnArmsAgainstThemselves) {
+  run(true, 20040402, queries(100));
+}
 
 }  // namespace
 }  // namespace fcl_artic

@@ -31,8 +31,10 @@ inline std::shared_ptr<const KinematicTree> randomTree(bench::Random& random, in
     Joint joint;
     joint.name = "joint" + std::to_string(i);
     const double kind = random.uniform();
-    joint.type = kind < 0.1 ? JointType::fixed : kind < 0.3 ? JointType::prismatic
-                : kind < 0.5 ? JointType::continuous : JointType::revolute;
+    joint.type = kind < 0.1   ? JointType::fixed
+                 : kind < 0.3 ? JointType::prismatic
+                 : kind < 0.5 ? JointType::continuous
+                              : JointType::revolute;
     joint.parent = "link" + std::to_string(random.coin(0.85) ? i - 1 : random.index(i));
     joint.child = "link" + std::to_string(i);
     joint.origin = randomPose(random, segment);

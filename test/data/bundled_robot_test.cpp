@@ -61,7 +61,7 @@ TEST(BundledPuma, FollowsThePublishedDenavitHartenbergTable) {
           AngleAxisd(alpha[i], Vector3d::UnitX());
     }
     tree.forwardKinematics(q, M_0);
-    const Eigen::Isometry3d& tool = M_0[static_cast<std::size_t>(tree.link("tool0"))];
+    const Eigen::Isometry3d& tool = M_0[static_cast<std::size_t>(tree.linkId("tool0"))];
     EXPECT_LT((tool.matrix() - M.matrix()).cwiseAbs().maxCoeff(), 1e-12) << q.transpose();
   }
 }

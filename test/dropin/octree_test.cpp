@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Octrees that stand still: only the cells near the other body's path are read, and nobody can tell by the answers but for
-// the work; cells are named as FCL names them.
+// Octrees that stand still: only the cells near the other body's path are read, and nobody can tell by the answers but
+// for the work; cells are named as FCL names them.
 #include "fcl_artic/continuous_collision.h"
 
 #include <cmath>
@@ -62,8 +62,8 @@ testing::AssertionResult isCellAt(const fcl::OcTreed& tree, std::intptr_t id, co
   return testing::AssertionFailure() << "the cell is " << out.maxCoeff() << " away";
 }
 
-// A wall of cells of 1/8 from x = 1 on; a ball of 1/4 that goes from x = 0 to x = 2 touches at x = 3/4, t = 3/8. The map
-// holds a cell behind and one far to the side, so that the one met is not the first.
+// A wall of cells of 1/8 from x = 1 on; a ball of 1/4 that goes from x = 0 to x = 2 touches at x = 3/4, t = 3/8. The
+// map holds a cell behind and one far to the side, so that the one met is not the first.
 TEST(DropInOcTree, CellsAreNamedAsFclNamesThem) {
   const double h = 1.0 / 16;
   const auto map = mapOf(0.125, {{-3 + h, h, h}, {1 + h, h, h}, {h, 2 + h, h}});
@@ -132,8 +132,8 @@ TEST(DropInOcTree, CellsFarFromThePathAreNotRead) {
   EXPECT_EQ(fcl_artic::continuousCollide(&room, &rest, &floor, &rest, CertifiedRequest(), r), Status::contact);
 }
 
-// The continuous manager reads whole octrees: a hundred random maps, turned, and boxes that turn and go through them give
-// the same verdicts and times.
+// The continuous manager reads whole octrees: a hundred random maps, turned, and boxes that turn and go through them
+// give the same verdicts and times.
 TEST(DropInOcTree, AnswersAreThoseOfAllCells) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(-1, 1);

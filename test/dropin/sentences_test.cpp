@@ -222,7 +222,7 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
           manager.bind("link", &moving);
           manager.registerObject(&still);
           manager.setup();
-          for (const auto method : {fcl_artic::Method::standard, fcl_artic::Method::Redon2004}) {
+          for (const auto method : {fcl_artic::Method::standard, fcl_artic::Method::redon2004}) {
             for (const double to : {1.0, 0.4}) {
               CertifiedRequest request;
               request.method = method;
@@ -230,6 +230,7 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
                 ++told;
                 const unsigned here = _mm_getcsr() & ~0x3fu;
                 seen.push_back(here == 0x1f80 ? mode : here);  // his own, or the usual one
+                return true;
               };
               fcl_artic::CertifiedResult result;
               manager.continuousCollide(

@@ -31,14 +31,15 @@ void ballWithinAMesh() {
   fcl::ContinuousCollisionResult<S> result;
   for (const bool ball_first : {false, true}) {
     const auto ask = [&](const fcl::CollisionGeometry<S>& mesh, S from, S to) {
-      return ball_first ? fcl_artic::continuousCollide<S>(&ball, at(from), at(to), &mesh, at(S(0)), at(S(0)), request, result)
-                        : fcl_artic::continuousCollide<S>(&mesh, at(S(0)), at(S(0)), &ball, at(from), at(to), request, result);
+      return ball_first
+                 ? fcl_artic::continuousCollide<S>(&ball, at(from), at(to), &mesh, at(S(0)), at(S(0)), request, result)
+                 : fcl_artic::continuousCollide<S>(&mesh, at(S(0)), at(S(0)), &ball, at(from), at(to), request, result);
     };
     EXPECT_EQ(ask(*surface, S(-0.5), S(0.5)), S(1));
     EXPECT_FALSE(result.is_collide);
     EXPECT_EQ(ask(solid, S(-0.5), S(0.5)), S(0));
     EXPECT_TRUE(result.is_collide);
-    EXPECT_EQ(ask(*surface, S(-0.5), S(0.5)), S(1));  // from the cache, once more
+    EXPECT_EQ(ask(*surface, S(-0.5), S(0.5)), S(1));                       // from the cache, once more
     EXPECT_NEAR(static_cast<double>(ask(solid, S(3), S(1))), 0.95, 1e-5);  // from outside: 3 - 2 t = 1.1
     EXPECT_EQ(ask(solid, S(3), S(2)), S(1));
   }
@@ -61,19 +62,17 @@ TEST(SolidMesh, OfEveryBoundingVolume) {
 TEST(SolidMesh, Certified) {
   const auto solid = makeSolid(*dropin::boxMesh<fcl::OBBRSSd>(2, 2, 2));
   const fcl::Boxd box(0.2, 0.2, 0.2);
-  const auto still = [](double x) { return fcl::InterpMotion<double>(Eigen::Matrix3d::Identity(), Eigen::Vector3d(x, 0, 0),
-                                                                     Eigen::Matrix3d::Identity(), Eigen::Vector3d(x, 0, 0)); };
-  const auto way = [](double from, double to) {
-    return fcl::InterpMotion<double>(Eigen::Matrix3d::Identity(), Eigen::Vector3d(from, 0, 0), Eigen::Matrix3d::Identity(),
-                                     Eigen::Vector3d(to, 0, 0));
+  const auto way = [](double from, double to) {  // without the reference point FCL reads one that it never wrote
+    const Eigen::Matrix3d straight = Eigen::Matrix3d::Identity();
+    return fcl::InterpMotion<double>(straight, {from, 0, 0}, straight, {to, 0, 0}, {0, 0, 0});
   };
   for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
-    for (const Method method : {Method::standard, Method::Redon2004}) {
+    for (const Method method : {Method::standard, Method::redon2004}) {
       CertifiedRequest request;
       request.mode = mode;
       request.method = method;
       CertifiedPairResult result;
-      const auto stands = still(0), within = way(0, 0.5), out = way(0, 3);
+      const auto stands = way(0, 0), within = way(0, 0.5), out = way(0, 3);
       EXPECT_EQ(continuousCollide(solid.get(), &stands, &box, &within, request, result), Status::contact);
       EXPECT_TRUE(result.certain);
       EXPECT_EQ(result.t_lower, 0);
@@ -121,13 +120,15 @@ TEST(SolidMesh, WhatIsNoneIsRefused) {
   const SolidMesh<fcl::RSSd> asked(open);
   const fcl::Sphered ball(0.1);
   fcl::ContinuousCollisionResultd result;
-  const std::string refused = message([&] {
-    fcl_artic::continuousCollide<double>(&ball, at(0.0), at(1.0), &asked, at(0.0), at(0.0), {}, result);
-  });
+  const std::string refused = message(
+      [&] { fcl_artic::continuousCollide<double>(&ball, at(0.0), at(1.0), &asked, at(0.0), at(0.0), {}, result); });
   EXPECT_NE(refused.find("object 2"), std::string::npos) << refused;
   EXPECT_NE(refused.find("not closed"), std::string::npos) << refused;
   EXPECT_NE(message([&] { makeSolid(ball); }).find("Sphere is no mesh"), std::string::npos);
-  EXPECT_EQ(message([&] { fcl_artic::continuousCollide<double>(&ball, at(5.0), at(6.0), &open, at(0.0), at(0.0), {}, result); }), "");
+  EXPECT_EQ(message([&] {
+              fcl_artic::continuousCollide<double>(&ball, at(5.0), at(6.0), &open, at(0.0), at(0.0), {}, result);
+            }),
+            "");
 }
 
 }  // namespace

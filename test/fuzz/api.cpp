@@ -155,7 +155,7 @@ CertifiedRequest makeRequest(fuzz::Bytes& in) {
   if (in.below(4) == 0) request.margin = in.number();
   if (in.below(4) == 0) request.tolerance_time = in.number();
   if (in.below(4) == 0) request.tolerance_distance = in.number();
-  if (in.below(4) == 0) request.method = Method::Redon2004;
+  if (in.below(4) == 0) request.method = Method::redon2004;
   return request;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Every FCL geometry is read as FCL means it, in float and double, and left as it was.
-#include "adapters/fcl/fcl_geometry.h"
+#include "fcl/fcl_geometry.h"
 
 #include <cmath>
 #include <cstdint>
@@ -27,9 +27,9 @@
 
 #include "random.h"
 
-#define FCL_ARTIC_ISA sse2
-#define FCL_ARTIC_ISA_BITS 128
-#include "narrowphase/piece_support.h"
+#include "numerics/baseline_isa.h"
+
+#include "convex/piece_kinds.h"
 
 using namespace fcl_artic;
 using Eigen::Vector3d;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A mesh's tree is found again for the same bytes, and for no others: what was asked before never shows in an answer.
-#include "adapters/fcl/mesh_cache.h"
+#include "fcl/mesh_cache.h"
 
 #include <cstring>
 #include <new>
@@ -11,7 +11,7 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <gtest/gtest.h>
 
-#include "adapters/fcl/fcl_geometry.h"
+#include "fcl/fcl_geometry.h"
 
 using namespace fcl_artic;
 using Eigen::Vector3d;

@@ -10,9 +10,9 @@
 #include "geometry/outer_hull.h"
 #include "random.h"
 
-#define FCL_ARTIC_ISA sse2
-#define FCL_ARTIC_ISA_BITS 128
-#include "narrowphase/gjk.h"
+#include "numerics/baseline_isa.h"
+
+#include "convex/gjk.h"
 
 using namespace fcl_artic;
 using Eigen::Vector3d;

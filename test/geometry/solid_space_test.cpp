@@ -51,7 +51,8 @@ struct Soup {
       V p[3];
       for (std::size_t k = 0; k < 3; ++k) p[k] = (vertices[static_cast<std::size_t>(t[k])] - x).cast<long double>();
       const long double a = p[0].norm(), b = p[1].norm(), c = p[2].norm();
-      sum += 2 * std::atan2(p[0].dot(p[1].cross(p[2])), a * b * c + p[0].dot(p[1]) * c + p[1].dot(p[2]) * a + p[2].dot(p[0]) * b);
+      sum += 2 * std::atan2(p[0].dot(p[1].cross(p[2])),
+                            a * b * c + p[0].dot(p[1]) * c + p[1].dot(p[2]) * a + p[2].dot(p[0]) * b);
     }
     return sum / (4 * std::acos(-1.0L));
   }
@@ -93,9 +94,9 @@ TEST(SolidSpace, PointsInLineWithEdges) {
 TEST(SolidSpace, WindingNumbersCount) {
   Soup soup;
   soup.addBox({0, 0, 0}, {3, 3, 3});
-  soup.addBox({0, 0, 0}, {2, 2, 2}, true);   // a cavity
-  soup.addBox({0, 0, 0}, {1, 1, 1});         // and a solid in it
-  soup.addBox({5, 0, 0}, {1, 1, 1}, true);   // beside: its inside is inside all the same
+  soup.addBox({0, 0, 0}, {2, 2, 2}, true);        // a cavity
+  soup.addBox({0, 0, 0}, {1, 1, 1});              // and a solid in it
+  soup.addBox({5, 0, 0}, {1, 1, 1}, true);        // beside: its inside is inside all the same
   soup.addBox({5, 0, 0}, {0.5, 0.5, 0.5}, true);  // faces the same way: nothing new
   const auto tree = soup.tree();
   EXPECT_EQ(sideOf(*tree, {2.5, 0, 0}), Side::inside);
@@ -118,7 +119,8 @@ TEST(SolidSpace, AgreesWithSolidAngles) {
     Soup soup;
     for (int box = 0; box < 1 + body % 4; ++box) {
       Soup one;
-      one.addBox({in(-1, 1), in(-1, 1), in(-1, 1)}, {in(0.1, 1), in(0.1, 1), body % 5 ? in(0.1, 1) : 1e-7}, in(0, 1) < 0.3);
+      one.addBox({in(-1, 1), in(-1, 1), in(-1, 1)}, {in(0.1, 1), in(0.1, 1), body % 5 ? in(0.1, 1) : 1e-7},
+                 in(0, 1) < 0.3);
       const Eigen::Quaterniond turn = Eigen::Quaterniond(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)).normalized();
       for (const auto& t : one.triangles) {
         const auto x = [&](std::size_t k) { return Vector3d(turn * one.vertices[static_cast<std::size_t>(t[k])]); };
@@ -129,7 +131,8 @@ TEST(SolidSpace, AgreesWithSolidAngles) {
     const auto tree = soup.tree();
     for (int i = 0; i < 60; ++i, ++n) {
       Vector3d x = soup.vertices[static_cast<std::size_t>(random()) % soup.vertices.size()];
-      x += i % 3 ? Vector3d(in(-1, 1), in(-1, 1), in(-1, 1)) : Vector3d(1e-9 * in(-1, 1), 1e-9 * in(-1, 1), 1e-9 * in(-1, 1));
+      x += i % 3 ? Vector3d(in(-1, 1), in(-1, 1), in(-1, 1))
+                 : Vector3d(1e-9 * in(-1, 1), 1e-9 * in(-1, 1), 1e-9 * in(-1, 1));
       const Side side = sideOf(*tree, x, 0);
       near += i % 3 == 0;
       unknown += side == Side::unknown && i % 3;
@@ -137,7 +140,8 @@ TEST(SolidSpace, AgreesWithSolidAngles) {
       const long double w = soup.winding(x);
       if (i % 3) ASSERT_NEAR(static_cast<double>(w - std::round(w)), 0, 1e-4);
       if (std::abs(static_cast<double>(w - std::round(w))) > 1e-3) continue;  // the judge can't tell
-      EXPECT_EQ(side == Side::inside, std::lround(w) != 0) << "body " << body << ", winding number " << static_cast<double>(w);
+      EXPECT_EQ(side == Side::inside, std::lround(w) != 0)
+          << "body " << body << ", winding number " << static_cast<double>(w);
       inside += side == Side::inside;
     }
   }

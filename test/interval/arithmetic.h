@@ -11,9 +11,10 @@ namespace fcl_artic {
 namespace numerics_test {
 
 enum class Operation { add, subtract, multiply, scale, negate, divide, square, squareRoot, absolute, maximum, minimum };
-constexpr Operation kOperations[] = {Operation::add,      Operation::subtract, Operation::multiply, Operation::scale,
-                                     Operation::negate,   Operation::divide,   Operation::square, Operation::squareRoot,
-                                     Operation::absolute, Operation::maximum,  Operation::minimum};
+constexpr Operation kOperations[] = {Operation::add,     Operation::subtract,   Operation::multiply,
+                                     Operation::scale,   Operation::negate,     Operation::divide,
+                                     Operation::square,  Operation::squareRoot, Operation::absolute,
+                                     Operation::maximum, Operation::minimum};
 /// Those that lanes have.
 constexpr int kLaneOperations = 4;
 

@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "interval/chain_bounds.h"
 #include "interval/turn_series.h"
 #include "numerics/body_cases.h"
 #include "operands.h"
+#include "redon/chain_bounds.h"
 
 namespace fcl_artic {
 namespace numerics_test {

@@ -10,9 +10,9 @@
 #include <mpfr.h>
 
 #include "arithmetic.h"
-#include "redon/box_batch.h"
 #include "interval/sine_cosine.h"
 #include "operands.h"
+#include "redon/box_batch.h"
 
 namespace fcl_artic {
 namespace numerics_test {

@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "interval/chain_bounds.h"
 #include "numerics/cases.h"
+#include "redon/chain_bounds.h"
 
 namespace fcl_artic {
 namespace numerics_test {

@@ -35,4 +35,13 @@ TEST(Modes, AgreeInAllCombinationsOfOptions) {
   }
 }
 
+/// Worlds that have found faults: a certain contact of the mode `any` that was not among the contacts, as a pair
+/// beside it was still open.
+TEST(Modes, WorldsThatFoundFaults) {
+  modes::Tally tally;
+  for (const std::uint64_t seed : {5047764u}) modes::runCase(seed, tally);
+  EXPECT_GT(tally.queries, 0);
+  for (const std::string& finding : tally.findings) ADD_FAILURE() << finding;
+}
+
 }  // namespace

@@ -35,8 +35,8 @@ std::string describe(const Asked& asked) {
   const CertifiedResult& r = asked.result;
   std::ostringstream out;
   out.precision(17);
-  out << "[" << kModes[static_cast<int>(q.mode)] << (q.method == Method::Redon2004 ? " Redon2004" : "");
-  if (q.method == Method::Redon2004) {
+  out << "[" << kModes[static_cast<int>(q.mode)] << (q.method == Method::redon2004 ? " Redon2004" : "");
+  if (q.method == Method::redon2004) {
     out << "(enclosure " << static_cast<int>(q.redon.enclosure) << (q.redon.simultaneous ? "" : " one-by-one")
         << (q.redon.newton ? "" : " no-newton") << (q.redon.early_validity ? "" : " late-validity")
         << (q.redon.in_time_order ? "" : " boxes-first") << ")";
@@ -182,10 +182,11 @@ class Check {
   void cut(const Asked& a, const Asked& b) {
     const CertifiedRequest &x = a.request, &y = b.request;
     if (&a > &b || x.mode != ContactMode::firstOfEveryPair || y.mode != x.mode || x.method != Method::standard ||
-        y.method != x.method || x.work_budget != y.work_budget || x.tolerance_time != y.tolerance_time ||
+        y.method != x.method || x.work_budget || y.work_budget || x.tolerance_time != y.tolerance_time ||
         x.tolerance_distance != y.tolerance_distance || std::min(x.max_contacts, y.max_contacts) < 2)
       return;
-    // (Of a trajectory the pieces after the last contact that is asked for are not looked at.)
+    // (Of a trajectory the pieces after the last contact that is asked for are not looked at; so a budget that is
+    // enough for few contacts need not be for many.)
     tally_.telling[kCut] += a.result.contacts.size() > 1 && x.max_contacts != y.max_contacts;
     hold(kCut, a.result.status == b.result.status && a.result.t_lower == b.result.t_lower,
          describe(a) + " against " + describe(b));
@@ -214,6 +215,19 @@ class Check {
     }
   }
 
+  /// How near a pair comes that is proven to be in contact: at t_upper, where most proofs are; else, an equation's root
+  /// being anywhere in the bracket, within it. (FCL's search ends too early now and then: not nearby.)
+  double nearest(const World::Watched& pair, const CertifiedContact& contact, double most) const {
+    double least = world_.distance(pair, world_.poses(contact.t_upper));
+    constexpr int kLooks = 400;
+    const double width = std::max(contact.t_upper - contact.t_lower, 1e-5 * (world_.end() - world_.begin()));
+    for (int i = 0; i < kLooks && least > most; ++i) {
+      const double t = std::max(world_.begin(), contact.t_upper - width * i / kLooks);
+      least = std::min(least, world_.distance(pair, world_.poses(t)));
+    }
+    return least;
+  }
+
   void proven(const Asked& a) {
     for (std::size_t i = 0; i < a.result.contacts.size() && i < 3; ++i) {
       const CertifiedContact& contact = a.result.contacts[i];
@@ -227,12 +241,13 @@ class Check {
         continue;
       }
       const double margin = pair->margin >= 0 ? pair->margin : a.request.margin;
-      const double distance = world_.distance(*pair, world_.poses(contact.t_upper));
+      // FCL's distances of curved shapes come out up to 4e-5 m too long next to contact, and 2e-4 m farther off.
+      const double most = margin + (margin > 0 ? 1e-3 : 1e-4);
+      const double distance = nearest(*pair, contact, most);
       std::ostringstream what;
       what << names.first << " " << names.second << " are " << distance << " m apart at their t_upper "
            << contact.t_upper << ", ";
-      // FCL's distances of curved shapes come out up to 4e-5 m too long next to contact, and 2e-4 m farther off.
-      hold(kProven, distance <= margin + (margin > 0 ? 1e-3 : 1e-4), what.str() + describe(a));
+      hold(kProven, distance <= most, what.str() + describe(a));
     }
   }
 
@@ -273,7 +288,7 @@ std::vector<Asked> randomQueries(Random& random, int count) {
     if (random.chance(0.25)) q.work_budget = 1 + static_cast<std::uint64_t>(std::pow(10, random.in(0, 3.5)));
     if (random.chance(0.15)) q.visibility = VisibilityMode::on;
     if (random.chance(0.3)) {
-      q.method = Method::Redon2004;
+      q.method = Method::redon2004;
       q.redon.enclosure = static_cast<MotionEnclosure>(random.below(3));
       q.redon.simultaneous = random.chance(0.7);
       q.redon.newton = random.chance(0.7);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
@@ -313,9 +314,18 @@ double World::distance(const Watched& pair, const std::vector<Isometry3d>& poses
   fcl::CollisionResultd hit;
   const auto &a = bodies_[pair.a].shape.exact, &b = bodies_[pair.b].shape.exact;
   if (fcl::collide(a.get(), poses[pair.a], b.get(), poses[pair.b], collision, hit) > 0) return 0;
-  fcl::DistanceRequestd request;
-  fcl::DistanceResultd result;
-  return std::max(0.0, fcl::distance(a.get(), poses[pair.a], b.get(), poses[pair.b], request, result));
+  // FCL's search ends too early now and then, centimetres too far: not in the other order, or a nanometre away.
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 8; ++i) {
+    Isometry3d other = poses[pair.b];
+    other.translation() += (i / 2) * 1e-9 * Vector3d(1, -2, 3);
+    fcl::DistanceRequestd request;
+    fcl::DistanceResultd result;
+    const double found = i % 2 ? fcl::distance(b.get(), other, a.get(), poses[pair.a], request, result)
+                               : fcl::distance(a.get(), poses[pair.a], b.get(), other, request, result);
+    least = std::min(least, std::max(0.0, found));
+  }
+  return least;
 }
 
 bool World::touches(const Watched& pair, const std::vector<Isometry3d>& poses, double margin) const {

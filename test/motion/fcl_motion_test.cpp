@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // FCL's motions as read, against what copies of the objects perform.
-#include "adapters/fcl/fcl_motion.h"
+#include "fcl/fcl_motion.h"
 
 #include <cmath>
 #include <cstring>

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "adapters/fcl/fcl_geometry.h"
+#include "fcl/fcl_geometry.h"
 
 namespace fcl_artic {
 namespace numerics_test {

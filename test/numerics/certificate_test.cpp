@@ -119,7 +119,8 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
               prefixes, used);
   std::printf("mutants: without remainder %d broken, pad / 1e4 %d broken, one Bernstein point less %d broken\n",
               no_remainder, small_pad, no_middle);
-  std::printf("turning: %d prefixes; taken for a direction that stands still %d broken\n", turning_prefixes, still_direction);
+  std::printf("turning: %d prefixes; taken for a direction that stands still %d broken\n", turning_prefixes,
+              still_direction);
   EXPECT_GT(turning_prefixes, cases / 4);
   EXPECT_GT(still_direction, 0);
   EXPECT_GT(separated_lanes, cases / 2);

@@ -5,9 +5,9 @@
 string(REPLACE "|" ";" OBJECTS "${OBJECTS}")
 set(others
   kinematics/                      # makes motions from joint values; poses for reports
-  adapters/fcl/fcl_motion          # makes motions from FCL's
-  adapters/fcl/fcl_link_motion     # gives FCL poses
-  query/contact_grid               # guesses, proven afterwards
+  fcl/fcl_motion          # makes motions from FCL's
+  fcl/fcl_link_motion     # gives FCL poses
+  tables/contact_grid               # guesses, proven afterwards
   geometry/outer_hull geometry/line_swept_sphere geometry/inner_balls  # directions and sizes to try
   visibility/adversary)            # where to look
 set(inexact "a?(sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(2|10|1p)?|pow|cbrt|erfc?|[tl]gamma")

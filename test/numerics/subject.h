@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "narrowphase/problem.h"
+#include "model/query.h"
 
 namespace fcl_artic {
 namespace numerics_test {
@@ -47,9 +47,9 @@ struct CertificateOutput {
 
 /// What is found for whole lanes, each searched by itself from CertificateInput::n on.
 struct WholeLanesOutput {
-  double least[8];     ///< of n.x over the difference of the moving piece's Bernstein poses and the still piece
-  double slack;        ///< what it has to be larger than
-  unsigned told = 0;   ///< lanes in which a direction is said to do
+  double least[8];         ///< of n.x over the difference of the moving piece's Bernstein poses and the still piece
+  double slack;            ///< what it has to be larger than
+  unsigned told = 0;       ///< lanes in which a direction is said to do
   unsigned certified = 0;  ///< in which it does
   unsigned middle = 0;     ///< in which the witness at the lane's middle does
 };

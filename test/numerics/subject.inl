@@ -84,7 +84,8 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   out.separated_few = 0;
   for (unsigned lanes = (1u << kFewLanes) - 1; lanes & kAllLanes; lanes <<= kFewLanes) {
     double sign = 0;
-    out.separated_few |= certainlySeparated(s, still, moving, in.n, lanes & kAllLanes, in.motion.margin, pads.pad, sign);
+    out.separated_few |=
+        certainlySeparated(s, still, moving, in.n, lanes & kAllLanes, in.motion.margin, pads.pad, sign);
   }
   Lanes G[3];
   gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
@@ -251,12 +252,11 @@ bool certainlyPiercesOf(const TouchInput& in) {
 }  // namespace FCL_ARTIC_ISA
 
 namespace numerics_test {
-const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),  &FCL_ARTIC_ISA::sineCosineOf,
-                                       &FCL_ARTIC_ISA::relate,           &FCL_ARTIC_ISA::certify,
-                                       &FCL_ARTIC_ISA::searchWholeLanes,
-                                       &FCL_ARTIC_ISA::sweepNodeOf,      &FCL_ARTIC_ISA::boundLssOf,
-                                       &FCL_ARTIC_ISA::apartFromBox,     &FCL_ARTIC_ISA::apartFromLss,
-                                       &FCL_ARTIC_ISA::positivePrefixOf, &FCL_ARTIC_ISA::certainlyTouchingOf,
-                                       &FCL_ARTIC_ISA::certainlyWithinOf, &FCL_ARTIC_ISA::certainlyPiercesOf};
+const Subject FCL_ARTIC_ISA_SUBJECT = {
+    FCL_ARTIC_STRING(FCL_ARTIC_ISA),   &FCL_ARTIC_ISA::sineCosineOf,        &FCL_ARTIC_ISA::relate,
+    &FCL_ARTIC_ISA::certify,           &FCL_ARTIC_ISA::searchWholeLanes,    &FCL_ARTIC_ISA::sweepNodeOf,
+    &FCL_ARTIC_ISA::boundLssOf,        &FCL_ARTIC_ISA::apartFromBox,        &FCL_ARTIC_ISA::apartFromLss,
+    &FCL_ARTIC_ISA::positivePrefixOf,  &FCL_ARTIC_ISA::certainlyTouchingOf, &FCL_ARTIC_ISA::certainlyWithinOf,
+    &FCL_ARTIC_ISA::certainlyPiercesOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic

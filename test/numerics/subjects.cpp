@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "subject.h"
 
+#include "narrowphase/engine.h"
+
 namespace fcl_artic {
 namespace numerics_test {
 

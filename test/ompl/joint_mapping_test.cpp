@@ -52,8 +52,8 @@ std::string refusal(const std::function<void()>& call) {
 TEST(JointMappingTest, MotionIsTheWayOfInterpolate) {
   const auto tree = mixedTree();
   // (slides), (turn_b, (turn_a)): the order is the space's, not the tree's.
-  const ob::StateSpacePtr space =
-      compound({reals(2), compound({std::make_shared<ob::SO2StateSpace>(), compound({std::make_shared<ob::SO2StateSpace>()})})});
+  const ob::StateSpacePtr space = compound(
+      {reals(2), compound({std::make_shared<ob::SO2StateSpace>(), compound({std::make_shared<ob::SO2StateSpace>()})})});
   const std::vector<std::string> joints{"slide_b", "slide_a", "turn_b", "turn_a"};
   const int variable[] = {2, 0, 3, 1};
   const JointMapping mapping(*space, tree, joints);
@@ -110,7 +110,8 @@ double apart(const KinematicTree& tree, const Eigen::VectorXd& a, const Eigen::V
   tree.forwardKinematics(a, M_a);
   tree.forwardKinematics(b, M_b);
   double most = 0;
-  for (std::size_t i = 0; i < M_a.size(); ++i) most = std::max(most, (M_a[i].matrix() - M_b[i].matrix()).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < M_a.size(); ++i)
+    most = std::max(most, (M_a[i].matrix() - M_b[i].matrix()).cwiseAbs().maxCoeff());
   return most;
 }
 
@@ -133,7 +134,8 @@ TEST(JointMappingTest, FreeBodiesMoveAsInterpolateSays) {
     ends.push_back(end);
     // The same orientation, and half a turn from it, but for roundings: the last one's way round hangs on them.
     for (int k = 0; k < 4; ++k) end[k] = -end[k];
-    const Eigen::Quaterniond half(Eigen::AngleAxisd(kPi, Eigen::Vector3d(normal(random), normal(random), 1).normalized()));
+    const Eigen::Quaterniond half(
+        Eigen::AngleAxisd(kPi, Eigen::Vector3d(normal(random), normal(random), 1).normalized()));
     const Eigen::Quaterniond turned = half * Eigen::Quaterniond(end[13], end[10], end[11], end[12]);
     for (int k = 0; k < 4; ++k) end[10 + k] = turned.coeffs()[k];
     ends.push_back(end);
@@ -155,11 +157,18 @@ TEST(JointMappingTest, FreeBodiesMoveAsInterpolateSays) {
 
 TEST(JointMappingTest, PartsOfQuaternionsGoNoWayOfTheirOwn) {
   const auto tree = freeTree();
-  EXPECT_NE(refusal([&] { JointMapping(*reals(1), tree, {"look/rot_x"}); }).find("'look/rot_x' is part of a quaternion"), std::string::npos);
+  EXPECT_NE(
+      refusal([&] { JointMapping(*reals(1), tree, {"look/rot_x"}); }).find("'look/rot_x' is part of a quaternion"),
+      std::string::npos);
   EXPECT_NE(refusal([&] { JointMapping(*reals(14), tree); }).find("part of a quaternion"), std::string::npos);
-  EXPECT_NE(refusal([&] { JointMapping(ob::SO2StateSpace(), tree, {"drive/x"}); }).find("'drive/x'"), std::string::npos);
-  EXPECT_NE(refusal([&] { JointMapping(ob::SE3StateSpace(), tree, {"look"}); }).find("floating joint: 'look'"), std::string::npos);
-  EXPECT_EQ(refusal([&] { JointMapping(*reals(5), tree, {"drive/theta", "drive/y", "fly/trans_x", "fly/trans_z", "drive/x"}); }), "");
+  EXPECT_NE(refusal([&] { JointMapping(ob::SO2StateSpace(), tree, {"drive/x"}); }).find("'drive/x'"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] { JointMapping(ob::SE3StateSpace(), tree, {"look"}); }).find("floating joint: 'look'"),
+            std::string::npos);
+  EXPECT_EQ(refusal([&] {
+              JointMapping(*reals(5), tree, {"drive/theta", "drive/y", "fly/trans_x", "fly/trans_z", "drive/x"});
+            }),
+            "");
   EXPECT_EQ(refusal([&] { JointMapping(ob::SO2StateSpace(), tree, {"drive/theta"}); }), "");
 }
 
@@ -170,17 +179,19 @@ class SomeoneElsesSpace : public ob::RealVectorStateSpace {
 
 TEST(JointMappingTest, OtherSpacesAreRefusedByName) {
   const auto tree = mixedTree();
-  std::vector<ob::StateSpacePtr> spaces{std::make_shared<ob::SE2StateSpace>(),      std::make_shared<ob::SE3StateSpace>(),
-                                        std::make_shared<ob::SO3StateSpace>(),      std::make_shared<ob::TimeStateSpace>(),
-                                        std::make_shared<ob::DiscreteStateSpace>(0, 3), std::make_shared<ob::DubinsStateSpace>(),
-                                        std::make_shared<ob::ReedsSheppStateSpace>(), std::make_shared<SomeoneElsesSpace>(4)};
+  std::vector<ob::StateSpacePtr> spaces{
+      std::make_shared<ob::SE2StateSpace>(),          std::make_shared<ob::SE3StateSpace>(),
+      std::make_shared<ob::SO3StateSpace>(),          std::make_shared<ob::TimeStateSpace>(),
+      std::make_shared<ob::DiscreteStateSpace>(0, 3), std::make_shared<ob::DubinsStateSpace>(),
+      std::make_shared<ob::ReedsSheppStateSpace>(),   std::make_shared<SomeoneElsesSpace>(4)};
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     const std::string name = "the space " + std::to_string(i);
     spaces[i]->setName(name);
     for (const ob::StateSpacePtr& space : {spaces[i], compound({reals(1), spaces[i]})}) {
       const std::string message = refusal([&] { JointMapping(*space, tree); });
       EXPECT_NE(message.find("'" + name + "'"), std::string::npos) << "message: " << message;
-      EXPECT_TRUE(message.find("not supported") != std::string::npos || (i < 3 && message.find("needs a") != std::string::npos))
+      EXPECT_TRUE(message.find("not supported") != std::string::npos ||
+                  (i < 3 && message.find("needs a") != std::string::npos))
           << "message: " << message;
     }
   }

@@ -119,8 +119,8 @@ TEST(ContinuousMotionValidatorTest, MarginMovesTheContact) {
 }
 
 TEST(ContinuousMotionValidatorTest, LastValidStateLeavesRoomWhereTheMotionGrazes) {
-  // A ball of 0.1 m on a slide of 8 m passes the like at 3 m and overlaps it by no more than `deep`: the gap hardly changes
-  // about the contact.
+  // A ball of 0.1 m on a slide of 8 m passes the like at 3 m and overlaps it by no more than `deep`: the gap hardly
+  // changes about the contact.
   for (const double deep : {1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7}) {
     auto tree = std::make_shared<KinematicTree>("slide");
     tree->addLink("rail");
@@ -159,8 +159,8 @@ TEST(ContinuousMotionValidatorTest, StartInContact) {
   EXPECT_GT(t, 0.5 - 3 * kTolerance);
 }
 
-/// Planners go on from where a motion ended and from lastValid: no way may lead through an obstacle in steps that begin in
-/// contact with it.
+/// Planners go on from where a motion ended and from lastValid: no way may lead through an obstacle in steps that begin
+/// in contact with it.
 TEST(ContinuousMotionValidatorTest, InitialContactIsNoWayThrough) {
   CertifiedRequest request = planningRequest();
   request.ignore_initial_contact = true;
@@ -196,8 +196,9 @@ TEST(ContinuousMotionValidatorTest, UndecidedIsInvalid) {
   const Planning limited(ringWorld(), reals(1), request);
   CertifiedResult result;
   const auto manager = limited.world.manager();
-  manager->continuousCollide(JointMotion::linear(manager->tree(), Eigen::VectorXd::Constant(1, 0.25),
-                                                 Eigen::VectorXd::Constant(1, 6)), request, result);
+  manager->continuousCollide(
+      JointMotion::linear(manager->tree(), Eigen::VectorXd::Constant(1, 0.25), Eigen::VectorXd::Constant(1, 6)),
+      request, result);
   ASSERT_EQ(result.status, Status::undecided);
   const TestState s1(limited.space, {0.25}), s2(limited.space, {6}), state(limited.space, {77});
   EXPECT_FALSE(limited.validator->checkMotion(s1, s2));
@@ -258,9 +259,9 @@ TEST(ContinuousMotionValidatorTest, CompoundOfSlideAndTurn) {
 }
 
 TEST(ContinuousMotionValidatorTest, FloatingBodyTurnsIntoAPost) {
-  // A ball of 0.1 m, 1 m along x from the body's frame, which turns by 3 rad about z and moves up by 0.5 m; a ball of the same
-  // size waits on its way, at 2 rad and 1/3 m. Seen from it, both are a way of 1/3 apart: balls meet where
-  // (2 sin(1.5 s))^2 + (0.5 s)^2 = 0.04, s = 2/3 - t.
+  // A ball of 0.1 m, 1 m along x from the body's frame, which turns by 3 rad about z and moves up by 0.5 m; a ball of
+  // the same size waits on its way, at 2 rad and 1/3 m. Seen from it, both are a way of 1/3 apart: balls meet where (2
+  // sin(1.5 s))^2 + (0.5 s)^2 = 0.04, s = 2/3 - t.
   auto tree = std::make_shared<KinematicTree>("drone");
   tree->addLink("world");
   tree->addLink("body");
@@ -274,10 +275,12 @@ TEST(ContinuousMotionValidatorTest, FloatingBodyTurnsIntoAPost) {
   options.position_upper.setConstant(2);
   const PlanningSetup setup = setUpPlanning(world.manager(), {}, options);
   ASSERT_EQ(setup.space->getType(), ob::STATE_SPACE_SE3);
-  const TestState s1(setup.space, {0, 0, 0, 0, 0, 0, 1}), s2(setup.space, {0, 0, 0.5, 0, 0, std::sin(1.5), std::cos(1.5)});
+  const TestState s1(setup.space, {0, 0, 0, 0, 0, 0, 1}),
+      s2(setup.space, {0, 0, 0.5, 0, 0, std::sin(1.5), std::cos(1.5)});
   const TestState low(setup.space, {0, 0, -0.5, 0, 0, std::sin(1.5), std::cos(1.5)});
   double s = 0.2 / std::hypot(3, 0.5);
-  for (int i = 0; i < 50; ++i) s = std::sqrt(0.04 - 0.25 * s * s) / 2 < 1 ? std::asin(std::sqrt(0.04 - 0.25 * s * s) / 2) / 1.5 : s;
+  for (int i = 0; i < 50; ++i)
+    s = std::sqrt(0.04 - 0.25 * s * s) / 2 < 1 ? std::asin(std::sqrt(0.04 - 0.25 * s * s) / 2) / 1.5 : s;
   std::pair<ob::State*, double> last{nullptr, 2};
   EXPECT_FALSE(setup.si->checkMotion(s1, s2, last));
   EXPECT_LT(last.second, 2.0 / 3 - s);
@@ -287,7 +290,8 @@ TEST(ContinuousMotionValidatorTest, FloatingBodyTurnsIntoAPost) {
 
 TEST(ContinuousMotionValidatorTest, StatesAreCheckedByTheSameManager) {
   const Planning planning(slideWorld(), reals(1));
-  for (const auto& [x, valid] : {std::make_pair(0.0, true), {1.9, true}, {2.1, false}, {3.0, false}, {3.9, false}, {4.1, true}}) {
+  for (const auto& [x, valid] :
+       {std::make_pair(0.0, true), {1.9, true}, {2.1, false}, {3.0, false}, {3.9, false}, {4.1, true}}) {
     EXPECT_EQ(planning.si->isValid(TestState(planning.space, {x})), valid) << x;
   }
 }

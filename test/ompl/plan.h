@@ -21,8 +21,8 @@ using planning_data::setUp;
 using planning_data::Way;
 
 /// RRTConnect with our validator.
-inline Plans plan(const PlanningSetup& setup, const std::vector<double>& start, const std::vector<double>& goal, unsigned seed,
-                  double seconds) {
+inline Plans plan(const PlanningSetup& setup, const std::vector<double>& start, const std::vector<double>& goal,
+                  unsigned seed, double seconds) {
   return planning_data::plan(setup.si, setup, start, goal, seed, seconds);
 }
 

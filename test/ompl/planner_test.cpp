@@ -50,7 +50,8 @@ class PlannerData : public testing::Test {
  protected:
   void SetUp() override {
     data_ = planning_data::sharedData();
-    if (data_.empty()) GTEST_SKIP() << "PlannerData: FCL_ARTIC_DATA does not name a folder with robots/, problems/, edges/";
+    if (data_.empty())
+      GTEST_SKIP() << "PlannerData: FCL_ARTIC_DATA does not name a folder with robots/, problems/, edges/";
   }
   std::filesystem::path data_;
 };

@@ -16,7 +16,8 @@ class PlanningCampaign : public testing::TestWithParam<Case> {};
 
 TEST_P(PlanningCampaign, NoPlanCollides) {
   const std::filesystem::path data = planning_data::sharedData();
-  if (data.empty()) GTEST_SKIP() << "PlanningCampaign: FCL_ARTIC_DATA does not name a folder with robots/, problems/, edges/";
+  if (data.empty())
+    GTEST_SKIP() << "PlanningCampaign: FCL_ARTIC_DATA does not name a folder with robots/, problems/, edges/";
   EXPECT_EQ(collidingPlans(data, GetParam().robot, GetParam().environment, 1000, 3).colliding, 0);
 }
 
@@ -31,9 +32,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PlanningCampaign, testing::ValuesIn(cases()), [](const auto& info) {
-  return std::string(info.param.robot) + "_" + info.param.environment;
-});
+INSTANTIATE_TEST_SUITE_P(All, PlanningCampaign, testing::ValuesIn(cases()),
+                         [](const auto& info) { return std::string(info.param.robot) + "_" + info.param.environment; });
 
 }  // namespace
 }  // namespace fcl_artic::planning

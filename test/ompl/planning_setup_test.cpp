@@ -87,9 +87,13 @@ TEST_F(PlanningSetupTest, GroupsAreReadAsMoveItReadsThem) {
 }
 
 TEST_F(PlanningSetupTest, BadGroupsAreNamed) {
-  for (const auto& [name, part] : {std::make_pair("legs", "no group 'legs'; it has 'chain'"), {"loop", "'loop' holds itself"},
-                                   {"nothing", "'nothing' moves no joint"}, {"no_joint", "'elbow'"}, {"no_link", "'nose'"},
-                                   {"no_group", "'choir'"}, {"moving_base", "'drive', which is planar"},
+  for (const auto& [name, part] : {std::make_pair("legs", "no group 'legs'; it has 'chain'"),
+                                   {"loop", "'loop' holds itself"},
+                                   {"nothing", "'nothing' moves no joint"},
+                                   {"no_joint", "'elbow'"},
+                                   {"no_link", "'nose'"},
+                                   {"no_group", "'choir'"},
+                                   {"moving_base", "'drive', which is planar"},
                                    {"nameless", "no attribute 'name'"}}) {
     const std::string message = messageOf([&, n = name] { group(n); });
     expectContains(message, srdf_);
@@ -138,9 +142,9 @@ TEST_F(PlanningSetupTest, AnObstacleWithALinksNameIsMet) {
 
 // The cart within a box of 8 m, a mesh: where it is a solid no state in it is valid, and no motion.
 TEST_F(PlanningSetupTest, SolidMeshes) {
-  const std::string box =
-      write("box.obj", "v -4 -4 -4\nv 4 -4 -4\nv 4 4 -4\nv -4 4 -4\nv -4 -4 4\nv 4 -4 4\nv 4 4 4\nv -4 4 4\n"
-                       "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+  const std::string box = write("box.obj",
+                                "v -4 -4 -4\nv 4 -4 -4\nv 4 4 -4\nv -4 4 -4\nv -4 -4 4\nv 4 -4 4\nv 4 4 4\nv -4 4 4\n"
+                                "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
   for (const bool solid : {false, true}) {
     SetupOptions options;
     options.scene.solid_meshes = solid;
@@ -173,8 +177,7 @@ TEST_F(PlanningSetupTest, LimitsThatNoQueryTakesAreNamed) {
   std::string urdf = kUrdf;
   urdf.replace(urdf.find("upper=\"10\""), 10, "upper=\"1e9\"");
   const std::string file = write("endless.urdf", urdf);
-  const std::string message =
-      messageOf<std::invalid_argument>([&] { setUpPlanning(file, srdf_, scene_, "joints"); });
+  const std::string message = messageOf<std::invalid_argument>([&] { setUpPlanning(file, srdf_, scene_, "joints"); });
   expectContains(message, "'slide' has limits");
   auto tree = std::make_shared<KinematicTree>("ship");
   tree->addLink("sea");

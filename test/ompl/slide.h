@@ -77,8 +77,8 @@ inline World slideWorld() {
   return world;
 }
 
-/// A ball of 0.1 m that an arm carries round the origin at 1 m, and the like fixed at an angle: they meet at an angle of
-/// 2 asin(0.1) between them.
+/// A ball of 0.1 m that an arm carries round the origin at 1 m, and the like fixed at an angle: they meet at an angle
+/// of 2 asin(0.1) between them.
 inline World turnWorld(JointType type, double obstacle_angle) {
   auto tree = std::make_shared<KinematicTree>("arm");
   tree->addLink("base");

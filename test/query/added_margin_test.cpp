@@ -96,7 +96,7 @@ TEST(AddedMargin, IsThatOfLargerMarginsInAllQueriesOfAManager) {
         request.mode = mode;
         request.max_contacts = 20;
         request.ignore_initial_contact = options & 1;
-        request.method = options & 2 ? Method::Redon2004 : Method::standard;
+        request.method = options & 2 ? Method::redon2004 : Method::standard;
         request.visibility = options & 4 ? VisibilityMode::on : VisibilityMode::off;
         request.check_self = !(options & 8);
         const CertifiedResult one = ask(*own.manager, q0, q1, request);

@@ -56,8 +56,8 @@ inline std::shared_ptr<KinematicTree> sliderTree(const std::vector<std::string>&
   auto tree = std::make_shared<KinematicTree>("slider");
   for (const std::string& link : links) tree->addLink(link);
   for (std::size_t i = 1; i < links.size(); ++i) {
-    tree->addJoint(makeJoint("slide" + std::to_string(i), JointType::prismatic, links[i - 1], links[i],
-                             Eigen::Vector3d::UnitX()));
+    tree->addJoint(
+        makeJoint("slide" + std::to_string(i), JointType::prismatic, links[i - 1], links[i], Eigen::Vector3d::UnitX()));
   }
   return tree;
 }

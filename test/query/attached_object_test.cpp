@@ -30,8 +30,8 @@ struct Kitchen : Cart {
 
 }  // namespace
 
-// The cart's ball of 0.1 meets the cup at x = 0.5 - 0.15. Held 0.3 before it, the cup meets the wall at x = 2 - 0.35. Put
-// down at x = 1, it is met at 1 - 0.15.
+// The cart's ball of 0.1 meets the cup at x = 0.5 - 0.15. Held 0.3 before it, the cup meets the wall at x = 2 - 0.35.
+// Put down at x = 1, it is met at 1 - 0.15.
 TEST(AttachedObject, IsMetThenCarriedThenMetAgain) {
   Kitchen k;
   EXPECT_TRUE(touchesAt(k.run(0, 2), 0.35 / 2));
@@ -43,7 +43,7 @@ TEST(AttachedObject, IsMetThenCarriedThenMetAgain) {
   ASSERT_EQ(r.contacts.size(), 1u);
   EXPECT_EQ(r.contacts[0].body1.name, "cup");
   EXPECT_EQ(r.contacts[0].body1.object, k.cup.get());
-  EXPECT_EQ(r.contacts[0].body1.link, k.tree->link("cart"));
+  EXPECT_EQ(r.contacts[0].body1.link, k.tree->linkId("cart"));
   EXPECT_EQ(r.contacts[0].body2.name, "wall");
   EXPECT_EQ(k.manager->size(), 1u);
   EXPECT_EQ(k.manager->boundObjects().size(), 2u);

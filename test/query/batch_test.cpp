@@ -22,7 +22,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-bool sameBits(const double* a, const double* b, std::size_t n) { return std::memcmp(a, b, n * sizeof(double)) == 0; }
+bool sameBits(const double* a, const double* b, std::size_t n) {
+  return std::memcmp(a, b, n * sizeof(double)) == 0;
+}
 
 /// All that a result tells but times.
 testing::AssertionResult same(const CertifiedResult& a, const CertifiedResult& b) {
@@ -37,8 +39,8 @@ testing::AssertionResult same(const CertifiedResult& a, const CertifiedResult& b
         x.feature != y.feature || x.certain != y.certain || !sameBits(x.point.data(), y.point.data(), 3) ||
         !sameBits(x.normal.data(), y.normal.data(), 3) || !sameBits(&x.t_lower, &y.t_lower, 1) ||
         !sameBits(&x.t_upper, &y.t_upper, 1)) {
-      return testing::AssertionFailure() << "contact " << i << " differs: " << x.body1.name << ' ' << y.body1.name << ", "
-                                         << x.body2.name << ' ' << y.body2.name << ", from " << x.t_lower << ' '
+      return testing::AssertionFailure() << "contact " << i << " differs: " << x.body1.name << ' ' << y.body1.name
+                                         << ", " << x.body2.name << ' ' << y.body2.name << ", from " << x.t_lower << ' '
                                          << y.t_lower << " to " << x.t_upper << ' ' << y.t_upper << ", at "
                                          << x.point.transpose() << " and " << y.point.transpose() << ", normals "
                                          << x.normal.transpose() << " and " << y.normal.transpose();
@@ -46,7 +48,8 @@ testing::AssertionResult same(const CertifiedResult& a, const CertifiedResult& b
   }
   if (a.M_0_at_lower.size() != b.M_0_at_lower.size()) return testing::AssertionFailure() << "poses differ in number";
   for (std::size_t i = 0; i < a.M_0_at_lower.size(); ++i) {
-    if (!sameBits(a.M_0_at_lower[i].data(), b.M_0_at_lower[i].data(), 16)) return testing::AssertionFailure() << "poses differ";
+    if (!sameBits(a.M_0_at_lower[i].data(), b.M_0_at_lower[i].data(), 16))
+      return testing::AssertionFailure() << "poses differ";
   }
   const QueryStatistics &s = a.statistics, &t = b.statistics;
   if (s.node_tests != t.node_tests || s.leaf_tests != t.leaf_tests || s.gjk != t.gjk || s.batches != t.batches ||
@@ -88,7 +91,9 @@ struct Scene {
     }
     manager->registerObject(&moving);
     manager->setup();
-    const auto q = [&] { return (VectorXd(4) << 3 * u(random), 2 * u(random), 3 * u(random), 2 * u(random)).finished(); };
+    const auto q = [&] {
+      return (VectorXd(4) << 3 * u(random), 2 * u(random), 3 * u(random), 2 * u(random)).finished();
+    };
     for (int i = 0; i < count; ++i) motions.push_back(JointMotion::linear(*tree, q(), q()));
   }
 };
@@ -115,10 +120,17 @@ void expectSameBits(ContactMode mode) {
   }
 }
 
-TEST(Batch, FirstContactSameBitsAsOneByOneOverAnyThreads) { expectSameBits(ContactMode::first); }
-TEST(Batch, EveryPairSameBitsAsOneByOneOverAnyThreads) { expectSameBits(ContactMode::firstOfEveryPair); }
-// Not yet: where the engine finds overlap before it has a witness, the point of contact still depends on the last query.
-TEST(Batch, AnyContactSameBitsAsOneByOneOverAnyThreads) { expectSameBits(ContactMode::any); }
+TEST(Batch, FirstContactSameBitsAsOneByOneOverAnyThreads) {
+  expectSameBits(ContactMode::first);
+}
+TEST(Batch, EveryPairSameBitsAsOneByOneOverAnyThreads) {
+  expectSameBits(ContactMode::firstOfEveryPair);
+}
+// Not yet: where the engine finds overlap before it has a witness, the point of contact still depends on the last
+// query.
+TEST(Batch, AnyContactSameBitsAsOneByOneOverAnyThreads) {
+  expectSameBits(ContactMode::any);
+}
 
 // Every kind of query at once on one manager, each thread in an order of its own: what they share must not show. (This
 // is what the thread sanitizer is to see.)
@@ -134,7 +146,7 @@ TEST(Batch, AllKindsOfQueriesAtOnceGiveTheBitsOfEachAlone) {
   const auto add = [&](auto ask) { queries.push_back({ask, {}, {}}); };
   for (const JointMotion& motion : scene.motions) {
     for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
-      for (const Method method : {Method::standard, Method::Redon2004}) {
+      for (const Method method : {Method::standard, Method::redon2004}) {
         for (const VisibilityMode visibility : {VisibilityMode::off, VisibilityMode::on}) {
           for (const bool ignore : {false, true}) {
             CertifiedRequest request;

@@ -431,15 +431,16 @@ class Sequence {
     }
     ready_ = true;
   }
+  /// A name that the manager knows.
+  std::string known() {
+    std::vector<std::string> names;
+    for (LinkId link = 0; link < tree_->numLinks(); ++link) names.push_back(tree_->linkName(link));
+    for (auto& body : bodies_) {
+      if (body->place == Body::obstacle || body->place == Body::attached) names.push_back(body->name);
+    }
+    return random_.of(names);
+  }
   void margins() {
-    const auto known = [&] {
-      std::vector<std::string> names;
-      for (LinkId link = 0; link < tree_->numLinks(); ++link) names.push_back(tree_->linkName(link));
-      for (auto& body : bodies_) {
-        if (body->place == Body::obstacle || body->place == Body::attached) names.push_back(body->name);
-      }
-      return random_.of(names);
-    };
     const double margin = random_.oneIn(3) ? 0 : random_.in(0, 0.2);
     if (random_.oneIn(4)) {
       manager_.resetMargins();
@@ -456,7 +457,8 @@ class Sequence {
   void allow() {
     AllowedCollisionMatrix matrix;
     for (int i = random_.below(4); i > 0; --i) {
-      matrix.allow(random_.oneIn(2) ? anyLink() : any().name, random_.oneIn(2) ? anyLink() : any().name);
+      const std::string a = known();
+      matrix.allow(a, known());
     }
     manager_.setAllowedCollisions(matrix);
     changed();
@@ -607,7 +609,7 @@ class Sequence {
       }
     }
     for (const Body* body : moving_order_) scratch->registerObject(copyOf(*body).moving.get(), body->name);
-    std::vector<fcl::CollisionObjectd*> obstacles;
+    std::vector<const fcl::CollisionObjectd*> obstacles;
     manager_.getObjects(obstacles);
     for (const auto* object : obstacles)
       scratch->registerObject(copyOf(*known.at(object)).object.get(), known.at(object)->name);
@@ -620,7 +622,9 @@ class Sequence {
       if (!named(a) || (!b.empty() && !named(b))) continue;
       b.empty() ? scratch->setMargin(a, margin) : scratch->setMargin(a, b, margin);
     }
-    scratch->setAllowedCollisions(manager_.allowedCollisions());
+    for (const auto& [a, b] : manager_.allowedCollisions().pairs()) {
+      if (named(a) && named(b)) scratch->allow(a, b);
+    }
     scratch->setup();
     return scratch;
   }

@@ -24,7 +24,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 const ContactMode kModes[] = {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair};
-const Method kMethods[] = {Method::standard, Method::Redon2004};
+const Method kMethods[] = {Method::standard, Method::redon2004};
 
 std::shared_ptr<fcl::CollisionGeometryd> box(double side) {
   return std::make_shared<fcl::Boxd>(side, side, side);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links that are meshes: one on the base, the other on two sliders along x, as links with one joint between them are
-// not checked.
+// Two links that are meshes: one on the base, the other on two sliders along x, as links with one joint between them
+// are not checked.
 #pragma once
 
 #include <memory>

@@ -92,8 +92,7 @@ struct FoldingLinks {
     manager->bind("turning", &turning, pose(Vector3d(0.5, 0, 0)));
     manager->setup();
   }
-  CertifiedResult run(const Eigen::Vector2d& q0, const Eigen::Vector2d& q1,
-                      ContactMode mode = ContactMode::any) const {
+  CertifiedResult run(const Eigen::Vector2d& q0, const Eigen::Vector2d& q1, ContactMode mode = ContactMode::any) const {
     CertifiedRequest request;
     request.mode = mode;
     return ask(*manager, q0, q1, request);
@@ -208,8 +207,8 @@ TEST(InnerBalls, FclAgrees) {
     const auto b = fineBoxMesh(nested ? Vector3d(in(0.2, 0.6) * half) : size(0.05, 0.4), 1 + i % 3);
     const double reach = nested ? 0.1 : 0.6;
     const CrossingLinks links(a, b,
-                      pose(Vector3d(in(-reach, reach), in(-reach, reach), in(-reach, reach)), in(-3, 3),
-                           Vector3d(in(-1, 1), in(-1, 1), 1)));
+                              pose(Vector3d(in(-reach, reach), in(-reach, reach), in(-reach, reach)), in(-3, 3),
+                                   Vector3d(in(-1, 1), in(-1, 1), 1)));
     const double from = in(-reach, reach), to = in(-reach, reach);
     const CertifiedResult r = links.run(from, to);
     ASSERT_EQ(r.status, links.run(from, to, ContactMode::first).status) << i;

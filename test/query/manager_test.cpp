@@ -370,8 +370,8 @@ TEST(Manager, SameBitsOverThreadsAndRepeats) {
       for (int k = 0; k < 50; ++k) {
         cart.run(0, 0.1 * (k % 7));  // another query between, so that history differs
         const CertifiedResult r = cart.run(0, 1);
-        different[static_cast<std::size_t>(i)] += r.t_lower != alone.t_lower || r.t_upper != alone.t_upper ||
-                                                   r.contacts[0].point != alone.contacts[0].point;
+        different[static_cast<std::size_t>(i)] +=
+            r.t_lower != alone.t_lower || r.t_upper != alone.t_upper || r.contacts[0].point != alone.contacts[0].point;
       }
     });
   }
@@ -405,12 +405,13 @@ TEST(Manager, ProgressMayAskAnotherQueryOrThrow) {
   request.progress = [&](double) {
     ++calls;
     manager.continuousCollide(JointMotion::linear(*tree, VectorXd::Zero(1), VectorXd::Constant(1, 1)), {}, inner);
+    return true;
   };
   manager.continuousCollide(motion, request, nested);
   EXPECT_GT(calls, 0);
   EXPECT_EQ(nested.status, alone.status);
   EXPECT_EQ(nested.statistics.node_tests, alone.statistics.node_tests);
-  request.progress = [](double) { throw std::runtime_error("stop"); };
+  request.progress = [](double) -> bool { throw std::runtime_error("stop"); };
   EXPECT_EQ(messageOf<std::runtime_error>([&] { manager.continuousCollide(motion, request, nested); }), "stop");
   manager.continuousCollide(motion, {}, nested);
   EXPECT_EQ(nested.status, alone.status);
@@ -438,7 +439,9 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
   manager.setup();
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(wall.get()); }).find("wall"),
             std::string::npos);
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.registerObject(static_cast<fcl::CollisionObjectd*>(nullptr), "none"); }).find("null"),
+  EXPECT_NE(messageOf<std::invalid_argument>([&] {
+              manager.registerObject(static_cast<fcl::CollisionObjectd*>(nullptr), "none");
+            }).find("null"),
             std::string::npos);
   // Allowed pairs go by name: those of the link would excuse the obstacle.
   auto namesake = object(std::make_shared<fcl::Boxd>(1, 1, 1));

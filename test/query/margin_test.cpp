@@ -205,7 +205,7 @@ TEST(Margin, FeaturesAreNamedWhereThePairHasNone) {
   cart.manager->unbind(cart.body.get());
   cart.manager->bind("cart", tip.get());
   cart.manager->registerObject(other.get(), "flag");
-  for (const Method method : {Method::standard, Method::Redon2004}) {
+  for (const Method method : {Method::standard, Method::redon2004}) {
     CertifiedRequest request = withMargin(0.2);
     request.method = method;
     cart.manager->resetMargins();

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Core>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/OBBRSS.h>
+#include <Eigen/Core>
 
 namespace fcl_artic {
 namespace test {
@@ -39,7 +39,9 @@ inline std::shared_ptr<Mesh> boxMesh(const Eigen::Vector3d& half, bool closed = 
   }
   return meshOf(v, t);
 }
-inline std::shared_ptr<Mesh> cubeMesh(double half) { return boxMesh(Eigen::Vector3d::Constant(half)); }
+inline std::shared_ptr<Mesh> cubeMesh(double half) {
+  return boxMesh(Eigen::Vector3d::Constant(half));
+}
 
 /// Each side is cut into n x n squares.
 inline std::shared_ptr<Mesh> fineBoxMesh(const Eigen::Vector3d& half, int n) {

@@ -278,8 +278,32 @@ TEST(MotionTree, TreeThatGrowsAfterSetup) {
   manager.continuousCollide(after, {}, result);
   EXPECT_EQ(result.status, Status::contact);  // lifted by 0.1 m
   *tree = *chain("other", {});
+  wall->setTranslation(Vector3d(0.3, 3, 0));
   EXPECT_THROW(manager.setup(), std::invalid_argument);  // link1 is gone
   EXPECT_THROW(manager.continuousCollide(after, {}, result), std::logic_error);
+}
+
+// The refusal comes before anything is read: the tree put back, the manager answers as before, and update() reads.
+TEST(MotionTree, RefusedSetupReadsNothing) {
+  auto tree = chain("arm", {{"lift", JointType::prismatic}});
+  const KinematicTree own = *tree;
+  const auto body = ball(0.1), wall = ball(0.1, {0.3, 0, 0.5});
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("link1", body.get());
+  manager.registerObject(wall.get(), "wall");
+  manager.setup();
+  const JointMotion up = JointMotion::linear(*tree, VectorXd::Zero(1), VectorXd::Ones(1));
+  *tree = *chain("other", {});
+  wall->setTranslation(Vector3d(0, 5, 0));
+  EXPECT_THROW(manager.setup(), std::invalid_argument);
+  EXPECT_THROW(manager.update(wall.get()), std::invalid_argument);
+  *tree = own;
+  CertifiedResult result;
+  manager.continuousCollide(up, {}, result);
+  EXPECT_EQ(result.status, Status::contact);  // the wall is where it was read
+  manager.update();
+  manager.continuousCollide(up, {}, result);
+  EXPECT_TRUE(result.isFree());
 }
 
 // Every single difference that counts changes the fingerprint, and none that does not.

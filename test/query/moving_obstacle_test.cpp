@@ -35,9 +35,9 @@ MovingPtr slides(double radius, const Vector3d& from, const Vector3d& to) {
   return slides(std::make_shared<fcl::Sphered>(radius), pose(from), to);
 }
 MovingPtr goes(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Isometry3d& from, const Isometry3d& to) {
-  return std::make_shared<Moving>(geometry, std::make_shared<fcl::InterpMotion<double>>(
-                                                from.linear(), from.translation(), to.linear(), to.translation(),
-                                                Vector3d(0, 0, 0)));
+  return std::make_shared<Moving>(
+      geometry, std::make_shared<fcl::InterpMotion<double>>(from.linear(), from.translation(), to.linear(),
+                                                            to.translation(), Vector3d(0, 0, 0)));
 }
 
 /// What FCL asks of a motion and nobody needs here.
@@ -108,8 +108,8 @@ TEST(MovingObstacle, BothMove) {
 }
 
 // A bar (capsule of 0.05, 2 long) that goes along x with the cart while it turns about z by a quarter. Seen from its
-// middle, the arm's ball of 0.1 stands at 0.8 in direction 60 degrees: they touch at 0.8 sin(60 - 90 t) = 0.15. Turning the
-// arm as well, by -30 degrees: 0.8 sin(60 - 120 t) = 0.15.
+// middle, the arm's ball of 0.1 stands at 0.8 in direction 60 degrees: they touch at 0.8 sin(60 - 90 t) = 0.15. Turning
+// the arm as well, by -30 degrees: 0.8 sin(60 - 120 t) = 0.15.
 TEST(MovingObstacle, SlidesAndTurnsWhileTheRobotSlidesAndTurns) {
   auto tree = std::make_shared<KinematicTree>("arm");
   for (const char* name : {"rail", "cart", "arm"}) tree->addLink(name);
@@ -204,9 +204,9 @@ TEST(MovingObstacle, ComesChangesAndGoes) {
   EXPECT_THROW(cart.run(0, 0), std::logic_error);
   cart.manager->setup();
   EXPECT_TRUE(touchesAt(cart.run(0, 0), 0.85));
-  std::vector<Moving*> all;
+  std::vector<const Moving*> all;
   cart.manager->getObjects(all);
-  EXPECT_EQ(all, std::vector<Moving*>{obstacle.get()});
+  EXPECT_EQ(all, std::vector<const Moving*>{obstacle.get()});
 
   // What the caller does with FCL's motion between queries has no effect; a new motion has, from update() on.
   obstacle->getMotion()->integrate(0.4);
@@ -248,8 +248,11 @@ TEST(MovingObstacle, BadInputIsNamedAndChangesNothing) {
     }
     return std::string("accepted");
   };
-  for (const auto& [object, part] : {std::pair<Moving*, const char*>{nullptr, "null"}, {&none, "no motion"},
-                                     {&unknown, "motion"}, {far.get(), "finite"}, {obstacle.get(), "'bowl'"}}) {
+  for (const auto& [object, part] : {std::pair<Moving*, const char*>{nullptr, "null"},
+                                     {&none, "no motion"},
+                                     {&unknown, "motion"},
+                                     {far.get(), "finite"},
+                                     {obstacle.get(), "'bowl'"}}) {
     const std::string said = message(object, "thing");
     EXPECT_NE(said.find("'thing'"), std::string::npos) << said;
     EXPECT_NE(said.find(part), std::string::npos) << said;
@@ -261,7 +264,8 @@ TEST(MovingObstacle, BadInputIsNamedAndChangesNothing) {
   EXPECT_TRUE(touchesAt(cart.run(0, 0), 0.85));  // and is still set up
 }
 
-// Random arms of three joints with a ball on every link, and random balls that slide and turn about points far from them.
+// Random arms of three joints with a ball on every link, and random balls that slide and turn about points far from
+// them.
 TEST(MovingObstacle, RandomMotionsAgainstDenseSampling) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> u(-1, 1);
@@ -274,8 +278,9 @@ TEST(MovingObstacle, RandomMotionsAgainstDenseSampling) {
     for (int j = 1; j <= 3; ++j) {
       const std::string name = "link" + std::to_string(j), parent = j == 1 ? "base" : "link" + std::to_string(j - 1);
       tree->addLink(name);
-      tree->addJoint(makeJoint("joint" + std::to_string(j), j == 2 && i % 3 == 0 ? JointType::prismatic : JointType::revolute,
-                               parent, name, vector(1), pose(vector(0.5), u(random), vector(1))));
+      tree->addJoint(makeJoint("joint" + std::to_string(j),
+                               j == 2 && i % 3 == 0 ? JointType::prismatic : JointType::revolute, parent, name,
+                               vector(1), pose(vector(0.5), u(random), vector(1))));
     }
     ArticulatedCollisionManager manager(tree);
     std::vector<Vector3d> offsets;
@@ -288,10 +293,11 @@ TEST(MovingObstacle, RandomMotionsAgainstDenseSampling) {
     std::vector<fcl::InterpMotion<double>> copies;  // to be integrated
     const double radius = 0.15;
     for (int k = 0; k < 3; ++k) {
-      const Isometry3d from = pose(vector(1.5), 3 * u(random), vector(1)), to = pose(vector(1.5), 3 * u(random), vector(1));
+      const Isometry3d from = pose(vector(1.5), 3 * u(random), vector(1)),
+                       to = pose(vector(1.5), 3 * u(random), vector(1));
       const Vector3d about = vector(0.5);
       const auto motion = std::make_shared<fcl::InterpMotion<double>>(from.linear(), from.translation(), to.linear(),
-                                                                     to.translation(), about);
+                                                                      to.translation(), about);
       copies.push_back(*motion);
       moving.push_back(std::make_shared<Moving>(std::make_shared<fcl::Sphered>(radius), motion));
       manager.registerObject(moving.back().get());
@@ -311,7 +317,8 @@ TEST(MovingObstacle, RandomMotionsAgainstDenseSampling) {
         motion.getCurrentTransform(M);
         for (int j = 0; j < 3; ++j) {
           const auto link = static_cast<std::size_t>(j + 1);
-          least = std::min(least, (M_0[link] * offsets[static_cast<std::size_t>(j)] - M.translation()).norm() - 0.1 - radius);
+          least = std::min(least,
+                           (M_0[link] * offsets[static_cast<std::size_t>(j)] - M.translation()).norm() - 0.1 - radius);
         }
       }
       return least;

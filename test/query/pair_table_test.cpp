@@ -386,7 +386,7 @@ struct OverDisk {
     manager->setup();
   }
   /// How deep the ball is in the disk; below 0 where it is not.
-  double depth(const VectorXd& q) const { return kRadius - tree->linkPose(tree->link("tip"), q).translation().z(); }
+  double depth(const VectorXd& q) const { return kRadius - tree->linkPose(tree->linkId("tip"), q).translation().z(); }
 };
 
 /// Short motions, in both modes: none that begins with the ball deep in the disk is free.

@@ -49,7 +49,7 @@ struct Random {
 CertifiedRequest randomRequest(Random& random) {
   CertifiedRequest request;
   request.mode = static_cast<ContactMode>(random.below(3));
-  request.method = random.chance(0.2) ? Method::Redon2004 : Method::standard;
+  request.method = random.chance(0.2) ? Method::redon2004 : Method::standard;
   request.visibility = random.chance(0.2) ? VisibilityMode::on : VisibilityMode::off;
   request.ignore_initial_contact = request.mode != ContactMode::any && random.chance(0.4);
   if (random.chance(0.2)) request.margin = random.in(0, 0.1);
@@ -132,7 +132,7 @@ TEST(SolidMeshCampaign, BallAndHollowBox) {
     if (setting == 3) {
       const auto slide = [](const Isometry3d& from_pose, const Isometry3d& to_pose) {
         return fcl::InterpMotion<double>(from_pose.linear(), from_pose.translation(), to_pose.linear(),
-                                         to_pose.translation());
+                                         to_pose.translation(), Vector3d(0, 0, 0));
       };
       const auto still = slide(M, M), way = slide(pose(q0), pose(q1));
       CertifiedPairResult pair;

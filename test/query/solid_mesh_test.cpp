@@ -44,7 +44,7 @@ testing::AssertionResult touchesAtStart(const CertifiedResult& r) {
 std::vector<CertifiedRequest> allKinds() {
   std::vector<CertifiedRequest> kinds;
   for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
-    for (const Method method : {Method::standard, Method::Redon2004}) {
+    for (const Method method : {Method::standard, Method::redon2004}) {
       for (const VisibilityMode visibility : {VisibilityMode::off, VisibilityMode::on}) {
         for (const double margin : {0.0, 0.01}) {
           CertifiedRequest request;

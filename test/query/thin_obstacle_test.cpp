@@ -22,7 +22,9 @@ using Eigen::Vector3d;
 namespace {
 
 /// A tube of square section along z, half width 0.1, half length 0.2; closed at its ends or not.
-std::shared_ptr<Mesh> tube(bool closed) { return boxMesh({0.1, 0.1, 0.2}, closed); }
+std::shared_ptr<Mesh> tube(bool closed) {
+  return boxMesh({0.1, 0.1, 0.2}, closed);
+}
 
 /// The tube on a slider along x, and an obstacle.
 struct Scene {

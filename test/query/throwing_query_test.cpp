@@ -70,7 +70,7 @@ CertifiedRequest badLevel() {
 }
 CertifiedRequest throwingProgress() {
   CertifiedRequest request;
-  request.progress = [](double) { throw Thrown(); };
+  request.progress = [](double) -> bool { throw Thrown(); };
   return request;
 }
 
@@ -222,6 +222,7 @@ TEST(ThrowingQuery, ProgressThatThrowsLeavesNothing) {
     ++calls;
     EXPECT_EQ(looked_at.status, Status::undecided) << "while the query runs";
     EXPECT_EQ(looked_at.t_lower, 0);
+    return true;
   };
   crank.continuousCollide(motion, looking, looked_at);
   EXPECT_GT(calls, 0);
@@ -234,7 +235,7 @@ TEST(ThrowingQuery, ProgressThatThrowsLeavesNothing) {
       [&](CertifiedResult& r) { crank.continuousCollide(trajectory, throwingProgress(), r); }, -5, -2);
   expectNothingLeft(yard, "progress by the paper's method", [&](CertifiedResult& r) {
     CertifiedRequest request = throwingProgress();
-    request.method = Method::Redon2004;
+    request.method = Method::redon2004;
     crank.continuousCollide(motion, request, r);
   });
 }

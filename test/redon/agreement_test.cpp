@@ -28,7 +28,7 @@ std::uint64_t queries() {
 
 CertifiedRequest paper() {
   CertifiedRequest request;
-  request.method = fcl_artic::Method::Redon2004;
+  request.method = fcl_artic::Method::redon2004;
   return request;
 }
 
@@ -143,7 +143,7 @@ TEST(Redon2004, FreeBodiesAgreeWithTheStandardMethodAndWithSampling) {
 /// First contact of every pair: what one pair leaves behind must not reach the next.
 TEST(Redon2004, EveryPairHasItsOwnFirstContact) {
   fcl_artic::CertifiedRequest paper;
-  paper.method = fcl_artic::Method::Redon2004;
+  paper.method = fcl_artic::Method::redon2004;
   const auto timesOf = [](const campaign::Answer& answer) {
     std::map<std::pair<int, int>, double> times;
     for (const auto& c : answer.result.contacts) {

@@ -34,7 +34,7 @@ std::uint64_t numberFrom(const char* name, std::uint64_t usual) {
 /// All that is random about how a scene is asked.
 CertifiedRequest anyWay(const CertifiedRequest& base, campaign::Random& random) {
   CertifiedRequest request = base;
-  request.method = random.chance(0.1) ? Method::standard : Method::Redon2004;
+  request.method = random.chance(0.1) ? Method::standard : Method::redon2004;
   // (The standard method's modes are a campaign of their own.)
   request.mode = request.method == Method::standard ? ContactMode::first : static_cast<ContactMode>(random.below(3));
   request.max_contacts = random.chance(0.5) ? 1 : static_cast<std::size_t>(random.between(1, 50));
@@ -147,7 +147,7 @@ void askScene(std::uint64_t seed, Count& count) {
     }
     if (by < contact_by) contact_by = by, contact_says = says;
     if (result.status == Status::free && by < 2) count.faults.push_back(name + ": free with a contact: " + says);
-    if (result.contacts.size() > request.max_contacts && request.method == Method::Redon2004) {
+    if (result.contacts.size() > request.max_contacts && request.method == Method::redon2004) {
       count.faults.push_back(name + ": too many contacts: " + says);
     }
     if (result.status == Status::contact && result.contacts.empty()) {

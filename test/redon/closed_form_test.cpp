@@ -26,7 +26,7 @@ Isometry3d at(double x, double y, double z) {
 
 CertifiedRequest paper() {
   CertifiedRequest request;
-  request.method = fcl_artic::Method::Redon2004;
+  request.method = fcl_artic::Method::redon2004;
   request.max_contacts = 100;
   return request;
 }

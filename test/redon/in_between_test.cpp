@@ -40,7 +40,7 @@ Isometry3d pose(double x, double y, double z, double angle, const Vector3d& axis
 
 TEST(InBetween, MeetsBothEndsAndMovesEvenlyBetweenThem) {
   const auto tree = fcl_artic::inBetweenTree(*twoHinges());
-  EXPECT_EQ(tree->link("hand"), 2);
+  EXPECT_EQ(tree->linkId("hand"), 2);
   const std::vector<Isometry3d> begin{pose(0, 0, 0, 0.3, {1, 2, 3}), pose(1, 2, 3, -1, {0, 1, 0}),
                                       pose(2, 2, 2, 2, {1, 0, 1})};
   const std::vector<Isometry3d> end{pose(1, 0, 0.5, 1.3, {1, -2, 3}), pose(-1, 1, 3, 1, {0, 1, 1}),
@@ -108,7 +108,7 @@ TEST(InBetween, BothMethodsFindTheContactOfTheInBetweenMotion) {
   manager.bind("hand", &hand);
   manager.registerObject(&post, "post");
   manager.setup();
-  for (const auto method : {fcl_artic::Method::standard, fcl_artic::Method::Redon2004}) {
+  for (const auto method : {fcl_artic::Method::standard, fcl_artic::Method::redon2004}) {
     fcl_artic::CertifiedRequest request;
     request.method = method;
     fcl_artic::CertifiedResult result;
@@ -118,7 +118,7 @@ TEST(InBetween, BothMethodsFindTheContactOfTheInBetweenMotion) {
     EXPECT_LE(result.t_lower, 0.5);
     EXPECT_GE(result.t_upper, 0.5);
     EXPECT_LE(result.t_upper - result.t_lower, 1e-6);
-    if (method == fcl_artic::Method::Redon2004) {
+    if (method == fcl_artic::Method::redon2004) {
       EXPECT_EQ(result.statistics.redon.pairs_by_standard, 0u);
     }
   }

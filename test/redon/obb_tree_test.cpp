@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-#include "adapters/fcl/fcl_geometry.h"
+#include "fcl/fcl_geometry.h"
 #include "generator.h"
 #include "geometry/obb_tree.h"
 #include "geometry/shape_tree.h"

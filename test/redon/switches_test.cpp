@@ -21,7 +21,7 @@ std::vector<CertifiedRequest> allSwitches() {
         for (const bool newton : {true, false}) {
           for (const bool in_time_order : {true, false}) {
             CertifiedRequest request;
-            request.method = fcl_artic::Method::Redon2004;
+            request.method = fcl_artic::Method::redon2004;
             request.redon.enclosure = enclosure;
             request.redon.refinement_level = level;
             request.redon.simultaneous = simultaneous;

@@ -77,7 +77,7 @@ class Slides {
 
 CertifiedRequest paper() {
   CertifiedRequest request;
-  request.method = fcl_artic::Method::Redon2004;
+  request.method = fcl_artic::Method::redon2004;
   return request;
 }
 
@@ -142,6 +142,7 @@ TEST(Unexamined, ProgressClaimsNothingOfPairsThatWereNotComeTo) {
       request.progress = [&](double t_lower) {
         ++told;
         EXPECT_LE(t_lower, 0.268 + 1e-12) << "switches " << combination;
+        return true;
       };
       slides.ask(request);
     }

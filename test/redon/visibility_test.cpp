@@ -8,10 +8,10 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <gtest/gtest.h>
 
+#include "../visibility/recorder.h"
 #include "engine.h"
 #include "generator.h"
 #include "redon/parts.h"
-#include "../visibility/recorder.h"
 
 namespace {
 
@@ -38,7 +38,7 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
   std::vector<Eigen::Isometry3d> M_0;
   const auto poseAt = [&](const JointMotion& motion, double t) {
     tree->forwardKinematics(motion.configuration(t), M_0);
-    return M_0[static_cast<std::size_t>(tree->link("link3"))];
+    return M_0[static_cast<std::size_t>(tree->linkId("link3"))];
   };
   for (int trial = 0; trial < 24; ++trial) {
     const Eigen::VectorXd q0 = Eigen::VectorXd::Random(4) * 2, dq = Eigen::VectorXd::Random(4) * (trial % 4 ? 0.5 : 2);
@@ -59,7 +59,7 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
     for (const MotionEnclosure enclosure :
          {MotionEnclosure::intervalChain, MotionEnclosure::meanValue, MotionEnclosure::taylor}) {
       CertifiedRequest request;
-      request.method = Method::Redon2004;
+      request.method = Method::redon2004;
       request.redon.enclosure = enclosure;
       request.visibility = VisibilityMode::on;
       CertifiedResult result;
@@ -96,8 +96,8 @@ TEST(RedonVisibility, PartsOfTimeAreThoseThatOverlap) {
         std::uint64_t expected = 0;
         for (int k = 0; k < 1 << level; ++k) {
           for (int j = 0; j < 1 << from; ++j) {
-            const bool overlap = std::ldexp(k, -level) < std::ldexp(j + 1, -from) &&
-                                 std::ldexp(j, -from) < std::ldexp(k + 1, -level);
+            const bool overlap =
+                std::ldexp(k, -level) < std::ldexp(j + 1, -from) && std::ldexp(j, -from) < std::ldexp(k + 1, -level);
             if (overlap && parts >> j & 1) expected |= 1ull << k;
           }
         }
@@ -119,7 +119,7 @@ TEST(RedonVisibility, SameAnswersWithTheStageAndWithout) {
     scene.margin = 0;
     campaign::Question question = campaign::prepare(scene);
     const JointMotion motion = campaign::motionOf(scene, *question.tree);
-    question.request.method = Method::Redon2004;
+    question.request.method = Method::redon2004;
     question.request.redon.in_time_order = i % 4 != 0;
     CertifiedResult off, on;
     question.manager->continuousCollide(motion, question.request, off);

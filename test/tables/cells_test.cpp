@@ -11,11 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "fcl_artic/urdf/urdf.h"
+#include "narrowphase/engine_workspace.h"
 #include "query/engine_query.h"
-#include "query/pair_table.h"
-#include "query/registry.h"
-#include "query/setup.h"
 #include "random_links.h"
+#include "setup/registry.h"
+#include "setup/setup.h"
+#include "tables/pair_table.h"
 
 using namespace fcl_artic;
 using Eigen::VectorXd;
@@ -120,21 +121,21 @@ class Looker {
     query_.coefficients = motion.data();
     ++counts_.motions;
     const engine::Answer answer = solve(table_.margin());
-    const bool wrong = answer.verdict == engine::Verdict::contact && answer.certain;
+    const bool wrong = answer.status == Status::contact && answer.certain;
     counts_.wrong += wrong;
-    counts_.uncertain += !wrong && answer.verdict != engine::Verdict::free;
+    counts_.uncertain += !wrong && !answer.isFree();
     if (wrong && counts_.wrong < 10) {
       ADD_FAILURE() << "a proven cell has a contact in it, cells " << from.transpose() << " to " << to.transpose()
                     << ", t <= " << answer.t_upper;
     }
-    if (random_.chance(0.1)) counts_.near += 10 * (solve(table_.margin() + kNear).verdict != engine::Verdict::free);
+    if (random_.chance(0.1)) counts_.near += 10 * (solve(table_.margin() + kNear).status != Status::free);
   }
 
   engine::Answer solve(double margin) {
     engine::Answer answer;
     query_.margins = engine::Margins(margin);
     query_.any = random_.chance(0.5);
-    engine::engine().solve(workspace_->engine(), problem_, query_, answer);
+    workspace_.solve(problem_, query_, answer);
     return answer;
   }
 
@@ -144,7 +145,7 @@ class Looker {
   const std::int32_t dof_;
   engine::Problem problem_;
   engine::Query query_;
-  const WorkspaceLoan workspace_;
+  engine::EngineWorkspace workspace_;
 };
 
 /// All tables of a robot.
@@ -173,7 +174,7 @@ void lookAtRobot(const std::filesystem::path& urdf, std::uint64_t& near, std::ui
   const Robot robot = loadUrdf(urdf.string());
   Registry registry(robot.tree);
   for (const LinkGeometry& g : robot.geometry) registry.bind(g.link, g.object.get(), g.offset);
-  registry.allowed = robot.allowed;  // of the SRDF's pairs none: those that never touch have tables, too
+  registry.setAllowed(robot.allowed);  // of the SRDF's pairs none: those that never touch have tables, too
   pairs::Random random(seed());
   for (const double margin : {0.0, 0.02}) {
     Counts counts;
@@ -214,8 +215,8 @@ TEST(TableCells, OfRandomLinks) {
     pairs::Random random(pairs::Random::mix(seed() + 1000, i));
     const tables::RandomLinks links(random);
     Registry registry(links.tree);
-    registry.bind(links.tree->link("a"), links.a.get(), links.on_a);
-    registry.bind(links.tree->link("b"), links.b.get(), links.on_b);
+    registry.bind(links.tree->linkId("a"), links.a.get(), links.on_a);
+    registry.bind(links.tree->linkId("b"), links.b.get(), links.on_b);
     const std::uint64_t wrong = counts.wrong;
     lookAtTables(registry, links.margin, asked("FCL_ARTIC_TABLE_SHARE", 0.1), random, counts);
     if (counts.wrong > wrong) ADD_FAILURE() << "seed " << seed() << ", pair " << i;

@@ -171,7 +171,7 @@ struct RandomLinks {
     b = object(random, random.logUniform(0.0005, bare_ ? 0.005 : 0.15));
     on_b = pose(random, bare_ || random.chance(0.5) ? 0 : 0.2);
     const VectorXd q = draw(random);
-    const Isometry3d at = tree->linkPose(tree->link("a"), q).inverse() * tree->linkPose(tree->link("b"), q) * on_b;
+    const Isometry3d at = tree->linkPose(tree->linkId("a"), q).inverse() * tree->linkPose(tree->linkId("b"), q) * on_b;
     // What has a face reaches with it to about where the other link's middle gets.
     const double x = random.logUniform(0.1, bare_ ? 30 : 3), y = random.logUniform(0.1, bare_ ? 30 : 3),
                  z = random.logUniform(0.005, 0.3);

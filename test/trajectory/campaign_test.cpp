@@ -30,8 +30,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// FCL's answer is off by rounding: a hit counts for boxes that are this much smaller on each side, in m, and what is proven
-/// to touch must do so with boxes that are as much larger.
+/// FCL's answer is off by rounding: a hit counts for boxes that are this much smaller on each side, in m, and what is
+/// proven to touch must do so with boxes that are as much larger.
 constexpr double kAround = 1e-5;
 constexpr int kCases = 2000;
 
@@ -47,8 +47,9 @@ struct Case {
   std::vector<Joint> joints;
 
   explicit Case(Random& random) {
-    static const JointType kinds[] = {JointType::revolute, JointType::continuous, JointType::prismatic, JointType::fixed,
-                                      JointType::planar,   JointType::spherical,  JointType::floating};
+    static const JointType kinds[] = {JointType::revolute, JointType::continuous, JointType::prismatic,
+                                      JointType::fixed,    JointType::planar,     JointType::spherical,
+                                      JointType::floating};
     std::string master;
     const int links = 2 + random.below(5);
     for (int i = 1; i <= links; ++i) {
@@ -58,13 +59,15 @@ struct Case {
       const bool follows = simple && !master.empty() && random.below(3) == 0;
       const std::string name = "l" + std::to_string(i), joint = "j" + std::to_string(i);
       const int parent = random.below(4) ? i - 1 : random.below(i);
-      scene.add(joint, type, parent ? "l" + std::to_string(parent) : "base", name, random.vector(1) + Vector3d(0, 0, 1.1),
-                Isometry3d(translation(random.vector(0.5)) * random.rotation()), follows ? &mimic : nullptr);
+      scene.add(joint, type, parent ? "l" + std::to_string(parent) : "base", name,
+                random.vector(1) + Vector3d(0, 0, 1.1), Isometry3d(translation(random.vector(0.5)) * random.rotation()),
+                follows ? &mimic : nullptr);
       if (simple && !follows) master = joint;
     }
     for (int i = 0; i < links + 3; ++i) {
       const Vector3d side(random.in(0.05, 0.5), random.in(0.05, 0.5), random.in(0.05, 0.5));
-      Body body = {i < links ? i + 1 : -1, Isometry3d::Identity(), std::make_shared<fcl::Boxd>(side - Vector3d::Constant(2 * kAround)),
+      Body body = {i < links ? i + 1 : -1, Isometry3d::Identity(),
+                   std::make_shared<fcl::Boxd>(side - Vector3d::Constant(2 * kAround)),
                    std::make_shared<fcl::Boxd>(side + Vector3d::Constant(2 * kAround))};
       body.offset = translation(random.vector(i < links ? 0.2 : 1.8)) * random.rotation();
       const auto box = std::make_shared<fcl::Boxd>(side);
@@ -117,7 +120,9 @@ struct Case {
   bool touches(const JointTrajectory& x, double t, std::shared_ptr<fcl::Boxd> Body::*box) const {
     std::vector<Isometry3d> M;
     scene.tree->forwardKinematics(x.configuration(t), M);
-    const auto pose = [&](const Body& b) { return b.link < 0 ? b.offset : M[static_cast<std::size_t>(b.link)] * b.offset; };
+    const auto pose = [&](const Body& b) {
+      return b.link < 0 ? b.offset : M[static_cast<std::size_t>(b.link)] * b.offset;
+    };
     for (const auto& [i, j] : watched) {
       const Body &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
       if (near(scene.tree.get(), a.link, b.link)) continue;
@@ -171,7 +176,8 @@ TEST(TrajectoryCampaign, NoContactIsMissed) {
     for (int s = 0; s <= 400; ++s) {
       const double t = x.beginTime() + length * s / 400;
       if (t >= r.t_lower && !r.isFree()) break;
-      ASSERT_FALSE(c.touches(x, t, &Body::small)) << "case " << n << " at " << t << ", said to be free before " << r.t_lower;
+      ASSERT_FALSE(c.touches(x, t, &Body::small))
+          << "case " << n << " at " << t << ", said to be free before " << r.t_lower;
       ++sampled;
     }
     if (r.certain) {
@@ -181,8 +187,8 @@ TEST(TrajectoryCampaign, NoContactIsMissed) {
       for (std::size_t i = 0; i < M.size(); ++i) EXPECT_TRUE(M[i].isApprox(r.M_0_at_lower[i], 1e-12)) << n;
     }
   }
-  std::printf("%d trajectories of %d pieces: %d contacts (%d at the start, %d not certain), %d free; %d samples\n", kCases,
-              pieces, hits, at_start, uncertain, free, sampled);
+  std::printf("%d trajectories of %d pieces: %d contacts (%d at the start, %d not certain), %d free; %d samples\n",
+              kCases, pieces, hits, at_start, uncertain, free, sampled);
   EXPECT_GT(hits - at_start, kCases / 5) << "too few contacts on the way";
   EXPECT_GT(free, kCases / 5);
   EXPECT_LT(uncertain, kCases / 100);

@@ -66,8 +66,10 @@ TEST(Joints, RefusesWhatIsNoQuaternion) {
   scene.add("ball", JointType::spherical, "base", "a");
   const KinematicTree& tree = *scene.tree;
   const VectorXd good = tree.neutralConfiguration();
-  expectContains(refusal([&] { JointMotion::linear(tree, VectorXd::Zero(4), good); }), "q0: the quaternion of joint 'ball'");
-  expectContains(refusal([&] { JointMotion::linear(tree, good, 1.01 * good); }), "q1: the quaternion of joint 'ball' has the length 1.01");
+  expectContains(refusal([&] { JointMotion::linear(tree, VectorXd::Zero(4), good); }),
+                 "q0: the quaternion of joint 'ball'");
+  expectContains(refusal([&] { JointMotion::linear(tree, good, 1.01 * good); }),
+                 "q1: the quaternion of joint 'ball' has the length 1.01");
   expectContains(refusal([&] { tree.jointValue(0, good); }), "joint 'ball' has no single value");
   MatrixXd c = MatrixXd::Zero(4, 2);
   c(3, 0) = c(3, 1) = 1;
@@ -97,8 +99,8 @@ TEST(Joints, QuaternionsTakeTheShortestRotationAtConstantSpeed) {
   }
 }
 
-/// A ball of radius 0.1 on an arm of 1 m, across the axis of rotation, runs into one of radius 0.15 that sits on the path
-/// at three quarters of the way: they touch where the chord 2 sin(angle / 2) is 0.25.
+/// A ball of radius 0.1 on an arm of 1 m, across the axis of rotation, runs into one of radius 0.15 that sits on the
+/// path at three quarters of the way: they touch where the chord 2 sin(angle / 2) is 0.25.
 TEST(Joints, SphericalJointMeetsABallAtTheTimeWorkedOut) {
   const Vector3d axis = Vector3d(1, 2, -0.5).normalized();
   const double angle = 2.5;
@@ -119,8 +121,8 @@ TEST(Joints, SphericalJointMeetsABallAtTheTimeWorkedOut) {
   EXPECT_TRUE(scene.run(JointMotion::linear(*scene.tree, q0, kTilt.slerp(0.6, end).coeffs())).isFree());
 }
 
-/// The same, seen from the arm: its link against another arm that hangs on the arm's own tip by a second joint, so that the
-/// pair's path goes up through the spherical joint.
+/// The same, seen from the arm: its link against another arm that hangs on the arm's own tip by a second joint, so that
+/// the pair's path goes up through the spherical joint.
 TEST(Joints, SelfCollisionThroughASphericalJoint) {
   const Vector3d axis = Vector3d(1, 2, -0.5).normalized();
   const double angle = 2.5;
@@ -154,8 +156,8 @@ TEST(Joints, FloatingBaseFallsToTheFloor) {
   expectContact(scene.run(JointTrajectory::piecewise(*scene.tree, {-3, -2}, {c})), t - 3);
 }
 
-/// A base that drives in the plane across y: its x is the world's x, its y the world's -z. Turned by a right angle, a ball
-/// at 0.3 m along the base's x is below it (a rotation about y takes x to -z).
+/// A base that drives in the plane across y: its x is the world's x, its y the world's -z. Turned by a right angle, a
+/// ball at 0.3 m along the base's x is below it (a rotation about y takes x to -z).
 TEST(Joints, PlanarBaseMeetsTheFloor) {
   Scene scene("world");
   scene.add("plane", JointType::planar, "world", "body", Vector3d::UnitY());
@@ -168,7 +170,8 @@ TEST(Joints, PlanarBaseMeetsTheFloor) {
   expectContact(scene.run(turn), std::asin(0.15 / 0.3));
 }
 
-/// A link of the world is no neighbour of what flies or drives about before it: the ball at x = 2 t meets its face at 1.5.
+/// A link of the world is no neighbour of what flies or drives about before it: the ball at x = 2 t meets its face
+/// at 1.5.
 TEST(Joints, FreeBodiesMeetTheLinkThatTheyMoveOn) {
   for (const JointType type : {JointType::floating, JointType::planar, JointType::prismatic}) {
     Scene scene("world");
@@ -209,7 +212,7 @@ TEST(Joints, FclLinkMotionFollowsThem) {
   q1.tail<4>() = kTilt.coeffs();
   const JointMotion motion = JointMotion::linear(tree, q0, q1);
   const Isometry3d offset = translation({0.5, 0, 0}) * kTilt;
-  const FclLinkMotion link(tree, motion, tree.link("c"), offset);
+  const FclLinkMotion link(tree, motion, tree.linkId("c"), offset);
   std::vector<Isometry3d> M;
   Isometry3d before = link.pose(0);
   for (int i = 0; i <= 16; ++i) {

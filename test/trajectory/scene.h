@@ -28,7 +28,9 @@ using Eigen::VectorXd;
 
 constexpr double kPi = 3.14159265358979323846;
 
-inline Isometry3d translation(const Vector3d& x) { return Isometry3d(Eigen::Translation3d(x)); }
+inline Isometry3d translation(const Vector3d& x) {
+  return Isometry3d(Eigen::Translation3d(x));
+}
 
 inline VectorXd values(std::initializer_list<double> list) {
   VectorXd q(static_cast<Eigen::Index>(list.size()));
@@ -111,7 +113,9 @@ inline double solve(const std::function<long double(long double)>& f, long doubl
 }
 
 /// 10 s^3 - 15 s^4 + 6 s^5: from rest to rest.
-inline long double minimumJerk(long double s) { return s * s * s * (10 + s * (-15 + s * 6)); }
+inline long double minimumJerk(long double s) {
+  return s * s * s * (10 + s * (-15 + s * 6));
+}
 
 template <class F>
 std::string refusal(F&& f) {

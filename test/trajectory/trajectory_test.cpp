@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Trajectories: contact times known in closed form, what the constructors make of waypoints, what goes over from piece to
-// piece, and bad input.
+// Trajectories: contact times known in closed form, what the constructors make of waypoints, what goes over from piece
+// to piece, and bad input.
 #include <cfenv>
 #include <limits>
 #include <random>
@@ -27,7 +27,8 @@ struct Slider : Scene {
   }
 };
 
-JointTrajectory restToRest(const KinematicTree& tree, double begin, double end, const VectorXd& q0, const VectorXd& q1) {
+JointTrajectory restToRest(const KinematicTree& tree, double begin, double end, const VectorXd& q0,
+                           const VectorXd& q1) {
   const VectorXd zero = VectorXd::Zero(q0.size());
   return JointTrajectory::quintic(tree, {begin, end}, {q0, q1}, {zero, zero}, {zero, zero});
 }
@@ -41,7 +42,8 @@ TEST(Trajectory, QuinticOfASliderMeetsTheWall) {
   EXPECT_TRUE(slider.run(restToRest(*slider.tree, 2, 6, values({0}), values({0.399}))).isFree());
   CertifiedRequest request;
   request.margin = 0.1;
-  expectContact(slider.run(restToRest(*slider.tree, 2, 6, values({0}), values({1})), request), 2 + 4 * solve(minimumJerk, 0.3L));
+  expectContact(slider.run(restToRest(*slider.tree, 2, 6, values({0}), values({1})), request),
+                2 + 4 * solve(minimumJerk, 0.3L));
 }
 
 /// A ball of radius 0.1 at 1 m from the hinge, one of 0.2 at 1 m and 2 rad: they touch at 2 - 2 asin(0.15).
@@ -71,7 +73,10 @@ TEST(Trajectory, FirstContactIsInTheTimeOfTheTrajectory) {
   const JointTrajectory there = slider.linear({0, 1, 3, 10}, {-1, 0, 0.2, 0.9});
   std::vector<double> told;
   CertifiedRequest request;
-  request.progress = [&](double t) { told.push_back(t); };
+  request.progress = [&](double t) {
+    told.push_back(t);
+    return true;
+  };
   const CertifiedResult r = slider.run(there, request);
   expectContact(r, 5);  // 0.2 + 0.1 (t - 3) = 0.4
   EXPECT_EQ(r.contacts[0].body2.name, "wall");
@@ -154,7 +159,8 @@ TEST(Trajectory, BracketIsAProofAtTimesWhoseDoublesAreFarApart) {
 
 TEST(Trajectory, EveryPairIsReportedOnce) {
   Slider slider;
-  slider.obstacle("gate", std::make_shared<fcl::Sphered>(0.1), translation({0, 0.15, 0}));  // met at -sqrt(0.2^2 - 0.15^2)
+  slider.obstacle("gate", std::make_shared<fcl::Sphered>(0.1),
+                  translation({0, 0.15, 0}));  // met at -sqrt(0.2^2 - 0.15^2)
   CertifiedRequest request;
   request.mode = ContactMode::firstOfEveryPair;
   request.max_contacts = 10;
@@ -180,7 +186,8 @@ TEST(Trajectory, InitialContactIsIgnoredUntilItIsOver) {
   const CertifiedResult r = slider.run(and_back, request);
   expectContact(r, 4.5);
   ASSERT_EQ(r.ignored_initial_contacts.size(), 1u);
-  EXPECT_EQ(r.ignored_initial_contacts[0].second.name == "wall" || r.ignored_initial_contacts[0].first.name == "wall", true);
+  EXPECT_EQ(r.ignored_initial_contacts[0].second.name == "wall" || r.ignored_initial_contacts[0].first.name == "wall",
+            true);
   EXPECT_EQ(slider.run(and_back).t_upper, 0);
   EXPECT_TRUE(slider.run(slider.linear({0, 1, 2, 3}, {0.55, 0.5, 0.45, 0.3}), request).isFree());
   // Never apart, to the end.
@@ -205,14 +212,16 @@ TEST(Trajectory, WhatIsIgnoredAtAWaypointIsOnlyWhatWasBefore) {
   request.tolerance_distance = 1e-12;
   const double near = 4e-10;
   const CertifiedResult r = scene.run(
-      JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {piece(0.375 - near - 0.25, 0.25), piece(0.375 + near, -0.5)}), request);
+      JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {piece(0.375 - near - 0.25, 0.25), piece(0.375 + near, -0.5)}),
+      request);
   ASSERT_EQ(r.status, Status::contact);
   EXPECT_EQ(r.t_lower, 1);
   ASSERT_EQ(r.contacts.size(), 1u);
   EXPECT_EQ(r.contacts[0].body2.name, "wall");
   // Without the jump nothing but the plate is near.
   const CertifiedResult free = scene.run(
-      JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {piece(0.375 - near - 0.25, 0.25), piece(0.375 - near, -0.5)}), request);
+      JointTrajectory::piecewise(*scene.tree, {0, 1, 2}, {piece(0.375 - near - 0.25, 0.25), piece(0.375 - near, -0.5)}),
+      request);
   EXPECT_TRUE(free.isFree());
 }
 
@@ -257,6 +266,38 @@ TEST(Trajectory, BudgetIsForAllPieces) {
   EXPECT_LT(half.t_lower, 180);
   request.work_budget = work;
   EXPECT_TRUE(slider.run(shake, request).isFree());
+}
+
+/// Of the paper's own work too, which is counted elsewhere than the library's.
+TEST(Trajectory, BudgetOfThePapersMethodIsForAllPieces) {
+  Scene scene;
+  scene.add("slide", JointType::prismatic, "base", "cart", Vector3d::UnitX());
+  scene.bind("cart", std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2));
+  Isometry3d turned = translation({0.55, 0, 0});
+  turned.rotate(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+  scene.obstacle("box", std::make_shared<fcl::Boxd>(0.4, 0.4, 0.4), turned);
+  std::vector<double> times;
+  std::vector<VectorXd> q;
+  for (int i = 0; i <= 60; ++i) {
+    times.push_back(i);
+    q.push_back(values({i % 2 ? 0.1 : 0}));
+  }
+  const JointTrajectory shake = JointTrajectory::linear(*scene.tree, times, q);
+  CertifiedRequest request;
+  request.method = Method::redon2004;
+  const CertifiedResult full = scene.run(shake, request);
+  ASSERT_TRUE(full.isFree());
+  ASSERT_EQ(full.statistics.redon.pairs_by_standard, 0u);
+  const std::uint64_t work = full.statistics.redon.box_tests + full.statistics.redon.evaluations +
+                             full.statistics.node_tests + full.statistics.leaf_tests;
+  ASSERT_GT(full.statistics.redon.box_tests, 50u);
+  request.work_budget = work / 2;
+  const CertifiedResult half = scene.run(shake, request);
+  EXPECT_EQ(half.status, Status::undecided);
+  EXPECT_GT(half.t_lower, 10);
+  EXPECT_LT(half.t_lower, 50);
+  request.work_budget = work;
+  EXPECT_TRUE(scene.run(shake, request).isFree());
 }
 
 // ---- constructors ----
@@ -321,7 +362,8 @@ TEST(Trajectory, CubicOfAQuaternion) {
   const Quaterniond a(Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized())),
       b(Eigen::AngleAxisd(2.9, Vector3d(-1, 0.5, 1).normalized()));
   const VectorXd v = values({1, -2, 0.5, 0});
-  const JointTrajectory x = JointTrajectory::cubic(*scene.tree, {0, 1, 3}, {a.coeffs(), b.coeffs(), a.coeffs()}, {v, v, v});
+  const JointTrajectory x =
+      JointTrajectory::cubic(*scene.tree, {0, 1, 3}, {a.coeffs(), b.coeffs(), a.coeffs()}, {v, v, v});
   const auto at = [&](double t) { return Quaterniond(Eigen::Vector4d(x.configuration(t))); };
   EXPECT_LT(at(1).angularDistance(b), 1e-7);
   const double h = 1e-5;
@@ -347,7 +389,8 @@ TEST(Trajectory, ParabolicBlendsAreLinesWithRoundedCorners) {
   EXPECT_LT((derivative(x, 0.75) - q[1]).norm(), 1e-4) << "speeds agree where the blend begins";
   EXPECT_LT((derivative(x, 1.25) - (q[2] - q[1]) / 2).norm(), 1e-4);
   EXPECT_EQ(JointTrajectory::parabolicBlends(*scene.tree, {0, 1, 3, 4}, q, 0).numPieces(), 3u);
-  EXPECT_EQ(JointTrajectory::parabolicBlends(*scene.tree, {0, 1, 2, 3}, q, 0.5).numPieces(), 4u) << "blend next to blend";
+  EXPECT_EQ(JointTrajectory::parabolicBlends(*scene.tree, {0, 1, 2, 3}, q, 0.5).numPieces(), 4u)
+      << "blend next to blend";
 }
 
 /// Cox and de Boor's recursion.
@@ -390,12 +433,14 @@ TEST(Trajectory, BSplinesAreTheSumOfTheirBasis) {
   }
 }
 
-/// A B-spline whose control points lie on a line at the knots' averages runs on that line at constant speed: q = t / 10.
+/// A B-spline whose control points lie on a line at the knots' averages runs on that line at constant speed: q = t
+/// / 10.
 TEST(Trajectory, BSplineMeetsTheWall) {
   Slider slider;
   const std::vector<double> knots = {0, 0, 0, 0, 2, 3, 7, 10, 10, 10, 10};
   std::vector<VectorXd> points;
-  for (std::size_t i = 0; i + 4 < knots.size(); ++i) points.push_back(values({(knots[i + 1] + knots[i + 2] + knots[i + 3]) / 30}));
+  for (std::size_t i = 0; i + 4 < knots.size(); ++i)
+    points.push_back(values({(knots[i + 1] + knots[i + 2] + knots[i + 3]) / 30}));
   expectContact(slider.run(JointTrajectory::bspline(*slider.tree, 3, knots, points)), 4);
 }
 
@@ -413,7 +458,8 @@ TEST(Trajectory, ContinuousJointsAreUnwrappedOnRequest) {
   Scene geared = twoJoints();
   const Mimic half = {"turn", 0.5, 0};
   geared.add("half", JointType::revolute, "base", "c", Vector3d::UnitZ(), Isometry3d::Identity(), &half);
-  expectContains(refusal([&] { JointTrajectory::linear(*geared.tree, times, q, Unwrap::yes); }), "joint 'half' mimics the continuous joint 'turn'");
+  expectContains(refusal([&] { JointTrajectory::linear(*geared.tree, times, q, Unwrap::yes); }),
+                 "joint 'half' mimics the continuous joint 'turn'");
 }
 
 // ---- bad input ----
@@ -429,6 +475,8 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   expectContains(linear({0}, {zero}), "1 waypoints");
   expectContains(linear({0, 1, 2}, {zero, one}), "3 times for 2 waypoints");
   expectContains(linear({0, 1, 1}, {zero, one, zero}), "time 2, 1, is not later than the one before, 1");
+  // Every piece's duration is finite, but not that of the whole.
+  expectContains(linear({-1.7e308, 0, 1.7e308}, {zero, one, zero}), "from -1.7e+308 to 1.7e+308 is not finite");
   expectContains(linear({0, nan}, {zero, one}), "time 1 is not finite");
   expectContains(linear({0, 1}, {zero, VectorXd::Zero(3)}), "waypoint 1 has 3 entries, robot 'robot' has 2");
   expectContains(linear({0, 1}, {zero, values({0, nan})}), "joint 'slide' is not finite");
@@ -443,30 +491,50 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   };
   expectContains(pieces({0}, {}), "no piece");
   expectContains(pieces({0, 1}, {still, moved}), "2 times for 2 pieces");
-  expectContains(pieces({0, 1, 2, 3}, {still, still, moved}), "piece 2 begins elsewhere than piece 1 ends: joint 'slide' jumps");
+  expectContains(pieces({0, 1, 2, 3}, {still, still, moved}),
+                 "piece 2 begins elsewhere than piece 1 ends: joint 'slide' jumps");
   expectContains(pieces({0, 1}, {wide}), "piece 0: coefficients have 7 columns");
   expectContains(pieces({0, 1}, {MatrixXd::Zero(3, 2)}), "piece 0: coefficients have 3 rows");
   expectContains(pieces({0, 1}, {huge}), "joint 'turn' is beyond 1e5");
   moved(0, 3) = nan;
   expectContains(pieces({0, 1}, {moved}), "of joint 'turn' are not finite");
 
-  expectContains(refusal([&] { JointTrajectory::cubic(tree, {0, 1}, {zero, one}, {zero}); }), "1 velocities for 2 waypoints");
-  expectContains(refusal([&] { JointTrajectory::cubic(tree, {0, 1}, {zero, one}, {zero, values({nan, 0})}); }),
+  expectContains(refusal([&] {
+                   JointTrajectory::cubic(tree, {0, 1}, {zero, one}, {zero});
+                 }),
+                 "1 velocities for 2 waypoints");
+  expectContains(refusal([&] {
+                   JointTrajectory::cubic(tree, {0, 1}, {zero, one}, {zero, values({nan, 0})});
+                 }),
                  "velocities of waypoint 1: joint 'turn'");
-  expectContains(refusal([&] { JointTrajectory::parabolicBlends(tree, {0, 1, 2}, {zero, one, zero}, 1.5); }), "overlap between waypoints 0 and 1");
+  expectContains(refusal([&] {
+                   JointTrajectory::parabolicBlends(tree, {0, 1, 2}, {zero, one, zero}, 1.5);
+                 }),
+                 "overlap between waypoints 0 and 1");
   expectContains(refusal([&] { JointTrajectory::parabolicBlends(tree, {0, 1, 2}, {zero, one, zero}, -1); }), "blend");
   const std::vector<VectorXd> points = {zero, one, zero};
   expectContains(refusal([&] { JointTrajectory::bspline(tree, 6, {}, points); }), "degree 6");
-  expectContains(refusal([&] { JointTrajectory::bspline(tree, 3, {}, points); }), "3 control points for a B-spline of degree 3");
-  expectContains(refusal([&] { JointTrajectory::bspline(tree, 1, {0, 1, 2}, points); }), "3 knots for 3 control points, not 5");
+  expectContains(refusal([&] { JointTrajectory::bspline(tree, 3, {}, points); }),
+                 "3 control points for a B-spline of degree 3");
+  expectContains(refusal([&] {
+                   JointTrajectory::bspline(tree, 1, {0, 1, 2}, points);
+                 }),
+                 "3 knots for 3 control points, not 5");
   expectContains(refusal([&] { JointTrajectory::bspline(tree, 1, {0, 1, 0, 3, 4}, points); }), "knot 2");
   expectContains(refusal([&] { JointTrajectory::bspline(tree, 1, {0, 1, 1, 1, 4}, points); }), "span no time");
-  expectContains(refusal([&] { JointTrajectory::bspline(tree, 1, {0, 0, 1, 1, 2, 2}, {zero, one, zero, one}); }), "more than 1 times");
+  expectContains(refusal([&] {
+                   JointTrajectory::bspline(tree, 1, {0, 0, 1, 1, 2, 2}, {zero, one, zero, one});
+                 }),
+                 "more than 1 times");
 
   Scene ball;
   ball.add("ball", JointType::spherical, "base", "a");
-  const std::vector<VectorXd> q(2, ball.tree->neutralConfiguration()), v(2, VectorXd::Zero(4)), w(2, values({0, 0, 0, 1}));
-  expectContains(refusal([&] { JointTrajectory::quintic(*ball.tree, {0, 1}, q, v, v); }), "joint 'ball' turns by a quaternion");
+  const std::vector<VectorXd> q(2, ball.tree->neutralConfiguration()), v(2, VectorXd::Zero(4)),
+      w(2, values({0, 0, 0, 1}));
+  expectContains(refusal([&] {
+                   JointTrajectory::quintic(*ball.tree, {0, 1}, q, v, v);
+                 }),
+                 "joint 'ball' turns by a quaternion");
   expectContains(refusal([&] { JointTrajectory::cubic(*ball.tree, {0, 1}, q, w); }), "'ball/rot_w' is not 0");
 }
 
@@ -476,7 +544,8 @@ TEST(Trajectory, QueryRefusesAndClaimsNothing) {
   slider.ready().setup();
   CertifiedResult r;
   CertifiedRequest request;
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     request.tolerance_time = bad;
     r.status = Status::free;
     r.t_lower = 1;

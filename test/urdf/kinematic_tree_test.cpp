@@ -114,7 +114,7 @@ TEST(KinematicTree, MimicOfAMimicFollowsTheLastMaster) {
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(1, 0.5);
   EXPECT_EQ(tree.jointValue(third, q), 0.5625);
   EXPECT_EQ(tree.jointValue(fourth, q), 2.25);
-  EXPECT_EQ(tree.linkPose(tree.link("d"), q).translation(), Eigen::Vector3d(0, 2.25, 0));
+  EXPECT_EQ(tree.linkPose(tree.linkId("d"), q).translation(), Eigen::Vector3d(0, 2.25, 0));
 }
 
 // A chain's factors multiply, and what they come to is kept within the proven range.
@@ -153,20 +153,20 @@ TEST(KinematicTree, ForestKeepsEachRootAtTheOrigin) {
   for (const char* link : {"b_tip", "b_base", "a_base", "a_tip"}) tree.addLink(link);  // a child before its parent
   tree.addJoint(makeJoint("a", JointType::prismatic, "a_base", "a_tip", {0, 0, 0}, {1, 0, 0}));
   tree.addJoint(makeJoint("b", JointType::prismatic, "b_base", "b_tip", {0, 0, 0}, {0, 0, 1}));
-  EXPECT_EQ(tree.parentJoint(tree.link("a_base")), -1);
-  EXPECT_EQ(tree.parentLink(tree.link("b_tip")), tree.link("b_base"));
+  EXPECT_EQ(tree.parentJoint(tree.linkId("a_base")), -1);
+  EXPECT_EQ(tree.parentLink(tree.linkId("b_tip")), tree.linkId("b_base"));
   const std::vector<LinkId> order = tree.topologicalOrder();
   ASSERT_EQ(order.size(), 4u);
-  const auto at = [&](const char* name) { return std::find(order.begin(), order.end(), tree.link(name)); };
+  const auto at = [&](const char* name) { return std::find(order.begin(), order.end(), tree.linkId(name)); };
   EXPECT_LT(at("b_base"), at("b_tip"));
   EXPECT_LT(at("a_base"), at("a_tip"));
 
   std::vector<Eigen::Isometry3d> M_0;
   tree.forwardKinematics(Eigen::Vector2d(0.5, 2), M_0);
-  EXPECT_EQ(M_0[tree.link("a_base")].matrix(), Eigen::Matrix4d::Identity());
-  EXPECT_EQ(M_0[tree.link("b_base")].matrix(), Eigen::Matrix4d::Identity());
-  EXPECT_EQ(M_0[tree.link("a_tip")].translation(), Eigen::Vector3d(0.5, 0, 0));
-  EXPECT_EQ(M_0[tree.link("b_tip")].translation(), Eigen::Vector3d(0, 0, 2));
+  EXPECT_EQ(M_0[tree.linkId("a_base")].matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(M_0[tree.linkId("b_base")].matrix(), Eigen::Matrix4d::Identity());
+  EXPECT_EQ(M_0[tree.linkId("a_tip")].translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(M_0[tree.linkId("b_tip")].translation(), Eigen::Vector3d(0, 0, 2));
 }
 
 TEST(KinematicTree, LinkErrorsNameTheLink) {
@@ -174,7 +174,7 @@ TEST(KinematicTree, LinkErrorsNameTheLink) {
   tree.addLink("base");
   expectContains(messageOf<std::invalid_argument>([&] { tree.addLink("base"); }), "'base'");
   expectContains(messageOf<std::invalid_argument>([&] { tree.addLink(""); }), "robot 'arm'");
-  expectContains(messageOf<std::out_of_range>([&] { tree.link("hand"); }), "robot 'arm' has no link 'hand'");
+  expectContains(messageOf<std::out_of_range>([&] { tree.linkId("hand"); }), "robot 'arm' has no link 'hand'");
   expectContains(messageOf<std::out_of_range>([&] { tree.jointId("wrist"); }), "robot 'arm' has no joint 'wrist'");
   EXPECT_TRUE(tree.hasLink("base"));
   EXPECT_FALSE(tree.hasLink("hand"));
@@ -236,7 +236,7 @@ TEST(KinematicTree, JointErrorsNameTheJointAndChangeNothing) {
     expectContains(message, c.reason);
     EXPECT_EQ(tree.numJoints(), 4);
     EXPECT_EQ(tree.dof(), 2);
-    EXPECT_EQ(tree.parentJoint(tree.link("extra")), -1);
+    EXPECT_EQ(tree.parentJoint(tree.linkId("extra")), -1);
   }
   EXPECT_EQ(tree.addJoint(good), 4);  // the base of all cases is itself accepted
   EXPECT_EQ(tree.dof(), 3);

@@ -3,8 +3,8 @@
 // Several robots in one forest, and robots among OctoMap cells, at times worked out by hand.
 #include <cmath>
 
-#include "fcl_artic/urdf/urdf.h"
 #include <fcl/geometry/shape/sphere.h>
+#include "fcl_artic/urdf/urdf.h"
 
 #include "temp_folder.h"
 
@@ -15,7 +15,8 @@ constexpr double kPi = 3.14159265358979323846;
 
 testing::AssertionResult touchesAt(const CertifiedResult& r, double t) {
   if (r.status != Status::contact || !r.certain) return testing::AssertionFailure() << "no certain contact";
-  if (r.t_lower <= t + 1e-11 && r.t_upper >= t - 1e-11 && r.t_upper - r.t_lower <= 1e-6) return testing::AssertionSuccess();
+  if (r.t_lower <= t + 1e-11 && r.t_upper >= t - 1e-11 && r.t_upper - r.t_lower <= 1e-6)
+    return testing::AssertionSuccess();
   return testing::AssertionFailure() << "[" << r.t_lower << ", " << r.t_upper << "] instead of " << t;
 }
 
@@ -31,8 +32,8 @@ CertifiedResult ask(const ArticulatedCollisionManager& manager, const std::vecto
 
 class ManyRobotsTest : public TempFolderTest {
  protected:
-  /// An arm of length 1 that turns about z, a ball of 0.1 at its end; its base is a ball of 0.2. A second joint, a finger
-  /// without geometry, mimics the first.
+  /// An arm of length 1 that turns about z, a ball of 0.1 at its end; its base is a ball of 0.2. A second joint, a
+  /// finger without geometry, mimics the first.
   Robot arm() {
     return loadUrdf(write("arm.urdf", R"(<robot name="arm">
 <link name="base"><collision><geometry><sphere radius="0.2"/></geometry></collision></link>
@@ -47,8 +48,8 @@ class ManyRobotsTest : public TempFolderTest {
   }
 };
 
-// Two arms that face each other, 2 apart, and come together like doors: their ends are 2 - 2 cos(a) apart, a from a quarter
-// to 0, and touch at cos(a) = 0.9.
+// Two arms that face each other, 2 apart, and come together like doors: their ends are 2 - 2 cos(a) apart, a from a
+// quarter to 0, and touch at cos(a) = 0.9.
 TEST_F(ManyRobotsTest, TwoArmsMeet) {
   const Robot one = arm();
   Robot both = combineRobots({{&one, "left_"}, {&one, "right_", facing(2)}}, "pair");
@@ -78,8 +79,8 @@ TEST_F(ManyRobotsTest, TwoArmsMeet) {
   EXPECT_TRUE(ask(manager, {kPi / 2, -kPi / 2}, {0, 0}).isFree());
 }
 
-// 1 apart, the second arm sweeps over the base of the first: its end is 2 sin(b / 2) from there. They are no neighbours,
-// though one joint only is between them.
+// 1 apart, the second arm sweeps over the base of the first: its end is 2 sin(b / 2) from there. They are no
+// neighbours, though one joint only is between them.
 TEST_F(ManyRobotsTest, ArmMeetsTheOtherOnesBase) {
   const Robot one = arm();
   Robot both = combineRobots({{&one, "left_"}, {&one, "right_", facing(1)}});
@@ -130,8 +131,9 @@ std::shared_ptr<const KinematicTree> slider(const Eigen::Vector3d& axis,
 
 // 2 x - 6 = 0, turned by a quarter about z: y = 3. The slider's ball of 0.1 goes along y from 1 to 4.
 TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
-  const Scene scene = loadScene(write("plane.scene", "s\n* wall\n1\nplane\n2 0 0 -6\n0 0 0\n"
-                                                     "0 0 0.70710678118654757 0.70710678118654757\n0 0 0 0\n.\n"));
+  const Scene scene = loadScene(write("plane.scene",
+                                      "s\n* wall\n1\nplane\n2 0 0 -6\n0 0 0\n"
+                                      "0 0 0.70710678118654757 0.70710678118654757\n0 0 0 0\n.\n"));
   ASSERT_EQ(scene.obstacles.size(), 1u);
   ArticulatedCollisionManager manager(slider(Eigen::Vector3d::UnitY()));
   fcl::CollisionObjectd ball(std::make_shared<fcl::Sphered>(0.1));
@@ -142,7 +144,8 @@ TEST_F(ManyRobotsTest, PlaneOfAMoveItScene) {
   EXPECT_TRUE(ask(manager, {1}, {2.8}).isFree());
   EXPECT_NE(messageOf([&] {
               loadScene(write("bad.scene", "s\n* wall\n1\nplane\n0 0 0 1\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n"));
-            }).find("normal is zero"), std::string::npos);
+            }).find("normal is zero"),
+            std::string::npos);
 }
 
 /// A node of a full OctoMap tree: its log-odds as a float, and which children follow.
@@ -191,8 +194,7 @@ TEST_F(ManyRobotsTest, UnknownCellsOfAnOctoMap) {
 // Known are two cells of octant 7, a free one at its corner 0 and an occupied one at x, y > 1/2: unknown within the box
 // of both are the two beside them, and nothing else of the root.
 TEST_F(ManyRobotsTest, UnknownEndsWhereKnowledgeEnds) {
-  const std::string path =
-      write("part.ot", octomap(4, node(1, 0x80) + node(1, 0x09) + node(-1, 0) + node(1, 0)));
+  const std::string path = write("part.ot", octomap(4, node(1, 0x80) + node(1, 0x09) + node(-1, 0) + node(1, 0)));
   SceneOptions options;
   options.unknown_cells = true;
   const Scene scene = loadScene(path, options);

@@ -107,16 +107,20 @@ TEST_F(MeshTest, SolidsMustBeClosed) {
 
 // A whole robot and scenes: a ball within a mesh is free of its surface, and not of the solid.
 TEST_F(MeshTest, RobotsAndScenesOfSolids) {
-  write("box.obj", "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-                   "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
-  const std::string mesh = "(scene)\n* m\n1\nmesh\n4 4\n-1 -1 -1\n3 0 0\n0 3 0\n0 0 3\n0 2 1\n0 1 3\n0 3 2\n1 2 3\n"
-                           "0 0 0\n0 0 0 1\n0 0 0 0\n.\n";
-  const std::string robot = write("ball.urdf", R"(<robot name="r"><link name="base"/><link name="ball"><collision><geometry>
+  write("box.obj",
+        "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n");
+  const std::string mesh =
+      "(scene)\n* m\n1\nmesh\n4 4\n-1 -1 -1\n3 0 0\n0 3 0\n0 0 3\n0 2 1\n0 1 3\n0 3 2\n1 2 3\n"
+      "0 0 0\n0 0 0 1\n0 0 0 0\n.\n";
+  const std::string robot =
+      write("ball.urdf", R"(<robot name="r"><link name="base"/><link name="ball"><collision><geometry>
       <sphere radius="0.1"/></geometry></collision></link><joint name="x" type="prismatic"><parent link="base"/>
       <child link="ball"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>)");
   const std::string boxes = write("box.urdf", R"(<robot name="b"><link name="box"><collision><geometry>
       <mesh filename="box.obj"/></geometry></collision></link></robot>)");
-  const std::string cart = write("cart.urdf", R"(<robot name="c"><link name="base"/><link name="box"><collision><geometry>
+  const std::string cart =
+      write("cart.urdf", R"(<robot name="c"><link name="base"/><link name="box"><collision><geometry>
       <mesh filename="box.obj" scale="1 1 -1"/></geometry></collision></link><joint name="x" type="prismatic">
       <parent link="base"/><child link="box"/><axis xyz="1 0 0"/><limit lower="-9" upper="9" effort="1" velocity="1"/></joint>
       </robot>)");
@@ -132,12 +136,13 @@ TEST_F(MeshTest, RobotsAndScenesOfSolids) {
     scene.addTo(manager);
     manager.setup();
     CertifiedResult result;
-    manager.continuousCollide(JointMotion::linear(*r.tree, Eigen::VectorXd::Constant(1, 0), Eigen::VectorXd::Constant(1, 0.1)),
-                              CertifiedRequest(), result);
+    manager.continuousCollide(
+        JointMotion::linear(*r.tree, Eigen::VectorXd::Constant(1, 0), Eigen::VectorXd::Constant(1, 0.1)),
+        CertifiedRequest(), result);
     return result.status;
   };
-  for (const auto& [urdf, scene] : {std::make_pair(robot, path("box.obj")), {robot, boxes},
-                                    {robot, write("mesh.scene", mesh)}, {cart, small}}) {
+  for (const auto& [urdf, scene] :
+       {std::make_pair(robot, path("box.obj")), {robot, boxes}, {robot, write("mesh.scene", mesh)}, {cart, small}}) {
     EXPECT_EQ(status(urdf, scene, false), Status::free) << urdf << " " << scene;
     EXPECT_EQ(status(urdf, scene, true), Status::contact) << urdf << " " << scene;
   }

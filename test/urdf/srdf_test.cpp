@@ -146,11 +146,13 @@ TEST_F(SrdfTest, SamplesSayNothingAcrossPlanarAndFloatingJoints) {
   std::string xml = "<robot name='two'><link name='world'/>";
   for (const std::string name : {"a", "b"}) {
     const auto link = [&](const std::string& part) {
-      return "<link name='" + name + part + "'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>";
+      return "<link name='" + name + part +
+             "'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>";
     };
     xml += link("foot") + link("stem") + link("tip");
-    xml += "<joint name='" + name + "1' type='" + (name == "a" ? "floating" : "planar") + "'><parent link='world'/><child link='" + name +
-           "foot'/><origin xyz='" + (name == "a" ? "3" : "0") + " 0 0'/><axis xyz='0 0 1'/></joint>";
+    xml += "<joint name='" + name + "1' type='" + (name == "a" ? "floating" : "planar") +
+           "'><parent link='world'/><child link='" + name + "foot'/><origin xyz='" + (name == "a" ? "3" : "0") +
+           " 0 0'/><axis xyz='0 0 1'/></joint>";
     xml += "<joint name='" + name + "2' type='continuous'><parent link='" + name + "foot'/><child link='" + name +
            "stem'/><origin xyz='1 0 0'/></joint>";
     xml += "<joint name='" + name + "3' type='continuous'><parent link='" + name + "stem'/><child link='" + name +
@@ -159,7 +161,8 @@ TEST_F(SrdfTest, SamplesSayNothingAcrossPlanarAndFloatingJoints) {
   const auto by_name = reasons(generateAllowedCollisions(loadUrdf(write("two.urdf", xml + "</robot>")), 50));
   EXPECT_EQ(by_name.at({"afoot", "atip"}), "Never");
   EXPECT_EQ(by_name.at({"bfoot", "btip"}), "Never");
-  for (const auto& [pair, reason] : by_name) EXPECT_EQ(pair.first[0], pair.second[0]) << pair.first << " " << pair.second;
+  for (const auto& [pair, reason] : by_name)
+    EXPECT_EQ(pair.first[0], pair.second[0]) << pair.first << " " << pair.second;
 }
 
 TEST_F(SrdfTest, RefusesBadArguments) {

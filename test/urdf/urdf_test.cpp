@@ -97,7 +97,7 @@ TEST_F(UrdfTest, MimicsOfMimicsStandInAnyOrder) {
     EXPECT_EQ(tree.jointValue(tree.jointId("second"), q), -0.875);
     EXPECT_EQ(tree.jointValue(tree.jointId("third"), q), 0.5625);
     EXPECT_EQ(tree.joint(tree.jointId("stiff")).type, JointType::fixed);
-    const Eigen::Vector3d x = tree.linkPose(tree.link("e"), q) * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d x = tree.linkPose(tree.linkId("e"), q) * Eigen::Vector3d::UnitX();
     EXPECT_LT((x - Eigen::Vector3d(std::cos(1.75), std::sin(1.75), 0)).norm(), 1e-15);
     ++orders;
   } while (std::next_permutation(order.begin(), order.end()));
@@ -105,9 +105,9 @@ TEST_F(UrdfTest, MimicsOfMimicsStandInAnyOrder) {
 }
 
 TEST_F(UrdfTest, ReadsFloatingAndPlanarJoints) {
-  const Robot r = load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/>" +
-                       joint("free", "floating", "a", "b") +
-                       joint("base", "planar", "b", "c", "<axis xyz='0 0 1'/>") + joint("wall", "planar", "c", "d", ""));
+  const Robot r =
+      load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/>" + joint("free", "floating", "a", "b") +
+           joint("base", "planar", "b", "c", "<axis xyz='0 0 1'/>") + joint("wall", "planar", "c", "d", ""));
   const KinematicTree& tree = *r.tree;
   ASSERT_EQ(tree.dof(), 13);
   EXPECT_EQ(tree.joint(tree.jointId("free")).type, JointType::floating);
@@ -199,9 +199,9 @@ TEST_F(UrdfTest, NotesWhatIsUnusual) {
   const auto limits = [](const char* numbers) {
     return "<axis xyz='0 0 1'/><limit " + std::string(numbers) + " effort='1' velocity='1'/>";
   };
-  const Robot limp = load("<link name='a'/><link name='b'/><link name='c'/>" +
-                          joint("limp", "revolute", "a", "b", limits("")) +
-                          joint("stiff", "revolute", "b", "c", limits("lower='1' upper='1'")));
+  const Robot limp =
+      load("<link name='a'/><link name='b'/><link name='c'/>" + joint("limp", "revolute", "a", "b", limits("")) +
+           joint("stiff", "revolute", "b", "c", limits("lower='1' upper='1'")));
   ASSERT_EQ(limp.notes.size(), 2u);
   expectContains(limp.notes[0], "joint 'limp' has limits that are both 0");
   EXPECT_FALSE(hasLimits(limp.tree->joint(0)));
@@ -317,7 +317,7 @@ class LoadedQueryTest : public UrdfTest {
                           "<axis xyz='1 0 0'/><limit lower='0' upper='1' effort='1' velocity='1'/>"))),
         scene_(loadScene(write("wall.scene", "s\n* wall\n1\nbox\n0.2 1 1\n1 0 0\n0 0 0 1\n0 0 0 0\n.\n"))),
         manager_(robot_.tree) {
-    robot_.allowed.allow("slider", "nothing");
+    robot_.allowed.allow("slider", "rail");
     robot_.addTo(manager_);
     scene_.addTo(manager_);
     manager_.setup();
@@ -336,7 +336,7 @@ class LoadedQueryTest : public UrdfTest {
 TEST_F(LoadedQueryTest, RobotAndSceneReachTheManager) {
   EXPECT_EQ(manager_.boundObjects().size(), 2u);
   EXPECT_EQ(manager_.size(), 1u);
-  EXPECT_TRUE(manager_.allowedCollisions().allowed("nothing", "slider"));
+  EXPECT_TRUE(manager_.allowedCollisions().allowed("rail", "slider"));
   for (const LinkGeometry& g : robot_.geometry) {
     EXPECT_EQ(manager_.boundOffset(g.object.get()).matrix(), g.offset.matrix());
   }

@@ -14,8 +14,6 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-using engine::Verdict;
-
 /// One pair of a ball that sweeps along x and a triangle, `away` above it.
 class SolveTwice : public testing::Test {
  protected:
@@ -44,7 +42,7 @@ class SolveTwice : public testing::Test {
     for (const double t : {0.1, query.refine ? 0.5 : 0.4, query.refine ? 0.5 : 0.6}) {
       if (query.progress) query.progress(query.progress_context, t);
     }
-    answer.verdict = verdict_;
+    answer.status = status_;
     answer.num_ignored = ignored_;
     answer.statistics.node_tests = 10;
   }
@@ -54,7 +52,10 @@ class SolveTwice : public testing::Test {
     report_ = Report();
     engine::Query query;
     query.work_budget = budget_;
-    query.progress = [](void* told, double t) { static_cast<std::vector<double>*>(told)->push_back(t); };
+    query.progress = [](void* told, double t) {
+      static_cast<std::vector<double>*>(told)->push_back(t);
+      return true;
+    };
     query.progress_context = &told_;
     answer_ = engine::Answer();
     visibility::solve(
@@ -70,7 +71,7 @@ class SolveTwice : public testing::Test {
   VisibilityCuller culler_;
   Choice choice_{0};
   double away_ = 0.5;
-  Verdict verdict_ = Verdict::free;
+  Status status_ = Status::free;
   int ignored_ = 0;
   std::uint64_t budget_ = 0;
   Calls refined_;
@@ -87,7 +88,7 @@ TEST_F(SolveTwice, FreeStands) {
 }
 
 TEST_F(SolveTwice, ContactIsSolvedAgain) {
-  verdict_ = Verdict::contact;
+  status_ = Status::contact;
   solve(VisibilityMode::on);
   EXPECT_EQ(refined_, Calls({true, false}));
   EXPECT_EQ(report_.culled, 1u);
@@ -104,7 +105,7 @@ TEST_F(SolveTwice, IgnoredContactIsSolvedAgain) {
 }
 
 TEST_F(SolveTwice, ContactOfWhichNothingWasTakenOutStands) {
-  verdict_ = Verdict::contact;
+  status_ = Status::contact;
   away_ = 0.04;
   solve(VisibilityMode::on);
   EXPECT_EQ(refined_, Calls({true}));
@@ -132,7 +133,7 @@ TEST_F(SolveTwice, BudgetIsSpentWithoutTheStage) {
 /// A trial answers both ways and reports the answer without the stage. With it free queries take less, and those with
 /// contact more.
 TEST_F(SolveTwice, AutomaticCountsBothSolves) {
-  verdict_ = Verdict::contact;
+  status_ = Status::contact;
   solve(VisibilityMode::automatic);
   EXPECT_EQ(refined_, Calls({true, false}));
   EXPECT_EQ(report_.trials, 1u);
@@ -148,7 +149,7 @@ TEST_F(SolveTwice, AutomaticTakesTheStageForFreeMotions) {
   EXPECT_TRUE(choice_.pays());
   solve(VisibilityMode::automatic);
   EXPECT_EQ(refined_, Calls({true}));
-  verdict_ = Verdict::contact;
+  status_ = Status::contact;
   solve(VisibilityMode::automatic);
   EXPECT_EQ(refined_, Calls({true, false}));
   EXPECT_EQ(report_.repeated, 1u);

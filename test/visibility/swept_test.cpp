@@ -66,7 +66,7 @@ TEST_F(Swept, VolumesHoldTheLink) {
         const double held = test::support(batch_, batch_.swept[static_cast<std::size_t>(lane)].volume, n);
         for (int i = 0; i <= 16; ++i) {
           tree_->forwardKinematics(motion.configuration((lane + i / 16.0) / 8), M_0);
-          const Eigen::Isometry3d& M = M_0[static_cast<std::size_t>(tree_->link("link3"))];
+          const Eigen::Isometry3d& M = M_0[static_cast<std::size_t>(tree_->linkId("link3"))];
           for (const double z : {-kLength / 2, kLength / 2}) {
             const double reached = n.dot(M * Vector3d(0, 0, z)) + kRadius;
             ASSERT_LE(reached, held + 1e-13) << trial << " " << lane << " " << i;

@@ -34,17 +34,18 @@ FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
 /// | CompoundStateSpace | those of its parts | each part's |
 ///
 /// A RealVectorStateSpace or SO2StateSpace may drive single variables of a planar or floating joint too, by their names
-/// (KinematicTree::variableName()). Where two orientations differ by less than 1e-4 rad, SO3StateSpace::interpolate() stays at
-/// the first one until the end; the motion here turns on its way, and does reach the second.
+/// (KinematicTree::variableName()). Where two orientations differ by less than 1e-4 rad, SO3StateSpace::interpolate()
+/// stays at the first one until the end; the motion here turns on its way, and does reach the second.
 ///
 /// Any other space is refused, and so is a class derived from these: its interpolate() may take another way.
 class FCL_ARTIC_EXPORT JointMapping {
  public:
-  /// @param joints  names of the joints, in the order of the space's parts; none: all variables of the tree in its order.
+  /// @param joints  names of the joints, in the order of the space's parts; none: all variables of the tree in its
+  /// order.
   /// @param others  dof() joint variables, those of unnamed joints stay at theirs; empty: at the neutral configuration.
   /// @throws std::invalid_argument naming space or joint: space not supported, wrong number of joints, a joint that is
-  ///   unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a quaternion, SO2 for
-  ///   a joint that is mimicked so that a whole turn of it is not one of the mimic.
+  ///   unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a quaternion, SO2
+  ///   for a joint that is mimicked so that a whole turn of it is not one of the mimic.
   JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
                const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
 
@@ -122,8 +123,8 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 
-  /// OMPL's counters, read and reset so that planners may run meanwhile. (Those of the base class give the same numbers,
-  /// but should be asked when no planner runs.)
+  /// OMPL's counters, read and reset so that planners may run meanwhile. (Those of the base class give the same
+  /// numbers, but should be asked when no planner runs.)
   unsigned int getValidMotionCount() const;
   unsigned int getInvalidMotionCount() const;
   unsigned int getCheckedMotionCount() const { return getValidMotionCount() + getInvalidMotionCount(); }

@@ -30,15 +30,17 @@ struct SetupOptions {
 struct PlanningSetup {
   /// Set up, with continuous motion validator and state validity checker.
   ::ompl::base::SpaceInformationPtr si;
-  /// A RealVectorStateSpace within the joints' limits; joints without limits that turn are SO2StateSpaces, planar joints
-  /// SE2, spherical SO3 and floating ones SE3, and the space is then a compound of parts in the order of `joints`.
+  /// A RealVectorStateSpace within the joints' limits; joints without limits that turn are SO2StateSpaces, planar
+  /// joints SE2, spherical SO3 and floating ones SE3, and the space is then a compound of parts in the order of
+  /// `joints`.
   ::ompl::base::StateSpacePtr space;
   std::vector<std::string> joints;  ///< planned for, in the order of a state's values
   std::shared_ptr<const ArticulatedCollisionManager> manager;
-  std::vector<std::string> notes;   ///< of the loaders
+  std::vector<std::string> notes;  ///< of the loaders
 
-  /// Writes joint values into a state. @param values  in the order of `joints`, those of a planar joint x, y, theta, of a
-  ///   floating one x, y, z and the quaternion's x, y, z, w.
+  /// Writes joint values into a state.
+  /// @param values  in the order of `joints`, those of a planar joint x, y, theta, of a floating one x, y, z and the
+  ///   quaternion's x, y, z, w.
   /// @throws std::invalid_argument for another number of values.
   FCL_ARTIC_EXPORT void setState(::ompl::base::State* state, const std::vector<double>& values) const;
   FCL_ARTIC_EXPORT std::vector<double> values(const ::ompl::base::State* state) const;
@@ -46,7 +48,8 @@ struct PlanningSetup {
 
 /// Sets up planning for a group of a robot from files.
 /// @param srdf   allowed pairs and groups.
-/// @param scene  what loadScene() reads; empty: no obstacles. An obstacle with a link's name gets another, see combineScenes().
+/// @param scene  what loadScene() reads; empty: no obstacles. An obstacle with a link's name gets another, see
+/// combineScenes().
 /// @throws std::runtime_error as the loaders, and for an SRDF without the group.
 /// @throws std::invalid_argument as the other one.
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, const std::string& scene,
@@ -54,9 +57,9 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std:
 
 /// Sets up planning for some joints of a manager that is set up already.
 /// @param joints  names; none: all joints of the tree that move.
-/// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned for,
-///   without room between its limits or with limits beyond 1e5, prismatic without limits, or planar or floating without
-///   bounds in the options (within 1e5 too).
+/// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned
+///   for, without room between its limits or with limits beyond 1e5, prismatic without limits, or planar or floating
+///   without bounds in the options (within 1e5 too).
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 

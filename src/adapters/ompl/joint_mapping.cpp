@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <typeinfo>
 
-#include <boost/math/constants/constants.hpp>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SE2StateSpace.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
 #include <ompl/base/spaces/SO3StateSpace.h>
+#include <boost/math/constants/constants.hpp>
 
 #include "fcl_artic/ompl/motion_validator.h"
 
@@ -39,13 +39,13 @@ void requireWholeTurns(const KinematicTree& tree, int variable, const std::strin
     if (!joint.mimics || tree.jointVariable(j) != variable) continue;
     const double m = joint.mimic.multiplier;
     if (m == 0 || (joint.type != JointType::prismatic && m == std::round(m))) continue;
-    throw std::invalid_argument(where + ": an SO2StateSpace cannot drive joint '" + name + "', since joint '" + joint.name +
-                                "' mimics it and is elsewhere after a whole turn");
+    throw std::invalid_argument(where + ": an SO2StateSpace cannot drive joint '" + name + "', since joint '" +
+                                joint.name + "' mimics it and is elsewhere after a whole turn");
   }
 }
 
-/// w(1) of the turn from q0 to q1 at nearly half a turn, where either way round is the shortest but for rounding: the one that
-/// SO3StateSpace::interpolate() takes, by the sign of the same sum.
+/// w(1) of the turn from q0 to q1 at nearly half a turn, where either way round is the shortest but for rounding: the
+/// one that SO3StateSpace::interpolate() takes, by the sign of the same sum.
 Eigen::Vector3d halfTurn(const Eigen::Vector4d& q0, const Eigen::Vector4d& q1, double dot) {
   const Eigen::Quaterniond from(q0), to(Eigen::Vector4d(dot < 0 ? Eigen::Vector4d(-q1) : q1));
   const Eigen::Quaterniond turn = to.normalized() * from.normalized().conjugate();
@@ -83,8 +83,8 @@ JointMapping::JointMapping(const ob::StateSpace& space, std::shared_ptr<const Ki
   }
   std::set<int> driven;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const int first = parts[i].joint == JointType::fixed ? requireVariable(names[i], where)
-                                                         : requireJoint(names[i], parts[i]);
+    const int first =
+        parts[i].joint == JointType::fixed ? requireVariable(names[i], where) : requireJoint(names[i], parts[i]);
     for (Value value : parts[i].values) {
       value.variable += first;
       if (!driven.insert(value.variable).second) {
@@ -107,8 +107,10 @@ int JointMapping::requireVariable(const std::string& name, const std::string& wh
     const JointId joint = tree_->variableJoint(v);
     const int quaternion = tree_->quaternionVariable(joint);
     if (quaternion < 0 || v < quaternion) return v;
-    throw std::invalid_argument(where + ": '" + name + "' is part of a quaternion, which takes an SO3 or SE3StateSpace for all of "
-                                "joint '" + tree_->joint(joint).name + "'");
+    throw std::invalid_argument(where + ": '" + name +
+                                "' is part of a quaternion, which takes an SO3 or SE3StateSpace for all of "
+                                "joint '" +
+                                tree_->joint(joint).name + "'");
   }
   throw std::invalid_argument(where + ": robot '" + tree_->name() + "' has no joint '" + name +
                               "' that can be planned for (it is unknown, fixed or a mimic)");
@@ -132,12 +134,16 @@ void JointMapping::collect(const ob::StateSpace& space, const std::string& whole
   // Exactly these classes: a derived one may interpolate another way (DubinsStateSpace is an SE2StateSpace).
   const std::type_info& type = typeid(space);
   if (type == typeid(ob::RealVectorStateSpace)) {
-    for (unsigned i = 0; i < space.getDimension(); ++i) parts.push_back({JointType::fixed, "", {{path, i, Kind::real, false, 0}}});
+    for (unsigned i = 0; i < space.getDimension(); ++i)
+      parts.push_back({JointType::fixed, "", {{path, i, Kind::real, false, 0}}});
   } else if (type == typeid(ob::SO2StateSpace)) {
     parts.push_back({JointType::fixed, "", {{path, 0, Kind::angle, true, 0}}});
   } else if (type == typeid(ob::SE2StateSpace)) {
-    parts.push_back({JointType::planar, where + " is an SE2StateSpace, which needs a planar joint",
-                     {{below(0), 0, Kind::real, false, 0}, {below(0), 1, Kind::real, false, 1}, {below(1), 0, Kind::angle, true, 2}}});
+    parts.push_back({JointType::planar,
+                     where + " is an SE2StateSpace, which needs a planar joint",
+                     {{below(0), 0, Kind::real, false, 0},
+                      {below(0), 1, Kind::real, false, 1},
+                      {below(1), 0, Kind::angle, true, 2}}});
   } else if (type == typeid(ob::SO3StateSpace) || type == typeid(ob::SE3StateSpace)) {
     const bool floating = type == typeid(ob::SE3StateSpace);
     Part part{JointType::spherical, where + " is an SO3StateSpace, which needs a spherical joint", {}};
@@ -146,7 +152,8 @@ void JointMapping::collect(const ob::StateSpace& space, const std::string& whole
       for (unsigned i = 0; i < 3; ++i) part.values.push_back({below(0), i, Kind::real, false, static_cast<int>(i)});
     }
     for (unsigned i = 0; i < 4; ++i) {
-      part.values.push_back({floating ? below(1) : path, i, Kind::quaternion, false, static_cast<int>(floating ? 3 + i : i)});
+      part.values.push_back(
+          {floating ? below(1) : path, i, Kind::quaternion, false, static_cast<int>(floating ? 3 + i : i)});
     }
     parts.push_back(part);
   } else if (type == typeid(ob::CompoundStateSpace)) {
@@ -157,17 +164,22 @@ void JointMapping::collect(const ob::StateSpace& space, const std::string& whole
       path.pop_back();
     }
   } else {
-    throw std::invalid_argument(where + " is not supported: the way that its interpolate() takes is not known here; RealVector, "
-                                "SO2, SE2, SO3 and SE3StateSpace and CompoundStateSpaces of them are supported");
+    throw std::invalid_argument(
+        where +
+        " is not supported: the way that its interpolate() takes is not known here; RealVector, "
+        "SO2, SE2, SO3 and SE3StateSpace and CompoundStateSpaces of them are supported");
   }
 }
 
 double JointMapping::read(const Value& value, const ob::State* state) {
   for (const unsigned part : value.path) state = state->as<ob::CompoundState>()->components[part];
   switch (value.kind) {
-    case Kind::real: return state->as<ob::RealVectorStateSpace::StateType>()->values[value.index];
-    case Kind::angle: return state->as<ob::SO2StateSpace::StateType>()->value;
-    default: break;
+    case Kind::real:
+      return state->as<ob::RealVectorStateSpace::StateType>()->values[value.index];
+    case Kind::angle:
+      return state->as<ob::SO2StateSpace::StateType>()->value;
+    default:
+      break;
   }
   const auto& q = *state->as<ob::SO3StateSpace::StateType>();
   const double* const parts[] = {&q.x, &q.y, &q.z, &q.w};

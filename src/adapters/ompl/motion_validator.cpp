@@ -81,9 +81,12 @@ CertifiedRequest planningRequest() {
 // request with a larger one, has the room as others do.
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                      JointMapping mapping, const CertifiedRequest& request)
-    : ob::MotionValidator(required(si, manager)), manager_(std::move(manager)),
-      mapping_(ofManager(std::move(mapping), manager_)), any_(asked(request, ContactMode::any)),
-      first_(asked(request, ContactMode::first)), apart_(askedOfState(request)) {
+    : ob::MotionValidator(required(si, manager)),
+      manager_(std::move(manager)),
+      mapping_(ofManager(std::move(mapping), manager_)),
+      any_(asked(request, ContactMode::any)),
+      first_(asked(request, ContactMode::first)),
+      apart_(askedOfState(request)) {
   // Twice what a state must have: the state is the motion's up to roundings, and a query may leave the last half open.
   first_.added_margin += 2 * request.tolerance_distance;
   apart_.added_margin += request.tolerance_distance;
@@ -163,13 +166,15 @@ bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State
   throw;
 }
 
-/// The base class counts in plain members and its getters can't be overridden: so its members are what is counted in, by
-/// atomic additions (C++17 has none for an integer that is not std::atomic, GCC and Clang have).
+/// The base class counts in plain members and its getters can't be overridden: so its members are what is counted in,
+/// by atomic additions (C++17 has none for an integer that is not std::atomic, GCC and Clang have).
 bool ContinuousMotionValidator::count(bool valid) const {
   __atomic_fetch_add(valid ? &valid_ : &invalid_, 1u, __ATOMIC_RELAXED);
   return valid;
 }
-unsigned int ContinuousMotionValidator::getValidMotionCount() const { return __atomic_load_n(&valid_, __ATOMIC_RELAXED); }
+unsigned int ContinuousMotionValidator::getValidMotionCount() const {
+  return __atomic_load_n(&valid_, __ATOMIC_RELAXED);
+}
 unsigned int ContinuousMotionValidator::getInvalidMotionCount() const {
   return __atomic_load_n(&invalid_, __ATOMIC_RELAXED);
 }
@@ -184,8 +189,10 @@ void ContinuousMotionValidator::resetMotionCounter() {
 
 CollisionStateValidityChecker::CollisionStateValidityChecker(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                              JointMapping mapping, const CertifiedRequest& request)
-    : ob::StateValidityChecker(required(si, manager)), manager_(std::move(manager)),
-      mapping_(ofManager(std::move(mapping), manager_)), request_(askedOfState(request)) {}
+    : ob::StateValidityChecker(required(si, manager)),
+      manager_(std::move(manager)),
+      mapping_(ofManager(std::move(mapping), manager_)),
+      request_(askedOfState(request)) {}
 
 CollisionStateValidityChecker::CollisionStateValidityChecker(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                              const CertifiedRequest& request)

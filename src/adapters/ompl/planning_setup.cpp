@@ -26,10 +26,14 @@ int requireVariable(const KinematicTree& tree, const std::string& name, const st
 }
 
 /// Queries take values up to this, rad or m (JointMotion::linear()): planners must not draw others.
-bool answerable(double value) { return std::abs(value) <= 1e5; }
+bool answerable(double value) {
+  return std::abs(value) <= 1e5;
+}
 
 /// It has one value only, which is that of the joints that are not planned for.
-bool standsStill(const Joint& joint) { return hasLimits(joint) && joint.lower == joint.upper; }
+bool standsStill(const Joint& joint) {
+  return hasLimits(joint) && joint.lower == joint.upper;
+}
 
 /// A joint that can be planned for.
 const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
@@ -49,7 +53,8 @@ ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& option
       b.low[i] = options.position_lower[i];
       b.high[i] = options.position_upper[i];
       if (b.low[i] < b.high[i] && answerable(b.low[i]) && answerable(b.high[i])) continue;
-      throw std::invalid_argument("setUpPlanning: joint '" + joint.name + "' needs options.position_lower and position_upper");
+      throw std::invalid_argument("setUpPlanning: joint '" + joint.name +
+                                  "' needs options.position_lower and position_upper");
     }
     return b;
   };
@@ -68,7 +73,8 @@ ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& option
 }
 
 /// A space for each run of joints of one kind.
-ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::string>& joints, const SetupOptions& options) {
+ob::StateSpacePtr makeSpace(const KinematicTree& tree, const std::vector<std::string>& joints,
+                            const SetupOptions& options) {
   if (joints.empty()) throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint that moves");
   std::set<std::string> named;
   std::vector<ob::StateSpacePtr> parts;

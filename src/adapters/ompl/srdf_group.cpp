@@ -22,7 +22,8 @@ class GroupReader {
     if (document_.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(document_.ErrorStr());
     root_ = document_.RootElement();
     if (!root_ || std::string(root_->Name()) != "robot") fail("is not an SRDF: the root element is not <robot>");
-    forEach(*root_, "virtual_joint", [&](const Element& e) { virtual_types_[attribute(e, "name")] = attribute(e, "type"); });
+    forEach(*root_, "virtual_joint",
+            [&](const Element& e) { virtual_types_[attribute(e, "name")] = attribute(e, "type"); });
     forEach(*root_, "passive_joint", [&](const Element& e) { addJoint(e, passive_); });
   }
 
@@ -30,9 +31,8 @@ class GroupReader {
     const Element* element = find(group);
     if (!element) {
       std::string known;
-      forEach(*root_, "group", [&](const Element& e) {
-        known += (known.empty() ? "'" : ", '") + attribute(e, "name") + "'";
-      });
+      forEach(*root_, "group",
+              [&](const Element& e) { known += (known.empty() ? "'" : ", '") + attribute(e, "name") + "'"; });
       fail("has no group '" + group + "'" + (known.empty() ? "" : "; it has " + known));
     }
     add(*element, group);
@@ -64,9 +64,10 @@ class GroupReader {
   LinkId link(const Element& e, const char* name) const {
     const std::string value = attribute(e, name);
     if (!tree_.hasLink(value)) fail(e, "names link '" + value + "', which robot '" + tree_.name() + "' does not have");
-    return tree_.link(value);
+    return tree_.linkId(value);
   }
-  /// A virtual joint fixes the robot to the world, where its root link is already; one that moves the base can't be had.
+  /// A virtual joint fixes the robot to the world, where its root link is already; one that moves the base can't be
+  /// had.
   void addJoint(const Element& e, std::set<JointId>& to) const {
     const std::string name = attribute(e, "name");
     for (JointId j = 0; j < tree_.numJoints(); ++j) {

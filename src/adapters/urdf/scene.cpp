@@ -174,8 +174,8 @@ class MoveItSceneReader {
   SceneBuilder& builder_;
 };
 
-/// Cells of an OctoMap as boxes: the occupied ones, and, where they are asked for, the unknown ones within the box of all
-/// that is known.
+/// Cells of an OctoMap as boxes: the occupied ones, and, where they are asked for, the unknown ones within the box of
+/// all that is known.
 template <class Tree>
 class CellCollector {
  public:
@@ -302,8 +302,8 @@ class OctoMapNodes {
 };
 
 template <class Tree>
-void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const std::string& path,
-              bool unknown_cells, SceneBuilder& builder) {
+void readTree(std::istream& in, const OctoMapHeader& header, bool binary, const std::string& path, bool unknown_cells,
+              SceneBuilder& builder) {
   Tree tree(header.resolution);
   if (header.size > 0) binary ? tree.readBinaryData(in) : tree.readData(in);
   if (tree.size() != header.size) {
@@ -362,7 +362,7 @@ void readRobot(const std::string& path, SceneBuilder& builder) {
 void Scene::addTo(ArticulatedCollisionManager& manager) const {
   auto added = obstacles.begin();
   try {
-    for (; added != obstacles.end(); ++added) manager.registerObject(added->object.get(), added->name);
+    for (; added != obstacles.end(); ++added) manager.registerObject(added->object, added->name);
   } catch (...) {
     while (added != obstacles.begin()) manager.unregisterObject((--added)->object.get());
     throw;
@@ -395,7 +395,8 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
   } else {
-    builder.add(fs::path(path).stem().string(), loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes),
+    builder.add(fs::path(path).stem().string(),
+                loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes),
                 Eigen::Isometry3d::Identity());
   }
   return std::move(builder.scene);

@@ -147,7 +147,8 @@ std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int sampl
     allowed.push_back({tree.linkName(pair.first), tree.linkName(pair.second), reason});
   };
   const std::set<LinkPair> adjacent = adjacentPairs(tree, has_geometry);
-  // Planar and floating joints slide without bounds: neighbourhood and samples say nothing of links on both sides of one.
+  // Planar and floating joints slide without bounds: neighbourhood and samples say nothing of links on both sides of
+  // one.
   std::vector<LinkId> part(static_cast<std::size_t>(tree.numLinks()));
   for (const LinkId link : tree.topologicalOrder()) {
     const JointId j = tree.parentJoint(link);

@@ -341,7 +341,7 @@ class GeometryFactory {
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
   auto bound = geometry.begin();
   try {
-    for (; bound != geometry.end(); ++bound) manager.bind(bound->link, bound->object.get(), bound->offset);
+    for (; bound != geometry.end(); ++bound) manager.bind(bound->link, bound->object, bound->offset);
   } catch (...) {
     while (bound != geometry.begin()) manager.unbind((--bound)->object.get());
     throw;

@@ -6,10 +6,11 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Takes the proof that a pair is in contact at time t, whoever has proven it: all proofs come through here, and nothing
-/// else lowers t_upper_.
+/// Takes the proof that a pair is in contact at time t, whoever has proven it: all proofs come through here, and
+/// nothing else lowers t_upper_.
 /// @return false where that contact does not count: it is one to be ignored, or it is not known yet which are.
 inline bool Solver::takeProof(int pair, double t) {
+  FCL_ARTIC_ASSERT(t >= 0 && t <= 1);
   if (!watching_ || t < watchFrom(pair)) return false;
   t_upper_ = min(t_upper_, t);
   limit_ = min(limit_, t);
@@ -20,6 +21,7 @@ inline bool Solver::takeProof(int pair, double t) {
 /// Records a contact proven at a lane's middle, which ends the search. Point and normal are left to the caller.
 /// @return null where the contact does not count (takeProof()).
 inline LeafContact* Solver::record(int pair, int piece_a, int piece_b, int lane) {
+  FCL_ARTIC_ASSERT(lane >= 0 && lane < kLanes);
   if (!takeProof(pair, tm_at_[lane])) return nullptr;
   const PairParts bodies = parts(pair);
   LeafContact& contact = contacts_.grow();
@@ -135,8 +137,8 @@ struct BoxesAtPose {
     }
     for (int k = 0; k < 3; ++k) {
       const float z = R[k] * x[0] + R[3 + k] * x[1] + R[6 + k] * x[2];
-      all &= __builtin_fabsf(z) <=
-             of_b[k] + absolute[k] * of_a[0] + absolute[3 + k] * of_a[1] + absolute[6 + k] * of_a[2];
+      all &=
+          __builtin_fabsf(z) <= of_b[k] + absolute[k] * of_a[0] + absolute[3 + k] * of_a[1] + absolute[6 + k] * of_a[2];
     }
     const float radii = static_cast<float>(a.radius + b.radius);
     nearness = (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / (radii * radii);

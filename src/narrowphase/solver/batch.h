@@ -21,6 +21,7 @@ inline bool Solver::outOfBudget() {
 }
 
 inline void Solver::beginBatch(double start, double width) {
+  FCL_ARTIC_ASSERT(start >= 0 && width > 0 && start + width <= 1 + 1e-12);
   if (claimed_ <= start) claimed_ = 2;  // all is proven free up to here: it was no contact
   double tm[kLanes];
   const double w = width / kLanes;
@@ -106,10 +107,12 @@ inline double Solver::watchFrom(int pair) const {
 
 /// Relative motion of a pair over this batch, both ways, with remainders and pads.
 inline void Solver::setupPair(int index) {
+  FCL_ARTIC_ASSERT(index >= 0 && index < problem_->num_scene_pairs + problem_->num_link_pairs);
   if (present_ == index && present_batch_ == batch_) return;
   present_ = index;
   present_batch_ = batch_;
   margin_ = query_->margins.of(index);
+  FCL_ARTIC_ASSERT(margin_ >= 0 && margin_ <= query_->margins.largest());
   const PairParts pair = parts(index);
   const Body &A = problem_->bodies[pair.a], &B = problem_->bodies[pair.b];
   const FrameLanes* frame = frames(pair.sweep);

@@ -75,7 +75,8 @@ FCL_ARTIC_INLINE void prefetch(const T* object) {
   for (unsigned i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + i);
 }
 
-/// Obstacles whose boxes meet a swept box, to met_. Level by level, so that what is looked at next is fetched meanwhile.
+/// Obstacles whose boxes meet a swept box, to met_. Level by level, so that what is looked at next is fetched
+/// meanwhile.
 inline void Solver::meetObstacles(const SweptBox& box) {
   const Node* nodes = problem_->obstacle_tree;
   met_.resize(problem_->num_obstacles + 1);
@@ -204,7 +205,10 @@ inline void Solver::refine() {
   int kept = 0, directions = 0;
   for (int i = 0; i < entries_.size(); ++i) {
     Entry e = entries_[i];
-    if (i < asked) e.mask &= candidate_pairs_[i].lanes;
+    if (i < asked) {  // a stage may clear parts, nothing else
+      FCL_ARTIC_ASSERT(candidate_pairs_[i].pair == e.pair && !(candidate_pairs_[i].lanes & ~(e.mask & kAllLanes)));
+      e.mask &= candidate_pairs_[i].lanes;
+    }
     if (!e.mask) continue;
     if (i < asked) {
       if (candidate_pairs_[i].free_nodes) partly_free_.push(candidate_pairs_[i]);

@@ -13,8 +13,8 @@ namespace FCL_ARTIC_ISA {
 /// method's.
 /// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
 /// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
-/// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do, has
-/// proven one (f.certain).
+/// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do,
+/// has proven one (f.certain).
 inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query_->tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
@@ -110,8 +110,8 @@ inline bool Solver::advance(Final& f, double stop, bool patient, unsigned first_
   return !f.stuck;
 }
 
-/// Where any contact will do: the lanes of a followed pair reach beyond the contact that is expected. The pieces that the
-/// last witness lies on are tried there; where they touch, f becomes their contact.
+/// Where any contact will do: the lanes of a followed pair reach beyond the contact that is expected. The pieces that
+/// the last witness lies on are tried there; where they touch, f becomes their contact.
 inline bool Solver::proveAhead(Final& f, int lane) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
   const int piece_a = f.hulls ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
@@ -311,6 +311,7 @@ inline void Solver::describe(Final& f, LeafContact& contact) {
 
 /// Records what is stuck.
 inline void Solver::record(Final& f) {
+  FCL_ARTIC_ASSERT(f.t_lower >= 0 && f.t_lower <= 1);
   describe(f, contacts_.grow());
   engine::joinLower(found_, f.t_lower);
 }
@@ -325,11 +326,7 @@ inline void Solver::orderContacts(int begin, double bracket) {
   for (int i = begin; i < end; ++i) {  // a few: selection sort by certainty, then time
     int best = i;
     for (int j = i + 1; j < kept; ++j) {
-      const LeafContact &x = contacts_[j], &y = contacts_[best];
-      const bool better = x.certain != y.certain ? x.certain
-                          : x.certain            ? x.t_upper < y.t_upper
-                                                 : x.t_lower < y.t_lower;
-      if (better) best = j;
+      if (engine::comesBefore(contacts_[j], contacts_[best])) best = j;
     }
     const LeafContact swap = contacts_[i];
     contacts_[i] = contacts_[best];
@@ -360,7 +357,8 @@ inline Solver::Step Solver::finishLane(double start, double width, int begin, in
     if (enough || finished()) finals_.truncate(i + 1);
   }
   const bool narrow = width <= kNarrowestLane;
-  for (int i = 0; i < finals_.size(); ++i) {
+  // (Where any contact will do and one is proven, it is recorded whatever is still open.)
+  for (int i = 0; i < finals_.size() && !finished(); ++i) {
     const Final& f = finals_[i];
     if (!f.stuck || f.certain || f.t_lower >= limit_) continue;
     // Near are those of which points are: a direction along which little is proven says nothing. Where there is none,

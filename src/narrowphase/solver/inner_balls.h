@@ -152,53 +152,6 @@ inline bool Solver::proveByBalls(int pair, int lane) {
   return false;
 }
 
-/// Distance of points from a solid, in its tree frame, up to 8 kUlp of the numbers that go in; 0 inside. Of kinds that
-/// have no simple one it is infinite.
-FCL_ARTIC_INLINE Lanes distanceFrom(const Piece& solid, const Lanes* x) {
-  const Lanes zero(0.0);
-  Lanes d[3];
-  for (int k = 0; k < 3; ++k) d[k] = abs(x[k] - Lanes(solid.center[k]));
-  switch (solid.kind) {
-    case PieceKind::box:
-      for (int k = 0; k < 3; ++k) d[k] = max(d[k] - Lanes(solid.size[k]), zero);
-      return sqrt(dot(d, d));
-    case PieceKind::cylinder: {
-      const Lanes out = max(sqrt(mulAdd(d[0], d[0], d[1] * d[1])) - Lanes(solid.size[0]), zero);
-      const Lanes up = max(d[2] - Lanes(solid.size[2]), zero);
-      return sqrt(mulAdd(out, out, up * up));
-    }
-    case PieceKind::segment:
-      d[2] = max(d[2] - Lanes(solid.size[2]), zero);
-      return max(sqrt(dot(d, d)) - Lanes(solid.radius), zero);
-    case PieceKind::point:
-      return max(sqrt(dot(d, d)) - Lanes(solid.radius), zero);
-    default:
-      return Lanes(kInfinite);
-  }
-}
-
-/// The point of a solid, of those kinds, that is nearest to x, in its tree frame.
-inline void nearestPoint(const Piece& solid, const double* x, double* nearest) {
-  double d[3];
-  for (int k = 0; k < 3; ++k) d[k] = x[k] - solid.center[k];
-  const double* e = solid.size;
-  const double from_axis = sqrt(d[0] * d[0] + d[1] * d[1]), up = max(-e[2], min(d[2], e[2]));
-  double core[3] = {0, 0, 0}, within = solid.radius;
-  if (solid.kind == PieceKind::box) {
-    for (int k = 0; k < 3; ++k) core[k] = max(-e[k], min(d[k], e[k]));
-  } else if (solid.kind == PieceKind::cylinder) {
-    const double part = from_axis > e[0] ? e[0] / from_axis : 1;
-    core[0] = part * d[0];
-    core[1] = part * d[1];
-    core[2] = up;
-  } else if (solid.kind == PieceKind::segment) {
-    core[2] = up;
-  }
-  const double rest[3] = {d[0] - core[0], d[1] - core[1], d[2] - core[2]}, length = norm(rest);
-  within = length > within ? within / length : 1;
-  for (int k = 0; k < 3; ++k) nearest[k] = solid.center[k] + core[k] + within * rest[k];
-}
-
 /// Points of a solid, farthest along eight directions, in its tree frame.
 inline void farPoints(const TreeView& solid, Lanes* points) {
   static const double kDirections[8][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},

@@ -29,11 +29,13 @@ inline Solver::Step Solver::solveOpenLane(double start, double width, int begin,
 /// One batch over [start, start + width] for entries_[begin, end), of which those with parent_lane set count (all, when
 /// parent_lane < 0). The pair is proven free before `start`.
 inline Solver::Step Solver::solveInterval(double start, double width, int begin, int end, int parent_lane) {
+  FCL_ARTIC_ASSERT(begin < end);
   const double w = width / kLanes;
   beginBatch(start, width);
   if (query_->progress && (statistics_.batches & 63) == 0) {
     // With every pair front_ is the present pair's: of those that are still to come nothing is known.
-    query_->progress(query_->progress_context, query_->every_pair ? 0 : front_);
+    out_of_budget_ |= !query_->progress(query_->progress_context, query_->every_pair ? 0 : front_);
+    if (out_of_budget_) return Step::done;
   }
   const int out_begin = entries_.size();
   setupPair(entries_[begin].pair);
@@ -137,6 +139,7 @@ inline void Solver::solveLane(double start, double stop, int lane, int begin, in
     solvePieces(f, stop, f.first, f.first + f.count, lane);
   }
   entries_.truncate(roots);
+  FCL_ARTIC_ASSERT(front_ <= stop);
   if (!finished()) front_ = stop;
 }
 

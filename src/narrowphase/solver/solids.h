@@ -23,6 +23,7 @@ namespace FCL_ARTIC_ISA {
   pose.error = 4 * (pose_error_ + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
   ++statistics_.contact_proofs;
   problem_->contained(a, b, pose, found);
+  FCL_ARTIC_ASSERT(found.verdict >= engine::Containment::kNone && found.verdict <= engine::Containment::kCertain);
 }
 
 inline bool Solver::mayBeContained(int pair, double t) {

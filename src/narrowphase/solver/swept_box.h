@@ -3,8 +3,8 @@
 // Boxes of tree nodes swept over eight time intervals: the certificate with the frames' axes as directions.
 #pragma once
 
+#include "model/tree_view.h"
 #include "motion/lane_motion.h"
-#include "narrowphase/problem.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

@@ -5,8 +5,8 @@
 // is looked at.
 #pragma once
 
+#include "model/problem.h"
 #include "motion/lane_motion.h"
-#include "narrowphase/problem.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

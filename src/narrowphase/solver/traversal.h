@@ -193,8 +193,7 @@ inline bool Solver::isWithin() {
 /// @return with kWithin where hulls tell nothing.
 inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim, Whole whole) {
   const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  if (A.num_pieces == 1 && B.num_pieces == 1)
-    return query_->any && watching_ ? leavesMayTouch(pair, 0, 0, mask) : mask;
+  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any && watching_ ? leavesMayTouch(pair, 0, 0, mask) : mask;
   if (!A.outer || !B.outer) return mask;
   if (isWithin()) return mask | kWithin;
   return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(pair), whole, [&](int lane) {
@@ -250,6 +249,7 @@ inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsig
 
 /// Dual traversal from one node pair; what stays undecided is appended to entries_.
 inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
+  FCL_ARTIC_ASSERT(pair == present_ && mask != 0 && mask <= kAllLanes);
   const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the engine answers. Plain data.
+#pragma once
+
+#include <cstdint>
+
+#include "fcl_artic/bracket.h"
+
+namespace fcl_artic {
+namespace engine {
+
+struct Statistics {
+  std::uint64_t pairs = 0, pairs_after_culling = 0, batches = 0, motion_evaluations = 0, node_tests = 0, leaf_tests = 0,
+                certificates = 0, gjk = 0, contact_proofs = 0;
+  double culling_us = 0, narrowphase_us = 0;
+};
+
+/// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.
+constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7, kVolume = 9;
+
+/// Two leaves that meet, or come too near to be told apart.
+struct LeafContact {
+  std::int32_t pair, body_a, body_b;
+  std::int32_t piece_a, piece_b;  ///< -1: proven of what a mesh encloses, of no triangle
+  bool certain;
+  double t_lower, t_upper;    ///< this leaf pair's own bracket
+  double normal[3];           ///< in A's tree frame, from A to B
+  double point[3];            ///< in A's tree frame at time `t`
+  double t;                   ///< t_upper when certain, else t_lower
+  std::int32_t feature = -1;  ///< FeatureKind; -1: not known. What the solver knows is reported as it is
+  /// Points of both pieces that are nearest to each other at t_nearest, both in A's tree frame at that time: t_lower;
+  /// where the pieces overlap then, and with Query::any, `point` at `t`.
+  double nearest_a[3], nearest_b[3];
+  double t_nearest;
+  double approach_speed;  ///< of B towards A along the normal at `point` and `t`, m per unit of t; 0 with Query::any
+};
+
+/// The order in which contacts are reported: the proven ones by their t_upper, then the rest by their t_lower. (Static:
+/// each instruction set has its own.)
+static inline bool comesBefore(const LeafContact& x, const LeafContact& y) {
+  if (x.certain != y.certain) return x.certain;
+  return x.certain ? x.t_upper < y.t_upper : x.t_lower < y.t_lower;
+}
+
+/// A pair in contact at t = 0 and the time from which it is watched again; 2: never.
+struct Ignored {
+  std::int32_t pair, body_a, body_b;
+  double watch_from;
+};
+
+/// The bracket of all checked pairs, and what was found.
+struct Answer : Bracket {
+  const LeafContact* contacts = nullptr;  ///< owned by the workspace, valid until its next query
+  std::int32_t num_contacts = 0;
+  const Ignored* ignored = nullptr;  ///< the same
+  std::int32_t num_ignored = 0;
+  Statistics statistics;
+};
+
+}  // namespace engine
+}  // namespace fcl_artic

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What stays the same from query to query: bodies, pairs, margins. Plain data; its owner is Setup.
+#pragma once
+
+#include <cstdint>
+
+#include "model/sweep.h"
+#include "model/tree_view.h"
+
+namespace fcl_artic {
+
+class SolidSpace;
+class SurfacePoints;
+
+namespace engine {
+
+/// A rigid body of the query.
+struct Body {
+  const TreeView* tree = nullptr;
+  Placement placement;                    ///< tree frame in the frame of its step (or in the world when step < 0)
+  Placement inverse;                      ///< of an obstacle: the world in its tree frame
+  std::int32_t step = -1;                 ///< in the world's sweep; -1: stands still
+  std::int32_t mover = -1;                ///< index among Problem::movers; -1: an obstacle
+  double lss[7] = {};                     ///< line swept sphere p0, p1, r in the step's frame: holds the body
+  const InnerBalls* balls = nullptr;      ///< of a link; null: none known
+  const SolidSpace* space = nullptr;      ///< of a mesh that is a solid; null: any other body
+  const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid
+  /// Still bodies: axis-aligned box in the world.
+  double lo[3] = {}, hi[3] = {};
+};
+
+/// What stage 1 asks of an obstacle that stands still, in three cache lines: in a large scene most of its time went
+/// into fetching these numbers one behind the other.
+struct alignas(64) StillBounds {
+  Placement inverse;  ///< Body::inverse
+  CoreBox box;
+  const TreeView* tree;
+  bool solid;  ///< one bounded piece that is no triangle: a point within its surface is within it
+};
+
+/// Two links to check. The motion is B's, seen from A. (A link and an obstacle need no such record: A is the obstacle,
+/// sweep 0, and the placements are the bodies' own.)
+struct LinkPair {
+  std::int32_t a = -1, b = -1;
+  std::int32_t sweep = 0;    ///< sweep whose base frame A's placement refers to
+  std::int32_t step_b = -1;  ///< step of that sweep that carries B; -1: fixed to the base frame
+  Placement inverse_a;       ///< base frame in A's tree frame
+  Placement placement_b;     ///< B's tree frame in its step's frame
+};
+
+/// Pose of B's tree frame in A's at one time: a point p of B is at R p + c up to `error`, one of A seen from B
+/// likewise.
+struct PairPose {
+  double R[9], c[3];
+  double error;
+};
+/// Whether a part of one body's surface lies within the other body, a mesh that is a solid.
+struct Containment {
+  static constexpr std::int32_t kNone = 0, kPossible = 1, kCertain = 2;
+  std::int32_t verdict;
+  double point[3];   ///< of that part, in A's tree frame
+  double normal[3];  ///< in A's tree frame, from A to B: the shortest way out, about
+};
+
+/// Everything that stays the same from query to query.
+struct Problem {
+  const Body* bodies = nullptr;
+  std::int32_t num_bodies = 0;
+  const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first, then moving obstacles
+  std::int32_t num_movers = 0;
+  std::int32_t num_scene_movers = 0;  ///< the first so many are checked against the obstacles that stand still
+  const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
+  std::int32_t num_sweeps = 0;
+  /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
+  const LinkPair* link_pairs = nullptr;
+  std::int32_t num_link_pairs = 0;
+  const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
+  std::int32_t num_scene_pairs = 0;
+  const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
+  const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
+  const StillBounds* still_bounds = nullptr;    ///< of obstacle o
+  std::int32_t num_obstacles = 0;
+  const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
+  /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
+  void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
+};
+
+}  // namespace engine
+}  // namespace fcl_artic

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A geometry as the engine sees it: a tree of boxes over convex pieces. Plain data; its owner is ShapeTree.
+#pragma once
+
+#include <cstdint>
+
+#include "model/piece.h"
+
+namespace fcl_artic {
+namespace engine {
+
+/// Bounding volume: an axis-aligned box in the tree's frame that holds the pieces below it, radii included. Single
+/// precision, rounded outward: eight lanes then compare in one instruction, and what it loses the leaves win back.
+/// Half a cache line, and siblings lie side by side: a traversal that descends reads one line.
+struct alignas(32) Node {
+  float lo[3], hi[3];
+  float radius;        ///< half the box's diagonal, a size only
+  std::int32_t child;  ///< left child, the right one follows it; a leaf has ~piece, which is < 0
+  bool isLeaf() const { return child < 0; }
+  int left() const { return child; }
+  int right() const { return child + 1; }
+  int piece() const { return ~child; }
+};
+
+/// A body's geometry: constant, shared by threads. Node 0 is the root, node 1 is not used.
+struct TreeView {
+  const Node* nodes = nullptr;
+  const Piece* pieces = nullptr;
+  const double* vertices = nullptr;            ///< xyz, packed
+  const double* hulls = nullptr;               ///< see PieceKind; 64-byte aligned
+  const Piece* outer = nullptr;                ///< one convex piece that holds the whole body; null: none worth having
+  const Piece* parts = nullptr;                ///< convex pieces that hold what is below a node each
+  const std::int16_t* part_of_node = nullptr;  ///< index into `parts`, -1: none; null: no node has one
+  std::int32_t num_nodes = 0, num_pieces = 0;
+  double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
+};
+
+/// A box in a body's tree frame, grown by a ball, that holds the body: exact for boxes, balls and capsules.
+struct CoreBox {
+  double lo[3], hi[3], radius;
+};
+
+/// A closed part of a mesh's surface: its box, and points of it that lie far out, one per lane.
+struct ClosedPart {
+  double lo[3], hi[3];
+  alignas(64) double points[3][8];
+};
+/// Balls inside closed parts of a mesh (doc/NUMERICS.md, "Inner balls"), in its tree's frame. Lanes go over balls;
+/// those that fill the last eight up have a radius far below 0.
+struct InnerBalls {
+  static constexpr std::int32_t kMost = 16;
+  alignas(64) double center[3][kMost];
+  alignas(64) double radius[kMost];
+  std::int32_t part[kMost];  ///< that the ball lies in
+  std::int32_t count = 0;    ///< without what fills up
+  double reach = 0;          ///< they lie within this of the segment of the mesh's line swept sphere, about
+  const ClosedPart* parts = nullptr;
+};
+
+}  // namespace engine
+}  // namespace fcl_artic

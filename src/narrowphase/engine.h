@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The engine as compiled for each instruction set, and the choice among them.
+#pragma once
+
+#include "model/answer.h"
+#include "model/query.h"
+
+namespace fcl_artic {
+namespace engine {
+
+/// The engine as compiled for one instruction set.
+struct Engine {
+  const char* name;
+  void* (*createWorkspace)();
+  void (*destroyWorkspace)(void* workspace);
+  /// One workspace serves one thread at a time; nothing in it reaches the next answer.
+  void (*solve)(void* workspace, const Problem& problem, const Query& query, Answer& answer);
+  /// Motion of a pair of the problem that this workspace solved last; problem and query must still be there.
+  void (*pairMotion)(void* workspace, int pair, double tm, double d, PairMotion& motion);
+};
+
+/// The widest engine that this processor runs; FCL_ARTIC_ISA=sse2|avx2|avx512 in the environment asks for less.
+const Engine& engine();
+/// The engine named "sse2", "avx2" or "avx512"; null where the processor lacks it.
+const Engine* engineNamed(const char* name);
+
+extern const Engine kEngineSse2, kEngineAvx2, kEngineAvx512;
+
+}  // namespace engine
+}  // namespace fcl_artic

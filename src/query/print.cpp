@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Answers as text.
+#include <ostream>
+
+#include "fcl_artic/result.h"
+#include "numerics/shown.h"
+
+namespace fcl_artic {
+
+const char* toString(Status status) {
+  switch (status) {
+    case Status::free:
+      return "free";
+    case Status::contact:
+      return "contact";
+    case Status::undecided:
+      return "undecided";
+  }
+  return "?";
+}
+
+const char* toString(FeatureKind kind) {
+  switch (kind) {
+    case FeatureKind::vertexVertex:
+      return "vertex-vertex";
+    case FeatureKind::vertexEdge:
+      return "vertex-edge";
+    case FeatureKind::edgeVertex:
+      return "edge-vertex";
+    case FeatureKind::vertexFace:
+      return "vertex-face";
+    case FeatureKind::faceVertex:
+      return "face-vertex";
+    case FeatureKind::edgeEdge:
+      return "edge-edge";
+    case FeatureKind::edgeFace:
+      return "edge-face";
+    case FeatureKind::faceEdge:
+      return "face-edge";
+    case FeatureKind::faceFace:
+      return "face-face";
+    case FeatureKind::volume:
+      return "volume";
+  }
+  return "volume";
+}
+
+std::ostream& operator<<(std::ostream& out, Status status) {
+  return out << toString(status);
+}
+
+std::ostream& operator<<(std::ostream& out, FeatureKind kind) {
+  return out << toString(kind);
+}
+
+std::ostream& operator<<(std::ostream& out, const BodyRef& body) {
+  return out << (body.name.empty() ? "body" : body.name);
+}
+
+std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
+  switch (bracket.status) {
+    case Status::free:
+      return out << "free: proven";
+    case Status::contact:
+      return out << "contact within [" << shown(bracket.t_lower) << ", " << shown(bracket.t_upper) << "], "
+                 << (bracket.certain ? "proven" : "not proven: too near to be told from none");
+    case Status::undecided:
+      return out << "undecided: free before " << shown(bracket.t_lower);
+  }
+  return out;
+}
+
+std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact) {
+  const Eigen::Vector3d& p = contact.point;
+  return out << contact.body1 << " and " << contact.body2 << " (" << contact.feature << ") within ["
+             << shown(contact.t_lower) << ", " << shown(contact.t_upper) << "] at " << shown(p.x()) << ", "
+             << shown(p.y()) << ", " << shown(p.z()) << (contact.certain ? "" : ", not proven");
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup/link_tables.h"
+
+#include <algorithm>
+
+namespace fcl_artic {
+
+LinkTables::Made::Made(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b, double margin)
+    : shape_a(a.shape),
+      shape_b(b.shape),
+      link_a(a.link),
+      link_b(b.link),
+      offset_a(a.offset.matrix()),
+      offset_b(b.offset.matrix()),
+      margin(margin),
+      tree(tree.content()) {}
+
+bool LinkTables::Made::sameMaking(const Made& other) const {
+  return shape_a == other.shape_a && shape_b == other.shape_b && link_a == other.link_a && link_b == other.link_b &&
+         offset_a == other.offset_a && offset_b == other.offset_b && margin == other.margin && tree.sameAs(other.tree);
+}
+
+void LinkTables::build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
+                       std::size_t num_self_pairs) {
+  std::vector<Made> before;
+  std::swap(made_, before);
+  tables_.clear();
+  grids_.clear();
+  ranges_.clear();
+  likely_.clear();
+  for (std::size_t i = 0; i < num_self_pairs; ++i) {
+    const engine::LinkPair& pair = problem.link_pairs[i];
+    const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
+    if (a.attached || b.attached) continue;
+    const KinematicTree& tree = *registry.tree();
+    Made made(tree, a, b, margins.ofLinkPair(i));
+    const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
+    const engine::SweepView& sweep = problem.sweeps[pair.sweep];
+    if (known != before.end()) {
+      made.table = known->table;
+      made.grid = known->grid;
+    } else {
+      made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
+      made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
+    }
+    if (made.table) tables_.emplace_back(i, made.table);
+    if (made.grid) addGrid(tree, static_cast<std::int32_t>(i), *made.grid);
+    made_.push_back(std::move(made));
+  }
+}
+
+void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, const ContactGrid& grid) {
+  grids_.push_back({link_pair, grid.axes(), likely_.size()});
+  likely_.insert(likely_.end(), grid.touching().begin(), grid.touching().end());
+  for (int i = 0; i < grid.axes().count; ++i) {
+    const int v = grid.axes().variables[i];
+    const bool known = std::any_of(ranges_.begin(), ranges_.end(), [&](const auto& r) { return r.first == v; });
+    if (!known) ranges_.emplace_back(v, VariableRange(tree, v));
+  }
+}
+
+const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion,
+                                          const engine::Margins& margins, std::vector<std::uint8_t>& memory) const {
+  memory.assign(static_cast<std::size_t>(problem.num_link_pairs), 0);
+  for (const auto& [pair, table] : tables_) {
+    const auto number = problem.num_scene_pairs + static_cast<std::int32_t>(pair);
+    if (margins.of(number) > table->margin()) continue;
+    memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
+  }
+  return memory.data();
+}
+
+void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {
+  found.clear();
+  const Eigen::MatrixXd& variables = motion.variables();
+  constexpr int kMost = 64, kParts = 8;
+  double parts[kMost];
+  if (grids_.empty() || variables.rows() > kMost) return;
+  // Motions that meet something mostly still do at their end.
+  for (int part = kParts; part-- > 0;) {
+    const double t = (part + 0.5) / kParts;
+    for (const auto& [v, range] : ranges_) {
+      double q = variables(v, variables.cols() - 1);
+      for (Eigen::Index k = variables.cols() - 2; k >= 0; --k) q = q * t + variables(v, k);
+      parts[v] = range.part(q);
+    }
+    for (const Grid& grid : grids_) {
+      if (likely_[grid.first + grid.axes.cell(parts)]) found.push_back({grid.link_pair, part});
+    }
+  }
+}
+
+}  // namespace fcl_artic

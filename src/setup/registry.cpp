@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup/registry.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "fcl/fcl_geometry.h"
+#include "numerics/assertion.h"
+
+namespace fcl_artic {
+namespace {
+
+/// The body that matches.
+/// @throws std::invalid_argument saying `missing` where none does.
+template <class Matches>
+std::vector<ManagedBody>::iterator requireIf(std::vector<ManagedBody>& bodies, const Matches& matches,
+                                             const char* missing) {
+  const auto body = std::find_if(bodies.begin(), bodies.end(), matches);
+  if (body == bodies.end()) throw std::invalid_argument(missing);
+  return body;
+}
+
+/// The body with this object.
+std::vector<ManagedBody>::iterator require(std::vector<ManagedBody>& bodies, const fcl::CollisionObjectd* object,
+                                           const char* missing) {
+  return requireIf(
+      bodies, [&](const ManagedBody& b) { return object && b.object == object; }, missing);
+}
+std::vector<ManagedBody>::iterator require(std::vector<ManagedBody>& bodies,
+                                           const fcl::ContinuousCollisionObjectd* object, const char* missing) {
+  return requireIf(
+      bodies, [&](const ManagedBody& b) { return object && b.moving == object; }, missing);
+}
+
+}  // namespace
+
+Registry::Registry(std::shared_ptr<const KinematicTree> tree) : tree_(std::move(tree)) {
+  if (!tree_) throw std::invalid_argument("ArticulatedCollisionManager: the kinematic tree is null");
+}
+
+const ManagedBody& Registry::body(std::int32_t number) const {
+  FCL_ARTIC_ASSERT(number >= 0 &&
+                   static_cast<std::size_t>(number) < links_.size() + moving_.size() + obstacles_.size());
+  std::size_t i = static_cast<std::size_t>(number);
+  if (i < links_.size()) return links_[i];
+  i -= links_.size();
+  return i < moving_.size() ? moving_[i] : obstacles_[i - moving_.size()];
+}
+
+void Registry::requireNew(const void* object, const std::string& what) const {
+  if (!object) throw std::invalid_argument(what + ": the object is null");
+  if (!objects_.count(object)) return;
+  for (const Bodies* bodies : {&obstacles_, &links_, &moving_}) {
+    for (const ManagedBody& b : *bodies) {
+      if (b.object == object || b.moving == object) {
+        throw std::invalid_argument(what + ": the object is there already, as '" + b.name + "'");
+      }
+    }
+  }
+}
+
+void Registry::requireLink(LinkId link, const std::string& what) const {
+  if (link >= 0 && link < tree_->numLinks()) return;
+  throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link " + std::to_string(link));
+}
+
+LinkId Registry::requireLink(const std::string& name, const std::string& what) const {
+  if (tree_->hasLink(name)) return tree_->linkId(name);
+  throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link '" + name + "'");
+}
+
+void Registry::requireLinks() const {
+  for (const ManagedBody& body : links_) {
+    requireLink(body.link, "setup");
+    if (body.attached || tree_->linkName(body.link) == body.name) continue;
+    throw std::invalid_argument("setup: link " + std::to_string(body.link) + " of robot '" + tree_->name() +
+                                "', which carries geometry, was '" + body.name + "' and is '" +
+                                tree_->linkName(body.link) + "' now");
+  }
+}
+
+void Registry::requireBody(const std::string& name, const std::string& what) const {
+  if (tree_->hasLink(name) || obstacle_names_.count(name)) return;
+  throw std::invalid_argument(what + ": '" + name + "' is no link of robot '" + tree_->name() + "' and no obstacle");
+}
+
+/// The name as given or chosen. (Allowed pairs and margins go by name: a link's would excuse the obstacle too.)
+std::string Registry::obstacleName(const std::string& name) const {
+  std::string shown = name.empty() ? "obstacle" + std::to_string(named_) : name;
+  if (obstacle_names_.count(shown)) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
+  if (tree_->hasLink(shown)) {
+    throw std::invalid_argument("obstacle '" + shown + "': the name is that of a link of robot '" + tree_->name() +
+                                "'");
+  }
+  return shown;
+}
+
+ManagedBody Registry::newBody(const fcl::CollisionObjectd* object, const std::string& what) const {
+  requireNew(object, what);
+  ManagedBody body;
+  body.object = object;
+  body.readShape(what);
+  return body;
+}
+
+void Registry::addObstacle(Bodies& bodies, ManagedBody body) {
+  body.readObstacle();
+  objects_.insert(body.object ? static_cast<const void*>(body.object) : body.moving);
+  obstacle_names_.insert(body.name);
+  bodies.push_back(std::move(body));
+  ++named_;
+}
+
+void Registry::forget(Bodies& bodies, Bodies::iterator body) {
+  objects_.erase(body->object);
+  objects_.erase(body->moving);
+  if (body->isObstacle()) obstacle_names_.erase(body->name);
+  bodies.erase(body);
+}
+
+void Registry::setAllowed(AllowedCollisionMatrix matrix) {
+  for (const auto& [a, b] : matrix.pairs()) {
+    requireBody(a, "setAllowedCollisions");
+    requireBody(b, "setAllowedCollisions");
+  }
+  allowed_ = std::move(matrix);
+}
+
+void Registry::allow(const std::string& a, const std::string& b) {
+  requireBody(a, "allow");
+  requireBody(b, "allow");
+  allowed_.allow(a, b);
+}
+
+void Registry::disallow(const std::string& a, const std::string& b) {
+  requireBody(a, "disallow");
+  requireBody(b, "disallow");
+  allowed_.disallow(a, b);
+}
+
+void Registry::registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner) {
+  const std::string shown = obstacleName(name);
+  ManagedBody body = newBody(object, "obstacle '" + shown + "'");
+  body.name = shown;
+  body.owner = std::move(owner);
+  addObstacle(obstacles_, std::move(body));
+}
+
+void Registry::registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name) {
+  ManagedBody body;
+  body.name = obstacleName(name);
+  requireNew(object, "obstacle '" + body.name + "'");
+  body.moving = object;
+  addObstacle(moving_, std::move(body));
+}
+
+void Registry::registerObjects(const std::vector<fcl::CollisionObjectd*>& objects) {
+  const std::size_t before = obstacles_.size(), named = named_;
+  try {
+    for (const fcl::CollisionObjectd* object : objects) registerObject(object, {});
+  } catch (...) {
+    while (obstacles_.size() > before) forget(obstacles_, obstacles_.end() - 1);
+    named_ = named;
+    throw;
+  }
+}
+
+bool Registry::unregisterObject(const fcl::CollisionObjectd* object) {
+  const auto is_it = [&](const ManagedBody& b) { return b.object == object && b.isObstacle(); };
+  const auto still = std::find_if(obstacles_.begin(), obstacles_.end(), is_it);
+  if (still != obstacles_.end()) {
+    forget(obstacles_, still);
+    return false;
+  }
+  forget(links_, requireIf(links_, is_it, "unregisterObject: the object is not registered"));
+  return true;
+}
+
+void Registry::unregisterObject(const fcl::ContinuousCollisionObjectd* object) {
+  forget(moving_, require(moving_, object, "unregisterObject: the object is not registered"));
+}
+
+void Registry::bind(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset, Owner owner) {
+  requireLink(link, "bind");
+  const std::string what = "geometry of link '" + tree_->linkName(link) + "'";
+  ManagedBody body = newBody(object, what);
+  body.owner = std::move(owner);
+  body.link = link;
+  body.name = tree_->linkName(link);
+  body.offset = requireRigid(offset, what);
+  body.readCarried(what);
+  objects_.insert(object);
+  links_.push_back(std::move(body));
+}
+
+void Registry::unbind(const fcl::CollisionObjectd* object) {
+  const auto body = require(links_, object, "unbind: the object is bound to no link");
+  if (body->attached) throw std::invalid_argument("unbind: '" + body->name + "' is attached; detach it");
+  forget(links_, body);
+}
+
+void Registry::attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+                      const std::vector<std::string>& touch_links) {
+  requireLink(link, "attach");
+  const auto obstacle = require(obstacles_, object, "attach: the object is not registered as an obstacle");
+  const std::string what = "attach: '" + obstacle->name + "'";
+  ManagedBody body = *obstacle;
+  body.link = link;
+  body.attached = true;
+  body.offset = requireRigid(offset, what);
+  for (const std::string& name : touch_links) body.touch_links.insert(requireLink(name, what));
+  try {
+    body.lss = body.shape->lineSweptSphere();
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(what + ": " + e.what());
+  }
+  links_.push_back(std::move(body));
+  obstacles_.erase(obstacle);
+}
+
+void Registry::detach(const fcl::CollisionObjectd* object) {
+  const auto carried = requireIf(
+      links_, [&](const ManagedBody& b) { return b.object == object && b.attached; },
+      "detach: the object is not attached");
+  ManagedBody body = *carried;
+  body.link = -1;
+  body.attached = false;
+  body.touch_links.clear();
+  body.readObstacle();
+  obstacles_.push_back(std::move(body));
+  links_.erase(carried);
+}
+
+void Registry::clear() {
+  obstacles_.clear();
+  links_.clear();
+  moving_.clear();
+  objects_.clear();
+  obstacle_names_.clear();
+  named_ = 0;
+}
+
+Registry::Changes Registry::readAgain(const std::vector<ManagedBody*>& bodies) {
+  requireLinks();
+  std::vector<std::pair<ManagedBody*, ManagedBody>> changed;  // all or nothing
+  for (ManagedBody* body : bodies) {
+    if (body->isAsRead()) continue;
+    changed.emplace_back(body, *body);
+    changed.back().second.readAgain();
+  }
+  Changes changes;
+  for (auto& [body, read] : changed) {
+    (body->link >= 0 ? changes.links : changes.obstacles) = true;
+    *body = std::move(read);
+  }
+  return changes;
+}
+
+Registry::Changes Registry::readAgain() {
+  std::vector<ManagedBody*> bodies;
+  for (Bodies* of : {&links_, &moving_, &obstacles_}) {
+    for (ManagedBody& body : *of) bodies.push_back(&body);
+  }
+  return readAgain(bodies);
+}
+
+Registry::Changes Registry::readAgain(const std::vector<const fcl::CollisionObjectd*>& objects) {
+  std::vector<ManagedBody*> bodies;
+  for (const fcl::CollisionObjectd* object : objects) {
+    const auto is_it = [&](const ManagedBody& b) { return object && b.object == object; };
+    const auto obstacle = std::find_if(obstacles_.begin(), obstacles_.end(), is_it);
+    const auto carried =
+        obstacle != obstacles_.end() ? obstacle : require(links_, object, "update: the object is not registered");
+    bodies.push_back(&*carried);
+  }
+  return readAgain(bodies);
+}
+
+Registry::Changes Registry::readAgain(const fcl::ContinuousCollisionObjectd* object) {
+  return readAgain(std::vector<ManagedBody*>{&*require(moving_, object, "update: the object is not registered")});
+}
+
+void Registry::setMargin(const std::string& body, double margin) {
+  requireBody(body, "setMargin");
+  margins_.set(body, margin);
+}
+
+void Registry::setMargin(const std::string& a, const std::string& b, double margin) {
+  requireBody(a, "setMargin");
+  requireBody(b, "setMargin");
+  margins_.set(a, b, margin);
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What callers told the manager: the robot, geometry bound to its links, obstacles, allowed pairs and margins. Every
+// change is checked here, and one that throws changes nothing. What is made of it for queries is the Setup's.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "fcl_artic/manager.h"
+#include "setup/managed_body.h"
+#include "setup/margins.h"
+
+namespace fcl_artic {
+
+class Registry {
+ public:
+  /// @throws std::invalid_argument when tree is null.
+  explicit Registry(std::shared_ptr<const KinematicTree> tree);
+
+  const std::shared_ptr<const KinematicTree>& tree() const { return tree_; }
+  /// In the order in which the engine's bodies follow each other: links, moving obstacles, the others.
+  const std::vector<ManagedBody>& links() const { return links_; }  ///< attached objects included
+  const std::vector<ManagedBody>& moving() const { return moving_; }
+  const std::vector<ManagedBody>& obstacles() const { return obstacles_; }
+  const ManagedBody& body(std::int32_t number) const;
+
+  /// Whether the two can and must not touch.
+  bool mayTouch(const ManagedBody& a, const ManagedBody& b) const {
+    return !a.empty() && !b.empty() && !allowed_.allowed(a.name, b.name);
+  }
+
+  // The public manager's functions of the same names tell what they throw.
+  using Owner = std::shared_ptr<const fcl::CollisionObjectd>;
+  /// @param owner  keeps the object alive as long as it is here; null: the caller does.
+  void registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner = nullptr);
+  void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name);
+  void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
+  /// @return whether a link carried it.
+  bool unregisterObject(const fcl::CollisionObjectd* object);
+  void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
+  void bind(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset, Owner owner = nullptr);
+  void unbind(const fcl::CollisionObjectd* object);
+  void attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+              const std::vector<std::string>& touch_links);
+  void detach(const fcl::CollisionObjectd* object);
+  void clear();
+
+  /// What reading again has changed.
+  struct Changes {
+    bool links = false, obstacles = false;
+  };
+  /// Reads what callers have changed in their own hands, geometry in place too: of all, or of the given ones.
+  /// @throws std::invalid_argument where the tree is another one by now, and has not the links that carry geometry;
+  ///   what reading throws. Nothing is changed then.
+  Changes readAgain();
+  Changes readAgain(const std::vector<const fcl::CollisionObjectd*>& objects);
+  Changes readAgain(const fcl::ContinuousCollisionObjectd* object);
+
+  void setMargin(const std::string& body, double margin);
+  void setMargin(const std::string& a, const std::string& b, double margin);
+  void resetMargins() { margins_.clear(); }
+  const NamedMargins& margins() const { return margins_; }
+
+  /// @throws std::invalid_argument beginning with `what` where the robot has no such link.
+  LinkId requireLink(const std::string& name, const std::string& what) const;
+
+  /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.
+  void setAllowed(AllowedCollisionMatrix matrix);
+  void allow(const std::string& a, const std::string& b);
+  void disallow(const std::string& a, const std::string& b);
+  const AllowedCollisionMatrix& allowed() const { return allowed_; }
+
+ private:
+  using Bodies = std::vector<ManagedBody>;
+  void requireNew(const void* object, const std::string& what) const;
+  void requireLink(LinkId link, const std::string& what) const;
+  void requireLinks() const;
+  void requireBody(const std::string& name, const std::string& what) const;
+  std::string obstacleName(const std::string& name) const;
+  ManagedBody newBody(const fcl::CollisionObjectd* object, const std::string& what) const;
+  void addObstacle(Bodies& bodies, ManagedBody body);
+  void forget(Bodies& bodies, Bodies::iterator body);
+  Changes readAgain(const std::vector<ManagedBody*>& bodies);
+
+  std::shared_ptr<const KinematicTree> tree_;
+  AllowedCollisionMatrix allowed_;
+  Bodies links_, moving_, obstacles_;
+  std::unordered_set<const void*> objects_;  ///< of all of these
+  std::unordered_set<std::string> obstacle_names_;
+  std::size_t named_ = 0;  ///< obstacles that were given a name so far
+  NamedMargins margins_;
+};
+
+}  // namespace fcl_artic

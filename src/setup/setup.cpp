@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup/setup.h"
+
+#include "geometry/solid_space.h"
+
+namespace fcl_artic {
+
+void Setup::build(const Registry& registry) {
+  if (!isOf(*registry.tree())) robotChanged();
+  if (!robot_ready_) buildRobot(registry);
+  ready_ = false;
+  buildScene(registry);
+  margins_ = PairMargins::of(registry.margins(), problem(),
+                             [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
+  // Asked of pairs with a solid mesh only; where there is none queries know nothing of it.
+  solids_ = false;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].space = registry.body(static_cast<std::int32_t>(i)).shape->space();
+    solids_ = solids_ || bodies_[i].space;
+  }
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    bodies_[i].points = solids_ ? registry.body(static_cast<std::int32_t>(i)).shape->surfacePoints() : nullptr;
+  }
+  sweep_views_.clear();
+  for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
+  if (!tables_ready_) tables_.build(registry, problem(), margins_, num_self_pairs_);
+  tables_ready_ = ready_ = true;
+}
+
+engine::Problem Setup::problem() const {
+  engine::Problem p;
+  p.bodies = bodies_.data();
+  p.num_bodies = static_cast<std::int32_t>(bodies_.size());
+  p.movers = movers_.data();
+  p.num_movers = static_cast<std::int32_t>(movers_.size());
+  p.num_scene_movers = static_cast<std::int32_t>(num_links_);
+  p.sweeps = sweep_views_.data();
+  p.num_sweeps = static_cast<std::int32_t>(sweep_views_.size());
+  p.link_pairs = link_pairs_.data();
+  p.num_link_pairs = static_cast<std::int32_t>(link_pairs_.size());
+  p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * obstacle_bodies_.size());
+  p.scene_allowed = scene_allowed_.empty() ? nullptr : scene_allowed_.data();
+  p.obstacles = obstacle_bodies_.data();
+  p.num_obstacles = static_cast<std::int32_t>(obstacle_bodies_.size());
+  p.obstacle_tree = obstacle_tree_.empty() ? nullptr : obstacle_tree_.data();
+  p.still_bounds = still_bounds_.data();
+  p.contained = solids_ ? &findContained : nullptr;
+  return p;
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What queries read: the engine's problem, made from the registry by build(), constant and shared by threads until the
+// next one. What depends on the robot alone stays when only obstacles change.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "model/problem.h"
+#include "motion/frame_sweep.h"
+#include "setup/link_tables.h"
+#include "setup/margins.h"
+#include "setup/registry.h"
+
+namespace fcl_artic {
+
+class Setup {
+ public:
+  void robotChanged() { robot_ready_ = ready_ = false; }  ///< links, or what is allowed
+  void obstaclesChanged() { ready_ = false; }
+  void marginsChanged() { tables_ready_ = ready_ = false; }
+  bool ready() const { return ready_; }
+  /// Whether it was made for the tree as the tree is now: its owner may have added a joint.
+  bool isOf(const KinematicTree& tree) const { return tree_.sameAs(tree.content()); }
+
+  /// Makes all of the registry's changes effective.
+  void build(const Registry& registry);
+
+  /// What the engine sees of it.
+  engine::Problem problem() const;
+  /// Of all of the problem's pairs.
+  const PairMargins& margins() const { return margins_; }
+  /// Of the problem's link pairs the first so many are two links, the others moving obstacles and links.
+  std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
+  const LinkTables& tables() const { return tables_; }
+  /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
+  const Eigen::MatrixXd& movingCoefficients() const { return moving_coefficients_; }
+
+ private:
+  // setup_robot.cpp: what depends on the links, and on what is allowed between them.
+  void buildRobot(const Registry& registry);
+  std::vector<Carrier> buildLinks(const Registry& registry);
+  void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers);
+  // setup_scene.cpp: what depends on the obstacles.
+  void buildScene(const Registry& registry);
+  void buildMoving(const Registry& registry);
+  void buildObstacles(const Registry& registry);
+  void allowScenePairs(const Registry& registry);
+
+  std::vector<FrameSweep> sweeps_;  ///< of the links first, then one from each moving obstacle
+  std::vector<engine::SweepView> sweep_views_;
+  std::vector<engine::Body> bodies_;  ///< as the registry's: links, moving obstacles, the others
+  std::vector<std::int32_t> movers_, obstacle_bodies_;
+  std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
+  std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
+  std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
+  std::vector<engine::Node> obstacle_tree_;
+  std::vector<engine::StillBounds> still_bounds_;
+  std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
+  Eigen::MatrixXd moving_coefficients_;
+  PairMargins margins_;
+  LinkTables tables_;
+  Fingerprint tree_;           ///< of what buildRobot() was made for
+  bool solids_ = false;        ///< a mesh that is a solid is among the bodies
+  bool robot_ready_ = false;   ///< what buildRobot() makes is up to date
+  bool tables_ready_ = false;  ///< so are the tables of two links
+  bool ready_ = false;         ///< all is
+};
+
+}  // namespace fcl_artic

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The obstacles' part of the set-up: moving ones with a sweep and pairs of their own, still ones in a tree of boxes,
+// and pairs that need no check.
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "motion/part_of_motion.h"
+#include "motion/variables.h"
+#include "numerics/baseline_isa.h"
+#include "setup/setup.h"
+
+#include "convex/piece_kinds.h"
+
+namespace fcl_artic {
+namespace {
+
+/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that they move amid it.
+const engine::TreeView& viewOf(const ManagedBody& obstacle, const std::vector<ManagedBody>& links) {
+  const bool large = std::all_of(links.begin(), links.end(),
+                                 [&](const ManagedBody& link) { return 2 * link.size() < obstacle.size(); });
+  return large ? obstacle.shape->view() : obstacle.shape->viewWithParts();
+}
+
+}  // namespace
+
+void Setup::buildScene(const Registry& registry) {
+  sweeps_.erase(sweeps_.begin() + static_cast<std::ptrdiff_t>(num_link_sweeps_), sweeps_.end());
+  link_pairs_.resize(num_self_pairs_);
+  movers_.resize(num_links_);
+  bodies_.resize(num_links_);
+  bodies_.resize(num_links_ + registry.moving().size() + registry.obstacles().size());
+  buildMoving(registry);
+  buildObstacles(registry);
+  allowScenePairs(registry);
+}
+
+/// Pairs of links and moving obstacles. The link is seen from the obstacle: up the obstacle's motion, down the tree.
+void Setup::buildMoving(const Registry& registry) {
+  const KinematicTree& tree = *registry.tree();
+  const std::vector<ManagedBody>& links = registry.links();
+  const std::vector<ManagedBody>& moving = registry.moving();
+  int degree = 1, variables = 0;
+  std::size_t bounded = 0;
+  for (const ManagedBody& obstacle : moving) {
+    degree = std::max(degree, degreeOf(obstacle.motion));
+    variables += numVariables(obstacle.motion);
+    for (const MotionElement& element : obstacle.motion.elements) bounded += element.bounded != nullptr;
+  }
+  moving_coefficients_.setZero(variables, degree + 1);
+  sources_.clear();
+  sources_.reserve(bounded);  // steps point into it
+  int variable = 0;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const ManagedBody& obstacle = moving[i];
+    const std::size_t index = links.size() + i;
+    engine::Body& body = bodies_[index];
+    body.tree = &viewOf(obstacle, links);
+    body.mover = static_cast<std::int32_t>(movers_.size());
+    movers_.push_back(static_cast<std::int32_t>(index));
+    for (int k = 0; k < 3; ++k) {  // stage 1 knows the box of the whole path
+      body.lo[k] = obstacle.path_lower[k];
+      body.hi[k] = obstacle.path_upper[k];
+    }
+    FrameSweep sweep;
+    Carrier at;
+    int last = variable += numVariables(obstacle.motion);
+    const auto& elements = obstacle.motion.elements;
+    for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+      const engine::BoundedSource* source = nullptr;
+      if (element->bounded) {
+        sources_.push_back(boundedSource(*element->bounded));
+        source = &sources_.back();
+      }
+      last -= numVariables(*element);
+      writeCoefficients(*element, last, variables, degree, moving_coefficients_.data());
+      at = sweep.cross(at, *element, tree.dof() + last, source, false);
+      const PartError error = partError(*element);
+      sweep.allowError(error.angle, error.length);
+    }
+    sweep.enterTree(tree, at);
+    for (std::size_t l = 0; l < links.size(); ++l) {
+      if (!registry.mayTouch(links[l], obstacle)) continue;
+      const Carrier carrier = sweep.carrier(links[l].link);
+      engine::LinkPair pair;
+      pair.a = static_cast<std::int32_t>(index);
+      pair.b = static_cast<std::int32_t>(l);
+      pair.sweep = static_cast<std::int32_t>(sweeps_.size());
+      pair.step_b = carrier.step;
+      pair.inverse_a = makePlacement(obstacle.motion.after.inverse());
+      pair.placement_b = makePlacement(carrier, links[l].offset);
+      link_pairs_.push_back(pair);
+    }
+    sweeps_.push_back(std::move(sweep));
+  }
+}
+
+void Setup::buildObstacles(const Registry& registry) {
+  const std::vector<ManagedBody>& obstacles = registry.obstacles();
+  const std::size_t first = num_links_ + registry.moving().size();
+  std::vector<BoxBounds> boxes(obstacles.size());
+  obstacle_bodies_.resize(obstacles.size());
+  still_bounds_.clear();
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const ManagedBody& obstacle = obstacles[o];
+    engine::Body& body = bodies_[first + o];
+    body.tree = &viewOf(obstacle, registry.links());
+    body.placement = makePlacement(obstacle.offset);
+    body.inverse = makePlacement(obstacle.offset.inverse());
+    obstacle.worldBox(obstacle.offset, body.placement, body.lo, body.hi);
+    for (int k = 0; k < 3; ++k) {
+      boxes[o].lo[k] = body.lo[k];
+      boxes[o].hi[k] = body.hi[k];
+    }
+    obstacle_bodies_[o] = static_cast<std::int32_t>(first + o);
+    still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, sse2::isSolid(*body.tree)});
+  }
+  obstacle_tree_ = buildBoxTree(boxes);
+}
+
+/// Pairs of link and still obstacle that may touch, or cannot.
+void Setup::allowScenePairs(const Registry& registry) {
+  const std::vector<ManagedBody>& obstacles = registry.obstacles();
+  scene_allowed_.clear();
+  const auto allow = [&](std::size_t m, std::size_t o) {
+    scene_allowed_.resize(num_links_ * obstacles.size(), 0);
+    scene_allowed_[m * obstacles.size() + o] = 1;
+  };
+  const auto link = [&](std::size_t m) -> const ManagedBody& { return registry.body(movers_[m]); };
+  std::map<std::string, std::size_t> obstacle_named;
+  if (!registry.allowed().pairs().empty()) {
+    for (std::size_t o = 0; o < obstacles.size(); ++o) obstacle_named[obstacles[o].name] = o;
+  }
+  for (const auto& [one, other] : registry.allowed().pairs()) {
+    for (const auto& [obstacle_name, link_name] : {std::tie(one, other), std::tie(other, one)}) {
+      const auto o = obstacle_named.find(obstacle_name);
+      if (o == obstacle_named.end()) continue;
+      for (std::size_t m = 0; m < num_links_; ++m) {
+        if (link(m).name == link_name) allow(m, o->second);
+      }
+    }
+  }
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    for (std::size_t m = 0; m < num_links_; ++m) {
+      if (obstacles[o].empty() || link(m).empty()) allow(m, o);
+    }
+  }
+}
+
+}  // namespace fcl_artic

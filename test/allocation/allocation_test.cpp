@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A warm query that is free allocates nothing, one that ends in contact a vector of joint values: all memory that this
+// program asks for is counted.
+#include <atomic>
+#include <cstdlib>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/geometric_shape_to_BVH_model.h>
+#include <gtest/gtest.h>
+
+#include "fcl_artic/manager.h"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// glibc's own, under its other names.
+extern "C" {
+void* __libc_malloc(std::size_t size);                           // NOLINT: glibc's name
+void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT
+void* __libc_realloc(void* memory, std::size_t size);            // NOLINT
+void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  ++allocations;
+  return __libc_realloc(memory, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+}
+
+using namespace fcl_artic;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+std::shared_ptr<fcl::CollisionObjectd> object(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Vector3d& at) {
+  return std::make_shared<fcl::CollisionObjectd>(std::move(geometry), Isometry3d(Eigen::Translation3d(at)));
+}
+
+/// An arm of three boxes, a mesh among them, amid a few bodies.
+struct Arm {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("arm");
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+  Arm() {
+    tree->addLink("base");
+    tree->addLink("upper");
+    tree->addLink("lower");
+    tree->addLink("hand");
+    const Isometry3d out(Eigen::Translation3d(0.5, 0, 0));
+    tree->addJoint(Joint::revolute("j1", "base", "upper", Vector3d::UnitZ()));
+    tree->addJoint(Joint::revolute("j2", "upper", "lower", Vector3d::UnitZ(), out));
+    tree->addJoint(Joint::revolute("j3", "lower", "hand", Vector3d::UnitX(), out));
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    const auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    fcl::generateBVHModel(*mesh, fcl::Boxd(0.45, 0.1, 0.1), Isometry3d(Eigen::Translation3d(0.25, 0, 0)));
+    manager->bind("upper", object(mesh, Vector3d::Zero()));
+    manager->bind("lower", object(mesh, Vector3d::Zero()));
+    manager->bind("hand", object(std::make_shared<fcl::Boxd>(0.1, 0.1, 0.1), Vector3d::Zero()));
+    manager->registerObject(object(mesh, {0.7, 0, 0}), "bar");
+    manager->registerObject(object(std::make_shared<fcl::Sphered>(0.1), {0.2, 0.9, 0}), "ball");
+    manager->registerObject(object(std::make_shared<fcl::Cylinderd>(0.05, 2), {-0.6, 0.3, 0}), "post");
+    manager->setup();
+  }
+};
+
+/// Allocations of the third of three equal queries.
+long allocationsOf(const Arm& arm, const VectorXd& q0, const VectorXd& q1, const CertifiedRequest& request,
+                   Status expected) {
+  const JointMotion motion = JointMotion::linear(*arm.tree, q0, q1);
+  CertifiedResult result;
+  long counted = 0;
+  for (int i = 0; i < 3; ++i) {
+    const long before = allocations;
+    arm.manager->continuousCollide(motion, request, result);
+    counted = allocations - before;
+    EXPECT_EQ(result.status, expected);
+  }
+  return counted;
+}
+
+TEST(Allocation, CounterCounts) {
+  const long before = allocations;
+  const std::unique_ptr<std::string> text(new std::string(100, 'x'));
+  EXPECT_EQ(text->size(), 100u);
+  EXPECT_GT(allocations - before, 0) << "nothing is counted: the tests below say nothing";
+}
+
+TEST(Allocation, WarmQueriesHaveTheirMemory) {
+  const Arm arm;
+  const VectorXd q0 = Vector3d(0.6, 0.2, 0), free = Vector3d(0.7, 0.5, 1), hit = Vector3d(-0.5, 0.2, 0);
+  for (const ContactMode mode : {ContactMode::first, ContactMode::any}) {
+    CertifiedRequest request;
+    request.mode = mode;
+    EXPECT_EQ(allocationsOf(arm, q0, free, request, Status::free), 0) << "mode " << static_cast<int>(mode);
+    // The joint values at t_lower, for the poses there.
+    EXPECT_LE(allocationsOf(arm, q0, hit, request, Status::contact), 1) << "mode " << static_cast<int>(mode);
+  }
+}
+
+}  // namespace
