@@ -25,11 +25,18 @@ struct Egl {
   decltype(&eglGetCurrentContext) currentContext = nullptr;
   decltype(&eglGetCurrentDisplay) currentDisplay = nullptr;
   decltype(&eglGetCurrentSurface) currentSurface = nullptr;
+  decltype(&eglReleaseThread) releaseThread = nullptr;
   EGLDisplay display = EGL_NO_DISPLAY;
 
   static const Egl& instance() {
     static const Egl library;
     return library;
+  }
+
+  /// Gives back what EGL keeps of this thread, unless the thread uses EGL for itself. A thread of a pool may end while
+  /// the process ends; EGL's own clean-up at exit (Mesa 22.3 with libglvnd 1.6) then frees its state a second time.
+  void leaveThread() const {
+    if (currentContext() == EGL_NO_CONTEXT && queryApi() == EGL_OPENGL_ES_API) releaseThread();
   }
 
  private:
@@ -46,6 +53,7 @@ struct Egl {
     library.load("eglGetCurrentContext", currentContext);
     library.load("eglGetCurrentDisplay", currentDisplay);
     library.load("eglGetCurrentSurface", currentSurface);
+    library.load("eglReleaseThread", releaseThread);
     const char* extensions = queryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     const auto offers = [&](const char* name) { return extensions && std::strstr(extensions, name); };
     const auto platformDisplay =
@@ -79,6 +87,7 @@ class EglContext : public OffscreenContext {
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = egl_.createContext(egl_.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
     egl_.bindApi(api);
+    egl_.leaveThread();
     if (context_ == EGL_NO_CONTEXT) {
       throw std::runtime_error("EGL offers no OpenGL " + std::to_string(major) + "." + std::to_string(minor));
     }
@@ -86,6 +95,7 @@ class EglContext : public OffscreenContext {
   ~EglContext() override {
     const std::lock_guard<std::mutex> turn(openGlTurn());
     egl_.destroyContext(egl_.display, context_);
+    egl_.leaveThread();
   }
 
   void makeCurrent() override {
@@ -97,6 +107,7 @@ class EglContext : public OffscreenContext {
     before_.read = egl_.currentSurface(EGL_READ);
     if (egl_.makeCurrent(egl_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return;
     egl_.bindApi(before_.api);
+    egl_.leaveThread();
     throw std::runtime_error("EGL can't make its context current");
   }
   void release() override {
@@ -106,6 +117,7 @@ class EglContext : public OffscreenContext {
       egl_.makeCurrent(egl_.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
     egl_.bindApi(before_.api);
+    egl_.leaveThread();
   }
   void* function(const char* name) const override { return reinterpret_cast<void*>(egl_.function(name)); }
 
