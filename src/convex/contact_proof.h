@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof of contact at one pose (doc/NUMERICS.md, section 8): with solver/inner_balls.h the only code that `certain`
+// The proof of contact at one pose (doc/NUMERICS.md, section 8): with solver/ball_proofs.h the only code that `certain`
 // rests on. A point w = b - a, computed from support points, lies within eps of a true point of B - A.
 #pragma once
 

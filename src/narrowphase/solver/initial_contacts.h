@@ -4,74 +4,85 @@
 // and neither body lies within the other.
 #pragma once
 
+#include "narrowphase/solver/containment.h"
+
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Time from which a pair in contact at t = 0 is watched: the start of its first free lane, on lanes down to 1/512.
-/// 2 when it never separates.
-inline double Solver::firstFreeTime(double start, double width, int begin, int end) {
-  const double w = width / kLanes;
-  beginBatch(start, width);
-  last_ = true;  // down to the leaves
-  blocked_ = 0;
-  int present = -1;
-  for (int i = begin; i < end; ++i) {
-    const Entry e = entries_[i];
-    if (e.pair != present) setupPair(present = e.pair);
-    traverse(e.pair, e.a, e.b, kAllLanes);
-  }
-  const unsigned blocked = blocked_;
+/// Separation is looked for in lanes down to this width, whatever the tolerance: all queries are to leave out the same.
+constexpr double kSeparationLane = 1.0 / 512;
+
+class InitialContacts : PartOfSolver {
+ public:
+  InitialContacts(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, Traversal& traversal,
+                  Containment& containment)
+      : PartOfSolver(task),
+        motion_(motion),
+        horizon_(horizon),
+        contacts_(contacts),
+        traversal_(traversal),
+        containment_(containment) {}
+
+  /// Finds the pairs in contact at t = 0 that are to be ignored, and from when they are watched.
+  void collect(const Buffer<Entry>& open);
+
+ private:
+  bool mayIgnore(int pair) const;
+  double firstFreeTime(int pair, double start, double width);
+
+  RelativeMotion& motion_;
+  Horizon& horizon_;
+  ContactList& contacts_;
+  Traversal& traversal_;
+  Containment& containment_;
+};
+
+/// Time from which a pair in contact at t = 0 is watched: the start of its first free lane. kNever: it never separates.
+inline double InitialContacts::firstFreeTime(int pair, double start, double width) {
+  const TimeBatch batch = TimeBatch::partsOf(start, width);
+  ++statistics().batches;
+  horizon_.watch(batch);
+  motion_.set(pair, batch);
+  const unsigned blocked = traversal_.blockedLanes(pair, kAllLanes);
   for (int lane = 0; lane < kLanes; ++lane) {
-    const double lane_start = start + lane * w;
     if (!(blocked >> lane & 1)) {
-      if (out_of_budget_) return 2;
-      if (mayBeContained(entries_[begin].pair, lane_start)) continue;  // and so it stays over the lane
-      return lane_start;
+      if (task_.ended()) return kNever;
+      if (containment_.mayBeContained(pair, batch.start[lane])) continue;  // and so it stays over the lane
+      return batch.start[lane];
     }
-    if (w > 1.0 / 512) {  // whatever the tolerance: all queries are to leave out the same
-      const double t = firstFreeTime(lane_start, w, begin, end);
-      if (t < 2) return t;
+    if (batch.width > kSeparationLane) {
+      const double t = firstFreeTime(pair, batch.start[lane], batch.width);
+      if (t < kNever) return t;
     }
   }
-  return 2;
+  return kNever;
 }
 
-inline bool Solver::mayIgnore(int pair) const {
-  if (query_->num_may_ignore < 0) return true;
-  for (int i = 0; i < query_->num_may_ignore; ++i) {
-    if (query_->may_ignore[i] == pair) return true;
+inline bool InitialContacts::mayIgnore(int pair) const {
+  if (query().num_may_ignore < 0) return true;
+  for (int i = 0; i < query().num_may_ignore; ++i) {
+    if (query().may_ignore[i] == pair) return true;
   }
   return false;
 }
 
-/// Finds the pairs in contact at t = 0 that are to be ignored, and from when they are watched.
-inline void Solver::collectInitialContacts(int begin, int end) {
-  decide_only_ = true;
-  for (int i = begin; i < end; ++i) {
-    const Entry e = entries_[i];
-    if (!mayIgnore(e.pair)) continue;
-    const double tm[kLanes] = {0, 0, 0, 0, 0, 0, 0, 0};
-    for (int k = 0; k < kLanes; ++k) lane_start_[k] = lane_end_[k] = 0;
-    evaluateAt(tm, 0);
-    live_ = 1;
-    last_ = true;
-    blocked_ = 0;
-    setupPair(e.pair);
-    traverse(e.pair, e.a, e.b, 1);
-    if (!blocked_ && !isContained(e.pair)) continue;
-    entries_.push(e);
-    const PairParts pair = parts(e.pair);
-    ignored_.push({e.pair, pair.a, pair.b, firstFreeTime(0, 1, entries_.size() - 1, entries_.size())});
-    entries_.truncate(entries_.size() - 1);
+inline void InitialContacts::collect(const Buffer<Entry>& open) {
+  const TimeBatch at_start = TimeBatch::around(0);
+  for (int i = 0; i < open.size(); ++i) {
+    const int pair = open[i].pair;
+    if (!mayIgnore(pair)) continue;
+    horizon_.watch(at_start);
+    motion_.set(pair, at_start);
+    if (traversal_.blockedLanes(pair, 1) || containment_.isContainedAtStart(pair)) {
+      contacts_.ignore(pair, firstFreeTime(pair, 0, 1));
+    }
   }
   // One within the other, with surfaces that are proven apart over the whole motion: that does not end.
-  for (int i = 0; i < contained_.size(); ++i) {
-    bool known = !mayIgnore(contained_[i].pair);
-    for (int j = 0; j < ignored_.size(); ++j) known = known || ignored_[j].pair == contained_[i].pair;
-    if (!known) ignored_.push({contained_[i].pair, contained_[i].body_a, contained_[i].body_b, 2});
+  for (int i = 0; i < containment_.size(); ++i) {
+    const int pair = containment_.pair(i);
+    if (mayIgnore(pair) && !contacts_.isIgnored(pair)) contacts_.ignore(pair, kNever);
   }
-  decide_only_ = false;
-  watching_ = true;
+  contacts_.beginWatching();
 }
 
 }  // namespace FCL_ARTIC_ISA

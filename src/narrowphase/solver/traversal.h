@@ -1,44 +1,144 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One pair over one batch: hulls, node pairs, leaf pairs, and what GJK claims of them.
+// One pair over one batch: hulls, node pairs by their swept boxes, leaf pairs by certificates. What stays undecided is
+// handed back.
 #pragma once
+
+#include "narrowphase/solver/entry.h"
+#include "narrowphase/solver/hull_simplices.h"
+#include "narrowphase/solver/pose_proofs.h"
+#include "narrowphase/swept_difference.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Slot of a node's swept box in the still body's frame. One box serves every partner that the node meets in this
-/// batch.
-inline int Solver::sweptNode(int side, int index) {
-  Cached& cached = cached_[side][index & (kCached - 1)];
-  if (isSwept(side, index)) return cached.slot;
-  cached.epoch = pair_epoch_;
-  cached.node = index;
-  cached.slot = pool_.size();
-  sweepNode(this->side(side).m, side_[side].moving->nodes[index], pad_ + margin_, pool_.grow());
-  return cached.slot;
+/// A node so many times larger than its partner is not seen from that one, unless it has been already. Measured: a
+/// quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
+constexpr double kLargerNode = 2;
+/// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
+/// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
+constexpr double kSplitTime = 0.7;
+/// Hulls that overlap in so many lanes are left to their triangles.
+constexpr int kMostHullOverlaps = 2;
+/// A traversal that has left so many pairs open leaves the others as they are: that lane is to be split anyway.
+/// Measured: 128 are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
+constexpr int kMostOpen = 512;
+/// GJK stops when it knows the gap to this part: enough for a direction.
+constexpr double kWitnessAccuracy = 0.1;
+
+/// Pieces whose `size` is a direction worth trying.
+FCL_ARTIC_INLINE bool hasDirection(const Piece& piece) {
+  return piece.kind == PieceKind::vertices || unbounded(piece);
 }
 
-inline unsigned Solver::nodesMayTouch(int a, int b, unsigned mask) {
-  ++statistics_.node_tests;
-  const Node &A = side_[0].still->nodes[a], &B = side_[0].moving->nodes[b];
+/// The middle one of some lanes.
+FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
+  for (int skip = __builtin_popcount(lanes) / 2; skip; --skip) lanes &= lanes - 1;
+  return __builtin_ctz(lanes);
+}
+
+/// What a traversal is for.
+enum class Aim {
+  split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
+  leaves,  ///< the same, down to the leaves: lanes are as narrow as they get
+  decide,  ///< only which lanes are free matters
+};
+
+/// The search for directions that certify whole lanes.
+struct LaneSearch {
+  bool wanted = false;
+  /// Initial guesses, from A to B in A's frame, one a lane. Null: where the witness at a lane's middle does not certify
+  /// the lane, that is the guess.
+  const Lanes* towards = nullptr;
+};
+
+/// All are of the present pair and batch (RelativeMotion), in the lanes that Horizon watches.
+class Traversal : PartOfSolver {
+ public:
+  Traversal(Task& task, RelativeMotion& motion, Horizon& horizon, const ContactList& contacts, PoseProofs& proofs)
+      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts), proofs_(proofs) {}
+
+  /// A new query.
+  void begin() {
+    free_nodes_.clear();
+    simplices_.begin();
+    roots_tested_ = -1;
+  }
+  /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
+  void knowFreeNodes(int pair, const std::uint64_t* nodes) { free_nodes_.push({pair, nodes}); }
+  Simplex& simplexOf(int pair) { return simplices_.of(pair); }
+
+  /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
+  unsigned nodesMayTouch(int a, int b, unsigned mask);
+  /// Root nodes of all pairs have been tested over the present batch: descend() spares that.
+  void rootsAreTested() { roots_tested_ = motion_.batchNumber(); }
+
+  struct HullLook {
+    unsigned mask;      ///< lanes in which the hulls around both bodies are not certainly apart
+    bool within;        ///< Entry::within
+    unsigned overlaps;  ///< lanes at whose middles GJK claims that they overlap
+  };
+  HullLook hullsMayTouch(unsigned mask, bool suspect, LaneSearch search);
+
+  /// Goes down from a pair of nodes in the lanes of `mask`. What stays undecided is appended to `open`.
+  void descend(const Entry& root, Aim aim, Buffer<Entry>& open);
+  /// Lanes of `mask` in which the pair's bodies are not certainly apart.
+  unsigned blockedLanes(int pair, unsigned mask);
+
+ private:
+  unsigned traverse(const Entry& root, Aim aim, Buffer<Entry>& open);
+  unsigned partsMayTouch(int a, int b, unsigned mask);
+  unsigned apartFromUnbounded(int a, int b);
+  unsigned leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect);
+  bool isWithin();
+  /// Lanes of `mask` in which direction n, in the frame of side s's still body, certainly keeps the pieces apart.
+  FCL_ARTIC_INLINE unsigned separated(int s, const Piece& still, const Piece& moving, const double* n, unsigned mask) {
+    ++statistics().certificates;
+    double sign;
+    return certainlySeparated(motion_.side(s), still, moving, n, mask, motion_.margin(), motion_.pad(), sign);
+  }
+  bool provesAny() const { return query().any && contacts_.watching(); }
+  template <class F>
+  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last, LaneSearch search,
+                        const F& onOverlap);
+
+  RelativeMotion& motion_;
+  Horizon& horizon_;
+  const ContactList& contacts_;
+  PoseProofs& proofs_;
+
+  HullSimplices simplices_;
+  struct FreeNodes {
+    std::int32_t pair;
+    const std::uint64_t* nodes;
+  };
+  Buffer<FreeNodes> free_nodes_;
+  std::int32_t roots_tested_ = -1;  ///< the batch's number
+  Buffer<Entry> stack_[kLanes];     ///< node pairs to visit, by their earliest lane
+  Buffer<Entry> undecided_;         ///< stays empty
+};
+
+inline unsigned Traversal::nodesMayTouch(int a, int b, unsigned mask) {
+  ++statistics().node_tests;
+  const Node &A = motion_.a().nodes[a], &B = motion_.b().nodes[b];
   // Of two nodes one has mostly been met before: its swept box is there.
-  const int known = isSwept(0, b) ? 0 : 1;
-  const auto box = [&](int s) { return apart(pool_[s ? sweptNode(1, a) : sweptNode(0, b)], s ? B : A); };
+  const int known = motion_.isSwept(0, b) ? 0 : 1;
+  const auto box = [&](int s) { return apart(motion_.sweptNode(s, s ? a : b), s ? B : A); };
   mask &= ~box(known);
   if (!mask) return 0;
   // A node that is larger than the other seldom tells more, and its box has to be made.
   const int other = 1 - known;
-  if (isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
+  if (motion_.isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
     mask &= ~box(other);
   if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
   return mask & ~apartFromUnbounded(a, b);
 }
 
 /// Lanes in which a node is apart from the whole of an unbounded body, along that one's normal.
-inline unsigned Solver::apartFromUnbounded(int a, int b) {
-  unsigned separated = 0;
+inline unsigned Traversal::apartFromUnbounded(int a, int b) {
+  unsigned apart = 0;
   for (int s = 0; s < 2; ++s) {
-    const Side& side = this->side(s);
+    const Side& side = motion_.side(s);
     const Piece& still = side.still->pieces[0];
     const Node& node = side.moving->nodes[s ? a : b];
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
@@ -52,28 +152,9 @@ inline unsigned Solver::apartFromUnbounded(int a, int b) {
       far2 += far * far;
     }
     box.reach = sqrt(far2) * (1 + 8 * kUlp);
-    double sign = 0;
-    ++statistics_.certificates;
-    separated |= certainlySeparated(side, still, box, still.size, kAllLanes, margin_, pad_, sign);
+    apart |= separated(s, still, box, still.size, kAllLanes);
   }
-  return separated;
-}
-
-/// The pieces at a lane's middle, or, but for the remainder, at any tau of it.
-inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int lane, double tau) const {
-  DifferenceBody body;
-  body.tree_a = side_[0].still;
-  body.tree_b = side_[0].moving;
-  body.a = &a;
-  body.b = &b;
-  const RigidLanes& m = side_[0].m;
-  for (int i = 0; i < 9; ++i) body.pose.R[i] = m.R[0][i][lane];
-  for (int i = 0; i < 3; ++i) body.pose.c[i] = m.c[0][i][lane];
-  if (tau != 0) {
-    for (int i = 0; i < 9; ++i) body.pose.R[i] += tau * (m.R[1][i][lane] + tau * m.R[2][i][lane]);
-    for (int i = 0; i < 3; ++i) body.pose.c[i] += tau * (m.c[1][i][lane] + tau * m.c[2][i][lane]);
-  }
-  return body;
+  return apart;
 }
 
 /// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are those that GJK finds for whole
@@ -81,42 +162,41 @@ inline DifferenceBody Solver::differenceAt(const Piece& a, const Piece& b, int l
 /// tried on all lanes.
 /// @param most  so many overlapping middles end the search.
 /// @param last  what GJK begins with, and ends with.
-/// @param whole  wanted for bodies' hulls; for parts of them, and for leaves, it does not pay.
+/// @param search  wanted for bodies' hulls; for parts of them, and for leaves, it does not pay.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
-inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
-                                     Whole whole, const F& onOverlap) {
-  double guess[3], sign = 0;
+inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
+                                        LaneSearch search, const F& onOverlap) {
+  double guess[3];
   bool have_guess = false;
   unsigned untried = mask;
-  whole.wanted = whole.wanted && !unbounded(a) && !unbounded(b);
-  const double slack = whole.wanted ? slackOf(side(0), a, b, margin_, pad_) : 0;
+  search.wanted = search.wanted && !unbounded(a) && !unbounded(b);
+  const double slack = search.wanted ? slackOf(motion_.side(0), a, b, motion_.margin(), motion_.pad()) : 0;
   const auto separatesWhole = [&](int lane) {
     GjkResult g;
-    searchNearest(SweptDifference(side(0), a, b, lane), guess, kWitnessAccuracy, slack, slack, 48, g);
-    ++statistics_.gjk;
+    searchNearest(SweptDifference(motion_.side(0), a, b, lane), guess, kWitnessAccuracy, slack, slack, 48, g);
+    ++statistics().gjk;
     if (!(g.lower > slack)) return false;
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(0), a, b, g.n, mask, margin_, pad_, sign);
+    mask &= ~separated(0, a, b, g.n, mask);
     return !(mask >> lane & 1);
   };
-  for (; most > 0 && (untried &= live_ & ~contact_lane_) != 0; untried &= mask) {
+  for (; most > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0; untried &= mask) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
     const int lane = middleLane(untried);
     untried &= ~(1u << lane);
-    if (whole.wanted && whole.towards) {
-      for (int k = 0; k < 3; ++k) guess[k] = whole.towards[k][lane];
+    if (search.wanted && search.towards) {
+      for (int k = 0; k < 3; ++k) guess[k] = search.towards[k][lane];
       have_guess = true;
       if (separatesWhole(lane)) continue;
     }
-    const DifferenceBody body = differenceAt(a, b, lane);
+    const DifferenceBody body = motion_.differenceAt(a, b, lane);
     if (!have_guess) {
       for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
     }
     GjkResult g;
-    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g, &last);
+    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + motion_.margin(), 48, g, &last);
     last = g.simplex;
-    ++statistics_.gjk;
+    ++statistics().gjk;
     for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
     have_guess = true;
     if (g.overlap) {
@@ -124,50 +204,26 @@ inline unsigned Solver::notSeparated(const Piece& a, const Piece& b, unsigned ma
       onOverlap(lane);
       continue;
     }
-    for (int k = 0; k < 3; ++k) witness_[k] = g.n[k];
-    have_witness_ = true;
+    motion_.setWitness(g.n);
     // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving
     // one's 24.
     double n[3];
     body.opposite(g.n, n);
     const int first = a.num_vertices > b.num_vertices ? 0 : 1;
-    unsigned separated = 0;
-    for (int i = 0; i < 2 && (mask & ~separated); ++i) {
-      ++statistics_.certificates;
-      const unsigned left = mask & ~separated;
-      separated |= (first + i) & 1 ? certainlySeparated(side(1), b, a, n, left, margin_, pad_, sign)
-                                   : certainlySeparated(side(0), a, b, g.n, left, margin_, pad_, sign);
+    for (int i = 0; i < 2 && mask; ++i) {
+      mask &= ~((first + i) & 1 ? separated(1, b, a, n, mask) : separated(0, a, b, g.n, mask));
     }
-    mask &= ~separated;
-    if (whole.wanted && !whole.towards && (mask >> lane & 1)) separatesWhole(lane);
+    if (search.wanted && !search.towards && (mask >> lane & 1)) separatesWhole(lane);
   }
   return mask;
 }
 
-/// GJK's last simplex of a pair's hulls in this query; empty at first.
-inline Simplex& Solver::simplexOf(int pair) {
-  HullSimplex& kept = hull_simplices_[pair & (kHullSimplices - 1)];
-  if (kept.pair != pair || kept.query != query_number_) {
-    kept.pair = pair;
-    kept.query = query_number_;
-    kept.simplex.n = 0;
-  }
-  return kept.simplex;
-}
-
-/// Puts the lanes behind this one off: there seems to be contact at its middle.
-inline void Solver::claimOverlap(int lane) {
-  if (decide_only_ || last_ || tm_at_[lane] >= claimed_) return;
-  claimed_ = tm_at_[lane];
-  updateLive();
-}
-
 /// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
-inline bool Solver::isWithin() {
+inline bool Traversal::isWithin() {
   for (int s = 0; s < 2; ++s) {
-    const Node &large = side_[s].still->nodes[0], &small = side_[s].moving->nodes[0];
-    if (side_[s].still->num_pieces == 1 || large.radius < 2 * small.radius) continue;
-    const Side& side = this->side(s);
+    const Node &large = motion_.still(s).nodes[0], &small = motion_.moving(s).nodes[0];
+    if (motion_.still(s).num_pieces == 1 || large.radius < 2 * small.radius) continue;
+    const Side& side = motion_.side(s);
     double center[3];
     middleOf(small, center);
     bool inside = true;
@@ -176,43 +232,43 @@ inline bool Solver::isWithin() {
       inside = inside && x > large.lo[k] && x < large.hi[k];
     }
     if (!inside) continue;
-    const Piece &a = *side_[0].still->outer, &b = *side_[0].moving->outer;
-    const DifferenceBody body = differenceAt(a, b, kLanes / 2);
+    const Piece &a = *motion_.a().outer, &b = *motion_.b().outer;
+    const DifferenceBody body = motion_.differenceAt(a, b, kLanes / 2);
     GjkResult g;
-    gjk(body, body.pose.c, kWitnessAccuracy, a.radius + b.radius + margin_, 48, g);
-    ++statistics_.gjk;
+    gjk(body, body.pose.c, kWitnessAccuracy, a.radius + b.radius + motion_.margin(), 48, g);
+    ++statistics().gjk;
     return g.overlap;
   }
   return false;
 }
 
-/// Lanes of `mask` in which the hulls around both bodies are not certainly apart: what most pairs of neighbours need,
-/// before any of their triangles is looked at.
-/// @param claim  overlapping hulls count as a claim of contact.
-/// @param whole  as in notSeparated().
-/// @return with kWithin where hulls tell nothing.
-inline unsigned Solver::hullsMayTouch(unsigned mask, int pair, bool claim, Whole whole) {
-  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
-  if (A.num_pieces == 1 && B.num_pieces == 1) return query_->any && watching_ ? leavesMayTouch(pair, 0, 0, mask) : mask;
-  if (!A.outer || !B.outer) return mask;
-  if (isWithin()) return mask | kWithin;
-  return notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(pair), whole, [&](int lane) {
-    overlaps_ |= 1u << lane;
-    if (query_->any && watching_ && proveVertexInside(pair, lane)) return;
-    if (claim) claimOverlap(lane);
+/// What most pairs of neighbours need, before any of their triangles is looked at.
+/// @param suspect  overlapping hulls count as suspected contact.
+/// @param search  as in notSeparated().
+inline Traversal::HullLook Traversal::hullsMayTouch(unsigned mask, bool suspect, LaneSearch search) {
+  const TreeView &A = motion_.a(), &B = motion_.b();
+  if (A.num_pieces == 1 && B.num_pieces == 1) return {provesAny() ? leavesMayTouch(0, 0, mask, true) : mask, false, 0};
+  if (!A.outer || !B.outer) return {mask, false, 0};
+  if (isWithin()) return {mask, true, 0};
+  unsigned overlaps = 0;
+  mask = notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(motion_.pair()), search, [&](int lane) {
+    overlaps |= 1u << lane;
+    if (provesAny() && proofs_.vertexInside(lane)) return;
+    if (suspect) horizon_.suspect(motion_.batch().at[lane]);
   });
+  return {mask, false, overlaps};
 }
 
 /// Lanes of `mask` in which the hulls around what is below two nodes are not certainly apart: a concave body is cut
 /// into convex parts by them.
-inline unsigned Solver::partsMayTouch(int a, int b, unsigned mask) {
+inline unsigned Traversal::partsMayTouch(int a, int b, unsigned mask) {
   const auto part = [](const TreeView& tree, int node, const TreeView& other) -> const Piece* {
     const bool whole = tree.num_pieces == 1 ||
                        (node == 0 && (tree.parts || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
     if (whole) return tree.outer;
     return tree.part_of_node && tree.part_of_node[node] >= 0 ? tree.parts + tree.part_of_node[node] : nullptr;
   };
-  const TreeView &A = *side_[0].still, &B = *side_[0].moving;
+  const TreeView &A = motion_.a(), &B = motion_.b();
   if (!A.parts && !B.parts) return mask;
   const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
   Simplex last;
@@ -220,47 +276,49 @@ inline unsigned Solver::partsMayTouch(int a, int b, unsigned mask) {
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
-inline unsigned Solver::leavesMayTouch(int pair, int piece_a, int piece_b, unsigned mask) {
-  ++statistics_.leaf_tests;
-  const Piece &a = side_[0].still->pieces[piece_a], &b = side_[0].moving->pieces[piece_b];
-  double sign = 0;
-  if (hasDirection(a)) {
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(0), a, b, a.size, mask, margin_, pad_, sign);
-    if (!mask) return 0;
-  }
-  if (hasDirection(b)) {
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(1), b, a, b.size, mask, margin_, pad_, sign);
-    if (!mask) return 0;
-  }
-  if (have_witness_) {
-    ++statistics_.certificates;
-    mask &= ~certainlySeparated(side(0), a, b, witness_, mask, margin_, pad_, sign);
-    if (!mask) return 0;
-  }
+/// @param suspect  overlap counts as suspected contact.
+inline unsigned Traversal::leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect) {
+  ++statistics().leaf_tests;
+  const Piece &a = motion_.a().pieces[piece_a], &b = motion_.b().pieces[piece_b];
+  if (hasDirection(a)) mask &= ~separated(0, a, b, a.size, mask);
+  if (mask && hasDirection(b)) mask &= ~separated(1, b, a, b.size, mask);
+  if (mask && motion_.witness()) mask &= ~separated(0, a, b, motion_.witness(), mask);
+  if (!mask) return 0;
   Simplex last;
   return notSeparated(a, b, mask, kLanes, last, {}, [&](int lane) {
-    if (tm_at_[lane] < watchFrom(pair)) return;
-    if (query_->any && watching_ && proveLeaves(pair, piece_a, piece_b, lane)) return;
-    claimOverlap(lane);
+    const double t = motion_.batch().at[lane];
+    if (t < contacts_.watchFrom(motion_.pair())) return;
+    if (provesAny() && proofs_.leaves(piece_a, piece_b, lane)) return;
+    if (suspect) horizon_.suspect(t);
   });
 }
 
-/// Dual traversal from one node pair; what stays undecided is appended to entries_.
-inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
-  FCL_ARTIC_ASSERT(pair == present_ && mask != 0 && mask <= kAllLanes);
-  const Node *A = side_[0].still->nodes, *B = side_[0].moving->nodes;
+inline void Traversal::descend(const Entry& root, Aim aim, Buffer<Entry>& open) {
+  FCL_ARTIC_ASSERT(aim != Aim::decide);
+  traverse(root, aim, open);
+}
+
+inline unsigned Traversal::blockedLanes(int pair, unsigned mask) {
+  FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes);  // all are looked at
+  mask = nodesMayTouch(0, 0, mask);
+  if (mask) mask = hullsMayTouch(mask, false, {}).mask;
+  return mask ? traverse({pair, 0, 0, mask}, Aim::decide, undecided_) : 0;
+}
+
+/// Dual traversal. What stays undecided is appended to `open`, or, where only free lanes matter, they are returned.
+inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& open) {
+  FCL_ARTIC_ASSERT(root.pair == motion_.pair() && root.mask != 0 && root.mask <= kAllLanes);
+  const Node *A = motion_.a().nodes, *B = motion_.b().nodes;
+  const std::uint64_t* free_nodes = nullptr;
+  for (int i = 0; i < free_nodes_.size(); ++i) {
+    if (free_nodes_[i].pair == root.pair) free_nodes = free_nodes_[i].nodes;
+  }
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
-  if (decide_only_ && a == 0 && b == 0) {
-    mask = nodesMayTouch(0, 0, mask);
-    if (mask) mask = hullsMayTouch(mask, pair, false, {}) & kAllLanes;
-    if (!mask) return;
-  }
-  const double split_time = last_ ? 0 : kSplitTime * amplitude_;
-  Entry e = {pair, a, b, mask};
-  const int most = last_ ? 0x7fffffff : entries_.size() + kMostOpen;
+  const double split_time = aim == Aim::split ? kSplitTime * motion_.amplitude() : 0;
+  const int most = aim == Aim::split ? open.size() + kMostOpen : 0x7fffffff;
+  unsigned blocked = 0;
+  Entry e = root;
   bool held = true;  // e goes on with a child; else it is the next of the stacks
   for (int lane = 0;;) {
     if (!held) {
@@ -271,34 +329,33 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
       stack_[lane].truncate(top);
     }
     held = false;
-    if (const unsigned later = e.mask & ~live_) {
-      if (!decide_only_) entries_.push({pair, e.a, e.b, later | kPutOff});
-      e.mask &= live_;
+    if (const unsigned later = e.mask & ~(horizon_.live() & ~blocked)) {
+      if (aim != Aim::decide) open.push({e.pair, e.a, e.b, later, true});
+      e.mask &= ~later;
       if (!e.mask) continue;
     }
-    if (outOfBudget()) break;
-    if (free_nodes_ && (free_nodes_[e.a / 64] >> e.a % 64 & 1)) continue;
-    if (e.a != 0 || e.b != 0 || roots_batch_ != batch_) e.mask = nodesMayTouch(e.a, e.b, e.mask);
-    if (e.mask && (e.a != 0 || e.b != 0)) e.mask = partsMayTouch(e.a, e.b, e.mask);
+    if (task_.outOfBudget()) break;
+    if (free_nodes && (free_nodes[e.a / 64] >> e.a % 64 & 1)) continue;
+    if (!e.isWhole() || roots_tested_ != motion_.batchNumber()) e.mask = nodesMayTouch(e.a, e.b, e.mask);
+    if (e.mask && !e.isWhole()) e.mask = partsMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
     if (x.isLeaf() && y.isLeaf()) {
-      e.mask = leavesMayTouch(pair, x.piece(), y.piece(), e.mask);
+      e.mask = leavesMayTouch(x.piece(), y.piece(), e.mask, aim != Aim::decide);
       if (!e.mask) continue;
-      if (decide_only_) {
-        blocked_ |= e.mask;
-        live_ &= ~e.mask;
+      if (aim == Aim::decide) {
+        blocked |= e.mask;
       } else {
-        entries_.push(e);
+        open.push(e);
       }
-    } else if (e.mask == contact_lane_ || max(x.radius, y.radius) < split_time || entries_.size() > most) {
-      entries_.push(e);
+    } else if (e.mask == horizon_.contactLane() || max(x.radius, y.radius) < split_time || open.size() > most) {
+      open.push(e);
     } else {
       if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
-        push({pair, x.right(), e.b, e.mask});
+        push({e.pair, x.right(), e.b, e.mask});
         e.a = x.left();
       } else {
-        push({pair, e.a, y.right(), e.mask});
+        push({e.pair, e.a, y.right(), e.mask});
         e.b = y.left();
       }
       held = (e.mask >> lane & 1) != 0;
@@ -306,6 +363,7 @@ inline void Solver::traverse(int pair, int a, int b, unsigned mask) {
     }
   }
   for (Buffer<Entry>& stack : stack_) stack.clear();
+  return blocked;
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where any contact will do: balls inside closed meshes, at one pose. Where what two closed surfaces enclose meets, and
-// neither surface lies within what the other encloses, the surfaces meet (doc/NUMERICS.md, "Inner balls").
+// Proofs of contact by balls inside closed meshes, at one pose, where any contact will do. Where what two closed
+// surfaces enclose meets, and neither surface lies within what the other encloses, the surfaces meet (doc/NUMERICS.md,
+// "Inner balls").
 #pragma once
+
+#include "convex/piece_kinds.h"
+#include "narrowphase/solver/contact_list.h"
+#include "narrowphase/solver/swept_box.h"
+#include "narrowphase/solver/swept_frames.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -78,32 +84,49 @@ inline bool certainlyReachesOut(const ClosedPart& part, const PlacedLink& link, 
   return certainlyOutside(other_part, seen, error);
 }
 
+/// Proofs at the middle of a lane of the present batch. What is proven is recorded, and true is returned.
+class BallProofs : PartOfSolver {
+ public:
+  BallProofs(Task& task, SweptFrames& frames, ContactList& contacts)
+      : PartOfSolver(task), frames_(frames), contacts_(contacts) {}
+
+  double reach(int pair) const;
+  bool inLinks(int pair, int lane);
+  bool inSolid(int pair, int lane);
+
+ private:
+  PlacedLink placedLink(int index, int lane);
+
+  SweptFrames& frames_;
+  ContactList& contacts_;
+};
+
 /// A mover's tree frame in the world at a lane's middle.
-inline PlacedLink Solver::placedLink(int mover, int lane) {
-  const Body& body = problem_->bodies[problem_->movers[mover]];
-  if (body.step < 0) return {body.placement, body.tree->extent};
-  const FrameLanes& frame = frames(0)[body.step];
-  const StepBounds& b = bounds_[first_step_[0] + body.step];
+inline PlacedLink BallProofs::placedLink(int index, int lane) {
+  const Body& mover = body(problem().movers[index]);
+  if (mover.step < 0) return {mover.placement, mover.tree->extent};
+  const FrameLanes& frame = frames_.of(0)[mover.step];
+  const StepBounds& b = frames_.bounds(0, mover.step);
   Placement step;
   for (int i = 0; i < 9; ++i) step.R[i] = frame.R[i][lane];
   for (int k = 0; k < 3; ++k) step.t[k] = frame.o[k][lane];
   step.ulps = b.ulps;
-  step.length = b.length + b.D1 * d_;
-  return seenFrom(step, {body.placement, body.tree->extent});
+  step.length = b.length + b.D1 * frames_.batch().d;
+  return seenFrom(step, {mover.placement, mover.tree->extent});
 }
 
 /// Distance of two links' line swept spheres' segments below which balls inside them may meet; 0: none can.
-inline double Solver::reachOfBalls(int pair) const {
-  const PairParts bodies = parts(pair);
-  const InnerBalls *a = problem_->bodies[bodies.a].balls, *b = problem_->bodies[bodies.b].balls;
+inline double BallProofs::reach(int pair) const {
+  const PairParts bodies = task_.parts(pair);
+  const InnerBalls *a = body(bodies.a).balls, *b = body(bodies.b).balls;
   return a && b ? a->reach + b->reach : 0;
 }
 
 /// Two links at a lane's middle: a ball inside the one and a ball inside the other meet, and both parts reach out of
 /// each other.
-inline bool Solver::proveByBalls(int pair, int lane) {
-  const PairParts bodies = parts(pair);
-  const Body &A = problem_->bodies[bodies.a], &B = problem_->bodies[bodies.b];
+inline bool BallProofs::inLinks(int pair, int lane) {
+  const PairParts bodies = task_.parts(pair);
+  const Body &A = body(bodies.a), &B = body(bodies.b);
   const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
   const PlacedLink a = placedLink(A.mover, lane), b = placedLink(B.mover, lane);
   const double error = 4 * differenceError(a, b);
@@ -126,13 +149,13 @@ inline bool Solver::proveByBalls(int pair, int lane) {
         const int i = first + __builtin_ctz(meet);
         if (of_a.part[i] == nested_a && of_b.part[j] == nested_b) continue;
         const ClosedPart &part_a = of_a.parts[of_a.part[i]], &part_b = of_b.parts[of_b.part[j]];
-        ++statistics_.contact_proofs;
+        ++statistics().contact_proofs;
         if (!certainlyReachesOut(part_a, a, part_b, b, error) || !certainlyReachesOut(part_b, b, part_a, a, error)) {
           nested_a = of_a.part[i];
           nested_b = of_b.part[j];
           continue;
         }
-        LeafContact* const recorded = record(pair, -1, -1, lane);
+        LeafContact* const recorded = contacts_.record(pair, -1, -1, frames_.batch().at[lane]);
         if (!recorded) return false;
         LeafContact& contact = *recorded;
         contact.feature = engine::kVolume;
@@ -166,9 +189,9 @@ inline void farPoints(const TreeView& solid, Lanes* points) {
 
 /// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid, and that, being of one piece,
 /// reaches out of the mesh's part.
-inline bool Solver::proveByBallInSolid(int pair, int lane) {
-  const PairParts bodies = parts(pair);
-  const Body &solid = problem_->bodies[bodies.a], &link = problem_->bodies[bodies.b];
+inline bool BallProofs::inSolid(int pair, int lane) {
+  const PairParts bodies = task_.parts(pair);
+  const Body &solid = body(bodies.a), &link = body(bodies.b);
   if (!link.balls) return false;
   const InnerBalls& balls = *link.balls;
   PlacedLink place = seenFrom(solid.inverse, placedLink(link.mover, lane));
@@ -182,12 +205,12 @@ inline bool Solver::proveByBallInSolid(int pair, int lane) {
     const double deepest = maxLane(depth);
     if (!(deepest > 0)) continue;
     const int i = __builtin_ctz(kAllLanes & ~greater(Lanes(deepest), depth));
-    ++statistics_.contact_proofs;
+    ++statistics().contact_proofs;
     Lanes far[3], seen[3];
     farPoints(*solid.tree, far);
     place.opposite(far, seen);
     if (!certainlyOutside(balls.parts[balls.part[first + i]], seen, error)) continue;
-    LeafContact* const recorded = record(pair, 0, -1, lane);
+    LeafContact* const recorded = contacts_.record(pair, 0, -1, frames_.batch().at[lane]);
     if (!recorded) return false;
     LeafContact& contact = *recorded;
     contact.feature = engine::kVolume;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes that are solids. All else proves of a mesh that its surface is apart from the other body; as long as it is,
+// neither can come to lie within the other, so that one pose shows whether one does (doc/NUMERICS.md, "Solid meshes").
+#pragma once
+
+#include "narrowphase/solver/stage_one.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+class Containment : PartOfSolver {
+ public:
+  Containment(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, StageOne& stage_one)
+      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts), stage_one_(stage_one) {}
+
+  void begin() { contained_.clear(); }
+
+  /// Finds all pairs of which one body lies within the other at t = 0, or may do.
+  void findAtStart();
+  /// Whether one body of a pair may lie within the other at time t.
+  bool mayBeContained(int pair, double t);
+  /// This is one of the pairs that findAtStart() has found.
+  bool isContainedAtStart(int pair) const;
+  int size() const { return contained_.size(); }
+  int pair(int i) const { return contained_[i].pair; }
+  /// What lies within another body at t = 0 is in contact there, but for the initial contacts that are ignored.
+  void report(Buffer<Entry>& open);
+
+ private:
+  bool isSolid(const PairParts& bodies) const { return body(bodies.a).space || body(bodies.b).space; }
+  engine::Containment contained(int pair, double t);
+  void testAtStart(int pair);
+
+  RelativeMotion& motion_;
+  Horizon& horizon_;
+  ContactList& contacts_;
+  StageOne& stage_one_;
+  Buffer<LeafContact> contained_;  ///< at t = 0
+};
+
+/// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
+[[gnu::noinline]] inline engine::Containment Containment::contained(int pair, double t) {
+  motion_.set(pair, TimeBatch::around(t));
+  const PairParts bodies = task_.parts(pair);
+  const Body &a = body(bodies.a), &b = body(bodies.b);
+  engine::PairPose pose;
+  const RigidLanes& m = motion_.seenFromA();
+  for (int i = 0; i < 9; ++i) pose.R[i] = m.R[0][i][0];
+  for (int i = 0; i < 3; ++i) pose.c[i] = m.c[0][i][0];
+  // 4: points are seen both ways, and as far from the frames as both bodies are large (doc/NUMERICS.md).
+  pose.error = 4 * (motion_.poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
+  ++statistics().contact_proofs;
+  engine::Containment found;
+  problem().contained(a, b, pose, found);
+  FCL_ARTIC_ASSERT(found.verdict >= engine::Containment::kNone && found.verdict <= engine::Containment::kCertain);
+  return found;
+}
+
+inline bool Containment::mayBeContained(int pair, double t) {
+  return problem().contained && isSolid(task_.parts(pair)) && contained(pair, t).verdict != engine::Containment::kNone;
+}
+
+inline void Containment::testAtStart(int pair) {
+  const PairParts bodies = task_.parts(pair);
+  if (!isSolid(bodies)) return;
+  const engine::Containment found = contained(pair, 0);
+  if (found.verdict == engine::Containment::kNone) return;
+  LeafContact& contact = contained_.grow();
+  contact = {};
+  contact.pair = pair;
+  contact.body_a = bodies.a;
+  contact.body_b = bodies.b;
+  contact.piece_a = contact.piece_b = -1;
+  contact.certain = found.verdict == engine::Containment::kCertain;
+  contact.t_upper = contact.certain ? 0 : 1;
+  contact.feature = engine::kVolume;
+  for (int k = 0; k < 3; ++k) {
+    contact.point[k] = found.point[k];
+    contact.normal[k] = found.normal[k];
+  }
+}
+
+/// What holds a body's surface in a box holds the body: pairs whose boxes are apart in the first lane are left out, and
+/// no others, whatever stage 1, tables or stage 2 prove of surfaces.
+[[gnu::noinline, gnu::cold]] inline void Containment::findAtStart() {
+  contained_.clear();
+  if (query().check_scene && problem().obstacle_tree) {
+    for (int m = 0; m < problem().num_scene_movers; ++m) {
+      const Buffer<BoxHit>& met = stage_one_.meetObstacles(m);
+      for (int i = 0; i < met.size(); ++i) {
+        const int pair = m * problem().num_obstacles + met[i].obstacle;
+        if (!(met[i].mask & 1) || (problem().scene_allowed && problem().scene_allowed[pair])) continue;
+        testAtStart(pair);
+      }
+    }
+  }
+  if (query().check_self) {
+    for (int p = 0; p < problem().num_link_pairs; ++p) {
+      if (task_.isAllowed(p)) continue;
+      const LinkPair& pair = problem().link_pairs[p];
+      if (problem().num_movers && (stage_one_.boxesApart(body(pair.a).mover, body(pair.b).mover) & 1)) continue;
+      testAtStart(problem().num_scene_pairs + p);
+    }
+  }
+}
+
+inline bool Containment::isContainedAtStart(int pair) const {
+  for (int i = 0; i < contained_.size(); ++i) {
+    if (contained_[i].pair == pair) return true;
+  }
+  return false;
+}
+
+inline void Containment::report(Buffer<Entry>& open) {
+  for (int i = 0; i < contained_.size(); ++i) {
+    const LeafContact& contact = contained_[i];
+    if (contacts_.watchFrom(contact.pair) > 0) continue;
+    contacts_.push(contact);
+    horizon_.joinLower(0);
+    if (query().every_pair) {
+      if (contact.certain) horizon_.joinUpper(0);
+      for (int j = 0; j < open.size(); ++j) {
+        if (open[j].pair == contact.pair) open[j].mask = 0;  // its first contact is known
+      }
+    } else if (contact.certain) {
+      contacts_.takeProof(contact.pair, 0);
+    } else {
+      horizon_.closeAt(query().tolerance_time);
+    }
+  }
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "model/tree_view.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// A pair of nodes that is not yet decided in the lanes of `mask`.
+struct Entry {
+  std::int32_t pair, a, b;
+  unsigned mask;
+  bool put_off = false;  ///< not looked at, as contact was suspected before these lanes
+  bool within = false;   ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
+
+  bool isWhole() const { return a == 0 && b == 0; }
+};
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A leaf pair, or the hulls around two bodies, followed by itself: t_lower by certificates up to their first root,
+// t_upper by proofs of contact.
+#pragma once
+
+#include "narrowphase/solver/contact_list.h"
+#include "narrowphase/solver/entry.h"
+#include "narrowphase/solver/relative_motion.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// GJK's accuracy where two directions are to say how they turn. Measured: 0.1 takes 20 % more rounds, 0.001 a few per
+/// cent fewer at more expense.
+constexpr double kFollowingAccuracy = 0.02;
+
+/// What is left of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts of
+/// their trees.
+struct Candidate {
+  enum class Target { leafPair, hulls, subtrees };
+
+  Entry entry;
+  Target target;
+  std::int32_t piece_a, piece_b;  ///< of a leaf pair
+  std::int32_t first, count;      ///< of a lane of the first batch: its entries
+  double t_lower;                 ///< free before
+  double normal[3];               ///< GJK's witness at t_lower
+  double gap;                     ///< along it: a lower bound, when GJK ends early far below
+  double apart;                   ///< an upper bound of the gap, from points of both
+  double speed;                   ///< of the one body seen from the other, about
+  bool have_normal;
+  Simplex simplex;  ///< GJK's last
+  bool stuck;       ///< the gap is gone at t_lower, as far as can be told
+  bool certain;
+  double t_upper, point[3];  ///< a proven contact
+
+  bool isHulls() const { return target == Target::hulls; }
+  bool isLeafPair() const { return target == Target::leafPair; }
+};
+
+/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body,
+/// the heaviest of them among these; -1: there is none, as where the hull's vertices are not the body's own.
+inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
+  if (tree.num_pieces == 1) return 0;
+  if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
+  const auto point = [&](int k) { return of_a ? simplex.v[k].a : simplex.v[k].b; };
+  int heaviest = 0;
+  for (int k = 1; k < simplex.n; ++k) {
+    if (simplex.weight[k] > simplex.weight[heaviest]) heaviest = k;
+  }
+  const double* x = point(heaviest);
+  int best = -1, count = 1;
+  double most = 0;
+  constexpr int kDeepest = 64;
+  std::int32_t waiting[kDeepest] = {0};
+  while (count) {
+    const Node& node = tree.nodes[waiting[--count]];
+    bool holds = true;
+    for (int k = 0; k < 3; ++k) holds &= x[k] >= node.lo[k] && x[k] <= node.hi[k];
+    if (!holds) continue;
+    if (!node.isLeaf()) {
+      if (count + 2 > kDeepest) return best;
+      waiting[count++] = node.right();
+      waiting[count++] = node.left();
+      continue;
+    }
+    const Piece& piece = tree.pieces[node.piece()];
+    const double* v = tree.vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
+    double weight = 0;
+    for (int j = 0; j < piece.num_vertices; ++j, v += 3) {
+      for (int k = 0; k < simplex.n; ++k) {
+        const double* y = point(k);
+        if (y[0] == v[0] && y[1] == v[1] && y[2] == v[2]) weight += simplex.weight[k];
+      }
+    }
+    if (weight <= most) continue;
+    most = weight;
+    best = node.piece();
+  }
+  return best;
+}
+
+class Follower : PartOfSolver {
+ public:
+  Follower(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts)
+      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts) {}
+
+  bool followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes = 0);
+  bool decide(Candidate& f, double stop);
+  void proveBelowHulls(Candidate& f);
+  void record(Candidate& f);
+
+ private:
+  bool proveAhead(Candidate& f, int lane);
+  bool prove(Candidate& f);
+  void lookBack(Candidate& f);
+  void piecesOf(const Candidate& f, const Piece*& a, const Piece*& b) const {
+    a = f.isHulls() ? motion_.a().outer : &motion_.a().pieces[f.piece_a];
+    b = f.isHulls() ? motion_.b().outer : &motion_.b().pieces[f.piece_b];
+  }
+
+  RelativeMotion& motion_;
+  Horizon& horizon_;
+  ContactList& contacts_;
+};
+
+/// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the
+/// first root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so
+/// far. Two directions say how they turn: from then on the certificate's turns likewise, and the steps are those
+/// of a secant method.
+/// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
+/// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
+/// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do,
+/// has proven one (f.certain).
+inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes) {
+  const double expected = query().tolerance_time / 16;
+  double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
+  double seen = f.t_lower, turn[3] = {0, 0, 0};  // when f.normal was found; how it turns, per unit of time
+  bool turns = false;
+  f.stuck = false;
+  for (int round = 0; round < (patient ? 48 : 24); ++round) {
+    const double t = f.t_lower;
+    stop = min(stop, horizon_.end());
+    if (t >= stop) return true;
+    const bool first = round == 0 && first_lanes;
+    const double from = first ? 0 : t;
+    span = first ? 1 : min(span, stop - t);
+    const TimeBatch batch = TimeBatch::partsOf(from, span);
+    const double w = span / kLanes, d = batch.d;
+    const double* tm = batch.at;
+    motion_.set(f.entry.pair, batch);
+    f.speed = motion_.amplitude() / d;
+    ++statistics().leaf_tests;
+    const Piece *piece_a, *piece_b;
+    piecesOf(f, piece_a, piece_b);
+    const Piece &a = *piece_a, &b = *piece_b;
+    const double radii = a.radius + b.radius + motion_.margin();
+    // A witness at some time of the present lanes; false: the gap is gone there, or so it seems.
+    const auto look = [&](int lane, double tau) {
+      const DifferenceBody body = motion_.differenceAt(a, b, lane, tau);
+      GjkResult g;
+      gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
+      ++statistics().gjk;
+      f.simplex = g.simplex;
+      if (g.overlap) return false;
+      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      motion_.setWitness(g.n);
+      f.gap = g.lower - radii;
+      f.apart = g.distance - radii;
+      return f.have_normal = true;
+    };
+    if (!f.have_normal && !look(first ? __builtin_ctz(first_lanes) : 0, -1)) break;
+
+    // One bound along a direction that turns, or two along one that does not, in either frame.
+    Lanes G[2][3];
+    const int bounds = turns ? 1 : 2;
+    if (turns) {
+      TurningDirection n;
+      const Lanes begin = batch.tm - Lanes(seen + d);
+      for (int k = 0; k < 3; ++k) {
+        n.begin[k] = mulAdd(begin, turn[k], f.normal[k]);
+        n.end[k] = n.begin[k] + Lanes(2 * d * turn[k]);
+      }
+      gapBound(motion_.side(0), a, b, n, motion_.margin(), motion_.pad(), G[0]);
+    } else {
+      const DifferenceBody here = motion_.differenceAt(a, b, 0);
+      double n[3];
+      here.opposite(f.normal, n);
+      gapBound(motion_.side(0), a, b, f.normal, motion_.margin(), motion_.pad(), G[0]);
+      gapBound(motion_.side(1), b, a, n, motion_.margin(), motion_.pad(), G[1]);
+    }
+    statistics().certificates += static_cast<std::uint64_t>(bounds);
+    unsigned separated = first ? kAllLanes & ~first_lanes : 0;
+    for (int i = 0; i < bounds; ++i) separated |= greater(min(min(G[i][0], G[i][1]), G[i][2]), Lanes(0.0));
+    if (separated == kAllLanes) {
+      f.t_lower = min(stop, from + span);
+      span *= 4;
+      continue;
+    }
+    if (query().any && round > 0 && proveAhead(f, kLanes - 1)) return false;
+    const int lane = __builtin_ctz(~separated);
+    double x = 0;
+    for (int i = 0; i < bounds; ++i) {
+      const double coefficients[3] = {G[i][0][lane], G[i][1][lane], G[i][2][lane]};
+      x = max(x, positivePrefix(coefficients));
+    }
+    // Lanes before it are free, and it is [tm - d, tm + d].
+    const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
+    f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
+    const double progress = f.t_lower - seen, gap = f.gap, before[3] = {f.normal[0], f.normal[1], f.normal[2]};
+    if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
+    turns = progress > 0 && dot(before, f.normal) > 0.5 && !unbounded(a) && !unbounded(b);
+    for (int k = 0; k < 3; ++k) turn[k] = turns ? (f.normal[k] - before[k]) / progress : 0;
+    seen = f.t_lower;
+    if (seen > t && gap > 0) {
+      const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
+      if (!patient && left < expected) break;
+      span = min(4 * span, max(2 * left, kNarrowestLane));
+    } else {
+      // Not even a beginning: a better witness, narrower lanes.
+      if (w < 64 * kUlp) break;
+      accuracy = 1e-7;
+      span *= 0.125;
+    }
+  }
+  f.stuck = f.t_lower < min(stop, horizon_.end());
+  return !f.stuck;
+}
+
+/// Where any contact will do: the lanes of a followed pair reach beyond the contact that is expected. The pieces that
+/// the last witness lies on are tried there; where they touch, f becomes their contact.
+inline bool Follower::proveAhead(Candidate& f, int lane) {
+  const TreeView &A = motion_.a(), &B = motion_.b();
+  const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
+  const int piece_b = f.isHulls() ? pieceAtWitness(B, f.simplex, false) : f.piece_b;
+  if (piece_a < 0 || piece_b < 0) return false;
+  ++statistics().contact_proofs;
+  const DifferenceBody body = motion_.differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
+  if (!certainlyTouching(body, motion_.margin(), motion_.poseError(), f.normal, f.point)) return false;
+  const double t = motion_.batch().at[lane];
+  if (!contacts_.takeProof(f.entry.pair, t)) return false;
+  f.target = Candidate::Target::leafPair;
+  f.piece_a = piece_a;
+  f.piece_b = piece_b;
+  f.certain = f.stuck = true;
+  f.t_upper = t;
+  return true;
+}
+
+/// Decides a leaf pair that is stuck, as far as can be. True: it is free after all. False: f.certain says whether
+/// contact is proven.
+inline bool Follower::decide(Candidate& f, double stop) {
+  if (prove(f)) return false;
+  if (followToRoot(f, stop, true)) return true;
+  if (!f.certain) prove(f);
+  return false;
+}
+
+/// Proof of contact within the tolerance after t_lower.
+inline bool Follower::prove(Candidate& f) {
+  // Not quite 1: the sum rounds, and the bracket is to be no wider than the tolerance.
+  static const double kOffsets[kLanes] = {0.25, 0.5, 0.999, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
+  TimeBatch poses = {};
+  for (int k = 0; k < kLanes; ++k) poses.setPose(k, min(1.0, f.t_lower + kOffsets[k] * query().tolerance_time));
+  motion_.set(f.entry.pair, poses);
+  const Piece &a = motion_.a().pieces[f.piece_a], &b = motion_.b().pieces[f.piece_b];
+  const int head = f.have_normal ? 0 : kLanes - 1;  // never seen apart: in contact at t_lower itself
+  for (int i = 0; i < kLanes; ++i) {
+    const int k = (head + i) % kLanes;
+    const DifferenceBody body = motion_.differenceAt(a, b, k);
+    ++statistics().contact_proofs;
+    if (certainlyTouching(body, motion_.margin(), motion_.poseError(), f.have_normal ? f.normal : body.pose.c, f.point,
+                          &f.simplex) &&
+        contacts_.takeProof(f.entry.pair, poses.at[k])) {
+      f.certain = true;
+      f.t_upper = poses.at[k];
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time.
+/// Where that is proven, f is re-targeted from the hulls to these two pieces.
+inline void Follower::proveBelowHulls(Candidate& f) {
+  if (!f.have_normal || query().max_contacts > 1) return;
+  const TreeView &A = *body(task_.parts(f.entry.pair).a).tree, &B = *body(task_.parts(f.entry.pair).b).tree;
+  if (A.outer->radius + B.outer->radius > f.speed * query().tolerance_time) return;
+  Candidate below = f;
+  below.target = Candidate::Target::leafPair;
+  below.piece_a = pieceAtWitness(A, f.simplex, true);
+  below.piece_b = pieceAtWitness(B, f.simplex, false);
+  below.simplex.n = 0;  // its points are the hulls', not the pieces'
+  if (below.piece_a >= 0 && below.piece_b >= 0 && prove(below)) f = below;
+}
+
+/// A pair that was never seen apart, as it touches where its window begins: looks back, ever farther, to where it was.
+inline void Follower::lookBack(Candidate& f) {
+  TimeBatch poses = {};
+  double step = query().tolerance_time;
+  for (int k = 0; k < kLanes; ++k) {
+    poses.setPose(k, max(0.0, f.t_lower - step));
+    step *= 4;
+  }
+  motion_.set(f.entry.pair, poses);
+  const Piece *a, *b;
+  piecesOf(f, a, b);
+  for (int k = 0; k < kLanes && !f.have_normal; ++k) {
+    const DifferenceBody body = motion_.differenceAt(*a, *b, k);
+    GjkResult g;
+    gjk(body, body.pose.c, 1e-7, a->radius + b->radius + motion_.margin(), 64, g);
+    ++statistics().gjk;
+    if (g.overlap) continue;
+    for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
+    f.have_normal = true;
+  }
+}
+
+/// Point and normal of a candidate that is stuck, to a new contact.
+inline void Follower::record(Candidate& f) {
+  FCL_ARTIC_ASSERT(f.t_lower >= 0 && f.t_lower <= 1);
+  if (!f.have_normal && f.t_lower > 0) lookBack(f);
+  // What is missing is seen at t_lower.
+  motion_.set(f.entry.pair, f.certain && f.have_normal ? motion_.batch() : TimeBatch::around(f.t_lower));
+  LeafContact& contact = contacts_.grow(f.entry.pair, f.piece_a, f.piece_b);
+  contact.t_lower = f.t_lower;
+  contact.certain = f.certain;
+  contact.t_upper = f.certain ? f.t_upper : 1;
+  contact.t = f.certain ? f.t_upper : f.t_lower;
+  horizon_.joinLower(f.t_lower);
+  const Piece &a = motion_.a().pieces[contact.piece_a], &b = motion_.b().pieces[contact.piece_b];
+  const DifferenceBody body = motion_.differenceAt(a, b, 0);
+  for (int k = 0; k < 3; ++k) contact.point[k] = f.point[k];
+  if (!f.certain) {
+    GjkResult g;
+    gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
+    originWeights(g.simplex);
+    if (!f.have_normal && !g.overlap) {
+      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.have_normal = true;
+    }
+    // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
+    const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
+    double x[3], y[3];
+    combine(body, g.simplex, x, y);
+    for (int k = 0; k < 3; ++k) contact.point[k] = out * f.normal[k] + 0.5 * (x[k] + y[k]);
+  }
+  if (!f.have_normal) {
+    // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.
+    double x[3], y[3], m[3], size = 0;
+    middleOf(motion_.a().nodes[f.entry.a], x);
+    middleOf(motion_.b().nodes[f.entry.b], y);
+    for (int k = 0; k < 3; ++k) {
+      m[k] = dot(body.pose.R + 3 * k, y) + body.pose.c[k] - x[k];
+      if (unbounded(a)) m[k] = a.size[k];
+      if (unbounded(b)) m[k] = -dot(body.pose.R + 3 * k, b.size);
+      size += m[k] * m[k];
+    }
+    for (int k = 0; k < 3; ++k) f.normal[k] = size > 0 ? m[k] / sqrt(size) : (k == 2);
+  }
+  for (int k = 0; k < 3; ++k) contact.normal[k] = f.normal[k];
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is known of when the first contact is, and so which lanes are worth work. Nothing else writes these times.
+#pragma once
+
+#include "model/bracket.h"
+#include "narrowphase/solver/task.h"
+#include "narrowphase/solver/time_batch.h"
+#include "numerics/assertion.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+using engine::kNever;
+
+/// Width below which time is not split any more.
+constexpr double kNarrowestLane = 1.0 / (1ull << 45);
+
+class Horizon : PartOfSolver {
+ public:
+  explicit Horizon(Task& task) : PartOfSolver(task) {}
+
+  /// A new query: nothing is known.
+  void begin() {
+    first_ = {};
+    suspected_ = kNever;
+    beginSearch();
+  }
+  /// A search of its own begins (of every pair, one by one): what was found stays in first().
+  void beginSearch() {
+    end_ = kNever;
+    proven_free_until_ = 0;
+    update();
+  }
+
+  /// The batch whose lanes live() is of.
+  void watch(const TimeBatch& batch) {
+    if (suspected_ <= batch.start[0]) suspected_ = kNever;  // all is proven free up to here: it was no contact
+    start_ = batch.start;
+    finish_ = batch.end;
+    finest_ = batch.width <= max(query().tolerance_time, kNarrowestLane);
+    update();
+  }
+  /// Its lanes are as narrow as the tolerance: none of them is put off.
+  bool isFinest() const { return finest_; }
+  /// Lanes that are worth work: not after a contact that is proven or suspected.
+  unsigned live() const { return live_; }
+  /// The lane in which that contact is: it is split whatever else is found in it.
+  unsigned contactLane() const { return contact_lane_; }
+
+  /// What is later than this can't change the answer.
+  double end() const { return end_; }
+  /// Nothing is left to search: any contact will do and one is found, or the query has ended.
+  bool isOver() const { return task_.ended() || isFound(); }
+  /// Contact at t is proven, or assumed as it can be told no better: later times don't matter.
+  void closeAt(double t) {
+    end_ = min(end_, t);
+    update();
+  }
+
+  /// GJK claims overlap at t. Nothing rests on it: later lanes are put off, not dropped.
+  void suspect(double t) {
+    if (finest_ || t >= suspected_) return;
+    suspected_ = t;
+    update();
+  }
+  /// It was no contact, or is looked at now.
+  void dropSuspicion() { suspected_ = kNever; }
+
+  /// All pairs of this search are proven free before.
+  double provenFreeUntil() const { return proven_free_until_; }
+  void provenFree(double t) { proven_free_until_ = max(proven_free_until_, t); }
+
+  /// The bracket of the first contact, joined of all contacts of this query.
+  const engine::FirstContact& first() const { return first_; }
+  void joinLower(double t) { engine::joinLower(first_, t); }
+  void joinUpper(double t) { engine::joinUpper(first_, t); }
+
+ private:
+  void update() {
+    const Lanes end(finest_ ? end_ : min(end_, suspected_));
+    live_ = isFound() ? 0 : greater(end, start_);
+    contact_lane_ = finest_ ? 0 : live_ & greater(finish_, end);
+  }
+  bool isFound() const { return query().any && end_ < kNever; }
+
+  bool finest_ = false;
+  double end_ = kNever, suspected_ = kNever, proven_free_until_ = 0;
+  engine::FirstContact first_;
+  Lanes start_{0.0}, finish_{0.0};  ///< of the lanes watched
+  unsigned live_ = 0, contact_lane_ = 0;
+};
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "convex/gjk.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// The last simplices that GJK found between pairs' hulls, to begin with next time: a small direct-mapped cache; what
+/// is pushed out is found again. Nothing rests on them.
+class HullSimplices {
+ public:
+  /// A new query: none is known.
+  void begin() { ++query_; }
+  /// That of a pair in this query; empty at first.
+  Simplex& of(int pair) {
+    Kept& kept = kept_[pair & (kKept - 1)];
+    if (kept.pair != pair || kept.query != query_) {
+      kept.pair = pair;
+      kept.query = query_;
+      kept.simplex.n = 0;
+    }
+    return kept.simplex;
+  }
+
+ private:
+  static constexpr int kKept = 32;
+  struct Kept {
+    std::int32_t pair;
+    std::uint64_t query;
+    Simplex simplex;
+  };
+  Kept kept_[kKept] = {};
+  std::uint64_t query_ = 0;
+};
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

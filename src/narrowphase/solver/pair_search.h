@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The search for the first contact among the pairs that the stages have left: earliest part of the motion first, and in
+// it the pair that meets first.
+#pragma once
+
+#include "narrowphase/solver/any_contact.h"
+#include "narrowphase/solver/follower.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// What GJK claims to overlap is nearer than this part of the smaller body, about: rounding is 1e-15 of it, flat
+/// simplices may lose more. Finer tolerances have such lanes divided on, which with the usual one costs what rests on
+/// something 8 batches more for nothing.
+constexpr double kOverlapAccuracy = 1e-9;
+/// So many leaf pairs in a lane are followed one by one; more are split in time first.
+constexpr int kFewLeaves = 12;
+/// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion
+/// covers in it.
+constexpr double kFirstWindow = 0.4;
+/// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not
+/// looked at.
+constexpr double kLongMotion = 0.2;
+
+class PairSearch : PartOfSolver {
+ public:
+  PairSearch(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, Traversal& traversal,
+             Follower& follower, AnyContact& any)
+      : PartOfSolver(task),
+        motion_(motion),
+        horizon_(horizon),
+        contacts_(contacts),
+        traversal_(traversal),
+        follower_(follower),
+        any_(any),
+        whole_(TimeBatch::partsOf(0, 1)) {}
+
+  /// Boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`; those that are apart go.
+  /// @param directionOf  (i) -> the i-th pair's direction, null where there is none (LaneSearch::towards).
+  template <class DirectionOf>
+  void testHulls(Buffer<Entry>& open, const DirectionOf& directionOf);
+  /// The first contact of all pairs of `open`, or of each of them.
+  void run(Buffer<Entry>& open);
+
+ private:
+  enum class Step { free, done };
+
+  void watch(const TimeBatch& batch) {
+    ++statistics().batches;
+    horizon_.watch(batch);
+  }
+  Aim aim() const { return horizon_.isFinest() ? Aim::leaves : Aim::split; }
+  bool isLeafPair(const Entry& e) const {
+    const PairParts pair = task_.parts(e.pair);
+    return body(pair.a).tree->nodes[e.a].isLeaf() && body(pair.b).tree->nodes[e.b].isLeaf();
+  }
+  /// A lane takes the present pair so far that little can be said of its pieces before the lane is split; of its hulls
+  /// can.
+  bool movesFar() const {
+    return motion_.amplitude() > kLongMotion * min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius);
+  }
+
+  Candidate candidateOf(const Entry& e, double start) const;
+  void search(Buffer<Entry>& open, int begin, int end);
+  void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
+  void lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later);
+  void solveLane(Buffer<Entry>& open, double start, double stop, int lane, int begin, int end,
+                 unsigned first_lanes = 0);
+  void solvePieces(Buffer<Entry>& open, const Candidate& f, double stop, int lane);
+  Step solveInterval(Buffer<Entry>& open, double start, double width, int begin, int end, int parent_lane);
+  Step solveOpenLane(Buffer<Entry>& open, double start, double width, int begin, int end, int lane, bool finest);
+  Step followLeaves(const Buffer<Entry>& open, double start, double width, int begin, int end, int lane, bool finest,
+                    bool* split);
+
+  RelativeMotion& motion_;
+  Horizon& horizon_;
+  ContactList& contacts_;
+  Traversal& traversal_;
+  Follower& follower_;
+  AnyContact& any_;
+  const TimeBatch whole_;
+  Buffer<Candidate> candidates_;  ///< of a lane of the first batch
+  Buffer<Candidate> leaves_;      ///< of a narrower lane
+};
+
+/// What an entry stands for, to be followed from `start`.
+inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
+  const PairParts pair = task_.parts(e.pair);
+  Candidate f = {};
+  f.entry = e;
+  f.t_lower = max(start, contacts_.watchFrom(e.pair));
+  f.piece_a = body(pair.a).tree->nodes[e.a].piece();
+  f.piece_b = body(pair.b).tree->nodes[e.b].piece();
+  return f;
+}
+
+template <class DirectionOf>
+inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& directionOf) {
+  any_.forgetOverlaps();
+  const int roots = open.size();
+  int kept = 0;
+  for (int i = 0; i < roots && !horizon_.isOver(); ++i) {
+    Entry& e = open[i];
+    if (e.mask & horizon_.live()) {
+      motion_.set(e.pair, whole_);
+      traversal_.rootsAreTested();
+      e.mask = traversal_.nodesMayTouch(0, 0, e.mask);
+      if (e.mask) {
+        const bool suspect = !query().every_pair && movesFar();
+        const Traversal::HullLook look = traversal_.hullsMayTouch(e.mask, suspect, {true, directionOf(i)});
+        e.mask = look.mask;
+        e.within = look.within;
+        if (look.overlaps) any_.guessOverlap(e.pair, look.overlaps);
+      }
+      task_.outOfBudget();
+    }
+  }
+  if (horizon_.isOver()) return;
+  for (int i = 0; i < roots; ++i) {
+    if (open[i].mask) open[kept++] = open[i];
+  }
+  open.truncate(kept);
+}
+
+inline void PairSearch::run(Buffer<Entry>& open) {
+  const int roots = open.size();
+  if (!query().every_pair) return search(open, 0, roots);
+  for (int i = 0; i < roots && !task_.ended(); ++i) {
+    const int before = contacts_.size();
+    open.truncate(roots);
+    horizon_.dropSuspicion();
+    watch(whole_);
+    search(open, i, i + 1);
+    contacts_.order(before, horizon_.end());
+  }
+}
+
+/// The pairs of open[begin, end), over [0, 1]; what is appended meanwhile is left there.
+inline void PairSearch::search(Buffer<Entry>& open, int begin, int end) {
+  horizon_.beginSearch();
+  const int from = open.size();
+  if (problem().num_movers == 0 && end - begin == 1) {
+    // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where
+    // stage 1 or 2 has left one of many, it goes the way of the others: what they discard is not to change an
+    // answer's bits.)
+    const Entry& e = open[begin];
+    motion_.set(e.pair, whole_);
+    if (isLeafPair(e) || (motion_.a().outer && motion_.b().outer && movesFar())) {
+      const unsigned lanes = e.mask;
+      const double start = 0.125 * __builtin_ctz(lanes), stop = 0.125 * (32 - __builtin_clz(lanes));
+      return solveLane(open, start, stop, -1, begin, end, contacts_.watchFrom(e.pair) > 0 ? 0 : lanes);
+    }
+  }
+  descendIntoPieces(open, begin, end);
+  for (int lane = 0; lane < kLanes && 0.125 * lane < horizon_.end() && !horizon_.isOver(); ++lane) {
+    solveLane(open, 0.125 * lane, 0.125 * (lane + 1), lane, from, open.size());
+    const unsigned later = kAllLanes & ~((2u << lane) - 1);
+    if (later && horizon_.end() > 0.125 * (lane + 1)) lookAtPutOff(open, from, later);
+  }
+}
+
+/// Goes down from open[begin, end) over the first batch. What stays undecided is appended.
+inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int end) {
+  for (int i = begin; i < end && !horizon_.isOver(); ++i) {
+    const Entry e = open[i];
+    if (!e.mask) continue;
+    motion_.set(e.pair, whole_);
+    if (movesFar() && !e.within) {
+      open.push({e.pair, e.a, e.b, e.mask});
+    } else {
+      traversal_.descend({e.pair, e.a, e.b, e.mask}, aim(), open);
+    }
+  }
+}
+
+/// Of open[begin, ...) looks after all at what was put off, if that is so in the next lane: the contact that was
+/// suspected is none.
+/// @param later  lanes of the first batch that are still to come.
+inline void PairSearch::lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later) {
+  const int end = open.size();
+  const unsigned next = later & (~later + 1);
+  bool any = false;
+  for (int i = begin; i < end; ++i) any = any || (open[i].put_off && (open[i].mask & next));
+  if (!any) return;
+  horizon_.dropSuspicion();
+  watch(whole_);
+  for (int i = begin; i < end; ++i) {
+    const Entry e = open[i];
+    if (!e.put_off) continue;
+    open[i].mask = 0;
+    open[i].put_off = false;
+    if (!(e.mask & later)) continue;
+    motion_.set(e.pair, whole_);
+    traversal_.descend({e.pair, e.a, e.b, e.mask & later}, aim(), open);
+  }
+}
+
+/// Part of the motion: the pairs that may touch in it, those that meet first before the others.
+/// @param lane  of the first batch, whose entries count; -1: all do.
+/// @param first_lanes  see Follower::followToRoot().
+inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop, int lane, int begin, int end,
+                                  unsigned first_lanes) {
+  using Target = Candidate::Target;
+  candidates_.clear();
+  const int roots = open.size();
+  for (int i = begin; i < end && !horizon_.isOver();) {
+    // A run of entries of one pair.
+    const int first = open.size(), pair_index = open[i].pair;
+    bool leaves = true;
+    for (; i < end && open[i].pair == pair_index; ++i) {
+      const Entry e = open[i];
+      if (lane >= 0 && !(e.mask >> lane & 1)) continue;
+      leaves = leaves && isLeafPair(e);
+      open.push(e);
+    }
+    const int count = open.size() - first;
+    if (count == 0) continue;
+    Candidate f = candidateOf(open[first], start);
+    f.first = first;
+    f.count = count;
+    // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or
+    // parts of them that the first batch has come to already.
+    const PairParts pair = task_.parts(pair_index);
+    const bool hulls = f.entry.isWhole() && !leaves && body(pair.a).tree->outer && body(pair.b).tree->outer;
+    f.target = hulls ? Target::hulls : leaves && count == 1 ? Target::leafPair : Target::subtrees;
+    if (hulls) f.simplex = traversal_.simplexOf(pair_index);
+    if (f.t_lower >= stop || (f.target != Target::subtrees && follower_.followToRoot(f, stop, false, first_lanes))) {
+      open.truncate(first);
+      continue;
+    }
+    if (f.certain) return follower_.record(f);
+    candidates_.push(f);
+    task_.outOfBudget();
+  }
+  for (int done = 0; done < candidates_.size() && !horizon_.isOver(); ++done) {
+    int first = done;
+    for (int i = done + 1; i < candidates_.size(); ++i) {
+      if (candidates_[i].t_lower < candidates_[first].t_lower) first = i;
+    }
+    Candidate f = candidates_[first];
+    candidates_[first] = candidates_[done];
+    horizon_.provenFree(f.t_lower);
+    if (f.t_lower >= horizon_.end()) break;
+    if (f.isHulls()) follower_.proveBelowHulls(f);
+    if (f.isLeafPair() && !f.certain && follower_.decide(f, stop)) continue;
+    if (f.certain) {
+      follower_.record(f);
+      continue;
+    }
+    horizon_.dropSuspicion();
+    solvePieces(open, f, stop, lane);
+  }
+  open.truncate(roots);
+  FCL_ARTIC_ASSERT(horizon_.provenFreeUntil() <= stop);
+  if (!horizon_.isOver()) horizon_.provenFree(stop);
+}
+
+/// The pieces of one pair, in a lane of the first batch. Windows of time start short, as the surfaces are not far where
+/// hulls meet: the smaller body moves kFirstWindow of its radius. They grow eightfold.
+inline void PairSearch::solvePieces(Buffer<Entry>& open, const Candidate& f, double stop, int lane) {
+  const int begin = f.first, end = f.first + f.count, roots = open.size();
+  if (f.target == Candidate::Target::subtrees) {
+    solveOpenLane(open, f.t_lower, stop - f.t_lower, begin, end, lane, false);
+    open.truncate(roots);
+    return;
+  }
+  motion_.setWitness(f.entry.pair, f.have_normal ? f.normal : nullptr);
+  const PairParts pair = task_.parts(f.entry.pair);
+  const double size = kFirstWindow * min(body(pair.a).tree->nodes[0].radius, body(pair.b).tree->nodes[0].radius);
+  stop = min(stop, horizon_.end());
+  double span = f.speed * (stop - f.t_lower) > size ? max(size / f.speed, kNarrowestLane) : stop - f.t_lower;
+  for (double t = f.t_lower; t < min(stop, horizon_.end()); span *= 8) {
+    const double next = t + 1.5 * span < min(stop, horizon_.end()) ? t + span : min(stop, horizon_.end());
+    const Step step = solveInterval(open, t, next - t, begin, end, lane);
+    open.truncate(roots);
+    if (step == Step::done) return;
+    t = next;
+  }
+}
+
+/// One batch over [start, start + width] for open[begin, end), of which those with parent_lane set count (all, when
+/// parent_lane < 0). The pair is proven free before `start`.
+inline PairSearch::Step PairSearch::solveInterval(Buffer<Entry>& open, double start, double width, int begin, int end,
+                                                  int parent_lane) {
+  FCL_ARTIC_ASSERT(begin < end);
+  const TimeBatch batch = TimeBatch::partsOf(start, width);
+  watch(batch);
+  // With every pair it is the present pair's: of those that are still to come nothing is known.
+  task_.report(query().every_pair ? 0 : horizon_.provenFreeUntil());
+  if (task_.ended()) return Step::done;
+  const int out_begin = open.size();
+  const bool finest = horizon_.isFinest();
+  for (int i = begin; i < end; ++i) {
+    const Entry e = open[i];
+    if (parent_lane >= 0 && !(e.mask >> parent_lane & 1)) continue;
+    motion_.set(e.pair, batch);
+    traversal_.descend({e.pair, e.a, e.b, kAllLanes}, aim(), open);
+    if (horizon_.isOver()) return Step::done;
+  }
+  const int out_end = open.size();
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (batch.start[lane] >= horizon_.end()) break;
+    if (solveOpenLane(open, batch.start[lane], batch.width, out_begin, out_end, lane, finest) == Step::done) {
+      return Step::done;
+    }
+    open.truncate(out_end);
+  }
+  return Step::free;
+}
+
+/// A lane that open[begin, end) of one pair leave undecided, some of them: few leaf pairs are followed one by one, else
+/// the lane is split.
+inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double start, double width, int begin, int end,
+                                                  int lane, bool finest) {
+  int count = 0;
+  bool leaves = true;
+  for (int i = begin; i < end && (finest || count <= kFewLeaves); ++i) {
+    const Entry& e = open[i];
+    if (!(e.mask >> lane & 1)) continue;
+    ++count;
+    leaves = leaves && isLeafPair(e);
+  }
+  if (!count) return Step::free;
+  bool split = true;
+  if (leaves && (finest || count <= kFewLeaves)) {
+    if (followLeaves(open, start, width, begin, end, lane, finest, &split) == Step::done) return Step::done;
+  }
+  return split ? solveInterval(open, start, width, begin, end, lane) : Step::free;
+}
+
+/// The leaf pairs that a lane leaves undecided, one by one: how far is each free, and is there contact?
+/// @param[out] split  the lane is to be split: it is wider than the tolerance, or the pairs are farther apart than the
+///   distance tolerance, and nothing is proven.
+inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, double start, double width, int begin,
+                                                 int end, int lane, bool finest, bool* split) {
+  const double stop = start + width;
+  leaves_.clear();
+  for (int i = begin; i < end; ++i) {
+    if (open[i].mask >> lane & 1) leaves_.push(candidateOf(open[i], start));
+  }
+  *split = false;
+  for (int i = 0; i < leaves_.size(); ++i) {
+    Candidate& f = leaves_[i];
+    if (!follower_.followToRoot(f, stop, false) && !f.certain) follower_.decide(f, stop);
+    if (task_.outOfBudget()) return Step::done;
+    // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
+    const bool enough = f.certain && f.t_lower <= start && i >= max(64, query().max_contacts);
+    if (enough || horizon_.isOver()) leaves_.truncate(i + 1);
+  }
+  const bool narrow = width <= kNarrowestLane;
+  // (Where any contact will do and one is proven, it is recorded whatever is still open.)
+  for (int i = 0; i < leaves_.size() && !horizon_.isOver(); ++i) {
+    const Candidate& f = leaves_[i];
+    if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
+    // Near are those of which points are: a direction along which little is proven says nothing. Where there is none,
+    // GJK claimed overlap, and is believed as far as to kOverlapAccuracy of the smaller body.
+    const PairParts pair = task_.parts(f.entry.pair);
+    const double size = min(body(pair.a).tree->extent, body(pair.b).tree->extent);
+    const double apart = f.have_normal ? f.apart : kOverlapAccuracy * size;
+    const bool near = apart <= 0.5 * query().tolerance_distance;
+    if (!narrow && (!finest || !near)) {
+      *split = true;
+      return Step::free;
+    }
+    horizon_.closeAt(f.t_lower + query().tolerance_time);
+  }
+  const int before = contacts_.size();
+  for (int i = 0; i < leaves_.size(); ++i) {
+    if (leaves_[i].stuck && leaves_[i].t_lower <= horizon_.end()) follower_.record(leaves_[i]);
+  }
+  return contacts_.size() > before ? Step::done : Step::free;
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

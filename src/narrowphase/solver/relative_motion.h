@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How the two bodies of one pair move against each other over one batch: made when first asked for, and kept until
+// another pair or batch is.
+#pragma once
+
+#include "convex/contact_proof.h"
+#include "narrowphase/certificate.h"
+#include "narrowphase/solver/swept_box.h"
+#include "narrowphase/solver/swept_frames.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+class RelativeMotion : PartOfSolver {
+ public:
+  RelativeMotion(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
+
+  /// A new query: nothing is known.
+  void begin() {
+    pair_ = of_batch_ = witness_pair_ = -1;
+    // Epochs only ever grow; long before they overflow the stamps are made new.
+    if (epoch_ > 1 << 30) {
+      epoch_ = 0;
+      __builtin_memset(cached_, -1, sizeof cached_);
+    }
+  }
+
+  /// From now on this is the motion of `pair` over `batch`.
+  void set(int pair, const TimeBatch& batch) {
+    FCL_ARTIC_ASSERT(pair >= 0 && pair < problem().num_scene_pairs + problem().num_link_pairs);
+    frames_.set(batch);
+    if (pair_ == pair && of_batch_ == frames_.number()) return;
+    pair_ = pair;
+    of_batch_ = frames_.number();
+    relate();
+    ++epoch_;
+    pool_.clear();
+    if (witness_pair_ != pair) have_witness_ = false;
+    witness_pair_ = pair;
+  }
+
+  int pair() const { return pair_; }
+  const TimeBatch& batch() const { return frames_.batch(); }
+  /// Another batch has another number.
+  std::int32_t batchNumber() const { return frames_.number(); }
+  const TreeView& a() const { return *side_[0].still; }
+  const TreeView& b() const { return *side_[0].moving; }
+
+  /// One body seen from the other, ready for certificates: 0: B from A, 1: A from B. What is missing is made: many a
+  /// look needs one of both only, or none.
+  const Side& side(int s) {
+    if (!side_ready_[s]) {
+      if (s) invert(side_[0].m, side_[1].m);
+      side_[s].m.makeBernstein();
+      side_ready_[s] = true;
+    }
+    return side_[s];
+  }
+  /// B seen from A, as it is evaluated: without what certificates need.
+  const RigidLanes& seenFromA() const { return side_[0].m; }
+  /// A body's tree where it stands still (`side`) or moves.
+  const TreeView& still(int s) const { return *side_[s].still; }
+  const TreeView& moving(int s) const { return *side_[s].moving; }
+
+  double margin() const { return margin_; }
+  double pad() const { return pad_; }
+  /// Bound on the error of a pose, for proofs of contact.
+  double poseError() const { return pose_error_; }
+  /// How far the motion takes the body in half an interval: B seen from A, or A from a B that is unbounded. About.
+  double amplitude() const { return amplitude_; }
+
+  /// The last direction that GJK found between pieces of this pair; null: none.
+  const double* witness() const { return have_witness_ ? witness_ : nullptr; }
+  void setWitness(const double* direction) {
+    for (int k = 0; k < 3; ++k) witness_[k] = direction[k];
+    have_witness_ = true;
+  }
+  /// That of a pair that is to be set next; null: none.
+  void setWitness(int pair, const double* direction) {
+    witness_pair_ = pair;
+    have_witness_ = false;
+    if (direction) setWitness(direction);
+  }
+
+  /// The pieces at a lane's middle, or, but for the remainder, at any tau of it.
+  DifferenceBody differenceAt(const Piece& piece_a, const Piece& piece_b, int lane, double tau = 0) const {
+    DifferenceBody body;
+    body.tree_a = side_[0].still;
+    body.tree_b = side_[0].moving;
+    body.a = &piece_a;
+    body.b = &piece_b;
+    const RigidLanes& m = side_[0].m;
+    for (int i = 0; i < 9; ++i) body.pose.R[i] = m.R[0][i][lane];
+    for (int i = 0; i < 3; ++i) body.pose.c[i] = m.c[0][i][lane];
+    if (tau != 0) {
+      for (int i = 0; i < 9; ++i) body.pose.R[i] += tau * (m.R[1][i][lane] + tau * m.R[2][i][lane]);
+      for (int i = 0; i < 3; ++i) body.pose.c[i] += tau * (m.c[1][i][lane] + tau * m.c[2][i][lane]);
+    }
+    return body;
+  }
+
+  /// A node's swept box in the still body's frame, pad and margin included. One box serves every partner that the node
+  /// meets in this batch.
+  const SweptBox& sweptNode(int s, int node) {
+    Cached& cached = cached_[s][node & (kCached - 1)];
+    if (!isSwept(s, node)) {
+      cached = {node, epoch_, pool_.size()};
+      sweepNode(side(s).m, side_[s].moving->nodes[node], pad_ + margin_, pool_.grow());
+    }
+    return pool_[cached.slot];
+  }
+  /// Its box is there already.
+  bool isSwept(int s, int node) const {
+    const Cached& cached = cached_[s][node & (kCached - 1)];
+    return cached.epoch == epoch_ && cached.node == node;
+  }
+
+ private:
+  void relate();
+
+  SweptFrames& frames_;
+  std::int32_t pair_ = -1, of_batch_ = -1;
+  Side side_[2];
+  bool side_ready_[2] = {false, false};
+  double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
+  double witness_[3];
+  bool have_witness_ = false;
+  std::int32_t witness_pair_ = -1;
+
+  /// Swept boxes by node of the moving tree of each side: a small direct-mapped cache stays in the processor's own;
+  /// what is pushed out is made again.
+  static constexpr int kCached = 2048;
+  struct Cached {
+    std::int32_t node, epoch, slot;
+  };
+  Cached cached_[2][kCached] = {};
+  Buffer<SweptBox> pool_;
+  std::int32_t epoch_ = 0;
+};
+
+/// Both ways, with remainders and pads.
+inline void RelativeMotion::relate() {
+  margin_ = query().margins.of(pair_);
+  FCL_ARTIC_ASSERT(margin_ >= 0 && margin_ <= query().margins.largest());
+  const PairParts parts = task_.parts(pair_);
+  const Body &A = body(parts.a), &B = body(parts.b);
+  const FrameLanes* frame = frames_.of(parts.sweep);
+  const StepBounds& bounds = frames_.bounds(parts.sweep, parts.step_b);
+  const double d = batch().d;
+  RigidLanes& m = side_[0].m;
+  const PairPads pads = relateBodies(parts.step_b >= 0 ? frame + parts.step_b : nullptr, bounds,
+                                     problem().sweeps[parts.sweep].first_order, *parts.inverse_a, *parts.placement_b,
+                                     A.tree->extent + B.tree->extent, margin_, d, m, side_[1].m);
+  side_ready_[0] = side_ready_[1] = false;
+  pad_ = pads.pad;
+  pose_error_ = pads.pose;
+  side_[0].still = side_[1].moving = A.tree;
+  side_[0].moving = side_[1].still = B.tree;
+
+  const bool from_a = B.tree->nodes[0].radius < engine::kUnbounded;
+  const Side& seen = from_a ? side_[0] : side(1);
+  const Node& root = seen.moving->nodes[0];
+  double center[3];
+  middleOf(root, center);
+  Lanes v[3];
+  for (int k = 0; k < 3; ++k) v[k] = dot(seen.m.R[1] + 3 * k, center) + seen.m.c[1][k];
+  amplitude_ = sqrt(maxLane(dot(v, v))) + bounds.rates.a * d * root.radius;
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Stage 1: pairs whose swept bounds meet, over the eight parts of [0, 1]; and stage 2, the query's own, after it.
+#pragma once
+
+#include "narrowphase/solver/any_contact.h"
+#include "narrowphase/solver/swept_lss.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius.
+/// Measured: from 0.7 on to 1 it makes no difference, below contacts are found later.
+constexpr double kDeep = 0.7;
+
+/// Asks for an object's cache lines before they are needed.
+template <class T>
+FCL_ARTIC_INLINE void prefetch(const T* object) {
+  for (unsigned i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + i);
+}
+
+/// An obstacle, and the lanes in which its box meets a mover's.
+struct BoxHit {
+  std::int32_t obstacle;
+  unsigned mask;
+};
+
+class StageOne : PartOfSolver {
+ public:
+  StageOne(Task& task, SweptFrames& frames, Horizon& horizon, const ContactList& contacts, AnyContact& any)
+      : PartOfSolver(task),
+        frames_(frames),
+        horizon_(horizon),
+        contacts_(contacts),
+        any_(any),
+        whole_(TimeBatch::partsOf(0, 1)) {}
+
+  /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
+  void cull(Buffer<Entry>& open);
+  /// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out of
+  /// `open`.
+  void refine(Traversal& traversal, Buffer<Entry>& open);
+  /// Of the i-th pair left: from A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
+  const Lanes* direction(int i) const { return i < directions_.size() ? directions_[i].l : nullptr; }
+
+  const Buffer<BoxHit>& meetObstacles(int mover);
+  /// Lanes in which the boxes of two movers are certainly apart.
+  unsigned boxesApart(int mover_a, int mover_b) const;
+
+ private:
+  void sweepMover(int mover);
+  void cullObstacles(int mover, Buffer<Entry>& open);
+  void cullLinks(Buffer<Entry>& open);
+  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction);
+  void expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
+                     const Lanes* nearest);
+  void sweptSegments(int mover, engine::SweptLink* parts);
+  bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
+
+  SweptFrames& frames_;
+  Horizon& horizon_;
+  const ContactList& contacts_;
+  AnyContact& any_;
+  const TimeBatch whole_;
+
+  Buffer<SweptBox> mover_box_;
+  Buffer<SweptLss> mover_lss_;  ///< of links
+  Buffer<BoxHit> met_;
+  Buffer<std::int32_t> open_nodes_;
+  Buffer<engine::SweptLink> swept_links_;
+  Buffer<engine::CullCandidate> candidates_;
+  struct Direction {
+    Lanes l[3];
+  };
+  Buffer<Direction> directions_;  ///< of pairs of links and still obstacles, which come first
+};
+
+/// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). Of a moving
+/// obstacle only the box of its whole path is known.
+inline void StageOne::sweepMover(int mover) {
+  const Body& carried = body(problem().movers[mover]);
+  const double margin = query().margins.largest();  // whatever the partner
+  SweptBox& box = mover_box_[mover];
+  if (task_.isLink(mover)) {
+    const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0)[carried.step];
+    sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole_.d,
+             mover_lss_[mover]);
+    if (frame) {
+      Lanes lo[3], hi[3];
+      boundLss(mover_lss_[mover], margin, lo, hi);
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = narrowDown(lo[k]);
+        box.hi[k] = narrowUp(hi[k]);
+      }
+      return;
+    }
+  }
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = narrowDown(Lanes(carried.lo[k] - margin));
+    box.hi[k] = narrowUp(Lanes(carried.hi[k] + margin));
+  }
+}
+
+inline unsigned StageOne::boxesApart(int mover_a, int mover_b) const {
+  const SweptBox &a = mover_box_[mover_a], &b = mover_box_[mover_b];
+  FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
+  for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
+  return lanesOf(out);
+}
+
+/// Obstacles whose boxes meet that of a mover, and when. Level by level, so that what is looked at next is fetched
+/// meanwhile.
+inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
+  const SweptBox& box = mover_box_[mover];
+  const Node* nodes = problem().obstacle_tree;
+  met_.resize(problem().num_obstacles + 1);
+  open_nodes_.resize(problem().num_obstacles + 1);
+  BoxHit* met = met_.data();
+  std::int32_t *open = open_nodes_.data(), *last = open;
+  const auto meet = [&](int index) {
+    const Node& node = nodes[index];
+    const unsigned mask = kAllLanes & ~apart(box, node);
+    if (!mask) return;
+    if (node.isLeaf()) {
+      *met++ = {node.piece(), mask};
+      prefetch(problem().still_bounds + node.piece());
+    } else {
+      *last++ = node.child;
+      prefetch(nodes + node.child);
+    }
+  };
+  meet(0);
+  for (; open < last; ++open) {
+    const int left = *open;
+    meet(left);
+    meet(left + 1);
+  }
+  met_.truncate(static_cast<int>(met - met_.data()));
+  return met_;
+}
+
+/// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept
+/// sphere.
+/// @param[out] direction  from the obstacle to the link, as in direction().
+inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction) {
+  const int pair = mover * problem().num_obstacles + obstacle_number;
+  const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
+  const SweptLss& lss = mover_lss_[mover];
+  Lanes square, nearest[3];
+  mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, query().margins.of(pair), square, nearest, direction);
+  if (mask && obstacle.solid) expectContact(pair, lss, obstacle, mask, square, nearest);
+  return mask;
+}
+
+/// Where a line swept sphere is deep in a solid contact is expected: lanes after it are put off, or, where any contact
+/// will do, it is looked for at once, and the pose is put down where the link's axis is very near.
+inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask,
+                                    Lanes square, const Lanes* nearest) {
+  const auto nearer = [&](double part) {
+    return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
+  };
+  const unsigned deep = nearer(kDeep);
+  if (!deep || query().every_pair || !contacts_.watching()) return;
+  if (!query().any) return horizon_.suspect(whole_.at[__builtin_ctz(deep)]);
+  // Where the segment is nearest; the middle one of several lanes in which it is as near.
+  double least = square[__builtin_ctz(deep)];
+  for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
+  const int lane = middleLane(deep & ~greater(square, Lanes(least)));
+  const double near[3] = {nearest[0][lane], nearest[1][lane], nearest[2][lane]};
+  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThin * lss.radius;
+  if (any_.tryObstacle(pair, lane, near, thin)) return;
+  if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
+}
+
+inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
+  const Buffer<BoxHit>& met = meetObstacles(mover);
+  for (int i = 0; i < met.size() && !horizon_.isOver(); ++i) {
+    const int pair = mover * problem().num_obstacles + met[i].obstacle;
+    if (problem().scene_allowed && problem().scene_allowed[pair]) continue;
+    Direction direction;
+    if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction.l)) {
+      open.push({pair, 0, 0, left});
+      directions_.push(direction);
+      prefetch(problem().still_bounds[met[i].obstacle].tree);
+    }
+  }
+}
+
+/// Pairs of movers, also of those that are obstacles. What is proven free of them beforehand is left out
+/// (Query::link_free).
+inline void StageOne::cullLinks(Buffer<Entry>& open) {
+  const bool look = looksForAny();
+  const std::uint8_t* free = query().link_free ? query().link_free(query().link_free_context) : nullptr;
+  for (int p = 0; p < problem().num_link_pairs && !horizon_.isOver(); ++p) {
+    unsigned mask = task_.isAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
+    if (!mask) continue;
+    const int pair = problem().num_scene_pairs + p;
+    const int mover_a = body(problem().link_pairs[p].a).mover, mover_b = body(problem().link_pairs[p].b).mover;
+    mask &= ~boxesApart(mover_a, mover_b);
+    if (mask && task_.isLink(mover_a) && task_.isLink(mover_b)) {
+      const SweptLss &a = mover_lss_[mover_a], &b = mover_lss_[mover_b];
+      Lanes square;
+      mask &= ~certainlyApart(a, b, query().margins.of(pair), square);
+      if (mask && look) any_.considerLinks(pair, square, a.radius + b.radius);
+    }
+    if (mask) open.push({pair, 0, 0, mask});
+  }
+}
+
+inline void StageOne::cull(Buffer<Entry>& open) {
+  directions_.clear();
+  frames_.set(whole_);
+  mover_box_.resize(problem().num_movers);
+  mover_lss_.resize(problem().num_scene_movers);
+  const bool check_scene = query().check_scene && problem().obstacle_tree;
+  if (check_scene) statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs);
+  if (looksForAny() && query().num_likely && any_.tryLikely()) return;
+  for (int m = 0; m < problem().num_movers && !horizon_.isOver(); ++m) {
+    sweepMover(m);
+    if (check_scene && task_.isLink(m)) cullObstacles(m, open);
+  }
+  if (horizon_.isOver()) return;
+  if (query().check_self) {
+    statistics().pairs += static_cast<std::uint64_t>(problem().num_link_pairs);
+    if (problem().num_movers) {
+      cullLinks(open);
+    } else {  // no stage 1: pairs of free bodies
+      for (int p = 0; p < problem().num_link_pairs; ++p) {
+        if (!task_.isAllowed(p)) open.push({problem().num_scene_pairs + p, 0, 0, kAllLanes});
+      }
+    }
+  }
+  statistics().pairs_after_culling += static_cast<std::uint64_t>(open.size());
+}
+
+/// A link's line swept sphere in each lane of [0, 1]: both ends' Bernstein points, and its radius.
+inline void StageOne::sweptSegments(int mover, engine::SweptLink* parts) {
+  const SweptLss& s = mover_lss_[mover];
+  for (int lane = 0; lane < kLanes; ++lane) {
+    for (int end = 0; end < 2; ++end) {
+      for (int k = 0; k < 3; ++k) {
+        const double c0 = s.end[end][0][k][lane], c1 = s.end[end][1][k][lane], c2 = s.end[end][2][k][lane];
+        parts[lane].points[end][k] = c0 - c1 + c2;
+        parts[lane].points[2 + end][k] = c0 + c1 + c2;
+        parts[lane].points[4 + end][k] = c0 - c2;
+      }
+    }
+    parts[lane].radius = s.radius * (1 + 4 * kUlp);
+  }
+}
+
+inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {
+  candidates_.clear();
+  swept_links_.resize(kLanes * problem().num_movers);
+  int previous = -1;
+  for (int i = 0; i < open.size() && open[i].pair < problem().num_scene_pairs; ++i) {
+    const Entry& e = open[i];
+    const int mover = e.pair / problem().num_obstacles;
+    if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
+    candidates_.push(
+        {e.pair, mover, problem().obstacles[e.pair % problem().num_obstacles], e.mask, query().margins.of(e.pair)});
+  }
+  const int asked = candidates_.size();
+  if (!asked) return;
+  query().refine(query().refine_context, problem(), swept_links_.data(), candidates_.data(), asked);
+  int kept = 0, directions = 0;
+  for (int i = 0; i < open.size(); ++i) {
+    Entry e = open[i];
+    if (i < asked) {  // a stage may clear parts, nothing else
+      const engine::CullCandidate& answer = candidates_[i];
+      FCL_ARTIC_ASSERT(answer.pair == e.pair && !(answer.lanes & ~e.mask));
+      e.mask &= answer.lanes;
+      if (e.mask && answer.free_nodes) traversal.knowFreeNodes(e.pair, answer.free_nodes);
+    }
+    if (!e.mask) continue;
+    if (i < asked) {
+      directions_[kept] = directions_[i];
+      directions = kept + 1;
+    }
+    open[kept++] = e;
+  }
+  open.truncate(kept);
+  directions_.truncate(directions);
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The query at hand: what is asked, of which problem, and what it has cost so far.
+#pragma once
+
+#include <time.h>
+
+#include "model/answer.h"
+#include "model/query.h"
+#include "numerics/assertion.h"
+#include "numerics/lanes.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+using engine::Body;
+using engine::LinkPair;
+using engine::Placement;
+using engine::Problem;
+using engine::Query;
+using engine::Statistics;
+
+/// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
+struct PairParts {
+  std::int32_t a, b, sweep, step_b;
+  const Placement *inverse_a, *placement_b;
+};
+
+class Task {
+ public:
+  const Problem* problem = nullptr;
+  const Query* query = nullptr;
+  Statistics statistics;
+
+  void begin(const Problem& asked_of, const Query& asked) {
+    FCL_ARTIC_ASSERT(asked.tolerance_time > 0 && asked.tolerance_distance > 0 && asked.max_contacts >= 0);
+    FCL_ARTIC_ASSERT(asked.degree >= 1 && asked.degree <= engine::kMaxDegree);
+    problem = &asked_of;
+    query = &asked;
+    statistics = Statistics();
+    ended_ = false;
+  }
+
+  /// The budget is spent, or the caller has ended the query.
+  bool ended() const { return ended_; }
+  /// Looks whether the budget is spent.
+  bool outOfBudget() {
+    if (query->work_budget && statistics.node_tests + statistics.leaf_tests > query->work_budget) ended_ = true;
+    return ended_;
+  }
+  /// Tells the caller up to when all is proven free, now and then; it may end the query.
+  void report(double proven_free_until) {
+    if (!query->progress || (statistics.batches & 63) != 0) return;
+    if (!query->progress(query->progress_context, proven_free_until)) ended_ = true;
+  }
+
+  /// Microseconds; 0 where times are not asked for.
+  double now() const {
+    if (!query->measure_times) return 0;
+    timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+  }
+
+  PairParts parts(int pair) const {
+    if (pair >= problem->num_scene_pairs) {
+      const LinkPair& links = problem->link_pairs[pair - problem->num_scene_pairs];
+      return {links.a, links.b, links.sweep, links.step_b, &links.inverse_a, &links.placement_b};
+    }
+    const int a = problem->obstacles[pair % problem->num_obstacles], b = problem->movers[pair / problem->num_obstacles];
+    return {a, b, 0, problem->bodies[b].step, &problem->bodies[a].inverse, &problem->bodies[b].placement};
+  }
+  bool isAllowed(int link_pair) const { return problem->link_allowed && problem->link_allowed[link_pair]; }
+  /// A mover is a link of the robot, not an obstacle that moves.
+  bool isLink(int mover) const { return mover < problem->num_scene_movers; }
+
+ private:
+  bool ended_ = false;
+};
+
+/// A part of the solver: it reads the query at hand and counts its work.
+class PartOfSolver {
+ protected:
+  explicit PartOfSolver(Task& task) : task_(task) {}
+  const Problem& problem() const { return *task_.problem; }
+  const Query& query() const { return *task_.query; }
+  Statistics& statistics() { return task_.statistics; }
+  const Body& body(int index) const { return task_.problem->bodies[index]; }
+
+  Task& task_;
+};
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

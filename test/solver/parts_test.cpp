@@ -1,0 +1,420 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Each part of the solver by itself, on two balls whose times of contact are known.
+#include <gtest/gtest.h>
+
+#include "two_balls.h"
+
+using namespace fcl_artic;
+using namespace fcl_artic::sse2;
+using fcl_artic::engine::LeafContact;
+
+namespace {
+
+TEST(TimeBatch, PartsHoldTheirIntervalsWithoutAGap) {
+  const TimeBatch batch = TimeBatch::partsOf(0.2, 0.4);
+  EXPECT_EQ(batch.start[0], 0.2);
+  EXPECT_EQ(batch.end[kLanes - 1], 0.2 + 0.4);
+  for (int k = 0; k < kLanes; ++k) {
+    EXPECT_LT(batch.at[k] - batch.d, batch.start[k]);
+    EXPECT_GT(batch.at[k] + batch.d, batch.end[k]);
+    EXPECT_EQ(batch.start[k], k ? batch.end[k - 1] : 0.2);
+  }
+  EXPECT_LE(batch.begin(), 0.2);
+  EXPECT_GE(batch.finish(), 0.6);
+  const TimeBatch all = TimeBatch::partsOf(0, 1);
+  EXPECT_EQ(all.begin(), 0);
+  EXPECT_EQ(all.finish(), 1);
+}
+
+TEST(TimeBatch, IsEqualToTheSameIntervalsOnly) {
+  EXPECT_TRUE(TimeBatch::partsOf(0, 1) == TimeBatch::partsOf(0, 1));
+  EXPECT_FALSE(TimeBatch::partsOf(0, 1) == TimeBatch::partsOf(0, 0.5));
+  EXPECT_FALSE(TimeBatch::partsOf(0, 1) == TimeBatch::middles());  // the same middles, as poses
+  EXPECT_TRUE(TimeBatch::around(0.3) == TimeBatch::around(0.3));
+  TimeBatch other = TimeBatch::middles();
+  other.setPose(5, 0.7);
+  EXPECT_FALSE(other == TimeBatch::middles());
+}
+
+TEST(Task, EndsWithItsBudgetOrByTheCaller) {
+  TwoBalls world;
+  world.asPair().query.work_budget = 10;
+  world.begin();
+  world.task.statistics.node_tests = 10;
+  EXPECT_FALSE(world.task.outOfBudget());
+  world.task.statistics.leaf_tests = 1;
+  EXPECT_TRUE(world.task.outOfBudget());
+  EXPECT_TRUE(world.task.ended());
+  world.begin();
+  EXPECT_FALSE(world.task.ended());
+
+  double told = -1;
+  world.query.progress = [](void* t, double until) {
+    *static_cast<double*>(t) = until;
+    return until < 0.5;
+  };
+  world.query.progress_context = &told;
+  world.begin();
+  world.task.report(0.25);
+  EXPECT_EQ(told, 0.25);
+  EXPECT_FALSE(world.task.ended());
+  world.task.report(0.5);
+  EXPECT_TRUE(world.task.ended());
+}
+
+TEST(Horizon, WhatIsSuspectedPutsLaterLanesOffAndNothingElse) {
+  TwoBalls world;
+  world.asPair().begin();
+  Horizon& horizon = world.horizon;
+  EXPECT_EQ(horizon.live(), kAllLanes);
+  horizon.suspect(0.3);
+  EXPECT_EQ(horizon.live(), 0b111u);
+  EXPECT_EQ(horizon.contactLane(), 0b100u);
+  horizon.suspect(0.9);  // later than what is suspected
+  EXPECT_EQ(horizon.live(), 0b111u);
+  EXPECT_EQ(horizon.end(), kNever);
+  EXPECT_EQ(horizon.first().t_lower, kNever);
+  horizon.watch(TimeBatch::partsOf(0.3, 0.1));  // proven free up to there: it was none
+  EXPECT_EQ(horizon.live(), kAllLanes);
+  horizon.watch(TimeBatch::middles());  // poses: none is put off
+  horizon.suspect(0.1);
+  EXPECT_EQ(horizon.live(), kAllLanes);
+}
+
+TEST(Horizon, WhatIsProvenEndsIt) {
+  TwoBalls world;
+  world.asPair().begin();
+  Horizon& horizon = world.horizon;
+  horizon.closeAt(0.5);
+  EXPECT_EQ(horizon.live(), 0b1111u);
+  EXPECT_EQ(horizon.contactLane(), 0u);  // it is at the very end of one
+  horizon.closeAt(0.7);
+  EXPECT_EQ(horizon.end(), 0.5);
+  EXPECT_FALSE(horizon.isOver());
+  horizon.provenFree(0.2);
+  horizon.provenFree(0.1);
+  EXPECT_EQ(horizon.provenFreeUntil(), 0.2);
+  horizon.joinLower(0.4);
+  horizon.joinUpper(0.5);
+  horizon.beginSearch();  // of another pair: the bracket stays
+  EXPECT_EQ(horizon.end(), kNever);
+  EXPECT_EQ(horizon.provenFreeUntil(), 0);
+  EXPECT_EQ(horizon.first().t_lower, 0.4);
+  EXPECT_EQ(horizon.first().t_upper, 0.5);
+
+  world.query.any = true;
+  world.begin();
+  horizon.closeAt(0.5);
+  EXPECT_TRUE(horizon.isOver());
+  EXPECT_EQ(horizon.live(), 0u);
+}
+
+TEST(ContactList, OneGateForAllProofs) {
+  TwoBalls world;
+  world.asPair().query.ignore_initial = true;
+  world.begin();
+  ContactList& contacts = world.contacts;
+  EXPECT_FALSE(contacts.takeProof(0, 0.5));  // it is not known yet what is ignored
+  EXPECT_EQ(world.horizon.end(), kNever);
+  contacts.ignore(0, 0.25);
+  contacts.beginWatching();
+  EXPECT_FALSE(contacts.takeProof(0, 0.2));
+  EXPECT_EQ(contacts.record(0, 0, 0, 0.2), nullptr);
+  EXPECT_EQ(world.horizon.first().t_upper, kNever);
+  const LeafContact* contact = contacts.record(0, 0, 0, 0.5);
+  ASSERT_NE(contact, nullptr);
+  EXPECT_EQ(contact->t_lower, 0.25);
+  EXPECT_EQ(contact->t_upper, 0.5);
+  EXPECT_TRUE(contact->certain);
+  EXPECT_EQ(world.horizon.first().t_upper, 0.5);
+  EXPECT_EQ(world.horizon.end(), 0.5);
+}
+
+TEST(ContactList, KeepsTheFirstInOrder) {
+  TwoBalls world;
+  world.asPair().query.max_contacts = 2;
+  world.begin();
+  const double times[4] = {0.6, 0.2, 0.9, 0.4};
+  for (const double t : times) {
+    LeafContact& contact = world.contacts.grow(0, 0, 0);
+    contact.t_lower = t;
+    contact.t_upper = 1;
+  }
+  world.contacts.order(0, 0.7);
+  ASSERT_EQ(world.contacts.size(), 2);
+  EXPECT_EQ(world.contacts.data()[0].t_lower, 0.2);
+  EXPECT_EQ(world.contacts.data()[1].t_lower, 0.4);
+}
+
+TEST(SweptFrames, AreMadeOncePerBatch) {
+  TwoBalls world;
+  world.asPair().begin();
+  world.frames.set(world.whole);
+  const std::int32_t number = world.frames.number();
+  const FrameLanes* frame = world.frames.of(0);
+  for (int k = 0; k < kLanes; ++k) EXPECT_NEAR(frame->o[2][k], -2 + 4 * world.whole.at[k], 1e-14);
+  world.frames.of(0);
+  world.frames.set(TimeBatch::partsOf(0, 1));
+  world.frames.of(0);
+  EXPECT_EQ(world.frames.number(), number);
+  EXPECT_EQ(world.task.statistics.motion_evaluations, 1u);
+  world.frames.set(TimeBatch::around(0.3));
+  EXPECT_NE(world.frames.number(), number);
+  EXPECT_NEAR(world.frames.of(0)->o[2][0], -0.8, 1e-14);
+  EXPECT_EQ(world.frames.bounds(0, -1).D1, 0);
+  EXPECT_GE(world.frames.bounds(0, 0).D1, 4);
+}
+
+TEST(RelativeMotion, SeesEachBodyFromTheOther) {
+  TwoBalls world;
+  world.asPair().begin();
+  world.motion.set(0, world.whole);
+  const DifferenceBody at = world.motion.differenceAt(world.pieces[0], world.pieces[1], 3);
+  EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.whole.at[3], 1e-14);
+  EXPECT_NEAR(world.motion.differenceAt(world.pieces[0], world.pieces[1], 3, 1).pose.c[2], 0, 1e-12);  // t = 0.5
+  for (int k = 0; k < kLanes; ++k) {
+    EXPECT_NEAR(world.motion.side(1).m.c[0][2][k], -(-2 + 4 * world.whole.at[k]), 1e-14);
+  }
+  EXPECT_NEAR(world.motion.amplitude(), 0.25, 1e-9);  // half a lane: 1/16 of 4 m
+  const SweptBox& box = world.motion.sweptNode(0, 0);
+  const FloatLanes below = spread(-2.25f), above = spread(-1.25f);
+  EXPECT_EQ(lanesOf(greater(box.lo[2], below)) & 1, 0u);  // lane 0: from -2.25 to -1.25
+  EXPECT_EQ(lanesOf(greater(above, box.hi[2])) & 1, 0u);
+  EXPECT_TRUE(world.motion.isSwept(0, 0));
+  world.motion.set(0, TimeBatch::middles());
+  EXPECT_FALSE(world.motion.isSwept(0, 0));
+}
+
+TEST(RelativeMotion, WitnessIsThePairs) {
+  TwoBalls world;
+  world.asPair().begin();
+  const double up[3] = {0, 0, 1};
+  world.motion.set(0, world.whole);
+  EXPECT_EQ(world.motion.witness(), nullptr);
+  world.motion.setWitness(up);
+  world.motion.set(0, TimeBatch::middles());  // another batch: it serves still
+  ASSERT_NE(world.motion.witness(), nullptr);
+  EXPECT_EQ(world.motion.witness()[2], 1);
+  world.begin();
+  world.motion.set(0, world.whole);
+  EXPECT_EQ(world.motion.witness(), nullptr);
+}
+
+TEST(Traversal, LeavesNoLaneWithContactOut) {
+  for (const double shift : {0.0, 0.1, 0.37, 1.9}) {
+    TwoBalls world(-2 - shift, 2 - shift);
+    world.asPair().begin();
+    world.motion.set(0, world.whole);
+    const unsigned touching = TwoBalls::touching(TwoBalls::kFirst + shift / 4, TwoBalls::kLast + shift / 4);
+    const unsigned blocked = world.traversal.blockedLanes(0, kAllLanes);
+    EXPECT_EQ(blocked & touching, touching) << shift;
+    EXPECT_NE(blocked, kAllLanes) << shift;
+    world.traversal.descend({0, 0, 0, kAllLanes}, Aim::leaves, world.open);
+    unsigned left = 0;
+    for (int i = 0; i < world.open.size(); ++i) left |= world.open[i].mask;
+    EXPECT_EQ(left & touching, touching) << shift;
+  }
+}
+
+TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
+  TwoBalls world;
+  world.asPair().begin();
+  world.motion.set(0, world.whole);
+  world.horizon.suspect(0.2);
+  world.traversal.descend({0, 0, 0, kAllLanes}, Aim::split, world.open);
+  unsigned put_off = 0, looked_at = 0;
+  for (int i = 0; i < world.open.size(); ++i) {
+    (world.open[i].put_off ? put_off : looked_at) |= world.open[i].mask;
+  }
+  EXPECT_EQ(put_off, 0b11111100u);
+  EXPECT_EQ(looked_at & put_off, 0u);
+}
+
+TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
+  TwoBalls world;
+  world.asPair().begin();
+  world.motion.set(0, world.whole);
+  const std::uint64_t all = ~std::uint64_t{0};
+  world.traversal.knowFreeNodes(0, &all);
+  world.traversal.descend({0, 0, 0, kAllLanes}, Aim::leaves, world.open);
+  EXPECT_EQ(world.open.size(), 0);
+}
+
+TEST(PoseProofs, ProveContactWhereItIs) {
+  TwoBalls world;
+  world.asPair().query.any = true;
+  world.begin();
+  world.motion.set(0, world.whole);
+  for (int k = 0; k < kLanes; ++k) {
+    world.begin();
+    world.motion.set(0, world.whole);
+    const bool touch = k == 3 || k == 4;  // at 0.4375 and 0.5625; 0.3125 and 0.6875 are the very ends
+    EXPECT_EQ(world.proofs.leaves(0, 0, k), touch) << k;
+    ASSERT_EQ(world.contacts.size(), touch) << k;
+    if (touch) {
+      EXPECT_EQ(world.contacts.data()[0].t_upper, world.whole.at[k]);
+      EXPECT_LE(norm(world.contacts.data()[0].point), 0.5 + 1e-9);
+    }
+  }
+}
+
+TEST(Follower, FindsTheRootAndProvesTheContact) {
+  TwoBalls world;
+  world.asPair().begin();
+  Candidate f = {};
+  f.entry = {0, 0, 0, kAllLanes};
+  EXPECT_FALSE(world.follower.followToRoot(f, 1, true));
+  EXPECT_TRUE(f.stuck);
+  EXPECT_LE(f.t_lower, TwoBalls::kFirst);
+  EXPECT_GT(f.t_lower, TwoBalls::kFirst - 1e-6);
+  EXPECT_FALSE(world.follower.decide(f, 1));
+  ASSERT_TRUE(f.certain);
+  EXPECT_GE(f.t_upper, TwoBalls::kFirst);
+  EXPECT_LE(f.t_upper - f.t_lower, world.query.tolerance_time);
+  world.follower.record(f);
+  ASSERT_EQ(world.contacts.size(), 1);
+  const LeafContact& contact = world.contacts.data()[0];
+  EXPECT_NEAR(contact.normal[2], -1, 1e-6);  // from A to B, which comes from below
+  EXPECT_NEAR(contact.point[2], -0.5, 1e-5);
+  EXPECT_EQ(world.horizon.first().t_lower, f.t_lower);
+  EXPECT_EQ(world.horizon.first().t_upper, f.t_upper);
+}
+
+TEST(Follower, ComesToTheEndOfWhatIsFree) {
+  TwoBalls world;
+  world.asPair().begin();
+  Candidate f = {};
+  f.entry = {0, 0, 0, kAllLanes};
+  EXPECT_TRUE(world.follower.followToRoot(f, 0.3, false));
+  EXPECT_FALSE(f.stuck);
+  EXPECT_GE(f.t_lower, 0.3);
+}
+
+TEST(AnyContact, TriesWhatIsGuessedAndBelievesNothing) {
+  TwoBalls world;
+  world.asPair().query.any = true;
+  world.begin();
+  EXPECT_FALSE(world.any.tryOverlaps(world.open));  // nothing is guessed
+  world.any.guessOverlap(0, 0b10000001);            // free at both
+  EXPECT_FALSE(world.any.tryOverlaps(world.open));
+  EXPECT_EQ(world.contacts.size(), 0);
+  EXPECT_EQ(world.horizon.live(), kAllLanes);
+  EXPECT_EQ(world.open.size(), 0);
+  world.any.forgetOverlaps();
+  world.any.guessOverlap(0, 0b1000);
+  EXPECT_TRUE(world.any.tryOverlaps(world.open));
+  ASSERT_EQ(world.contacts.size(), 1);
+  EXPECT_EQ(world.contacts.data()[0].t_upper, world.whole.at[3]);
+}
+
+TEST(StageOne, LeavesWhatMayMeet) {
+  for (const bool as_pair : {true, false}) {
+    TwoBalls world;
+    (as_pair ? world.asPair() : world.asLinkAndObstacle()).begin();
+    world.stage_one.cull(world.open);
+    ASSERT_EQ(world.open.size(), 1);
+    EXPECT_EQ(world.open[0].mask & TwoBalls::touching(), TwoBalls::touching());
+    EXPECT_EQ(world.open[0].mask == kAllLanes, as_pair);  // of free bodies it knows nothing
+    EXPECT_EQ(world.task.statistics.pairs, 1u);
+  }
+  TwoBalls away(1, 5);
+  away.asLinkAndObstacle().begin();
+  away.stage_one.cull(away.open);
+  EXPECT_EQ(away.open.size(), 0);
+}
+
+TEST(StageOne, TakesWhatStageTwoClears) {
+  TwoBalls world;
+  world.asLinkAndObstacle();
+  struct Asked {
+    int pairs = 0;
+    unsigned keep = 0;
+  } asked;
+  asked.keep = 0b1000;
+  world.query.refine_context = &asked;
+  world.query.refine = [](void* context, const Problem&, const engine::SweptLink* links, engine::CullCandidate* pairs,
+                          std::int32_t n) {
+    Asked& a = *static_cast<Asked*>(context);
+    a.pairs += n;
+    for (int k = 0; k < kLanes; ++k) EXPECT_GE(links[k].radius, 0.25);
+    for (int i = 0; i < n; ++i) pairs[i].lanes &= a.keep;
+  };
+  world.begin();
+  world.stage_one.cull(world.open);
+  ASSERT_NE(world.stage_one.direction(0), nullptr);
+  world.stage_one.refine(world.traversal, world.open);
+  EXPECT_EQ(asked.pairs, 1);
+  ASSERT_EQ(world.open.size(), 1);
+  EXPECT_EQ(world.open[0].mask, 0b1000u);
+  asked.keep = 0;
+  world.stage_one.refine(world.traversal, world.open);
+  EXPECT_EQ(world.open.size(), 0);
+  EXPECT_EQ(world.stage_one.direction(0), nullptr);
+}
+
+TEST(InitialContacts, AreIgnoredUntilTheyHaveSeparated) {
+  TwoBalls world(0, 4);  // leaves at z = 0.75, t = 0.1875
+  world.asPair().query.ignore_initial = true;
+  world.begin();
+  world.stage_one.cull(world.open);
+  world.initial.collect(world.open);
+  EXPECT_TRUE(world.contacts.watching());
+  ASSERT_TRUE(world.contacts.isIgnored(0));
+  EXPECT_GE(world.contacts.watchFrom(0), 0.1875);
+  EXPECT_LE(world.contacts.watchFrom(0), 0.1875 + 2.0 / 512);
+
+  TwoBalls apart;
+  apart.asPair().query.ignore_initial = true;
+  apart.begin();
+  apart.stage_one.cull(apart.open);
+  apart.initial.collect(apart.open);
+  EXPECT_FALSE(apart.contacts.isIgnored(0));
+}
+
+TEST(Containment, AsksOfSolidsOnlyAndReportsAtTheStart) {
+  TwoBalls world(0, 4);
+  world.asPair().problem.contained = [](const Body&, const Body&, const engine::PairPose& pose,
+                                        engine::Containment& found) {
+    found = {};
+    found.verdict = pose.c[2] < 0.5 ? engine::Containment::kCertain : engine::Containment::kNone;
+    found.normal[2] = 1;
+  };
+  world.begin();
+  world.stage_one.cull(world.open);
+  world.containment.findAtStart();
+  EXPECT_EQ(world.containment.size(), 0);                               // neither is a solid mesh
+  world.bodies[0].space = reinterpret_cast<const SolidSpace*>(&world);  // only that there is one matters here
+  world.containment.findAtStart();
+  ASSERT_EQ(world.containment.size(), 1);
+  EXPECT_TRUE(world.containment.isContainedAtStart(0));
+  EXPECT_FALSE(world.containment.mayBeContained(0, 0.5));
+  world.containment.report(world.open);
+  EXPECT_EQ(world.horizon.end(), 0);
+  ASSERT_EQ(world.contacts.size(), 1);
+  EXPECT_EQ(world.contacts.data()[0].t_upper, 0);
+}
+
+TEST(PairSearch, FindsTheFirstContact) {
+  for (const bool as_pair : {true, false}) {
+    TwoBalls world;
+    (as_pair ? world.asPair() : world.asLinkAndObstacle()).begin();
+    world.stage_one.cull(world.open);
+    world.search.testHulls(world.open, [](int) { return nullptr; });
+    world.search.run(world.open);
+    const engine::FirstContact& first = world.horizon.first();
+    EXPECT_LE(first.t_lower, TwoBalls::kFirst);
+    EXPECT_GE(first.t_upper, TwoBalls::kFirst);
+    EXPECT_LE(first.t_upper - first.t_lower, world.query.tolerance_time);
+    EXPECT_EQ(world.contacts.size(), 1);
+  }
+  TwoBalls away(0.76, 4.76);
+  away.asPair().begin();
+  away.stage_one.cull(away.open);
+  away.search.testHulls(away.open, [](int) { return nullptr; });
+  away.search.run(away.open);
+  EXPECT_EQ(away.horizon.first().t_lower, kNever);
+  EXPECT_EQ(away.horizon.provenFreeUntil(), 1);
+}
+
+}  // namespace

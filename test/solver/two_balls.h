@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The smallest problem there is: two balls, of which one slides past the other, with times worked out by hand. The
+// solver's parts for it, put together as the solver does.
+#pragma once
+
+#include "numerics/baseline_isa.h"
+
+#include "narrowphase/solver/initial_contacts.h"
+#include "narrowphase/solver/pair_search.h"
+
+namespace fcl_artic {
+namespace sse2 {
+
+/// Ball A, radius 0.5, stands in the origin. Ball B, radius 0.25, slides along z from `from` to `to`, which is 4 m for
+/// t in [0, 1]: from -2 it touches at z = -0.75, t = 0.3125, and leaves at z = 0.75, t = 0.6875.
+class TwoBalls {
+ public:
+  static constexpr double kFirst = 0.3125, kLast = 0.6875;
+
+  explicit TwoBalls(double from = -2, double to = 2) {
+    const double radius[2] = {0.5, 0.25};
+    for (int i = 0; i < 2; ++i) {
+      const double r = radius[i];
+      const float box = static_cast<float>(r);
+      pieces[i].kind = PieceKind::point;
+      pieces[i].radius = r;
+      nodes[i] = {{-box, -box, -box}, {box, box, box}, static_cast<float>(r * 1.7320509), ~0};
+      trees[i].nodes = &nodes[i];
+      trees[i].pieces = &pieces[i];
+      trees[i].num_nodes = trees[i].num_pieces = 1;
+      trees[i].extent = r;
+      bodies[i].tree = &trees[i];
+      bodies[i].lss[6] = r;
+    }
+    step.kind = engine::StepKind::prismatic;
+    for (int i = 0; i < 9; ++i) step.C[i] = i % 4 == 0;
+    for (double& x : step.p) x = 0;
+    step.variable = 0;
+    sweep.steps = &step;
+    sweep.num_steps = 1;
+    coefficients[0] = from;
+    coefficients[1] = to - from;
+    query.coefficients = coefficients;
+    query.num_variables = 1;
+    problem.bodies = bodies;
+    problem.num_bodies = 2;
+    problem.sweeps = &sweep;
+    problem.num_sweeps = 1;
+  }
+  /// As a pair of free bodies: no stage 1.
+  TwoBalls& asPair() {
+    link_pair.a = 0;
+    link_pair.b = 1;
+    link_pair.step_b = 0;
+    problem.link_pairs = &link_pair;
+    problem.num_link_pairs = 1;
+    return *this;
+  }
+  /// B is a link, A an obstacle.
+  TwoBalls& asLinkAndObstacle() {
+    bodies[1].step = 0;
+    bodies[1].mover = 0;
+    still.box.radius = 0.5;
+    for (int k = 0; k < 3; ++k) still.box.lo[k] = still.box.hi[k] = 0;
+    still.tree = &trees[0];
+    still.solid = true;
+    problem.movers = &mover;
+    problem.num_movers = problem.num_scene_movers = 1;
+    problem.obstacles = &obstacle;
+    problem.still_bounds = &still;
+    problem.num_obstacles = problem.num_scene_pairs = 1;
+    problem.obstacle_tree = &nodes[0];
+    return *this;
+  }
+
+  void begin() {
+    task.begin(problem, query);
+    frames.begin();
+    motion.begin();
+    horizon.begin();
+    contacts.begin();
+    traversal.begin();
+    any.begin();
+    containment.begin();
+    horizon.watch(whole);
+    open.clear();
+  }
+
+  /// Lanes of [0, 1] in which the balls touch at some time.
+  static unsigned touching(double first = kFirst, double last = kLast) {
+    unsigned lanes = 0;
+    for (int k = 0; k < kLanes; ++k) {
+      if (0.125 * k <= last && 0.125 * (k + 1) >= first) lanes |= 1u << k;
+    }
+    return lanes;
+  }
+
+  Piece pieces[2];
+  Node nodes[2];
+  TreeView trees[2];
+  Body bodies[2];
+  engine::SweepStep step;
+  engine::SweepView sweep;
+  LinkPair link_pair;
+  engine::StillBounds still = {};
+  std::int32_t mover = 1, obstacle = 0;
+  double coefficients[2];
+  Problem problem;
+  Query query;
+
+  Task task;
+  SweptFrames frames{task};
+  RelativeMotion motion{task, frames};
+  Horizon horizon{task};
+  ContactList contacts{task, horizon};
+  PoseProofs proofs{task, motion, contacts};
+  BallProofs balls{task, frames, contacts};
+  Traversal traversal{task, motion, horizon, contacts, proofs};
+  Follower follower{task, motion, horizon, contacts};
+  AnyContact any{task, frames, motion, horizon, balls, proofs, traversal};
+  StageOne stage_one{task, frames, horizon, contacts, any};
+  Containment containment{task, motion, horizon, contacts, stage_one};
+  InitialContacts initial{task, motion, horizon, contacts, traversal, containment};
+  PairSearch search{task, motion, horizon, contacts, traversal, follower, any};
+  const TimeBatch whole = TimeBatch::partsOf(0, 1);
+  Buffer<Entry> open;
+};
+
+}  // namespace sse2
+}  // namespace fcl_artic
