@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcl/geometry/bvh/BVH_model.h>
 
+#include <cmath>
+
 #include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "temp_folder.h"
@@ -45,6 +47,36 @@ TEST_F(MeshTest, BrokenFacesAreRefused) {
   };
   expectContains(errorOf(write("a.ply", ply("0\n"))), "has a face without a corner");
   expectContains(errorOf(write("a.ply", ply("4 0 1 2 99999999\n"))), "has a face with vertex 99999999 of 3");
+}
+
+// assimp leaves out an OFF's faces of no corner or of more than nine, and reads on behind the last. Found by fuzzing.
+TEST_F(MeshTest, OffFacesAreReadOrRefused) {
+  const auto polygon = [](int corners, const std::string& more_faces = "") {
+    std::string file = "OFF\n" + std::to_string(corners) + (more_faces.empty() ? " 1 0\n" : " 2 0\n"), face;
+    for (int k = 0; k < corners; ++k) {
+      file += std::to_string(std::cos(2 * M_PI * k / corners)) + " " +
+              std::to_string(std::sin(2 * M_PI * k / corners)) + " 0\n";
+      face += " " + std::to_string(k);
+    }
+    return file + std::to_string(corners) + face + "\n" + more_faces;
+  };
+  for (int corners = 3; corners <= 9; ++corners) {
+    EXPECT_EQ(load(write("a.off", polygon(corners)))->num_tris, corners - 2) << corners;
+  }
+  for (const int corners : {10, 12, 40}) {
+    expectContains(errorOf(write("a.off", polygon(corners))), "face 0 has " + std::to_string(corners) + " corners");
+  }
+  expectContains(errorOf(write("a.off", polygon(12, "3 0 1 2\n"))), "face 0 has 12 corners");
+  expectContains(errorOf(write("a.off", polygon(3, "0 1 0\n"))), "face 1 has 0 corners");
+}
+
+// Of a strip assimp reads the first triangle, a fan it takes for a polygon.
+TEST_F(MeshTest, StripsAndFansThatWouldNotBeReadAreRefused) {
+  const std::string strips =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n";
+  expectContains(errorOf(write("a.ply", strips)), "triangle strips");
+  expectContains(errorOf(write("a.dae", "<COLLADA><trifans count='1'/></COLLADA>")), "fans of triangles");
 }
 
 /// One triangle (0,0,0) (1,0,0) (0,2,0) under a node that moves it by (10, 0, 5).

@@ -126,6 +126,8 @@ void checkPly(std::string_view content, const std::string& where) {
       PlyElement& element = elements.emplace_back();
       element.name = line.next();
       if (!toCount(line.next(), element.count)) refuse("does not say how many '" + element.name + "' it has");
+      // Of a strip assimp reads the first triangle.
+      if (element.name == "tristrips" && element.count) refuse("has triangle strips: save it with faces");
     }
     if (key == "property") {
       if (elements.empty()) refuse("has a property of no element");
@@ -211,7 +213,17 @@ void checkOff(std::string_view content, const std::string& where) {
       good = toCount(line.next(), index) && index < vertices;
     }
     if (!good) fail(where, "is cut short or broken at face " + std::to_string(i));
+    // assimp leaves out others, in silence, and may go down over them.
+    if (corners < 1 || corners > 9) {
+      fail(where, "face " + std::to_string(i) + " has " + std::to_string(corners) +
+                      " corners: 1 to 9 are read; cut it into triangles");
+    }
   }
+}
+
+/// assimp takes a fan of triangles for a polygon, and cuts it elsewhere.
+void checkCollada(std::string_view content, const std::string& where) {
+  if (content.find("<trifans") != content.npos) fail(where, "has fans of triangles: save it with triangles");
 }
 
 }  // namespace
@@ -220,6 +232,7 @@ void requireWholeMesh(std::string_view content, const std::string& ending, const
   if (ending == ".stl") return checkStl(content, where);
   if (ending == ".ply") return checkPly(content, where);
   if (ending == ".off") return checkOff(content, where);
+  if (ending == ".dae") return checkCollada(content, where);
 }
 
 }  // namespace fcl_artic::detail
