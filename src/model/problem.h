@@ -63,6 +63,13 @@ struct Containment {
   double normal[3];  ///< in A's tree frame, from A to B: the shortest way out, about
 };
 
+/// What the number of a pair stands for: bodies and placements. B is carried by a step of the sweep, A stands in its
+/// base frame.
+struct PairParts {
+  std::int32_t a, b, sweep, step_b;
+  const Placement *inverse_a, *placement_b;
+};
+
 /// Everything that stays the same from query to query.
 struct Problem {
   const Body* bodies = nullptr;
@@ -84,6 +91,29 @@ struct Problem {
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
+
+  // Pairs by their numbers: all arithmetic with these is here. (Inlined always: each instruction set has its own.)
+  [[gnu::always_inline]] std::int32_t numPairs() const { return num_scene_pairs + num_link_pairs; }
+  [[gnu::always_inline]] bool isScenePair(std::int32_t pair) const { return pair < num_scene_pairs; }
+  [[gnu::always_inline]] std::int32_t scenePair(std::int32_t mover, std::int32_t obstacle) const {
+    return mover * num_obstacles + obstacle;
+  }
+  [[gnu::always_inline]] std::int32_t linkPair(std::int32_t i) const { return num_scene_pairs + i; }
+  [[gnu::always_inline]] std::int32_t moverOf(std::int32_t scene_pair) const { return scene_pair / num_obstacles; }
+  [[gnu::always_inline]] std::int32_t obstacleOf(std::int32_t scene_pair) const { return scene_pair % num_obstacles; }
+  /// The pair may touch: nobody asks for it.
+  [[gnu::always_inline]] bool isAllowed(std::int32_t pair) const {
+    const std::uint8_t* allowed = isScenePair(pair) ? scene_allowed : link_allowed;
+    return allowed && allowed[isScenePair(pair) ? pair : pair - num_scene_pairs];
+  }
+  [[gnu::always_inline]] PairParts parts(std::int32_t pair) const {
+    if (!isScenePair(pair)) {
+      const LinkPair& links = link_pairs[pair - num_scene_pairs];
+      return {links.a, links.b, links.sweep, links.step_b, &links.inverse_a, &links.placement_b};
+    }
+    const std::int32_t a = obstacles[obstacleOf(pair)], b = movers[moverOf(pair)];
+    return {a, b, 0, bodies[b].step, &bodies[a].inverse, &bodies[b].placement};
+  }
 };
 
 }  // namespace engine

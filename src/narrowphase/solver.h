@@ -16,7 +16,7 @@
 //   Traversal        a pair's node pairs and leaf pairs over a batch
 //   Follower         a leaf pair, or two hulls, followed to where they meet
 //   AnyContact       poses at which contact is likely
-//   StageOne         pairs whose swept bounds meet; and the query's own stage after it
+//   StageOne         pairs whose swept bounds meet; and what advisors prove free of them
 //   Containment, InitialContacts   solid meshes within each other, and what is ignored at t = 0
 //   PairSearch       the order of the search: by time, then by pair
 #pragma once
@@ -84,7 +84,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   statistics.culling_us = task_.now() - time0;
 
   if (problem.contained && !horizon_.isOver()) containment_.findAtStart();
-  if (query.refine && !horizon_.isOver()) stage_one_.refine(traversal_, open_);
+  if (query.num_advisors && !horizon_.isOver()) stage_one_.refine(traversal_, open_);
   const double time1 = task_.now();
   if (query.ignore_initial && !horizon_.isOver()) {
     initial_.collect(open_);

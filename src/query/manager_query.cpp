@@ -17,6 +17,33 @@
 namespace fcl_artic {
 namespace {
 
+/// What tables of two links know of a motion, as the solver's advisor.
+struct TableAdvice {
+  const LinkTables& tables;
+  const engine::Problem& problem;
+  const JointMotion& motion;
+  const engine::Margins& margins;
+  Workspace& workspace;
+
+  engine::Advisor advisor() {
+    engine::Advisor advisor;
+    advisor.self = this;
+    if (!tables.empty()) {
+      advisor.freeParts = [](void* self) {
+        const auto& of = *static_cast<TableAdvice*>(self);
+        return of.tables.freeParts(of.problem, of.motion, of.margins, of.workspace.link_free);
+      };
+    }
+    advisor.suggest = [](void* self, std::int32_t& count) -> const engine::LikelyContact* {
+      const auto& of = *static_cast<TableAdvice*>(self);
+      of.tables.likelyContacts(of.motion, of.workspace.likely);
+      count = static_cast<std::int32_t>(of.workspace.likely.size());
+      return of.workspace.likely.data();
+    };
+    return advisor;
+  }
+};
+
 /// The motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
 /// @param time  of the obstacles' motions.
@@ -157,17 +184,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const BoundedParts parts(aspects.time, problem);
   if (aspects.own_margins) setup.margins().putInto(query.margins);
   restrictPairs(request, setup.numSelfPairs(), problem, query.margins);
-  const LinkTables& tables = setup.tables();
-  const auto byTables = [&] { return tables.freeParts(problem, motion, query.margins, workspace->link_free); };
-  if (request.check_self && request.method == Method::standard && !tables.empty()) {
-    query.link_free = [](const void* context) { return (*static_cast<decltype(byTables)*>(context))(); };
-    query.link_free_context = &byTables;
-  }
-  if (query.any && request.check_self && request.method == Method::standard) {
-    tables.likelyContacts(motion, workspace->likely);
-    query.likely = workspace->likely.data();
-    query.num_likely = static_cast<std::int32_t>(workspace->likely.size());
-  }
+  TableAdvice advice{setup.tables(), problem, motion, query.margins, *workspace};
+  if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (aspects.may_ignore) {
     query.may_ignore = aspects.may_ignore->data();
     query.num_may_ignore = static_cast<std::int32_t>(aspects.may_ignore->size());

@@ -110,7 +110,7 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
   const auto add = [&](std::int32_t index, int level, std::uint64_t mask) {
     BodyPair pair;
     pair.index = index;
-    pair.parts = partsOf(*problem_, index);
+    pair.parts = problem_->parts(index);
     pair.a = treeOf(pair.parts.a);
     pair.b = treeOf(pair.parts.b);
     pair.inverse_a = enclose(*pair.parts.inverse_a);
@@ -142,15 +142,15 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
           stack.push_back({node.left(), mask});
           continue;
         }
-        const std::int32_t pair = m * problem_->num_obstacles + node.piece();
-        if (problem_->scene_allowed && problem_->scene_allowed[pair]) continue;
+        const std::int32_t pair = problem_->scenePair(m, node.piece());
+        if (problem_->isAllowed(pair)) continue;
         if (wanted(pair)) add(pair, mover_levels_[static_cast<std::size_t>(m)], mask);
       }
     }
   }
   if (!query_->check_self) return;
   for (int p = 0; p < problem_->num_link_pairs; ++p) {
-    const std::int32_t index = problem_->num_scene_pairs + p;
+    const std::int32_t index = problem_->linkPair(p);
     if (!wanted(index)) continue;
     if (problem_->num_movers) {
       const engine::LinkPair& pair = problem_->link_pairs[p];

@@ -19,7 +19,7 @@ namespace redon {
 /// A pair of bodies that may touch.
 struct BodyPair {
   std::int32_t index = -1;  ///< in the problem
-  PairParts parts;
+  engine::PairParts parts;
   const ObbTree *a = nullptr, *b = nullptr;
   IntervalTransform inverse_a, placement_b;
   int level = 0;               ///< of a link and an obstacle: their line swept spheres' boxes meet in these parts of

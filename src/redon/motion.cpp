@@ -4,15 +4,6 @@
 namespace fcl_artic {
 namespace redon {
 
-PairParts partsOf(const engine::Problem& problem, int index) {
-  if (index >= problem.num_scene_pairs) {
-    const engine::LinkPair& pair = problem.link_pairs[index - problem.num_scene_pairs];
-    return {pair.a, pair.b, pair.sweep, pair.step_b, &pair.inverse_a, &pair.placement_b};
-  }
-  const int a = problem.obstacles[index % problem.num_obstacles], b = problem.movers[index / problem.num_obstacles];
-  return {a, b, 0, problem.bodies[b].step, &problem.bodies[a].inverse, &problem.bodies[b].placement};
-}
-
 IntervalTransform relate(const IntervalTransform& inverse_a, const IntervalTransform& pose,
                          const IntervalTransform& placement_b) {
   return inverse_a * (pose * placement_b);

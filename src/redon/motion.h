@@ -19,13 +19,6 @@ inline Enclosure enclosureOf(const Options& options) {
                                                            : Enclosure::intervalChain;
 }
 
-/// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
-struct PairParts {
-  std::int32_t a, b, sweep, step_b;
-  const engine::Placement *inverse_a, *placement_b;
-};
-PairParts partsOf(const engine::Problem& problem, int pair);
-
 /// B in A: M = inverse_a * frame * placement_b, and the same of the frame's derivative.
 IntervalTransform relate(const IntervalTransform& inverse_a, const IntervalTransform& pose,
                          const IntervalTransform& placement_b);

@@ -89,7 +89,7 @@ class Run {
   void solve(Answer& answer);
 
  private:
-  int numPairs() const { return problem_.num_scene_pairs + problem_.num_link_pairs; }
+  int numPairs() const { return problem_.numPairs(); }
   bool asked(std::int32_t pair) const;
   bool ours(std::int32_t pair) const;
   bool choosePairs();
@@ -115,15 +115,12 @@ class Run {
 };
 
 bool Run::asked(std::int32_t pair) const {
-  if (pair < problem_.num_scene_pairs) {
-    return query_.check_scene && !(problem_.scene_allowed && problem_.scene_allowed[pair]);
-  }
-  return query_.check_self && !(problem_.link_allowed && problem_.link_allowed[pair - problem_.num_scene_pairs]);
+  return (problem_.isScenePair(pair) ? query_.check_scene : query_.check_self) && !problem_.isAllowed(pair);
 }
 
 /// Triangles on both sides, no margin, and a motion by joints.
 bool Run::ours(std::int32_t pair) const {
-  const PairParts parts = partsOf(problem_, pair);
+  const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
   return treeOf_(parts.a) && treeOf_(parts.b);
@@ -157,9 +154,8 @@ bool Run::touchesAtStart(Answer& answer) {
   still.degree = 1;
   still.max_contacts = 1;
   still.progress = nullptr;
-  still.refine = nullptr;
   still.describe_contacts = false;
-  still.link_free = nullptr;  // of the motion itself
+  still.num_advisors = 0;  // they know of the motion itself
   // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
   // When they part is no question at rest: no interval is divided.
   still.every_pair = false;
@@ -178,8 +174,8 @@ void Run::solveRest(const Query& query, Answer& answer) {
   std::uint64_t left = 0;
   for (std::int32_t p = 0; p < numPairs(); ++p) {
     if (!w_.by_engine[static_cast<std::size_t>(p)]) continue;
-    (p < problem_.num_scene_pairs ? w_.scene_allowed[static_cast<std::size_t>(p)]
-                                  : w_.link_allowed[static_cast<std::size_t>(p - problem_.num_scene_pairs)]) = 0;
+    (problem_.isScenePair(p) ? w_.scene_allowed[static_cast<std::size_t>(p)]
+                             : w_.link_allowed[static_cast<std::size_t>(p - problem_.num_scene_pairs)]) = 0;
     ++left;
   }
   counts_.pairs_by_standard = left;
@@ -200,7 +196,7 @@ void Run::findPairs() {
   w_.culling.begin(problem_, query_, options_, counts_);
   w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
   clock.lap(counts_.culling_us);
-  if (query_.refine) {
+  if (query_.num_advisors) {
     w_.volumes.refine(problem_, query_, options_, w_.pairs, counts_);
     clock.lap(counts_.visibility_us);
   }
@@ -339,8 +335,6 @@ void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem&
   Query& first = workspace.impl().first;
   first = query;
   first.any = false;  // where any contact would do, the first one is looked for
-  first.likely = nullptr;
-  first.num_likely = 0;
   Run(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 

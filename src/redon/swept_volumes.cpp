@@ -64,8 +64,8 @@ void SweptVolumes::refine(const engine::Problem& problem, const engine::Query& q
                           std::vector<BodyPair>& pairs, Counts& counts) {
   candidates_.clear();
   for (const BodyPair& pair : pairs) {
-    if (pair.index >= problem.num_scene_pairs) break;
-    candidates_.push_back({pair.index, pair.index / problem.num_obstacles, pair.parts.a,
+    if (!problem.isScenePair(pair.index)) break;
+    candidates_.push_back({pair.index, problem.moverOf(pair.index), pair.parts.a,
                            static_cast<std::uint32_t>(partsAt(kPartsLevel, pair.mask, pair.level)),
                            query.margins.of(pair.index)});
   }
@@ -73,8 +73,13 @@ void SweptVolumes::refine(const engine::Problem& problem, const engine::Query& q
   sweep(problem, query, options, counts);
   {
     const RoundToNearest usual;
-    query.refine(query.refine_context, problem, links_.data(), candidates_.data(),
-                 static_cast<std::int32_t>(candidates_.size()));
+    for (std::int32_t n = 0; n < query.num_advisors; ++n) {
+      const engine::Advisor& advisor = query.advisors[n];
+      if (advisor.clear) {
+        advisor.clear(advisor.self, problem, links_.data(), candidates_.data(),
+                      static_cast<std::int32_t>(candidates_.size()));
+      }
+    }
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     pairs[i].mask &= partsAt(pairs[i].level, candidates_[i].lanes, kPartsLevel);

@@ -25,7 +25,7 @@ class SweptVolumes {
               std::vector<BodyPair>& pairs, Counts& counts);
 
  private:
-  static constexpr int kParts = 8;  ///< engine::Query::refine's
+  static constexpr int kParts = 8;  ///< engine::Advisor's
   void sweep(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
 
   SweepChains chains_;

@@ -63,7 +63,7 @@ const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const 
                                           const engine::Margins& margins, std::vector<std::uint8_t>& memory) const {
   memory.assign(static_cast<std::size_t>(problem.num_link_pairs), 0);
   for (const auto& [pair, table] : tables_) {
-    const auto number = problem.num_scene_pairs + static_cast<std::int32_t>(pair);
+    const std::int32_t number = problem.linkPair(static_cast<std::int32_t>(pair));
     if (margins.of(number) > table->margin()) continue;
     memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
   }

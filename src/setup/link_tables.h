@@ -26,13 +26,13 @@ class LinkTables {
 
   bool empty() const { return tables_.empty(); }
 
-  /// What tables tell of a motion, as engine::Query::link_free: those built for at least the margin that the pair has
+  /// What tables tell of a motion, as engine::Advisor::freeParts: those built for at least the margin that the pair has
   /// here.
   /// @param memory  holds the answer.
   const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion,
                                 const engine::Margins& margins, std::vector<std::uint8_t>& memory) const;
 
-  /// Where links are likely to touch, the motion's end first: a guess, as engine::Query::likely. (None for robots of
+  /// Where links are likely to touch, the motion's end first: a guess, as engine::Advisor::suggest. (None for robots of
   /// more than 64 variables.)
   void likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const;
 

@@ -31,13 +31,12 @@ struct Progress {
 
 /// With the stage.
 /// @return whether this is the answer without it too: the motion is free, or nothing was taken out.
-bool solveShortened(const VisibilityCuller& culler, const Solver& solver, engine::Query& query, engine::Answer& answer,
-                    Report& report) {
+bool solveShortened(const VisibilityCuller& culler, const Solver& solver, const engine::Query& query,
+                    engine::Answer& answer, Report& report) {
   Stage stage(culler, query.tolerance_distance);
-  query.refine = &Stage::refine;
-  query.refine_context = &stage;
-  solver(query, answer);
-  query.refine = nullptr;
+  engine::Query advised = query;
+  advised.ask(stage.advisor());
+  solver(advised, answer);
   report.pairs = stage.pairs;
   report.culled = stage.culled;
   report.nodes = stage.nodes;

@@ -23,7 +23,7 @@ struct Report {
   std::string fallback;
 };
 
-/// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Query::refine).
+/// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Advisor).
 using Solver = std::function<void(const engine::Query& query, engine::Answer& answer)>;
 
 /// The solver's answer, bit for bit the one without stage 2. The stage only shortens proofs that a motion is free:

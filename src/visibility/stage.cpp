@@ -134,8 +134,8 @@ void Stage::run(const engine::Problem& problem, const SweptLink* links, CullCand
   }
 }
 
-void Stage::refine(void* context, const engine::Problem& problem, const SweptLink* links, CullCandidate* pairs,
-                   std::int32_t num_pairs) {
+void Stage::clear(void* context, const engine::Problem& problem, const SweptLink* links, CullCandidate* pairs,
+                  std::int32_t num_pairs) {
   using Clock = std::chrono::steady_clock;
   Stage& stage = *static_cast<Stage*>(context);
   const Clock::time_point begin = Clock::now();

@@ -21,9 +21,13 @@ class Stage {
   Stage(const VisibilityCuller& culler, double tolerance_distance)
       : culler_(culler), tolerance_distance_(tolerance_distance) {}
 
-  /// engine::Query::refine, with a Stage as its context.
-  static void refine(void* stage, const engine::Problem& problem, const engine::SweptLink* links,
-                     engine::CullCandidate* pairs, std::int32_t num_pairs);
+  /// The solver's advisor that asks this stage.
+  engine::Advisor advisor() {
+    engine::Advisor advisor;
+    advisor.self = this;
+    advisor.clear = &Stage::clear;
+    return advisor;
+  }
 
   // What it did.
   std::uint64_t pairs = 0, culled = 0, nodes = 0, pieces = 0;
@@ -32,6 +36,8 @@ class Stage {
   std::string failure;   ///< it gave up in the midst of its work
 
  private:
+  static void clear(void* stage, const engine::Problem& problem, const engine::SweptLink* links,
+                    engine::CullCandidate* pairs, std::int32_t num_pairs);
   void run(const engine::Problem& problem, const engine::SweptLink* links, engine::CullCandidate* pairs,
            std::int32_t num_pairs, ExecutorLoan& loan);
   const VisibilityCuller& culler_;

@@ -235,8 +235,9 @@ TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
   TwoBalls world;
   world.asPair().begin();
   world.motion.set(0, world.whole);
-  const std::uint64_t all = ~std::uint64_t{0};
-  world.traversal.knowFreeNodes(0, &all);
+  const std::uint64_t none = 0, root = 1;
+  world.traversal.knowFreeNodes(0, &root);
+  world.traversal.knowFreeNodes(0, &none);  // another advisor, which knows nothing
   world.traversal.descend({0, 0, 0, kAllLanes}, Aim::leaves, world.open);
   EXPECT_EQ(world.open.size(), 0);
 }
@@ -324,7 +325,7 @@ TEST(StageOne, LeavesWhatMayMeet) {
   EXPECT_EQ(away.open.size(), 0);
 }
 
-TEST(StageOne, TakesWhatStageTwoClears) {
+TEST(StageOne, TakesWhatAdvisorsClear) {
   TwoBalls world;
   world.asLinkAndObstacle();
   struct Asked {
@@ -332,14 +333,16 @@ TEST(StageOne, TakesWhatStageTwoClears) {
     unsigned keep = 0;
   } asked;
   asked.keep = 0b1000;
-  world.query.refine_context = &asked;
-  world.query.refine = [](void* context, const Problem&, const engine::SweptLink* links, engine::CullCandidate* pairs,
-                          std::int32_t n) {
+  engine::Advisor advisor;
+  advisor.self = &asked;
+  advisor.clear = [](void* context, const Problem&, const engine::SweptLink* links, engine::CullCandidate* pairs,
+                     std::int32_t n) {
     Asked& a = *static_cast<Asked*>(context);
     a.pairs += n;
     for (int k = 0; k < kLanes; ++k) EXPECT_GE(links[k].radius, 0.25);
     for (int i = 0; i < n; ++i) pairs[i].lanes &= a.keep;
   };
+  world.query.ask(advisor);
   world.begin();
   world.stage_one.cull(world.open);
   ASSERT_NE(world.stage_one.direction(0), nullptr);
@@ -351,6 +354,80 @@ TEST(StageOne, TakesWhatStageTwoClears) {
   world.stage_one.refine(world.traversal, world.open);
   EXPECT_EQ(world.open.size(), 0);
   EXPECT_EQ(world.stage_one.direction(0), nullptr);
+}
+
+/// A toy advisor: it knows the two balls by heart, and counts how often it is asked.
+struct Toy {
+  unsigned free = 0;  ///< parts that it clears
+  int asked = 0, suggested = 0;
+  std::uint8_t parts[1] = {0};
+  engine::LikelyContact likely = {0, 3};
+
+  engine::Advisor advisor() {
+    engine::Advisor advisor;
+    advisor.self = this;
+    advisor.clear = [](void* self, const Problem&, const engine::SweptLink*, engine::CullCandidate* pairs,
+                       std::int32_t n) {
+      Toy& toy = *static_cast<Toy*>(self);
+      ++toy.asked;
+      for (int i = 0; i < n; ++i) pairs[i].lanes &= ~toy.free;
+    };
+    advisor.freeParts = [](void* self) -> const std::uint8_t* {
+      Toy& toy = *static_cast<Toy*>(self);
+      toy.parts[0] = static_cast<std::uint8_t>(toy.free);
+      return toy.parts;
+    };
+    advisor.suggest = [](void* self, std::int32_t& count) -> const engine::LikelyContact* {
+      Toy& toy = *static_cast<Toy*>(self);
+      ++toy.suggested;
+      count = 0;  // the balls are no meshes
+      return &toy.likely;
+    };
+    return advisor;
+  }
+};
+
+TEST(Advisors, WhatTheyClearIsTrustedAndTheRestIsTheSameBits) {
+  const unsigned really_free = kAllLanes & ~TwoBalls::touching();
+  for (const bool any : {false, true}) {
+    Solver solver;
+    TwoBalls alone;
+    alone.asLinkAndObstacle().query.any = any;
+    engine::Answer without, with;
+    solver.solve(alone.problem, alone.query, without);
+    ASSERT_EQ(without.status, Status::contact);
+    const double t_lower = without.t_lower, t_upper = without.t_upper;
+
+    TwoBalls advised;
+    Toy first, second;
+    first.free = really_free & 0b1111;
+    second.free = really_free & 0b11110000;
+    advised.asLinkAndObstacle().query.any = any;
+    advised.query.ask(first.advisor());
+    advised.query.ask(second.advisor());
+    solver.solve(advised.problem, advised.query, with);
+    EXPECT_EQ(with.status, Status::contact);
+    EXPECT_EQ(with.t_lower, t_lower);
+    EXPECT_EQ(with.t_upper, t_upper);
+    EXPECT_EQ(first.suggested, any);
+    EXPECT_EQ(first.asked, 1);
+    EXPECT_EQ(second.asked, 1);
+  }
+}
+
+TEST(Advisors, WhatSeveralClearIsCleared) {
+  Solver solver;
+  TwoBalls world;
+  Toy first, second;
+  first.free = 0b01010101;
+  second.free = 0b10101010;
+  world.asLinkAndObstacle().query.ask(first.advisor());
+  world.query.ask(second.advisor());
+  engine::Answer answer;
+  solver.solve(world.problem, world.query, answer);
+  EXPECT_EQ(answer.status, Status::free);  // they are believed: it is they that prove
+  EXPECT_EQ(first.asked, 1);
+  EXPECT_EQ(second.asked, 1);
 }
 
 TEST(InitialContacts, AreIgnoredUntilTheyHaveSeparated) {

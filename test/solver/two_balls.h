@@ -6,8 +6,7 @@
 
 #include "numerics/baseline_isa.h"
 
-#include "narrowphase/solver/initial_contacts.h"
-#include "narrowphase/solver/pair_search.h"
+#include "narrowphase/solver.h"
 
 namespace fcl_artic {
 namespace sse2 {

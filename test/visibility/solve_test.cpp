@@ -24,8 +24,8 @@ class SolveTwice : public testing::Test {
   }
   /// Asks the stage, tells times and answers.
   void answer(const engine::Query& query, engine::Answer& answer) {
-    refined_.push_back(query.refine != nullptr);
-    if (query.refine) {
+    refined_.push_back(query.num_advisors > 0);
+    if (query.num_advisors) {
       engine::SweptLink links[8];
       for (int k = 0; k < 8; ++k) {
         for (int i = 0; i < 6; ++i) {
@@ -36,10 +36,10 @@ class SolveTwice : public testing::Test {
         links[k].radius = 0.05;
       }
       engine::CullCandidate pair = {0, 0, 0, 0xff, query.margins.of(0)};
-      query.refine(query.refine_context, problem_, links, &pair, 1);
+      query.advisors[0].clear(query.advisors[0].self, problem_, links, &pair, 1);
     }
-    std::this_thread::sleep_for(std::chrono::microseconds(query.refine ? 500 : 5000));
-    for (const double t : {0.1, query.refine ? 0.5 : 0.4, query.refine ? 0.5 : 0.6}) {
+    std::this_thread::sleep_for(std::chrono::microseconds(query.num_advisors ? 500 : 5000));
+    for (const double t : {0.1, query.num_advisors ? 0.5 : 0.4, query.num_advisors ? 0.5 : 0.6}) {
       if (query.progress) query.progress(query.progress_context, t);
     }
     answer.status = status_;

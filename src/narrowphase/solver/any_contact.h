@@ -108,9 +108,16 @@ class AnyContact : PartOfSolver {
 /// Balls inside links, where the query's advisors expect these to meet. (Kept out of every query's way.)
 [[gnu::noinline, gnu::cold]] inline bool AnyContact::tryLikely() {
   frames_.set(whole_);
-  for (int i = 0; i < query().num_likely; ++i) {
-    const auto [link_pair, part] = query().likely[i];
-    if (!task_.isAllowed(link_pair) && balls_.inLinks(problem().num_scene_pairs + link_pair, part)) return true;
+  for (int n = 0; n < query().num_advisors; ++n) {
+    const engine::Advisor& advisor = query().advisors[n];
+    std::int32_t count = 0;
+    const engine::LikelyContact* likely = advisor.suggest ? advisor.suggest(advisor.self, count) : nullptr;
+    for (std::int32_t i = 0; i < count; ++i) {
+      const auto [link_pair, part] = likely[i];
+      FCL_ARTIC_ASSERT(link_pair >= 0 && link_pair < problem().num_link_pairs && part >= 0 && part < kLanes);
+      const int pair = problem().linkPair(link_pair);
+      if (!problem().isAllowed(pair) && balls_.inLinks(pair, part)) return true;
+    }
   }
   return false;
 }

@@ -117,7 +117,7 @@ inline PlacedLink BallProofs::placedLink(int index, int lane) {
 
 /// Distance of two links' line swept spheres' segments below which balls inside them may meet; 0: none can.
 inline double BallProofs::reach(int pair) const {
-  const PairParts bodies = task_.parts(pair);
+  const PairParts bodies = problem().parts(pair);
   const InnerBalls *a = body(bodies.a).balls, *b = body(bodies.b).balls;
   return a && b ? a->reach + b->reach : 0;
 }
@@ -125,7 +125,7 @@ inline double BallProofs::reach(int pair) const {
 /// Two links at a lane's middle: a ball inside the one and a ball inside the other meet, and both parts reach out of
 /// each other.
 inline bool BallProofs::inLinks(int pair, int lane) {
-  const PairParts bodies = task_.parts(pair);
+  const PairParts bodies = problem().parts(pair);
   const Body &A = body(bodies.a), &B = body(bodies.b);
   const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
   const PlacedLink a = placedLink(A.mover, lane), b = placedLink(B.mover, lane);
@@ -190,7 +190,7 @@ inline void farPoints(const TreeView& solid, Lanes* points) {
 /// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid, and that, being of one piece,
 /// reaches out of the mesh's part.
 inline bool BallProofs::inSolid(int pair, int lane) {
-  const PairParts bodies = task_.parts(pair);
+  const PairParts bodies = problem().parts(pair);
   const Body &solid = body(bodies.a), &link = body(bodies.b);
   if (!link.balls) return false;
   const InnerBalls& balls = *link.balls;

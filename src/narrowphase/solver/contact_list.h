@@ -26,7 +26,7 @@ class ContactList : PartOfSolver {
   /// It is known from when on each pair is watched. Before, with initial contacts to be ignored, no contact counts.
   bool watching() const { return watching_; }
   void ignore(int pair, double watch_from) {
-    const PairParts bodies = task_.parts(pair);
+    const PairParts bodies = problem().parts(pair);
     ignored_.push({pair, bodies.a, bodies.b, watch_from});
   }
   bool isIgnored(int pair) const { return find(pair) != nullptr; }
@@ -61,7 +61,7 @@ class ContactList : PartOfSolver {
   }
   /// A new contact of these pieces; all else is left to the caller.
   LeafContact& grow(int pair, int piece_a, int piece_b) {
-    const PairParts bodies = task_.parts(pair);
+    const PairParts bodies = problem().parts(pair);
     LeafContact& contact = contacts_.grow();
     contact = {};
     contact.pair = pair;

@@ -42,7 +42,7 @@ class Containment : PartOfSolver {
 /// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
 [[gnu::noinline]] inline engine::Containment Containment::contained(int pair, double t) {
   motion_.set(pair, TimeBatch::around(t));
-  const PairParts bodies = task_.parts(pair);
+  const PairParts bodies = problem().parts(pair);
   const Body &a = body(bodies.a), &b = body(bodies.b);
   engine::PairPose pose;
   const RigidLanes& m = motion_.seenFromA();
@@ -58,11 +58,12 @@ class Containment : PartOfSolver {
 }
 
 inline bool Containment::mayBeContained(int pair, double t) {
-  return problem().contained && isSolid(task_.parts(pair)) && contained(pair, t).verdict != engine::Containment::kNone;
+  return problem().contained && isSolid(problem().parts(pair)) &&
+         contained(pair, t).verdict != engine::Containment::kNone;
 }
 
 inline void Containment::testAtStart(int pair) {
-  const PairParts bodies = task_.parts(pair);
+  const PairParts bodies = problem().parts(pair);
   if (!isSolid(bodies)) return;
   const engine::Containment found = contained(pair, 0);
   if (found.verdict == engine::Containment::kNone) return;
@@ -89,18 +90,18 @@ inline void Containment::testAtStart(int pair) {
     for (int m = 0; m < problem().num_scene_movers; ++m) {
       const Buffer<BoxHit>& met = stage_one_.meetObstacles(m);
       for (int i = 0; i < met.size(); ++i) {
-        const int pair = m * problem().num_obstacles + met[i].obstacle;
-        if (!(met[i].mask & 1) || (problem().scene_allowed && problem().scene_allowed[pair])) continue;
+        const int pair = problem().scenePair(m, met[i].obstacle);
+        if (!(met[i].mask & 1) || problem().isAllowed(pair)) continue;
         testAtStart(pair);
       }
     }
   }
   if (query().check_self) {
     for (int p = 0; p < problem().num_link_pairs; ++p) {
-      if (task_.isAllowed(p)) continue;
+      if (problem().isAllowed(problem().linkPair(p))) continue;
       const LinkPair& pair = problem().link_pairs[p];
       if (problem().num_movers && (stage_one_.boxesApart(body(pair.a).mover, body(pair.b).mover) & 1)) continue;
-      testAtStart(problem().num_scene_pairs + p);
+      testAtStart(problem().linkPair(p));
     }
   }
 }

@@ -265,7 +265,7 @@ inline bool Follower::prove(Candidate& f) {
 /// Where that is proven, f is re-targeted from the hulls to these two pieces.
 inline void Follower::proveBelowHulls(Candidate& f) {
   if (!f.have_normal || query().max_contacts > 1) return;
-  const TreeView &A = *body(task_.parts(f.entry.pair).a).tree, &B = *body(task_.parts(f.entry.pair).b).tree;
+  const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
   if (A.outer->radius + B.outer->radius > f.speed * query().tolerance_time) return;
   Candidate below = f;
   below.target = Candidate::Target::leafPair;

@@ -52,7 +52,7 @@ class PairSearch : PartOfSolver {
   }
   Aim aim() const { return horizon_.isFinest() ? Aim::leaves : Aim::split; }
   bool isLeafPair(const Entry& e) const {
-    const PairParts pair = task_.parts(e.pair);
+    const PairParts pair = problem().parts(e.pair);
     return body(pair.a).tree->nodes[e.a].isLeaf() && body(pair.b).tree->nodes[e.b].isLeaf();
   }
   /// A lane takes the present pair so far that little can be said of its pieces before the lane is split; of its hulls
@@ -86,7 +86,7 @@ class PairSearch : PartOfSolver {
 
 /// What an entry stands for, to be followed from `start`.
 inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
-  const PairParts pair = task_.parts(e.pair);
+  const PairParts pair = problem().parts(e.pair);
   Candidate f = {};
   f.entry = e;
   f.t_lower = max(start, contacts_.watchFrom(e.pair));
@@ -221,7 +221,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     f.count = count;
     // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or
     // parts of them that the first batch has come to already.
-    const PairParts pair = task_.parts(pair_index);
+    const PairParts pair = problem().parts(pair_index);
     const bool hulls = f.entry.isWhole() && !leaves && body(pair.a).tree->outer && body(pair.b).tree->outer;
     f.target = hulls ? Target::hulls : leaves && count == 1 ? Target::leafPair : Target::subtrees;
     if (hulls) f.simplex = traversal_.simplexOf(pair_index);
@@ -266,7 +266,7 @@ inline void PairSearch::solvePieces(Buffer<Entry>& open, const Candidate& f, dou
     return;
   }
   motion_.setWitness(f.entry.pair, f.have_normal ? f.normal : nullptr);
-  const PairParts pair = task_.parts(f.entry.pair);
+  const PairParts pair = problem().parts(f.entry.pair);
   const double size = kFirstWindow * min(body(pair.a).tree->nodes[0].radius, body(pair.b).tree->nodes[0].radius);
   stop = min(stop, horizon_.end());
   double span = f.speed * (stop - f.t_lower) > size ? max(size / f.speed, kNarrowestLane) : stop - f.t_lower;
@@ -355,7 +355,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, doub
     if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
     // Near are those of which points are: a direction along which little is proven says nothing. Where there is none,
     // GJK claimed overlap, and is believed as far as to kOverlapAccuracy of the smaller body.
-    const PairParts pair = task_.parts(f.entry.pair);
+    const PairParts pair = problem().parts(f.entry.pair);
     const double size = min(body(pair.a).tree->extent, body(pair.b).tree->extent);
     const double apart = f.have_normal ? f.apart : kOverlapAccuracy * size;
     const bool near = apart <= 0.5 * query().tolerance_distance;

@@ -28,7 +28,7 @@ class RelativeMotion : PartOfSolver {
 
   /// From now on this is the motion of `pair` over `batch`.
   void set(int pair, const TimeBatch& batch) {
-    FCL_ARTIC_ASSERT(pair >= 0 && pair < problem().num_scene_pairs + problem().num_link_pairs);
+    FCL_ARTIC_ASSERT(pair >= 0 && pair < problem().numPairs());
     frames_.set(batch);
     if (pair_ == pair && of_batch_ == frames_.number()) return;
     pair_ = pair;
@@ -143,7 +143,7 @@ class RelativeMotion : PartOfSolver {
 inline void RelativeMotion::relate() {
   margin_ = query().margins.of(pair_);
   FCL_ARTIC_ASSERT(margin_ >= 0 && margin_ <= query().margins.largest());
-  const PairParts parts = task_.parts(pair_);
+  const PairParts parts = problem().parts(pair_);
   const Body &A = body(parts.a), &B = body(parts.b);
   const FrameLanes* frame = frames_.of(parts.sweep);
   const StepBounds& bounds = frames_.bounds(parts.sweep, parts.step_b);

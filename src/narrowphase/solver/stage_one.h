@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 1: pairs whose swept bounds meet, over the eight parts of [0, 1]; and stage 2, the query's own, after it.
+// Stage 1: pairs whose swept bounds meet, over the eight parts of [0, 1]; and stage 2, what advisors
+// prove free of them.
 #pragma once
 
 #include "narrowphase/solver/any_contact.h"
@@ -37,8 +38,7 @@ class StageOne : PartOfSolver {
 
   /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
   void cull(Buffer<Entry>& open);
-  /// Stage 2, where the query brings one: pairs of links and still obstacles that it proves free are left out of
-  /// `open`.
+  /// Pairs of links and still obstacles that advisors prove free (stage 2) are left out of `open`.
   void refine(Traversal& traversal, Buffer<Entry>& open);
   /// Of the i-th pair left: from A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
   const Lanes* direction(int i) const { return i < directions_.size() ? directions_[i].l : nullptr; }
@@ -55,6 +55,7 @@ class StageOne : PartOfSolver {
   void expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
                      const Lanes* nearest);
   void sweptSegments(int mover, engine::SweptLink* parts);
+  void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
@@ -143,7 +144,7 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
 /// sphere.
 /// @param[out] direction  from the obstacle to the link, as in direction().
 inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction) {
-  const int pair = mover * problem().num_obstacles + obstacle_number;
+  const int pair = problem().scenePair(mover, obstacle_number);
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   const SweptLss& lss = mover_lss_[mover];
   Lanes square, nearest[3];
@@ -175,8 +176,8 @@ inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine:
 inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   const Buffer<BoxHit>& met = meetObstacles(mover);
   for (int i = 0; i < met.size() && !horizon_.isOver(); ++i) {
-    const int pair = mover * problem().num_obstacles + met[i].obstacle;
-    if (problem().scene_allowed && problem().scene_allowed[pair]) continue;
+    const int pair = problem().scenePair(mover, met[i].obstacle);
+    if (problem().isAllowed(pair)) continue;
     Direction direction;
     if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction.l)) {
       open.push({pair, 0, 0, left});
@@ -186,15 +187,21 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   }
 }
 
-/// Pairs of movers, also of those that are obstacles. What is proven free of them beforehand is left out
-/// (Query::link_free).
+/// Pairs of movers, also of those that are obstacles. What advisors have proven free is left out.
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
   const bool look = looksForAny();
-  const std::uint8_t* free = query().link_free ? query().link_free(query().link_free_context) : nullptr;
+  const std::uint8_t* free[Query::kMostAdvisors];
+  int num_free = 0;
+  for (int n = 0; n < query().num_advisors; ++n) {
+    const engine::Advisor& advisor = query().advisors[n];
+    const std::uint8_t* parts = advisor.freeParts ? advisor.freeParts(advisor.self) : nullptr;
+    if (parts) free[num_free++] = parts;
+  }
   for (int p = 0; p < problem().num_link_pairs && !horizon_.isOver(); ++p) {
-    unsigned mask = task_.isAllowed(p) ? 0 : free ? kAllLanes & ~free[p] : kAllLanes;
+    const int pair = problem().linkPair(p);
+    unsigned mask = problem().isAllowed(pair) ? 0 : kAllLanes;
+    for (int n = 0; n < num_free; ++n) mask &= ~static_cast<unsigned>(free[n][p]);
     if (!mask) continue;
-    const int pair = problem().num_scene_pairs + p;
     const int mover_a = body(problem().link_pairs[p].a).mover, mover_b = body(problem().link_pairs[p].b).mover;
     mask &= ~boxesApart(mover_a, mover_b);
     if (mask && task_.isLink(mover_a) && task_.isLink(mover_b)) {
@@ -214,7 +221,7 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   mover_lss_.resize(problem().num_scene_movers);
   const bool check_scene = query().check_scene && problem().obstacle_tree;
   if (check_scene) statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs);
-  if (looksForAny() && query().num_likely && any_.tryLikely()) return;
+  if (looksForAny() && query().num_advisors && any_.tryLikely()) return;
   for (int m = 0; m < problem().num_movers && !horizon_.isOver(); ++m) {
     sweepMover(m);
     if (check_scene && task_.isLink(m)) cullObstacles(m, open);
@@ -226,7 +233,8 @@ inline void StageOne::cull(Buffer<Entry>& open) {
       cullLinks(open);
     } else {  // no stage 1: pairs of free bodies
       for (int p = 0; p < problem().num_link_pairs; ++p) {
-        if (!task_.isAllowed(p)) open.push({problem().num_scene_pairs + p, 0, 0, kAllLanes});
+        const int pair = problem().linkPair(p);
+        if (!problem().isAllowed(pair)) open.push({pair, 0, 0, kAllLanes});
       }
     }
   }
@@ -250,23 +258,29 @@ inline void StageOne::sweptSegments(int mover, engine::SweptLink* parts) {
 }
 
 inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {
+  for (int n = 0; n < query().num_advisors && open.size(); ++n) {
+    if (query().advisors[n].clear) takeAdvice(query().advisors[n], traversal, open);
+  }
+}
+
+inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open) {
   candidates_.clear();
   swept_links_.resize(kLanes * problem().num_movers);
   int previous = -1;
-  for (int i = 0; i < open.size() && open[i].pair < problem().num_scene_pairs; ++i) {
+  for (int i = 0; i < open.size() && problem().isScenePair(open[i].pair); ++i) {
     const Entry& e = open[i];
-    const int mover = e.pair / problem().num_obstacles;
+    const int mover = problem().moverOf(e.pair);
     if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
     candidates_.push(
-        {e.pair, mover, problem().obstacles[e.pair % problem().num_obstacles], e.mask, query().margins.of(e.pair)});
+        {e.pair, mover, problem().obstacles[problem().obstacleOf(e.pair)], e.mask, query().margins.of(e.pair)});
   }
   const int asked = candidates_.size();
   if (!asked) return;
-  query().refine(query().refine_context, problem(), swept_links_.data(), candidates_.data(), asked);
+  advisor.clear(advisor.self, problem(), swept_links_.data(), candidates_.data(), asked);
   int kept = 0, directions = 0;
   for (int i = 0; i < open.size(); ++i) {
     Entry e = open[i];
-    if (i < asked) {  // a stage may clear parts, nothing else
+    if (i < asked) {  // it may clear parts, nothing else
       const engine::CullCandidate& answer = candidates_[i];
       FCL_ARTIC_ASSERT(answer.pair == e.pair && !(answer.lanes & ~e.mask));
       e.mask &= answer.lanes;

@@ -15,16 +15,11 @@ namespace FCL_ARTIC_ISA {
 
 using engine::Body;
 using engine::LinkPair;
+using engine::PairParts;
 using engine::Placement;
 using engine::Problem;
 using engine::Query;
 using engine::Statistics;
-
-/// Bodies and placements of a pair: B is carried by a step of the sweep, A stands in its base frame.
-struct PairParts {
-  std::int32_t a, b, sweep, step_b;
-  const Placement *inverse_a, *placement_b;
-};
 
 class Task {
  public:
@@ -62,15 +57,6 @@ class Task {
     return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
   }
 
-  PairParts parts(int pair) const {
-    if (pair >= problem->num_scene_pairs) {
-      const LinkPair& links = problem->link_pairs[pair - problem->num_scene_pairs];
-      return {links.a, links.b, links.sweep, links.step_b, &links.inverse_a, &links.placement_b};
-    }
-    const int a = problem->obstacles[pair % problem->num_obstacles], b = problem->movers[pair / problem->num_obstacles];
-    return {a, b, 0, problem->bodies[b].step, &problem->bodies[a].inverse, &problem->bodies[b].placement};
-  }
-  bool isAllowed(int link_pair) const { return problem->link_allowed && problem->link_allowed[link_pair]; }
   /// A mover is a link of the robot, not an obstacle that moves.
   bool isLink(int mover) const { return mover < problem->num_scene_movers; }
 

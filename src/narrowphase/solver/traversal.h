@@ -309,10 +309,13 @@ inline unsigned Traversal::blockedLanes(int pair, unsigned mask) {
 inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& open) {
   FCL_ARTIC_ASSERT(root.pair == motion_.pair() && root.mask != 0 && root.mask <= kAllLanes);
   const Node *A = motion_.a().nodes, *B = motion_.b().nodes;
-  const std::uint64_t* free_nodes = nullptr;
-  for (int i = 0; i < free_nodes_.size(); ++i) {
-    if (free_nodes_[i].pair == root.pair) free_nodes = free_nodes_[i].nodes;
-  }
+  const auto isFree = [&](int node) {
+    bool free = false;
+    for (int i = 0; i < free_nodes_.size(); ++i) {
+      free |= free_nodes_[i].pair == root.pair && (free_nodes_[i].nodes[node / 64] >> node % 64 & 1);
+    }
+    return free;
+  };
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   const double split_time = aim == Aim::split ? kSplitTime * motion_.amplitude() : 0;
@@ -335,7 +338,7 @@ inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& o
       if (!e.mask) continue;
     }
     if (task_.outOfBudget()) break;
-    if (free_nodes && (free_nodes[e.a / 64] >> e.a % 64 & 1)) continue;
+    if (free_nodes_.size() && isFree(e.a)) continue;
     if (!e.isWhole() || roots_tested_ != motion_.batchNumber()) e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (e.mask && !e.isWhole()) e.mask = partsMayTouch(e.a, e.b, e.mask);
     if (!e.mask) continue;

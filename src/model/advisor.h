@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whoever may advise the solver: tables of two links, grids of where balls meet, culling by visibility, yours. An
+// advisor may clear parts of the motion in which it has proven a pair free, and may suggest where contact is likely;
+// nothing else. What it clears is trusted, what it suggests is not. Plain data.
+#pragma once
+
+#include <cstdint>
+
+namespace fcl_artic {
+namespace engine {
+
+struct Problem;
+
+/// A link's line swept sphere over one of the eight parts [k/8, (k+1)/8] of the motion: within the hull of these
+/// points, in the world, grown by a ball.
+struct SweptLink {
+  double points[6][3];
+  double radius;
+};
+
+/// A pair of a link and a still obstacle that stage 1 left.
+struct CullCandidate {
+  std::int32_t pair, mover, obstacle;  ///< mover: among Problem::movers; obstacle: a body
+  std::uint32_t lanes;                 ///< parts of the motion in which their bounds meet
+  double margin;                       ///< of the pair
+  /// Nodes of the obstacle's tree, a bit each, that are proven free of the mover over the whole motion; null: none.
+  /// There until the solver returns.
+  const std::uint64_t* free_nodes = nullptr;
+};
+
+/// A pair that is worth a look in the middle of the part [k/8, (k+1)/8] of a motion.
+struct LikelyContact {
+  std::int32_t link_pair, part;
+};
+
+/// Each function may be null.
+struct Advisor {
+  void* self = nullptr;
+  /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this motion. Asked when the pairs are come
+  /// to, which contact with an obstacle may spare. Null: nothing is known. There until the solver returns.
+  const std::uint8_t* (*freeParts)(void* self) = nullptr;
+  /// Asked between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
+  /// `free_nodes`. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
+  void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
+                std::int32_t num_pairs) = nullptr;
+  /// With Query::any: where balls inside links are likely to meet. Asked before all else.
+  const LikelyContact* (*suggest)(void* self, std::int32_t& count) = nullptr;
+};
+
+}  // namespace engine
+}  // namespace fcl_artic
