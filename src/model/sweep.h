@@ -50,8 +50,8 @@ struct SweepStep {
   double multiplier = 1, offset = 0;      ///< q = multiplier * q_variable + offset; slide, turn: offset 0
   std::int32_t orientation = -1;          ///< turn: number of its R0 among Query::orientations; -1: none
   const BoundedSource* source = nullptr;  ///< bounded
-  bool inverse =
-      false;  ///< bounded: J is the inverse of the source's pose; turn: of exp([-q]) R0, that is R0^T exp([q])
+  /// bounded: J is the inverse of the source's pose; turn: of exp([-q]) R0, that is R0^T exp([q]).
+  bool inverse = false;
 };
 
 /// Steps from one base frame, parents first.

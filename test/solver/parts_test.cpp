@@ -150,10 +150,10 @@ TEST(ContactList, KeepsTheFirstInOrder) {
 TEST(SweptFrames, AreMadeOncePerBatch) {
   TwoBalls world;
   world.asPair().begin();
-  world.frames.set(world.whole);
+  world.frames.set(world.task.whole);
   const std::int32_t number = world.frames.number();
   const FrameLanes* frame = world.frames.of(0);
-  for (int k = 0; k < kLanes; ++k) EXPECT_NEAR(frame->o[2][k], -2 + 4 * world.whole.at[k], 1e-14);
+  for (int k = 0; k < kLanes; ++k) EXPECT_NEAR(frame->o[2][k], -2 + 4 * world.task.whole.at[k], 1e-14);
   world.frames.of(0);
   world.frames.set(TimeBatch::partsOf(0, 1));
   world.frames.of(0);
@@ -169,12 +169,12 @@ TEST(SweptFrames, AreMadeOncePerBatch) {
 TEST(RelativeMotion, SeesEachBodyFromTheOther) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   const DifferenceBody at = world.motion.differenceAt(world.pieces[0], world.pieces[1], 3);
-  EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.whole.at[3], 1e-14);
+  EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.task.whole.at[3], 1e-14);
   EXPECT_NEAR(world.motion.differenceAt(world.pieces[0], world.pieces[1], 3, 1).pose.c[2], 0, 1e-12);  // t = 0.5
   for (int k = 0; k < kLanes; ++k) {
-    EXPECT_NEAR(world.motion.side(1).m.c[0][2][k], -(-2 + 4 * world.whole.at[k]), 1e-14);
+    EXPECT_NEAR(world.motion.side(1).m.c[0][2][k], -(-2 + 4 * world.task.whole.at[k]), 1e-14);
   }
   EXPECT_NEAR(world.motion.amplitude(), 0.25, 1e-9);  // half a lane: 1/16 of 4 m
   const SweptBox& box = world.motion.sweptNode(0, 0);
@@ -190,14 +190,14 @@ TEST(RelativeMotion, WitnessIsThePairs) {
   TwoBalls world;
   world.asPair().begin();
   const double up[3] = {0, 0, 1};
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
   world.motion.setWitness(up);
   world.motion.set(0, TimeBatch::middles());  // another batch: it serves still
   ASSERT_NE(world.motion.witness(), nullptr);
   EXPECT_EQ(world.motion.witness()[2], 1);
   world.begin();
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
 }
 
@@ -205,7 +205,7 @@ TEST(Traversal, LeavesNoLaneWithContactOut) {
   for (const double shift : {0.0, 0.1, 0.37, 1.9}) {
     TwoBalls world(-2 - shift, 2 - shift);
     world.asPair().begin();
-    world.motion.set(0, world.whole);
+    world.motion.set(0, world.task.whole);
     const unsigned touching = TwoBalls::touching(TwoBalls::kFirst + shift / 4, TwoBalls::kLast + shift / 4);
     const unsigned blocked = world.traversal.blockedLanes(0, kAllLanes);
     EXPECT_EQ(blocked & touching, touching) << shift;
@@ -220,7 +220,7 @@ TEST(Traversal, LeavesNoLaneWithContactOut) {
 TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   world.horizon.suspect(0.2);
   world.traversal.descend({0, 0, 0, kAllLanes}, Aim::split, world.open);
   unsigned put_off = 0, looked_at = 0;
@@ -234,7 +234,7 @@ TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
 TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   const std::uint64_t none = 0, root = 1;
   world.traversal.knowFreeNodes(0, &root);
   world.traversal.knowFreeNodes(0, &none);  // another advisor, which knows nothing
@@ -246,15 +246,15 @@ TEST(PoseProofs, ProveContactWhereItIs) {
   TwoBalls world;
   world.asPair().query.any = true;
   world.begin();
-  world.motion.set(0, world.whole);
+  world.motion.set(0, world.task.whole);
   for (int k = 0; k < kLanes; ++k) {
     world.begin();
-    world.motion.set(0, world.whole);
+    world.motion.set(0, world.task.whole);
     const bool touch = k == 3 || k == 4;  // at 0.4375 and 0.5625; 0.3125 and 0.6875 are the very ends
     EXPECT_EQ(world.proofs.leaves(0, 0, k), touch) << k;
     ASSERT_EQ(world.contacts.size(), touch) << k;
     if (touch) {
-      EXPECT_EQ(world.contacts.data()[0].t_upper, world.whole.at[k]);
+      EXPECT_EQ(world.contacts.data()[0].t_upper, world.task.whole.at[k]);
       EXPECT_LE(norm(world.contacts.data()[0].point), 0.5 + 1e-9);
     }
   }
@@ -306,7 +306,7 @@ TEST(AnyContact, TriesWhatIsGuessedAndBelievesNothing) {
   world.any.guessOverlap(0, 0b1000);
   EXPECT_TRUE(world.any.tryOverlaps(world.open));
   ASSERT_EQ(world.contacts.size(), 1);
-  EXPECT_EQ(world.contacts.data()[0].t_upper, world.whole.at[3]);
+  EXPECT_EQ(world.contacts.data()[0].t_upper, world.task.whole.at[3]);
 }
 
 TEST(StageOne, LeavesWhatMayMeet) {

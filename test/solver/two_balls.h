@@ -13,7 +13,7 @@ namespace sse2 {
 
 /// Ball A, radius 0.5, stands in the origin. Ball B, radius 0.25, slides along z from `from` to `to`, which is 4 m for
 /// t in [0, 1]: from -2 it touches at z = -0.75, t = 0.3125, and leaves at z = 0.75, t = 0.6875.
-class TwoBalls {
+class TwoBalls : public SolverParts {
  public:
   static constexpr double kFirst = 0.3125, kLast = 0.6875;
 
@@ -74,16 +74,8 @@ class TwoBalls {
   }
 
   void begin() {
-    task.begin(problem, query);
-    frames.begin();
-    motion.begin();
-    horizon.begin();
-    contacts.begin();
-    traversal.begin();
-    any.begin();
-    containment.begin();
-    horizon.watch(whole);
-    open.clear();
+    SolverParts::begin(problem, query);
+    horizon.watch(task.whole);
   }
 
   /// Lanes of [0, 1] in which the balls touch at some time.
@@ -107,23 +99,6 @@ class TwoBalls {
   double coefficients[2];
   Problem problem;
   Query query;
-
-  Task task;
-  SweptFrames frames{task};
-  RelativeMotion motion{task, frames};
-  Horizon horizon{task};
-  ContactList contacts{task, horizon};
-  PoseProofs proofs{task, motion, contacts};
-  BallProofs balls{task, frames, contacts};
-  Traversal traversal{task, motion, horizon, contacts, proofs};
-  Follower follower{task, motion, horizon, contacts};
-  AnyContact any{task, frames, motion, horizon, balls, proofs, traversal};
-  StageOne stage_one{task, frames, horizon, contacts, any};
-  Containment containment{task, motion, horizon, contacts, stage_one};
-  InitialContacts initial{task, motion, horizon, contacts, traversal, containment};
-  PairSearch search{task, motion, horizon, contacts, traversal, follower, any};
-  const TimeBatch whole = TimeBatch::partsOf(0, 1);
-  Buffer<Entry> open;
 };
 
 }  // namespace sse2

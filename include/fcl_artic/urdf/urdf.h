@@ -17,8 +17,8 @@ namespace fcl_artic {
 struct LinkGeometry {
   LinkId link = -1;
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< geometry in the link's frame
-  std::shared_ptr<fcl::CollisionObjectd>
-      object;          ///< mesh: BVHModel<OBBRSSd>, SolidMesh<OBBRSSd>; or Box, Cylinder, Sphere
+  /// BVHModel<OBBRSSd> or SolidMesh<OBBRSSd> for a mesh; Box, Cylinder, Sphere.
+  std::shared_ptr<fcl::CollisionObjectd> object;
   std::string source;  ///< mesh file, or "box", "cylinder", "sphere"
 };
 

@@ -10,15 +10,11 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// The same where its vertices do not.
-constexpr double kVeryDeep = 0.35;
 /// Links are expected to touch whose line swept spheres' segments are nearer than this part of the radii.
 constexpr double kDeepLinks = 0.7;
 /// So many pairs of boxes are looked at in one pose. Measured: twice as many prove more contacts of a UR5, and make its
 /// free motions 5 % slower.
 constexpr int kMostAtPose = 512;
-/// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
-constexpr double kThin = 0.5;
 
 /// Two bodies' boxes at one pose: nothing rests on what is said of them.
 struct BoxesAtPose {
@@ -67,8 +63,7 @@ class AnyContact : PartOfSolver {
         horizon_(horizon),
         balls_(balls),
         proofs_(proofs),
-        traversal_(traversal),
-        whole_(TimeBatch::partsOf(0, 1)) {}
+        traversal_(traversal) {}
 
   void begin() {
     overlap_guesses_.clear();
@@ -93,7 +88,6 @@ class AnyContact : PartOfSolver {
   BallProofs& balls_;
   PoseProofs& proofs_;
   Traversal& traversal_;
-  const TimeBatch whole_;
 
   Buffer<Entry> overlap_guesses_;
   /// A pose at which contact of two links is expected.
@@ -107,7 +101,7 @@ class AnyContact : PartOfSolver {
 
 /// Balls inside links, where the query's advisors expect these to meet. (Kept out of every query's way.)
 [[gnu::noinline, gnu::cold]] inline bool AnyContact::tryLikely() {
-  frames_.set(whole_);
+  frames_.set(whole());
   for (int n = 0; n < query().num_advisors; ++n) {
     const engine::Advisor& advisor = query().advisors[n];
     std::int32_t count = 0;
@@ -127,7 +121,7 @@ class AnyContact : PartOfSolver {
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
 inline bool AnyContact::tryObstacle(int pair, int lane, const double* near, bool thin) {
   if (balls_.inSolid(pair, lane)) return true;
-  motion_.set(pair, whole_);
+  motion_.set(pair, whole());
   if (thin && proofs_.chordPierces(lane, near)) return true;
   if (proofs_.vertexInside(lane)) return true;
   return !thin && proofs_.chordPierces(lane, near);
@@ -149,7 +143,7 @@ inline void AnyContact::considerLinks(int pair, Lanes square, double radii) {
 /// Links whose line swept spheres are deep in each other. Balls inside them at all poses at which these may meet; then
 /// each pair's triangles at the pose at which they are deepest.
 inline bool AnyContact::tryLinks() {
-  frames_.set(whole_);
+  frames_.set(whole());
   for (int i = 0; i < pose_guesses_.size(); ++i) {
     for (unsigned near = pose_guesses_[i].near; near; near &= near - 1) {
       if (balls_.inLinks(pose_guesses_[i].pair, __builtin_ctz(near))) return true;
@@ -169,7 +163,7 @@ inline bool AnyContact::tryLinks() {
 
 /// The triangles of two links at a lane's middle, those in boxes whose middles are near each other first.
 inline bool AnyContact::tryTriangles(int pair, int lane) {
-  motion_.set(pair, whole_);
+  motion_.set(pair, whole());
   const TreeView &A = motion_.a(), &B = motion_.b();
   const BoxesAtPose boxes(motion_.differenceAt(A.pieces[0], B.pieces[0], lane).pose);
   struct NodePair {
@@ -223,7 +217,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
     open.truncate(roots);
   }
   horizon_.dropSuspicion();
-  horizon_.watch(whole_);
+  horizon_.watch(whole());
   return horizon_.isOver();
 }
 

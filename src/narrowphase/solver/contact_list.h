@@ -13,6 +13,18 @@ namespace FCL_ARTIC_ISA {
 using engine::Ignored;
 using engine::LeafContact;
 
+/// A contact of these pieces; all else is left to the caller.
+inline LeafContact contactOf(const Problem& problem, int pair, int piece_a, int piece_b) {
+  const PairParts bodies = problem.parts(pair);
+  LeafContact contact = {};
+  contact.pair = pair;
+  contact.body_a = bodies.a;
+  contact.body_b = bodies.b;
+  contact.piece_a = piece_a;
+  contact.piece_b = piece_b;
+  return contact;
+}
+
 class ContactList : PartOfSolver {
  public:
   ContactList(Task& task, Horizon& horizon) : PartOfSolver(task), horizon_(horizon) {}
@@ -61,15 +73,7 @@ class ContactList : PartOfSolver {
   }
   /// A new contact of these pieces; all else is left to the caller.
   LeafContact& grow(int pair, int piece_a, int piece_b) {
-    const PairParts bodies = problem().parts(pair);
-    LeafContact& contact = contacts_.grow();
-    contact = {};
-    contact.pair = pair;
-    contact.body_a = bodies.a;
-    contact.body_b = bodies.b;
-    contact.piece_a = piece_a;
-    contact.piece_b = piece_b;
-    return contact;
+    return contacts_.grow() = contactOf(problem(), pair, piece_a, piece_b);
   }
   void push(const LeafContact& contact) { contacts_.push(contact); }
 

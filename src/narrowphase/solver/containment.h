@@ -63,16 +63,10 @@ inline bool Containment::mayBeContained(int pair, double t) {
 }
 
 inline void Containment::testAtStart(int pair) {
-  const PairParts bodies = problem().parts(pair);
-  if (!isSolid(bodies)) return;
+  if (!isSolid(problem().parts(pair))) return;
   const engine::Containment found = contained(pair, 0);
   if (found.verdict == engine::Containment::kNone) return;
-  LeafContact& contact = contained_.grow();
-  contact = {};
-  contact.pair = pair;
-  contact.body_a = bodies.a;
-  contact.body_b = bodies.b;
-  contact.piece_a = contact.piece_b = -1;
+  LeafContact& contact = contained_.grow() = contactOf(problem(), pair, -1, -1);
   contact.certain = found.verdict == engine::Containment::kCertain;
   contact.t_upper = contact.certain ? 0 : 1;
   contact.feature = engine::kVolume;

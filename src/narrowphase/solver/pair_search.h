@@ -33,8 +33,7 @@ class PairSearch : PartOfSolver {
         contacts_(contacts),
         traversal_(traversal),
         follower_(follower),
-        any_(any),
-        whole_(TimeBatch::partsOf(0, 1)) {}
+        any_(any) {}
 
   /// Boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`; those that are apart go.
   /// @param directionOf  (i) -> the i-th pair's direction, null where there is none (LaneSearch::towards).
@@ -79,7 +78,6 @@ class PairSearch : PartOfSolver {
   Traversal& traversal_;
   Follower& follower_;
   AnyContact& any_;
-  const TimeBatch whole_;
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
   Buffer<Candidate> leaves_;      ///< of a narrower lane
 };
@@ -103,7 +101,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
   for (int i = 0; i < roots && !horizon_.isOver(); ++i) {
     Entry& e = open[i];
     if (e.mask & horizon_.live()) {
-      motion_.set(e.pair, whole_);
+      motion_.set(e.pair, whole());
       traversal_.rootsAreTested();
       e.mask = traversal_.nodesMayTouch(0, 0, e.mask);
       if (e.mask) {
@@ -130,7 +128,7 @@ inline void PairSearch::run(Buffer<Entry>& open) {
     const int before = contacts_.size();
     open.truncate(roots);
     horizon_.dropSuspicion();
-    watch(whole_);
+    watch(whole());
     search(open, i, i + 1);
     contacts_.order(before, horizon_.end());
   }
@@ -145,7 +143,7 @@ inline void PairSearch::search(Buffer<Entry>& open, int begin, int end) {
     // stage 1 or 2 has left one of many, it goes the way of the others: what they discard is not to change an
     // answer's bits.)
     const Entry& e = open[begin];
-    motion_.set(e.pair, whole_);
+    motion_.set(e.pair, whole());
     if (isLeafPair(e) || (motion_.a().outer && motion_.b().outer && movesFar())) {
       const unsigned lanes = e.mask;
       const double start = 0.125 * __builtin_ctz(lanes), stop = 0.125 * (32 - __builtin_clz(lanes));
@@ -165,7 +163,7 @@ inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int en
   for (int i = begin; i < end && !horizon_.isOver(); ++i) {
     const Entry e = open[i];
     if (!e.mask) continue;
-    motion_.set(e.pair, whole_);
+    motion_.set(e.pair, whole());
     if (movesFar() && !e.within) {
       open.push({e.pair, e.a, e.b, e.mask});
     } else {
@@ -184,14 +182,14 @@ inline void PairSearch::lookAtPutOff(Buffer<Entry>& open, int begin, unsigned la
   for (int i = begin; i < end; ++i) any = any || (open[i].put_off && (open[i].mask & next));
   if (!any) return;
   horizon_.dropSuspicion();
-  watch(whole_);
+  watch(whole());
   for (int i = begin; i < end; ++i) {
     const Entry e = open[i];
     if (!e.put_off) continue;
     open[i].mask = 0;
     open[i].put_off = false;
     if (!(e.mask & later)) continue;
-    motion_.set(e.pair, whole_);
+    motion_.set(e.pair, whole());
     traversal_.descend({e.pair, e.a, e.b, e.mask & later}, aim(), open);
   }
 }

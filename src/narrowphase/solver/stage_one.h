@@ -13,6 +13,10 @@ namespace FCL_ARTIC_ISA {
 /// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius.
 /// Measured: from 0.7 on to 1 it makes no difference, below contacts are found later.
 constexpr double kDeep = 0.7;
+/// And where no ball or vertex of it is inside, its triangles may meet at that pose if it is as deep as this part.
+constexpr double kVeryDeep = 0.35;
+/// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
+constexpr double kThin = 0.5;
 
 /// Asks for an object's cache lines before they are needed.
 template <class T>
@@ -29,12 +33,7 @@ struct BoxHit {
 class StageOne : PartOfSolver {
  public:
   StageOne(Task& task, SweptFrames& frames, Horizon& horizon, const ContactList& contacts, AnyContact& any)
-      : PartOfSolver(task),
-        frames_(frames),
-        horizon_(horizon),
-        contacts_(contacts),
-        any_(any),
-        whole_(TimeBatch::partsOf(0, 1)) {}
+      : PartOfSolver(task), frames_(frames), horizon_(horizon), contacts_(contacts), any_(any) {}
 
   /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
   void cull(Buffer<Entry>& open);
@@ -62,7 +61,6 @@ class StageOne : PartOfSolver {
   Horizon& horizon_;
   const ContactList& contacts_;
   AnyContact& any_;
-  const TimeBatch whole_;
 
   Buffer<SweptBox> mover_box_;
   Buffer<SweptLss> mover_lss_;  ///< of links
@@ -84,7 +82,7 @@ inline void StageOne::sweepMover(int mover) {
   SweptBox& box = mover_box_[mover];
   if (task_.isLink(mover)) {
     const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0)[carried.step];
-    sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole_.d,
+    sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole().d,
              mover_lss_[mover]);
     if (frame) {
       Lanes lo[3], hi[3];
@@ -162,7 +160,7 @@ inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine:
   };
   const unsigned deep = nearer(kDeep);
   if (!deep || query().every_pair || !contacts_.watching()) return;
-  if (!query().any) return horizon_.suspect(whole_.at[__builtin_ctz(deep)]);
+  if (!query().any) return horizon_.suspect(whole().at[__builtin_ctz(deep)]);
   // Where the segment is nearest; the middle one of several lanes in which it is as near.
   double least = square[__builtin_ctz(deep)];
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
@@ -216,7 +214,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
 
 inline void StageOne::cull(Buffer<Entry>& open) {
   directions_.clear();
-  frames_.set(whole_);
+  frames_.set(whole());
   mover_box_.resize(problem().num_movers);
   mover_lss_.resize(problem().num_scene_movers);
   const bool check_scene = query().check_scene && problem().obstacle_tree;

@@ -7,8 +7,8 @@
 
 #include "model/answer.h"
 #include "model/query.h"
+#include "narrowphase/solver/time_batch.h"
 #include "numerics/assertion.h"
-#include "numerics/lanes.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -26,6 +26,7 @@ class Task {
   const Problem* problem = nullptr;
   const Query* query = nullptr;
   Statistics statistics;
+  const TimeBatch whole = TimeBatch::partsOf(0, 1);  ///< the first batch
 
   void begin(const Problem& asked_of, const Query& asked) {
     FCL_ARTIC_ASSERT(asked.tolerance_time > 0 && asked.tolerance_distance > 0 && asked.max_contacts >= 0);
@@ -72,6 +73,7 @@ class PartOfSolver {
   const Query& query() const { return *task_.query; }
   Statistics& statistics() { return task_.statistics; }
   const Body& body(int index) const { return task_.problem->bodies[index]; }
+  const TimeBatch& whole() const { return task_.whole; }
 
   Task& task_;
 };
