@@ -34,7 +34,7 @@ FCL_ARTIC_INLINE bool anyLeaf(const TreeView& tree, const Meets& meets, const Vi
 }
 
 /// A piece of a mesh with the corner x; -1: there is none.
-inline int pieceAt(const TreeView& mesh, const double* x) {
+inline int pieceAt(const TreeView& mesh, const Vec3& x) {
   const float f[3] = {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
   int found = -1;
   anyLeaf(
@@ -55,13 +55,11 @@ inline int pieceAt(const TreeView& mesh, const double* x) {
 
 /// The segment from `start` to start + along among boxes and triangles, as far as can be told.
 struct Probe {
-  double start[3], along[3];
+  Vec3 start, along;
   float per[3], offset[3];  ///< x * per - offset is the part of the way at which a coordinate is x
   bool down[3];             ///< which it goes towards the lower end
-  Probe(const double* s, const double* e) {
+  Probe(const Vec3& s, const Vec3& e) : start(s), along(e - s) {
     for (int k = 0; k < 3; ++k) {
-      start[k] = s[k];
-      along[k] = e[k] - s[k];
       per[k] = static_cast<float>(1 / (abs(along[k]) > 1e-12 ? along[k] : 1e-12));
       offset[k] = static_cast<float>(s[k]) * per[k];
       down[k] = per[k] < 0;
@@ -77,15 +75,9 @@ struct Probe {
   }
   /// @param[out] weights  of the triangle's corners where they meet.
   /// @param[out] part  of the way, there.
-  bool meets(const double* v, double* weights, double& part) const {
-    double a[3], b[3], o[3], n[3], m[3];
-    for (int k = 0; k < 3; ++k) {
-      a[k] = v[3 + k] - v[k];
-      b[k] = v[6 + k] - v[k];
-      o[k] = start[k] - v[k];
-    }
-    cross(a, b, n);
-    cross(along, o, m);
+  bool meets(const Vec3* v, Vec3& weights, double& part) const {
+    const Vec3 a = v[1] - v[0], b = v[2] - v[0], o = start - v[0];
+    const Vec3 n = cross(a, b), m = cross(along, o);
     const double per_volume = -1 / dot(along, n);
     weights[1] = -dot(b, m) * per_volume;
     weights[2] = dot(a, m) * per_volume;

@@ -16,11 +16,8 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
   static const int kFaces[4][3] = {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}};
   double sign = 0;
   for (const int* f : kFaces) {
-    const double *a = v[f[0]].w, *b = v[f[1]].w, *c = v[f[2]].w;
-    double ab[3], bc[3], ca[3];
-    cross(a, b, ab);
-    cross(b, c, bc);
-    cross(c, a, ca);
+    const Vec3 &a = v[f[0]].w, &b = v[f[1]].w, &c = v[f[2]].w;
+    const Vec3 ab = cross(a, b), bc = cross(b, c), ca = cross(c, a);
     const double determinant = dot(a, bc);
     const double na = norm(a), nb = norm(b), nc = norm(c);
     // 1.25 instead of 1: the cross products' own rounding, which eps >= 40 kUlp |w| covers.
@@ -39,15 +36,12 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
 /// that it is cut into certainly holds the origin (doc/NUMERICS.md, Lemma 5).
 /// @param a, b  the segment's ends and the triangle's corners in one frame; their differences are off by eps at most.
 /// @param weights  of the corners, where they meet, about, and `part` of the segment: they tell the tetrahedron.
-inline bool certainlyPierces(const double (*a)[3], const double (*b)[3], double eps, const double* weights,
-                             double part) {
+inline bool certainlyPierces(const Vec3* a, const Vec3* b, double eps, const Vec3& weights, double part) {
   static const int kTetrahedra[3][4][2] = {
       {{0, 0}, {1, 0}, {2, 0}, {2, 1}}, {{0, 0}, {1, 0}, {1, 1}, {2, 1}}, {{0, 0}, {0, 1}, {1, 1}, {2, 1}}};
   const auto& corners = kTetrahedra[part < weights[2] ? 0 : part < weights[1] + weights[2] ? 1 : 2];
   DifferencePoint w[4];
-  for (int i = 0; i < 4; ++i) {
-    for (int k = 0; k < 3; ++k) w[i].w[k] = b[corners[i][0]][k] - a[corners[i][1]][k];
-  }
+  for (int i = 0; i < 4; ++i) w[i].w = b[corners[i][0]] - a[corners[i][1]];
   return tetrahedronHoldsOrigin(w, eps);
 }
 
@@ -58,10 +52,8 @@ inline bool originWeights(Simplex& s) {
   if (s.n != 4) return true;
   double best = 1e300, weights[4] = {0, 0, 0, 0};
   const auto offer = [&](const double* l) {
-    double w[3] = {0, 0, 0};
-    for (int i = 0; i < 4; ++i) {
-      for (int k = 0; k < 3; ++k) w[k] += l[i] * s.v[i].w[k];
-    }
+    Vec3 w(0, 0, 0);
+    for (int i = 0; i < 4; ++i) w = w + s.v[i].w * l[i];
     const double distance = norm(w);
     if (!(distance < best)) return;
     best = distance;
@@ -69,10 +61,7 @@ inline bool originWeights(Simplex& s) {
   };
   double volume[4], sum = 0;
   for (int i = 0; i < 4; ++i) {
-    double m[3];
-    const double *a = s.v[(i + 1) & 3].w, *b = s.v[(i + 2) & 3].w, *c = s.v[(i + 3) & 3].w;
-    cross(b, c, m);
-    volume[i] = abs(dot(a, m));
+    volume[i] = abs(dot(s.v[(i + 1) & 3].w, cross(s.v[(i + 2) & 3].w, s.v[(i + 3) & 3].w)));
     sum += volume[i];
   }
   if (sum > 0) {
@@ -81,8 +70,8 @@ inline bool originWeights(Simplex& s) {
   }
   for (int out = 0; out < 4; ++out) {
     const int i = (out + 1) & 3, j = (out + 2) & 3, k = (out + 3) & 3;
-    double l[3], face[4] = {0, 0, 0, 0};
-    nearestOnTriangle(s.v[i].w, s.v[j].w, s.v[k].w, l);
+    double face[4] = {0, 0, 0, 0};
+    const Vec3 l = nearestOnTriangle(s.v[i].w, s.v[j].w, s.v[k].w);
     face[i] = max(0.0, l[0]);
     face[j] = max(0.0, l[1]);
     face[k] = max(0.0, l[2]);
@@ -93,25 +82,22 @@ inline bool originWeights(Simplex& s) {
 }
 
 /// The points of both pieces, in A's frame, that the weights tell.
-inline void combine(const DifferenceBody& body, const Simplex& s, double* a, double* b) {
-  double x[3] = {0, 0, 0};
-  for (int k = 0; k < 3; ++k) {
-    a[k] = 0;
-    for (int i = 0; i < s.n; ++i) {
-      a[k] += s.weight[i] * s.v[i].a[k];
-      x[k] += s.weight[i] * s.v[i].b[k];
-    }
+inline void combine(const DifferenceBody& body, const Simplex& s, Vec3& a, Vec3& b) {
+  Vec3 x(0, 0, 0);
+  a = {0, 0, 0};
+  for (int i = 0; i < s.n; ++i) {
+    a = a + s.v[i].a * s.weight[i];
+    x = x + s.v[i].b * s.weight[i];
   }
-  body.place(x, b);
+  b = body.place(x);
 }
 
 /// A half-space holds a point of the other piece, or a plane lies between two of its points: known from support points
 /// alone. Each is off by eps at most, and its distance from the boundary, n.x - offset, is the difference point's n.w.
-inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, double eps, double* point) {
+inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, double eps, Vec3& point) {
   const bool of_a = unbounded(*body.a);
   const Piece &piece = of_a ? *body.a : *body.b, &other = of_a ? *body.b : *body.a;
-  double n[3];
-  for (int k = 0; k < 3; ++k) n[k] = of_a ? piece.size[k] : -dot(body.pose.R + 3 * k, piece.size);
+  const Vec3 n = unboundedNormal(body);
   DifferencePoint lowest, highest;
   body.support(n, lowest);
   const double low = dot(n, lowest.w);
@@ -120,9 +106,7 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
   double reach = min(other.radius, max(0.0, low));  // of the other's ball, from there towards the boundary
   highest = lowest;
   if (piece.kind == PieceKind::plane) {
-    double m[3];
-    for (int k = 0; k < 3; ++k) m[k] = -n[k];
-    body.support(m, highest);
+    body.support(-n, highest);
     const double high = dot(n, highest.w);  // along n again, of the other's far end
     if (!(high > 2 * eps - radii)) return false;
     if (low < 0 && high > 0) {
@@ -132,15 +116,8 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
       reach = -min(other.radius, -high);
     }
   }
-  const double *x = lowest.a, *y = highest.a;
-  double placed[2][3];
-  if (of_a) {
-    body.place(lowest.b, placed[0]);
-    body.place(highest.b, placed[1]);
-    x = placed[0];
-    y = placed[1];
-  }
-  for (int k = 0; k < 3; ++k) point[k] = x[k] + part * (y[k] - x[k]) - (of_a ? reach : -reach) * n[k];
+  const Vec3 x = of_a ? body.place(lowest.b) : lowest.a, y = of_a ? body.place(highest.b) : highest.a;
+  point = x + (y - x) * part - n * (of_a ? reach : -reach);
   return true;
 }
 
@@ -148,47 +125,43 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
 /// @param eps  bound on the error of a computed difference point.
 /// @param start  as in gjk().
 /// @param[out] point  in A's frame, about midway between points of both that are in contact.
-inline bool certainlyTouching(const DifferenceBody& body, double margin, double eps, const double* guess, double* point,
+inline bool certainlyTouching(const DifferenceBody& body, double margin, double eps, const Vec3& guess, Vec3& point,
                               const Simplex* start = nullptr) {
   const double radii = body.a->radius + body.b->radius + margin;
   if (unbounded(*body.a) || unbounded(*body.b)) return certainlyTouchesUnbounded(body, radii, eps, point);
   GjkResult g;
   gjk(body, guess, 1e-12, 0.0, 64, g, start);
   const auto witness = [&](const Simplex& s) {
-    double a[3], b[3];
+    Vec3 a, b;
     combine(body, s, a, b);
-    for (int k = 0; k < 3; ++k)
-      point[k] = a[k] + (body.a->radius + 0.5 * margin) / (radii > 0 ? radii : 1) * (b[k] - a[k]);
+    point = a + (b - a) * ((body.a->radius + 0.5 * margin) / (radii > 0 ? radii : 1));
   };
   if (!originWeights(g.simplex)) return false;
   witness(g.simplex);
   if (radii > 0) {
     // A convex combination of difference points is one itself: |w| + eps <= radii proves two points near enough.
     // Weights are >= 0 and sum to 1 within 4 ulp; 1e-14 of the sizes covers that and the sums.
-    double w[3] = {0, 0, 0}, size = 0, sum = 0;
+    double size = 0, sum = 0;
     const Simplex& s = g.simplex;
     for (int i = 0; i < s.n; ++i) {
       if (!(s.weight[i] >= 0)) return false;
       sum += s.weight[i];
       size = max(size, norm(s.v[i].w));
-      for (int k = 0; k < 3; ++k) w[k] += s.weight[i] * s.v[i].w[k];
     }
-    if (abs(sum - 1) <= 1e-14 && norm(w) + eps + 1e-13 * size < radii) return true;
+    if (abs(sum - 1) <= 1e-14 && norm(combined(s)) + eps + 1e-13 * size < radii) return true;
   }
   if (!g.overlap) return false;
   // Complete the simplex to a tetrahedron with support points of its own missing directions.
   Simplex s = g.simplex;
-  static const double kAxes[6][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  static const Vec3 kAxes[6] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   for (int i = 0; i < 6 && s.n < 4; ++i) {
     DifferencePoint p;
     body.support(kAxes[i], p);
-    double e[3][3], m[3];
-    for (int j = 0; j < s.n; ++j) {
-      for (int k = 0; k < 3; ++k) e[j][k] = p.w[k] - s.v[j].w[k];
-    }
+    Vec3 e[3], m;
+    for (int j = 0; j < s.n; ++j) e[j] = p.w - s.v[j].w;
     bool independent = norm(e[0]) > 0;
     if (s.n >= 2) {
-      cross(e[0], e[1], m);
+      m = cross(e[0], e[1]);
       independent = norm(m) > 1e-12 * norm(e[0]) * norm(e[1]);
     }
     if (s.n == 3) independent = abs(dot(e[2], m)) > 1e-12 * norm(m) * norm(e[2]);
@@ -204,23 +177,22 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
   // points, up to a residual r_k; when eps + |r_k| < rho / 3, its inradius, no plane separates the origin from the
   // difference.
   const double rho = 24 * eps, q = rho / sqrt(3.0);
-  const double corner[4][3] = {{q, q, q}, {q, -q, -q}, {-q, q, -q}, {-q, -q, q}};
+  const Vec3 corners[4] = {{q, q, q}, {q, -q, -q}, {-q, q, -q}, {-q, -q, q}};
   DifferenceBody shifted = body;
-  for (const double* p : corner) {
-    for (int k = 0; k < 3; ++k) shifted.shift[k] = p[k];
+  for (const Vec3& corner : corners) {
+    shifted.shift = corner;
     GjkResult h;
     gjk(shifted, guess, 1e-12, 0.0, 64, h, &g.simplex);
     if (h.lower > 0 || !originWeights(h.simplex)) return false;
-    double residual[3] = {0, 0, 0}, sum = 0, size = 0;
+    double sum = 0, size = 0;
     for (int i = 0; i < h.simplex.n; ++i) {
       if (!(h.simplex.weight[i] >= 0)) return false;
       sum += h.simplex.weight[i];
       size = max(size, norm(h.simplex.v[i].w));
-      for (int k = 0; k < 3; ++k) residual[k] += h.simplex.weight[i] * h.simplex.v[i].w[k];
     }
     // Sum of weights off by 1e-15 moves the combination by that part of its size, which eps (a multiple of the sizes
     // of both bodies) exceeds; the rounding of the sum itself stays below 1e-15 size as well.
-    if (!(abs(sum - 1) <= 1e-15 && eps + norm(residual) + 2e-15 * size < rho / 3)) return false;
+    if (!(abs(sum - 1) <= 1e-15 && eps + norm(combined(h.simplex)) + 2e-15 * size < rho / 3)) return false;
     witness(h.simplex);  // its combination is the one near the origin, whatever a flat simplex above claimed
   }
   return true;

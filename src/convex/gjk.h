@@ -12,16 +12,15 @@ namespace FCL_ARTIC_ISA {
 
 /// Pose of B in A's frame at one time.
 struct PoseAt {
-  double R[9], c[3];
+  Mat3 R;
+  Vec3 c;
   /// The direction opposite to n (A's frame), in B's frame.
-  void opposite(const double* n, double* m) const {
-    for (int j = 0; j < 3; ++j) m[j] = -(R[j] * n[0] + R[3 + j] * n[1] + R[6 + j] * n[2]);
-  }
+  Vec3 opposite(const Vec3& n) const { return -transposedTimes(R, n); }
 };
 
 /// A point w of the difference B - A (A's frame), and where it came from: a in A's frame, b in B's.
 struct DifferencePoint {
-  double w[3], a[3], b[3];
+  Vec3 w, a, b;
 };
 
 struct Simplex {
@@ -37,85 +36,74 @@ struct DifferenceBody {
   const TreeView* tree_b;
   const Piece* b;
   PoseAt pose;
-  double shift[3] = {0, 0, 0};
+  Vec3 shift = {0, 0, 0};
 
   /// The direction opposite to n (A's frame), in B's frame; bit for bit B's own where B is unbounded and has no other.
-  void opposite(const double* n, double* m) const {
-    pose.opposite(n, m);
-    if (!unbounded(*b)) return;
-    const double sign = dot(m, b->size) < 0 ? -1 : 1;
-    for (int k = 0; k < 3; ++k) m[k] = sign * b->size[k];
+  Vec3 opposite(const Vec3& n) const {
+    const Vec3 m = pose.opposite(n);
+    if (!unbounded(*b)) return m;
+    return sizeOf(*b) * (dot(m, sizeOf(*b)) < 0 ? -1.0 : 1.0);
   }
 
   /// A point of B's frame, in A's.
-  void place(const double* x, double* b) const {
-    for (int k = 0; k < 3; ++k) b[k] = dot(pose.R + 3 * k, x) + pose.c[k];
-  }
+  Vec3 place(const Vec3& x) const { return pose.R * x + pose.c; }
   /// w of a point whose a and b are known.
-  void subtract(DifferencePoint& p) const {
-    double x[3];
-    place(p.b, x);
-    for (int k = 0; k < 3; ++k) p.w[k] = x[k] - p.a[k] - shift[k];
-  }
+  void subtract(DifferencePoint& p) const { p.w = place(p.b) - p.a - shift; }
   /// The difference's point that is least along n.
-  void support(const double* n, DifferencePoint& p) const {
-    double m[3];
-    supportPoint(*tree_a, *a, n, p.a);
-    opposite(n, m);
-    supportPoint(*tree_b, *b, m, p.b);
+  void support(const Vec3& n, DifferencePoint& p) const {
+    p.a = supportPoint(*tree_a, *a, n);
+    p.b = supportPoint(*tree_b, *b, opposite(n));
     subtract(p);
   }
 };
 
 struct GjkResult {
-  bool overlap = false;     ///< claims that the cores meet (unproven)
-  double distance = 0;      ///< of the cores, from above
-  double lower = -1e300;    ///< gap of the cores along n
-  double n[3] = {1, 0, 0};  ///< unit, from A to B, the best seen
+  bool overlap = false;   ///< claims that the cores meet (unproven)
+  double distance = 0;    ///< of the cores, from above
+  double lower = -1e300;  ///< gap of the cores along n
+  Vec3 n = {1, 0, 0};     ///< unit, from A to B, the best seen
   Simplex simplex;
   int iterations = 0;
 };
 
-/// Nearest point to the origin on triangle (i, j, k) of s; barycentric weights out.
-inline void nearestOnTriangle(const double* a, const double* b, const double* c, double* l) {
-  double ab[3], ac[3];
-  for (int k = 0; k < 3; ++k) {
-    ab[k] = b[k] - a[k];
-    ac[k] = c[k] - a[k];
-  }
-  const auto set = [&](double x, double y, double z) {
-    l[0] = x;
-    l[1] = y;
-    l[2] = z;
-  };
+/// Barycentric weights of the point of the triangle a, b, c that is nearest to the origin.
+inline Vec3 nearestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a;
   // Voronoi regions of vertices, edges and face, by signs of the projections.
   const double d1 = -dot(ab, a), d2 = -dot(ac, a);
-  if (d1 <= 0 && d2 <= 0) return set(1, 0, 0);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
   const double d3 = -dot(ab, b), d4 = -dot(ac, b);
-  if (d3 >= 0 && d4 <= d3) return set(0, 1, 0);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   const double vc = d1 * d4 - d3 * d2;
   if (vc <= 0 && d1 >= 0 && d3 <= 0) {
     const double t = d1 / (d1 - d3);
-    return set(1 - t, t, 0);
+    return {1 - t, t, 0};
   }
   const double d5 = -dot(ab, c), d6 = -dot(ac, c);
-  if (d6 >= 0 && d5 <= d6) return set(0, 0, 1);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) {
     const double t = d2 / (d2 - d6);
-    return set(1 - t, 0, t);
+    return {1 - t, 0, t};
   }
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
     const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return set(0, 1 - t, t);
+    return {0, 1 - t, t};
   }
   const double f = 1 / (va + vb + vc);
-  set(1 - vb * f - vc * f, vb * f, vc * f);
+  return {1 - vb * f - vc * f, vb * f, vc * f};
+}
+
+/// The combination that the simplex' weights tell.
+inline Vec3 combined(const Simplex& s) {
+  Vec3 w(0, 0, 0);
+  for (int i = 0; i < s.n; ++i) w = w + s.v[i].w * s.weight[i];
+  return w;
 }
 
 /// Reduces the simplex to the face nearest to the origin and gives the nearest point; false when the origin is inside.
-inline bool reduceSimplex(Simplex& s, double* v) {
+inline bool reduceSimplex(Simplex& s, Vec3& v) {
   FCL_ARTIC_ASSERT(s.n >= 1 && s.n <= 4);
   const auto keep = [&](const int* index, const double* l, int n) {
     int kept = 0;  // indices ascend, so nothing is overwritten that is still needed
@@ -125,23 +113,13 @@ inline bool reduceSimplex(Simplex& s, double* v) {
       s.weight[kept++] = l[i];
     }
     s.n = kept;
-    for (int k = 0; k < 3; ++k) {
-      v[k] = 0;
-      for (int i = 0; i < s.n; ++i) v[k] += s.weight[i] * s.v[i].w[k];
-    }
+    v = combined(s);
     if (s.n == 3) {
       // On a face the sum above is off along it by what rounding makes of the weights, and next to a tiny gap that
       // would turn the direction. The foot of the perpendicular has the face's normal whatever the gap.
-      double ab[3], ac[3], m[3];
-      for (int k = 0; k < 3; ++k) {
-        ab[k] = s.v[1].w[k] - s.v[0].w[k];
-        ac[k] = s.v[2].w[k] - s.v[0].w[k];
-      }
-      cross(ab, ac, m);
+      const Vec3 m = cross(s.v[1].w - s.v[0].w, s.v[2].w - s.v[0].w);
       const double mm = dot(m, m);
-      if (mm > 0) {
-        for (int k = 0; k < 3; ++k) v[k] = dot(m, s.v[0].w) / mm * m[k];
-      }
+      if (mm > 0) v = m * (dot(m, s.v[0].w) / mm);
     }
   };
   if (s.n == 1) {
@@ -151,8 +129,7 @@ inline bool reduceSimplex(Simplex& s, double* v) {
     return true;
   }
   if (s.n == 2) {
-    double ab[3];
-    for (int k = 0; k < 3; ++k) ab[k] = s.v[1].w[k] - s.v[0].w[k];
+    const Vec3 ab = s.v[1].w - s.v[0].w;
     const double q = dot(ab, ab);
     const double t = q > 0 ? min(1.0, max(0.0, -dot(s.v[0].w, ab) / q)) : 0;
     const int index[2] = {0, 1};
@@ -161,49 +138,40 @@ inline bool reduceSimplex(Simplex& s, double* v) {
     return true;
   }
   if (s.n == 3) {
-    double l[3];
-    nearestOnTriangle(s.v[0].w, s.v[1].w, s.v[2].w, l);
     const int index[3] = {0, 1, 2};
-    keep(index, l, 3);
+    keep(index, nearestOnTriangle(s.v[0].w, s.v[1].w, s.v[2].w).k, 3);
     return true;
   }
   static const int kFaces[4][4] = {{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};  // indices ascend
-  double best = 1e300, best_l[3] = {0, 0, 0};
+  double best = 1e300;
+  Vec3 best_l(0, 0, 0);
   int best_face = -1;
   for (int f = 0; f < 4; ++f) {
-    const double *a = s.v[kFaces[f][0]].w, *b = s.v[kFaces[f][1]].w, *c = s.v[kFaces[f][2]].w, *e = s.v[kFaces[f][3]].w;
-    double ab[3], ac[3], ae[3], m[3];
-    for (int k = 0; k < 3; ++k) {
-      ab[k] = b[k] - a[k];
-      ac[k] = c[k] - a[k];
-      ae[k] = e[k] - a[k];
-    }
-    cross(ab, ac, m);
-    if (-dot(m, a) * dot(m, ae) > 0) continue;  // the origin is on the inner side of this face
-    double l[3];
-    nearestOnTriangle(a, b, c, l);
-    double q = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double x = l[0] * a[k] + l[1] * b[k] + l[2] * c[k];
-      q += x * x;
-    }
+    const Vec3 &a = s.v[kFaces[f][0]].w, &b = s.v[kFaces[f][1]].w, &c = s.v[kFaces[f][2]].w, &e = s.v[kFaces[f][3]].w;
+    const Vec3 m = cross(b - a, c - a);
+    if (-dot(m, a) * dot(m, e - a) > 0) continue;  // the origin is on the inner side of this face
+    const Vec3 l = nearestOnTriangle(a, b, c), x = a * l[0] + b * l[1] + c * l[2];
+    const double q = dot(x, x);
     if (q < best) {
       best = q;
       best_face = f;
-      for (int k = 0; k < 3; ++k) best_l[k] = l[k];
+      best_l = l;
     }
   }
   if (best_face < 0) return false;
-  keep(kFaces[best_face], best_l, 3);
+  keep(kFaces[best_face], best_l.k, 3);
   return true;
+}
+
+/// The normal of the unbounded one of two pieces in A's frame, from A to B.
+inline Vec3 unboundedNormal(const DifferenceBody& body) {
+  return unbounded(*body.a) ? sizeOf(*body.a) : -(body.pose.R * sizeOf(*body.b));
 }
 
 /// An unbounded piece against a bounded one: there is one direction, or two for a plane, and no search.
 inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& out) {
-  const bool of_a = unbounded(*body.a);
-  const Piece& piece = of_a ? *body.a : *body.b;
-  double n[3];  // from A to B
-  for (int k = 0; k < 3; ++k) n[k] = of_a ? piece.size[k] : -dot(body.pose.R + 3 * k, piece.size);
+  const Piece& piece = unbounded(*body.a) ? *body.a : *body.b;
+  Vec3 n = unboundedNormal(body);
   out.lower = -1e300;
   for (int side = 0; side < (piece.kind == PieceKind::plane ? 2 : 1); ++side) {
     DifferencePoint p;
@@ -212,9 +180,9 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
     if (gap > out.lower) {
       out.lower = gap;
       out.simplex.v[0] = p;
-      for (int k = 0; k < 3; ++k) out.n[k] = n[k];
+      out.n = n;
     }
-    for (int k = 0; k < 3; ++k) n[k] = -n[k];
+    n = -n;
   }
   out.simplex.weight[0] = 1;
   out.simplex.n = 1;
@@ -227,15 +195,16 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
 /// @param enough  a direction along which the gap is larger ends the search.
 /// The other parameters are gjk()'s.
 template <class ConvexBody>
-inline void searchNearest(const ConvexBody& body, const double* guess, double relative, double radii, double enough,
+inline void searchNearest(const ConvexBody& body, const Vec3& guess, double relative, double radii, double enough,
                           int max_iterations, GjkResult& out, const Simplex* start = nullptr) {
   out.overlap = false;
   out.lower = -1e300;
   const double given = norm(guess);
-  const bool usable = given > 1e-100;                // far from underflow
-  double best_length = usable ? given : 1, best[3];  // the direction that tells the largest lower bound
-  for (int k = 0; k < 3; ++k) best[k] = usable ? guess[k] : (k == 0);
-  double v[3], size2 = 0;  // size2: the largest |w|^2 seen
+  const bool usable = given > 1e-100;  // far from underflow
+  double best_length = usable ? given : 1;
+  Vec3 best = usable ? guess : Vec3(1, 0, 0);  // the direction that tells the largest lower bound
+  Vec3 v;
+  double size2 = 0;  // the largest |w|^2 seen
   Simplex& s = out.simplex;
   out.iterations = 0;
   bool inside = false;
@@ -255,7 +224,7 @@ inline void searchNearest(const ConvexBody& body, const double* guess, double re
     s.weight[0] = 1;
     s.n = 1;
     size2 = dot(p.w, p.w);
-    for (int k = 0; k < 3; ++k) v[k] = p.w[k];
+    v = p.w;
   }
   while (!inside && out.iterations < max_iterations && !(out.lower > enough)) {
     const double vv = dot(v, v);
@@ -275,7 +244,7 @@ inline void searchNearest(const ConvexBody& body, const double* guess, double re
     if (lower > out.lower) {
       out.lower = lower;
       best_length = length;
-      for (int k = 0; k < 3; ++k) best[k] = v[k];
+      best = v;
     }
     // Relative to the gap, not to the core distance.
     if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
@@ -285,12 +254,12 @@ inline void searchNearest(const ConvexBody& body, const double* guess, double re
     }
     if (known) break;
     ++s.n;
-    double next[3];
+    Vec3 next;
     inside = !reduceSimplex(s, next);  // it stays a tetrahedron then
     if (inside || dot(next, next) >= vv * (1 - 1e-15)) break;
-    for (int k = 0; k < 3; ++k) v[k] = next[k];
+    v = next;
   }
-  for (int k = 0; k < 3; ++k) out.n[k] = best[k] / best_length;
+  out.n = best / best_length;
   if (inside) {
     out.overlap = true;
     out.distance = 0;
@@ -308,7 +277,7 @@ inline void searchNearest(const ConvexBody& body, const double* guess, double re
 /// @param radii  rounding radii and margin: cores nearer than this overlap.
 /// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty:
 /// none.
-inline void gjk(const DifferenceBody& body, const double* guess, double relative, double radii, int max_iterations,
+inline void gjk(const DifferenceBody& body, const Vec3& guess, double relative, double radii, int max_iterations,
                 GjkResult& out, const Simplex* start = nullptr) {
   if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
   searchNearest(body, guess, relative, radii, kInfinite, max_iterations, out, start);

@@ -26,7 +26,7 @@
 #pragma once
 
 #include "model/tree_view.h"
-#include "numerics/lanes.h"
+#include "numerics/vec3.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -43,7 +43,7 @@ constexpr double kInfinite = __builtin_huge_val();
 // ---- hulls of points, with lanes over directions or over points
 
 /// Values of p.u over a hull's vertices, for eight directions.
-FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Lanes* u, Lanes& lower, Lanes& upper) {
+FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Vec3Lanes& u, Lanes& lower, Lanes& upper) {
   lower = upper = mulAdd(u[2], x[2 * n], mulAdd(u[1], x[n], u[0] * Lanes(x[0])));
   for (int i = 1; i < n; ++i) {
     const Lanes value = mulAdd(u[2], x[2 * n + i], mulAdd(u[1], x[n + i], u[0] * Lanes(x[i])));
@@ -51,13 +51,13 @@ FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Lanes* u, Lanes& l
     upper = max(upper, value);
   }
 }
-FCL_ARTIC_INLINE Lanes hullValues(const double* x, int n, int i, const double* u) {
+FCL_ARTIC_INLINE Lanes hullValues(const double* x, int n, int i, const Vec3& u) {
   const Lanes *X = reinterpret_cast<const Lanes*>(x + i), *Y = reinterpret_cast<const Lanes*>(x + n + i),
               *Z = reinterpret_cast<const Lanes*>(x + 2 * n + i);
   return mulAdd(*Z, u[2], mulAdd(*Y, u[1], *X * Lanes(u[0])));
 }
 /// The same for one direction: lanes go over vertices.
-FCL_ARTIC_INLINE void hullRange(const double* x, int n, const double* u, double& lower, double& upper) {
+FCL_ARTIC_INLINE void hullRange(const double* x, int n, const Vec3& u, double& lower, double& upper) {
   Lanes least = hullValues(x, n, 0, u), most = least;
   for (int i = kLanes; i < n; i += kLanes) {
     const Lanes value = hullValues(x, n, i, u);
@@ -68,7 +68,7 @@ FCL_ARTIC_INLINE void hullRange(const double* x, int n, const double* u, double&
   upper = maxLane(most);
 }
 /// Index of a vertex farthest along u, but for 2^-42 of its value.
-inline int hullSupport(const double* x, int n, const double* u) {
+inline int hullSupport(const double* x, int n, const Vec3& u) {
   int best = 0;
   double value = -__builtin_huge_val();
   for (int begin = 0; begin < n; begin += kNumbered) {  // once, but for very fine hulls
@@ -83,32 +83,39 @@ inline int hullSupport(const double* x, int n, const double* u) {
   return best;
 }
 
+FCL_ARTIC_INLINE Vec3 sizeOf(const Piece& p) {
+  return Vec3(p.size);
+}
+FCL_ARTIC_INLINE Vec3 centerOf(const Piece& p) {
+  return Vec3(p.center);
+}
+
 // ---- answers for kinds that have none of their own
 
 /// Nothing is known: every answer is right for all kinds.
 struct Unknown {
   static constexpr bool kBounded = true, kSurface = false, kCentred = false;
-  static bool halfSizes(const Piece&, double*) { return false; }
-  static bool certainlyWithin(const Piece&, const double*, double) { return false; }
-  static FCL_ARTIC_INLINE Lanes distance(const Piece&, Lanes*) { return Lanes(kInfinite); }
-  static void nearest(const Piece&, const double*, double* core) { core[0] = core[1] = core[2] = 0; }
+  static bool halfSizes(const Piece&, Vec3&) { return false; }
+  static bool certainlyWithin(const Piece&, const Vec3&, double) { return false; }
+  static FCL_ARTIC_INLINE Lanes distance(const Piece&, const Vec3Lanes&) { return Lanes(kInfinite); }
+  static Vec3 nearest(const Piece&, const Vec3&) { return {0, 0, 0}; }
   static double rodWidth(const Piece&) { return kInfinite; }
-  static bool chord(const Piece&, const double*, double (*)[3]) { return false; }
+  static bool chord(const Piece&, const Vec3&, Vec3*) { return false; }
 };
 
 /// Cores that lie about Piece::center.
 struct Centred : Unknown {
   static constexpr bool kCentred = true;
   /// The ends of a chord through `through`, along the third axis or another one.
-  static void setChord(const Piece& p, const double* through, int along, double (*ends)[3]) {
+  static void setChord(const Piece& p, const Vec3& through, int along, Vec3* ends) {
     for (int end = 0; end < 2; ++end) {
-      for (int k = 0; k < 3; ++k) ends[end][k] = through[k];
+      ends[end] = through;
       ends[end][along] = p.center[along] + (end ? p.size[along] : -p.size[along]);
     }
   }
   /// Distance from a point of the solid whose core is at d from x on each axis.
-  static FCL_ARTIC_INLINE Lanes ofBall(const Piece& p, const Lanes* d) {
-    return max(sqrt(dot(d, d)) - Lanes(p.radius), Lanes(0.0));
+  static FCL_ARTIC_INLINE Lanes ofBall(const Piece& p, const Vec3Lanes& d) {
+    return max(norm(d) - Lanes(p.radius), Lanes(0.0));
   }
 };
 
@@ -121,31 +128,29 @@ struct VerticesKind : Unknown {
     return tree.vertices + 3 * static_cast<std::ptrdiff_t>(p.first_vertex);
   }
   template <class T>
-  static FCL_ARTIC_INLINE void range(const TreeView& tree, const Piece& piece, const T* u, T& lower, T& upper) {
+  static FCL_ARTIC_INLINE void range(const TreeView& tree, const Piece& piece, const Vec3Of<T>& u, T& lower, T& upper) {
     const double* p = points(tree, piece);
-    lower = upper = dot(u, p);
+    lower = upper = dot(u, Vec3(p));
     for (int i = 1; i < piece.num_vertices; ++i) {
-      const T x = dot(u, p + 3 * i);
+      const T x = dot(u, Vec3(p + 3 * i));
       lower = min(lower, x);
       upper = max(upper, x);
     }
   }
-  static void support(const TreeView& tree, const Piece& piece, const double* u, double* x) {
+  static Vec3 support(const TreeView& tree, const Piece& piece, const Vec3& u) {
     const double* p = points(tree, piece);
     int best = 0;
-    double value = dot(p, u);
+    double value = dot(Vec3(p), u);
     for (int i = 1; i < piece.num_vertices; ++i) {
-      const double v = dot(p + 3 * i, u);
+      const double v = dot(Vec3(p + 3 * i), u);
       if (v > value) {
         value = v;
         best = i;
       }
     }
-    for (int k = 0; k < 3; ++k) x[k] = p[3 * best + k];
+    return Vec3(p + 3 * best);
   }
-  static void pointWithin(const TreeView& tree, const Piece& piece, const double*, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = points(tree, piece)[k];
-  }
+  static Vec3 pointWithin(const TreeView& tree, const Piece& piece, const Vec3&) { return Vec3(points(tree, piece)); }
   template <class Add>
   static void cover(const TreeView& tree, const Piece& piece, const Add& add) {
     const double* p = points(tree, piece);
@@ -156,17 +161,18 @@ struct VerticesKind : Unknown {
 /// The hull of points that lie x, then y, then z (PieceKind).
 struct HullKind : Unknown {
   template <class T>
-  static FCL_ARTIC_INLINE void range(const TreeView& tree, const Piece& p, const T* u, T& lower, T& upper) {
+  static FCL_ARTIC_INLINE void range(const TreeView& tree, const Piece& p, const Vec3Of<T>& u, T& lower, T& upper) {
     hullRange(tree.hulls + p.first_vertex, p.num_vertices, u, lower, upper);
   }
-  static void support(const TreeView& tree, const Piece& piece, const double* u, double* x) {
-    const double* p = tree.hulls + piece.first_vertex;
-    const int i = hullSupport(p, piece.num_vertices, u);
-    for (int k = 0; k < 3; ++k) x[k] = p[k * piece.num_vertices + i];
+  static Vec3 vertex(const TreeView& tree, const Piece& piece, int i) {
+    const double* p = tree.hulls + piece.first_vertex + i;
+    const int n = piece.num_vertices;
+    return {p[0], p[n], p[2 * n]};
   }
-  static void pointWithin(const TreeView& tree, const Piece& piece, const double*, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = tree.hulls[piece.first_vertex + k * piece.num_vertices];
+  static Vec3 support(const TreeView& tree, const Piece& piece, const Vec3& u) {
+    return vertex(tree, piece, hullSupport(tree.hulls + piece.first_vertex, piece.num_vertices, u));
   }
+  static Vec3 pointWithin(const TreeView& tree, const Piece& piece, const Vec3&) { return vertex(tree, piece, 0); }
   template <class Add>
   static void cover(const TreeView& tree, const Piece& piece, const Add& add) {
     const double* p = tree.hulls + piece.first_vertex;
@@ -178,21 +184,17 @@ struct HullKind : Unknown {
 /// A ball's core.
 struct PointKind : Centred {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece&, const T*, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece&, const Vec3Of<T>&, T& down, T& up) {
     down = up = T(0.0);
   }
-  static void support(const TreeView&, const Piece& p, const double*, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k];
-  }
-  static bool halfSizes(const Piece&, double* half) {
-    half[0] = half[1] = half[2] = 0;
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3&) { return centerOf(p); }
+  static bool halfSizes(const Piece&, Vec3& half) {
+    half = {0, 0, 0};
     return true;
   }
-  static bool certainlyWithin(const Piece& p, const double* d, double least) { return p.radius - norm(d) > least; }
-  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, Lanes* d) { return ofBall(p, d); }
-  static void pointWithin(const TreeView&, const Piece& p, const double*, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k];
-  }
+  static bool certainlyWithin(const Piece& p, const Vec3& d, double least) { return p.radius - norm(d) > least; }
+  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, const Vec3Lanes& d) { return ofBall(p, d); }
+  static Vec3 pointWithin(const TreeView&, const Piece& p, const Vec3&) { return centerOf(p); }
   template <class Add>
   static void cover(const TreeView&, const Piece&, const Add& add) {
     add(0, 0, 0);
@@ -202,40 +204,30 @@ struct PointKind : Centred {
 /// A capsule's core, along z.
 struct SegmentKind : Centred {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece& p, const T* u, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece& p, const Vec3Of<T>& u, T& down, T& up) {
     down = up = abs(u[2]) * T(p.size[2]);
   }
-  static void support(const TreeView&, const Piece& p, const double* u, double* x) {
-    x[0] = p.center[0];
-    x[1] = p.center[1];
-    x[2] = p.center[2] + (u[2] < 0 ? -p.size[2] : p.size[2]);
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3& u) {
+    return {p.center[0], p.center[1], p.center[2] + (u[2] < 0 ? -p.size[2] : p.size[2])};
   }
-  static bool halfSizes(const Piece& p, double* half) {
-    half[0] = half[1] = 0;
-    half[2] = p.size[2];
+  static bool halfSizes(const Piece& p, Vec3& half) {
+    half = {0, 0, p.size[2]};
     return true;
   }
-  static bool certainlyWithin(const Piece& p, double* d, double least) {
-    d[2] = max(0.0, d[2] - p.size[2]);
-    return p.radius - norm(d) > least;
+  static bool certainlyWithin(const Piece& p, const Vec3& d, double least) {
+    return p.radius - norm(Vec3(d[0], d[1], max(0.0, d[2] - p.size[2]))) > least;
   }
-  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, Lanes* d) {
-    d[2] = max(d[2] - Lanes(p.size[2]), Lanes(0.0));
-    return ofBall(p, d);
+  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, const Vec3Lanes& d) {
+    return ofBall(p, {d[0], d[1], max(d[2] - Lanes(p.size[2]), Lanes(0.0))});
   }
-  static void nearest(const Piece& p, const double* d, double* core) {
-    core[0] = core[1] = 0;
-    core[2] = max(-p.size[2], min(d[2], p.size[2]));
-  }
+  static Vec3 nearest(const Piece& p, const Vec3& d) { return {0, 0, max(-p.size[2], min(d[2], p.size[2]))}; }
   static double rodWidth(const Piece& p) { return p.radius; }
-  static bool chord(const Piece& p, const double*, double (*ends)[3]) {
-    setChord(p, p.center, 2, ends);
+  static bool chord(const Piece& p, const Vec3&, Vec3* ends) {
+    setChord(p, centerOf(p), 2, ends);
     return true;
   }
-  static void pointWithin(const TreeView&, const Piece& p, const double* part, double* x) {
-    x[0] = p.center[0];
-    x[1] = p.center[1];
-    x[2] = p.center[2] + part[2] * p.size[2];
+  static Vec3 pointWithin(const TreeView&, const Piece& p, const Vec3& part) {
+    return {p.center[0], p.center[1], p.center[2] + part[2] * p.size[2]};
   }
   template <class Add>
   static void cover(const TreeView&, const Piece& p, const Add& add) {
@@ -246,44 +238,39 @@ struct SegmentKind : Centred {
 
 struct BoxKind : Centred {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece& p, const T* u, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece& p, const Vec3Of<T>& u, T& down, T& up) {
     const double* e = p.size;
     down = up = mulAdd(abs(u[0]), T(e[0]), mulAdd(abs(u[1]), T(e[1]), abs(u[2]) * T(e[2])));
   }
-  static void support(const TreeView&, const Piece& p, const double* u, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k] + (u[k] < 0 ? -p.size[k] : p.size[k]);
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3& u) {
+    Vec3 x = centerOf(p);
+    for (int k = 0; k < 3; ++k) x[k] = x[k] + (u[k] < 0 ? -p.size[k] : p.size[k]);
+    return x;
   }
-  static bool halfSizes(const Piece& p, double* half) {
-    for (int k = 0; k < 3; ++k) half[k] = p.size[k];
+  static bool halfSizes(const Piece& p, Vec3& half) {
+    half = sizeOf(p);
     return true;
   }
-  static bool certainlyWithin(const Piece& p, const double* d, double least) {
+  static bool certainlyWithin(const Piece& p, const Vec3& d, double least) {
     return p.size[0] - d[0] > least && p.size[1] - d[1] > least && p.size[2] - d[2] > least;
   }
-  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, Lanes* d) {
-    for (int k = 0; k < 3; ++k) d[k] = max(d[k] - Lanes(p.size[k]), Lanes(0.0));
-    return sqrt(dot(d, d));
+  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, const Vec3Lanes& d) {
+    return norm(max(d - spread(sizeOf(p)), spread(Vec3(0, 0, 0))));
   }
-  static void nearest(const Piece& p, const double* d, double* core) {
-    for (int k = 0; k < 3; ++k) core[k] = max(-p.size[k], min(d[k], p.size[k]));
-  }
+  static Vec3 nearest(const Piece& p, const Vec3& d) { return max(-sizeOf(p), min(d, sizeOf(p))); }
   static double rodWidth(const Piece& p) {
     const double* e = p.size;
     return max(min(e[0], e[1]), min(max(e[0], e[1]), e[2]));
   }
-  static bool chord(const Piece& p, const double* x, double (*ends)[3]) {
-    const double *m = p.center, *e = p.size;
+  static bool chord(const Piece& p, const Vec3& x, Vec3* ends) {
+    const Vec3 m = centerOf(p), e = sizeOf(p);
     int along = 2;
-    double through[3];
-    for (int k = 0; k < 3; ++k) {
-      if (e[k] > e[along]) along = k;
-      through[k] = min(max(x[k], m[k] - e[k]), m[k] + e[k]);
-    }
-    setChord(p, through, along, ends);
+    for (int k = 0; k < 3; ++k) along = e[k] > e[along] ? k : along;
+    setChord(p, min(max(x, m - e), m + e), along, ends);
     return true;
   }
-  static void pointWithin(const TreeView&, const Piece& p, const double* part, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k] + part[k] * p.size[k];
+  static Vec3 pointWithin(const TreeView&, const Piece& p, const Vec3& part) {
+    return {p.center[0] + part[0] * p.size[0], p.center[1] + part[1] * p.size[1], p.center[2] + part[2] * p.size[2]};
   }
   template <class Add>
   static void cover(const TreeView&, const Piece& p, const Add& add) {
@@ -296,13 +283,12 @@ struct BoxKind : Centred {
 struct Round : Centred {
   /// Corners of a regular octagon around the unit circle, (1, tan 22.5 degrees) and so on, a little outside.
   static constexpr double kLong = 1.0000000000001, kShort = 0.41421356237313;
-  static bool halfSizes(const Piece& p, double* half) {
-    half[0] = half[1] = p.size[0];
-    half[2] = p.size[2];
+  static bool halfSizes(const Piece& p, Vec3& half) {
+    half = {p.size[0], p.size[0], p.size[2]};
     return true;
   }
-  static void pointWithin(const TreeView&, const Piece& p, const double* part, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k] + part[k] * p.size[k == 1 ? 0 : k];
+  static Vec3 pointWithin(const TreeView&, const Piece& p, const Vec3& part) {
+    return {p.center[0] + part[0] * p.size[0], p.center[1] + part[1] * p.size[0], p.center[2] + part[2] * p.size[2]};
   }
   template <class Add>
   static void octagon(double radius, const Add& add) {
@@ -311,43 +297,37 @@ struct Round : Centred {
     for (const double* c : corners) add(c[0], c[1]);
   }
   template <class T>
-  static FCL_ARTIC_INLINE T across(const T* u) {
+  static FCL_ARTIC_INLINE T across(const Vec3Of<T>& u) {
     return sqrt(mulAdd(u[0], u[0], u[1] * u[1]));
   }
 };
 
 struct CylinderKind : Round {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece& p, const T* u, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece& p, const Vec3Of<T>& u, T& down, T& up) {
     down = up = mulAdd(across(u), T(p.size[0]), abs(u[2]) * T(p.size[2]));
   }
-  static void support(const TreeView&, const Piece& p, const double* u, double* x) {
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3& u) {
     const double r = sqrt(u[0] * u[0] + u[1] * u[1]), f = r > 0 ? p.size[0] / r : 0;
-    x[0] = p.center[0] + f * u[0];
-    x[1] = p.center[1] + f * u[1];
-    x[2] = p.center[2] + (u[2] < 0 ? -p.size[2] : p.size[2]);
+    return {p.center[0] + f * u[0], p.center[1] + f * u[1], p.center[2] + (u[2] < 0 ? -p.size[2] : p.size[2])};
   }
-  static bool certainlyWithin(const Piece& p, const double* d, double least) {
+  static bool certainlyWithin(const Piece& p, const Vec3& d, double least) {
     return p.size[0] - sqrt(d[0] * d[0] + d[1] * d[1]) > least && p.size[2] - d[2] > least;
   }
-  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, const Lanes* d) {
+  static FCL_ARTIC_INLINE Lanes distance(const Piece& p, const Vec3Lanes& d) {
     const Lanes out = max(sqrt(mulAdd(d[0], d[0], d[1] * d[1])) - Lanes(p.size[0]), Lanes(0.0));
     const Lanes up = max(d[2] - Lanes(p.size[2]), Lanes(0.0));
     return sqrt(mulAdd(out, out, up * up));
   }
-  static void nearest(const Piece& p, const double* d, double* core) {
+  static Vec3 nearest(const Piece& p, const Vec3& d) {
     const double from_axis = sqrt(d[0] * d[0] + d[1] * d[1]), part = from_axis > p.size[0] ? p.size[0] / from_axis : 1;
-    core[0] = part * d[0];
-    core[1] = part * d[1];
-    core[2] = max(-p.size[2], min(d[2], p.size[2]));
+    return {part * d[0], part * d[1], max(-p.size[2], min(d[2], p.size[2]))};
   }
   static double rodWidth(const Piece& p) { return p.size[0]; }
-  static bool chord(const Piece& p, const double* x, double (*ends)[3]) {
-    const double *m = p.center, *e = p.size;
-    const double d[2] = {x[0] - m[0], x[1] - m[1]}, r = sqrt(d[0] * d[0] + d[1] * d[1]);
-    double through[3] = {m[0], m[1], m[2]};
-    for (int k = 0; k < 2; ++k) through[k] = m[k] + (r > e[0] ? e[0] / r : 1) * d[k];
-    setChord(p, through, 2, ends);
+  static bool chord(const Piece& p, const Vec3& x, Vec3* ends) {
+    const Vec3 m = centerOf(p), d = x - m;
+    const double r = sqrt(d[0] * d[0] + d[1] * d[1]), part = r > p.size[0] ? p.size[0] / r : 1;
+    setChord(p, {m[0] + part * d[0], m[1] + part * d[1], m[2]}, 2, ends);
     return true;
   }
   template <class Add>
@@ -362,22 +342,20 @@ struct CylinderKind : Round {
 /// Its tip is at +z: h(u) = max(c uz, a r - c uz).
 struct ConeKind : Round {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece& p, const T* u, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece& p, const Vec3Of<T>& u, T& down, T& up) {
     const T r = across(u) * T(p.size[0]), z = u[2] * T(p.size[2]);
     up = max(z, r - z);
     down = max(T(0.0) - z, r + z);
   }
-  static void support(const TreeView&, const Piece& p, const double* u, double* x) {
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3& u) {
     const double* e = p.size;
     const double r = sqrt(u[0] * u[0] + u[1] * u[1]), f = r > 0 ? e[0] / r : 0;
     const bool tip = e[2] * u[2] >= e[0] * r - e[2] * u[2];
     const double rim = tip ? 0 : 1;
-    x[0] = p.center[0] + rim * f * u[0];
-    x[1] = p.center[1] + rim * f * u[1];
-    x[2] = p.center[2] + (tip ? e[2] : -e[2]);
+    return {p.center[0] + rim * f * u[0], p.center[1] + rim * f * u[1], p.center[2] + (tip ? e[2] : -e[2])};
   }
-  static bool chord(const Piece& p, const double*, double (*ends)[3]) {
-    setChord(p, p.center, 2, ends);
+  static bool chord(const Piece& p, const Vec3&, Vec3* ends) {
+    setChord(p, centerOf(p), 2, ends);
     return true;
   }
   template <class Add>
@@ -389,18 +367,19 @@ struct ConeKind : Round {
 
 struct EllipsoidKind : Centred {
   template <class T>
-  static FCL_ARTIC_INLINE void reach(const Piece& p, const T* u, T& down, T& up) {
+  static FCL_ARTIC_INLINE void reach(const Piece& p, const Vec3Of<T>& u, T& down, T& up) {
     const T x = u[0] * T(p.size[0]), y = u[1] * T(p.size[1]), z = u[2] * T(p.size[2]);
     down = up = sqrt(mulAdd(x, x, mulAdd(y, y, z * z)));
   }
-  static void support(const TreeView&, const Piece& p, const double* u, double* x) {
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3& u) {
     const double* e = p.size;
-    const double y[3] = {e[0] * u[0], e[1] * u[1], e[2] * u[2]}, n = norm(y), f = n > 0 ? 1 / n : 0;
-    for (int k = 0; k < 3; ++k) x[k] = p.center[k] + f * e[k] * y[k];
+    const Vec3 y(e[0] * u[0], e[1] * u[1], e[2] * u[2]);
+    const double n = norm(y), f = n > 0 ? 1 / n : 0;
+    return {p.center[0] + f * e[0] * y[0], p.center[1] + f * e[1] * y[1], p.center[2] + f * e[2] * y[2]};
   }
-  static bool halfSizes(const Piece& p, double* half) { return BoxKind::halfSizes(p, half); }
-  static void pointWithin(const TreeView& tree, const Piece& p, const double* part, double* x) {
-    BoxKind::pointWithin(tree, p, part, x);
+  static bool halfSizes(const Piece& p, Vec3& half) { return BoxKind::halfSizes(p, half); }
+  static Vec3 pointWithin(const TreeView& tree, const Piece& p, const Vec3& part) {
+    return BoxKind::pointWithin(tree, p, part);
   }
   /// An icosahedron around the unit ball, stretched: corners (0, +-a, +-b) and its cyclic shifts, b / a the golden
   /// section phi. Its faces are at a phi^2 / sqrt(3), a little more than 1, from the middle.
@@ -421,25 +400,21 @@ struct EllipsoidKind : Centred {
 struct HalfspaceKind : Unknown {
   static constexpr bool kBounded = false;
   /// Ends of n.x: known along the piece's own normal, bit for bit (a still piece), and along no other direction.
-  static void range(const TreeView&, const Piece& p, const double* u, double& lower, double& upper) {
+  static void range(const TreeView&, const Piece& p, const Vec3& u, double& lower, double& upper) {
     lower = isAlong(p, u, -1) ? -p.center[0] : -kInfinite;
     upper = isAlong(p, u, 1) ? p.center[0] : kInfinite;
   }
-  static FCL_ARTIC_INLINE void range(const TreeView&, const Piece&, const Lanes*, Lanes& lower, Lanes& upper) {
+  static FCL_ARTIC_INLINE void range(const TreeView&, const Piece&, const Vec3Lanes&, Lanes& lower, Lanes& upper) {
     lower = Lanes(-kInfinite);
     upper = Lanes(kInfinite);
   }
   /// The foot of its boundary, which is right along its own normal only.
-  static void support(const TreeView&, const Piece& p, const double*, double* x) {
-    for (int k = 0; k < 3; ++k) x[k] = p.center[0] * p.size[k];
-  }
-  static void pointWithin(const TreeView& tree, const Piece& p, const double*, double* x) {
-    support(tree, p, nullptr, x);
-  }
+  static Vec3 support(const TreeView&, const Piece& p, const Vec3&) { return sizeOf(p) * p.center[0]; }
+  static Vec3 pointWithin(const TreeView& tree, const Piece& p, const Vec3& part) { return support(tree, p, part); }
   template <class Add>
   static void cover(const TreeView&, const Piece&, const Add&) {}  // no points hold it
 
-  static bool isAlong(const Piece& p, const double* u, double sign) {
+  static bool isAlong(const Piece& p, const Vec3& u, double sign) {
     return u[0] == sign * p.size[0] && u[1] == sign * p.size[1] && u[2] == sign * p.size[2];
   }
 };
@@ -448,7 +423,7 @@ struct HalfspaceKind : Unknown {
 struct PlaneKind : HalfspaceKind {
   static constexpr bool kSurface = true;
   using HalfspaceKind::range;
-  static void range(const TreeView&, const Piece& p, const double* u, double& lower, double& upper) {
+  static void range(const TreeView&, const Piece& p, const Vec3& u, double& lower, double& upper) {
     const bool along = isAlong(p, u, 1), against = isAlong(p, u, -1);
     lower = along ? p.center[0] : against ? -p.center[0] : -kInfinite;
     upper = against ? -p.center[0] : along ? p.center[0] : kInfinite;
@@ -501,7 +476,7 @@ FCL_ARTIC_INLINE bool isSolid(const TreeView& tree) {
 
 /// Values of p.u over the core: lower end -h(-u), upper end h(u). T: double, or Lanes for eight directions.
 template <class T>
-FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const T* u, T& lower, T& upper) {
+FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const Vec3Of<T>& u, T& lower, T& upper) {
   // Most pieces are triangles or hulls: predicted, while the switch jumps.
   if (piece.kind == PieceKind::vertices) return VerticesKind::range(tree, piece, u, lower, upper);
   if (piece.kind == PieceKind::hull) return HullKind::range(tree, piece, u, lower, upper);
@@ -516,7 +491,7 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
     return Kind::kCentred;
   });
   if (!centred) return;
-  const T m = dot(u, piece.center);
+  const T m = dot(u, centerOf(piece));
   lower = m - down;
   upper = m + up;
 }
@@ -525,8 +500,8 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
 constexpr int kFewLanes = 3;
 
 /// The same where only `lanes` matter: nothing need be known of the others.
-FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const Lanes* u, unsigned lanes, Lanes& lower,
-                                Lanes& upper) {
+FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const Vec3Lanes& u, unsigned lanes,
+                                Lanes& lower, Lanes& upper) {
   if (piece.kind != PieceKind::hull || __builtin_popcount(lanes) > kFewLanes) {
     return coreRange(tree, piece, u, lower, upper);
   }
@@ -534,49 +509,46 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
   upper = Lanes(kInfinite);
   for (unsigned left = lanes; left; left &= left - 1) {
     const int lane = __builtin_ctz(left);
-    const double along[3] = {u[0][lane], u[1][lane], u[2][lane]};
     double least, most;
-    hullRange(tree.hulls + piece.first_vertex, piece.num_vertices, along, least, most);
+    hullRange(tree.hulls + piece.first_vertex, piece.num_vertices, laneOf(u, lane), least, most);
     lower.set(lane, least);
     upper.set(lane, most);
   }
 }
 
 /// A point of the core farthest along u (unit or not); of an unbounded piece the foot of its boundary.
-inline void supportPoint(const TreeView& tree, const Piece& piece, const double* u, double* x) {
-  withKind(piece.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { decltype(kind)::support(tree, piece, u, x); });
+inline Vec3 supportPoint(const TreeView& tree, const Piece& piece, const Vec3& u) {
+  return withKind(piece.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::support(tree, piece, u); });
 }
 
 /// Half sizes of the core's box about Piece::center; false where it has none of its own.
-inline bool coreHalfSizes(const Piece& piece, double* half) {
+inline bool coreHalfSizes(const Piece& piece, Vec3& half) {
   return withKind(piece.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::halfSizes(piece, half); });
 }
 
 /// The point x is certainly within the solid: farther inside than x can be off by, and as much again for rounding.
 /// False where that is not known.
 /// @param eps  bound on x's error.
-inline bool certainlyWithin(const Piece& solid, const double* x, double eps) {
-  double d[3];
-  for (int k = 0; k < 3; ++k) d[k] = abs(x[k] - solid.center[k]);
+inline bool certainlyWithin(const Piece& solid, const Vec3& x, double eps) {
+  const Vec3 d = abs(x - centerOf(solid));
   return withKind(solid.kind,
                   [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::certainlyWithin(solid, d, 2 * eps); });
 }
 
 /// Distance of points from a solid, up to 8 kUlp of the numbers that go in; 0 inside. Infinite where it is not known.
-FCL_ARTIC_INLINE Lanes distanceFrom(const Piece& solid, const Lanes* x) {
-  Lanes d[3];
-  for (int k = 0; k < 3; ++k) d[k] = abs(x[k] - Lanes(solid.center[k]));
+FCL_ARTIC_INLINE Lanes distanceFrom(const Piece& solid, const Vec3Lanes& x) {
+  const Vec3Lanes d = abs(x - spread(centerOf(solid)));
   return withKind(solid.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::distance(solid, d); });
 }
 
 /// The point of a solid of which the distance is known that is nearest to x.
-inline void nearestPoint(const Piece& solid, const double* x, double* nearest) {
-  double d[3], core[3];
-  for (int k = 0; k < 3; ++k) d[k] = x[k] - solid.center[k];
-  withKind(solid.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { decltype(kind)::nearest(solid, d, core); });
-  const double rest[3] = {d[0] - core[0], d[1] - core[1], d[2] - core[2]}, length = norm(rest);
-  const double within = length > solid.radius ? solid.radius / length : 1;
-  for (int k = 0; k < 3; ++k) nearest[k] = solid.center[k] + core[k] + within * rest[k];
+inline Vec3 nearestPoint(const Piece& solid, const Vec3& x) {
+  const Vec3 d = x - centerOf(solid);
+  const Vec3 core =
+      withKind(solid.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::nearest(solid, d); });
+  const Vec3 rest = d - core;
+  const double length = norm(rest), within = length > solid.radius ? solid.radius / length : 1;
+  return centerOf(solid) + core + rest * within;
 }
 
 /// Half the width of a rod, the second smallest half size of a box; infinite for what has no long chord.
@@ -586,15 +558,16 @@ inline double widthOfRod(const Piece& solid) {
 
 /// A chord of a solid: along its longest axis, a cylinder's or a cone's own, through the solid's point next to x. Its
 /// ends err by less than supportPoint()'s. False where none is known.
-inline bool longChord(const Piece& solid, const double* x, double (*ends)[3]) {
+inline bool longChord(const Piece& solid, const Vec3& x, Vec3* ends) {
   return withKind(solid.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::chord(solid, x, ends); });
 }
 
 /// A point of the piece, radius included.
 /// @param part  of its half sizes, from its middle; |part| <= 1.
-inline void pointWithin(const TreeView& tree, const Piece& piece, const double* part, double* x) {
-  withKind(piece.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { decltype(kind)::pointWithin(tree, piece, part, x); });
-  for (int k = 0; k < 3; ++k) x[k] += piece.radius * part[k];
+inline Vec3 pointWithin(const TreeView& tree, const Piece& piece, const Vec3& part) {
+  const Vec3 x = withKind(
+      piece.kind, [&](auto kind) FCL_ARTIC_INLINE_CALL { return decltype(kind)::pointWithin(tree, piece, part); });
+  return x + part * piece.radius;
 }
 
 /// Calls add(x, y, z), from Piece::center, with points whose hull holds the core; of unbounded pieces with none.

@@ -70,7 +70,7 @@ class HullDistance {
     body_.tree_a = body_.tree_b = &view_;
     body_.a = &piece_;
     body_.b = &point_;
-    for (int i = 0; i < 9; ++i) body_.pose.R[i] = i % 4 == 0;
+    body_.pose.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   }
   void add(const Eigen::Vector3d& vertex) {
     packed_.insert(packed_.end(), vertex.data(), vertex.data() + 3);
@@ -84,10 +84,10 @@ class HullDistance {
     // Neighbours in a mesh are nearest to the same few vertices.
     const double guess = last_.n == 3 ? distanceOfTriangle(p) : INFINITY;
     if (guess <= enough) return guess;
-    for (int k = 0; k < 3; ++k) body_.pose.c[k] = p[k];
+    body_.pose.c = sse2::Vec3(p.data());
     const Eigen::Vector3d direction = p - sum_ / piece_.num_vertices;
     sse2::GjkResult g;
-    sse2::gjk(body_, direction.data(), 1e-3, enough * (1 - 1e-9), 48, g);
+    sse2::gjk(body_, sse2::Vec3(direction.data()), 1e-3, enough * (1 - 1e-9), 48, g);
     sse2::originWeights(g.simplex);
     last_ = g.simplex;
     return std::min(guess, distanceOfCombination(p));
@@ -95,11 +95,8 @@ class HullDistance {
 
  private:
   double distanceOfTriangle(const Eigen::Vector3d& p) {
-    double corner[3][3];
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) corner[i][k] = last_.v[i].a[k] - p[k];
-    }
-    sse2::nearestOnTriangle(corner[0], corner[1], corner[2], last_.weight);
+    const sse2::Vec3 x(p.data());
+    sse2::nearestOnTriangle(last_.v[0].a - x, last_.v[1].a - x, last_.v[2].a - x).store(last_.weight);
     return distanceOfCombination(p);
   }
   /// From the convex combination of vertices that a search ended with, wherever that was; from one of them should the
@@ -109,7 +106,7 @@ class HullDistance {
     double sum = 0, nearest = INFINITY;
     bool convex = true;
     for (int i = 0; i < last_.n; ++i) {
-      const Eigen::Vector3d d = p - Eigen::Vector3d::Map(last_.v[i].a);
+      const Eigen::Vector3d d = p - Eigen::Vector3d::Map(last_.v[i].a.k);
       w += last_.weight[i] * d;
       sum += last_.weight[i];
       convex = convex && last_.weight[i] >= 0;

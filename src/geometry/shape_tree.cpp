@@ -136,7 +136,8 @@ class Builder {
 /// Box of a bounded shape; sets its reach.
 BoxBounds measure(Piece& piece) {
   BoxBounds box;
-  double half[3], sum = 0;
+  sse2::Vec3 half;
+  double sum = 0;
   if (!sse2::coreHalfSizes(piece, half)) throw std::invalid_argument("this kind of piece has no size of its own");
   for (int k = 0; k < 3; ++k) {
     const double far = std::abs(piece.center[k]) + half[k];
@@ -382,7 +383,7 @@ LineSweptSphere ShapeTree::makeLineSweptSphere() const {
     if (sse2::unbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
     radius = std::max(radius, p.radius);
     if (p.kind == PieceKind::vertices) continue;  // added above
-    double half[3];
+    sse2::Vec3 half;
     if (!sse2::coreHalfSizes(p, half)) {
       sse2::coverCore(view_, p, [&](double x, double y, double z) { points.emplace_back(x, y, z); });
       continue;

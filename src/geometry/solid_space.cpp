@@ -173,7 +173,7 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
         sse2::coverCore(tree, piece, [&](double x, double y, double z) { add(i, {x, y, z}); });
       } else {
         for (std::size_t k = 0; k < kPerPart; ++k)
-          sse2::pointWithin(tree, piece, kPlaces[k].data(), parts_[i].points[k].data());
+          sse2::pointWithin(tree, piece, sse2::Vec3(kPlaces[k].data())).store(parts_[i].points[k].data());
       }
     }
   }

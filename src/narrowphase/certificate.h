@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The proof that anything is free (doc/NUMERICS.md, section 4): a direction n, fixed in one body's frame, keeps two
-// convex pieces apart over a whole time interval. Where n comes from needs no trust; this file and lane_motion.h carry
-// all of it.
+// convex pieces apart over a whole time interval. Where n comes from needs no trust; this file and
+// motion/{chain,factors, remainder,rigid_lanes}.h carry all of it.
 #pragma once
 
 #include "convex/piece_kinds.h"
-#include "motion/lane_motion.h"
+#include "motion/rigid_lanes.h"
 #include "numerics/assertion.h"
 
 namespace fcl_artic {
@@ -26,13 +26,10 @@ struct Side {
 /// n.x(t) over the core is n.c + range of the core along R^T n. With R and c in the hull of their Bernstein points
 /// (with weights that depend on t only) and h convex, h(R(t)^T n) lies below the quadratic with Bernstein points
 /// h(R_k^T n); -h(-u) above the one with -h(-R_k^T n).
-FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const double* n, unsigned lanes, Lanes* lower,
+FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const Vec3& n, unsigned lanes, Lanes* lower,
                                   Lanes* upper) {
   for (int k = 0; k < 3; ++k) {
-    Lanes u[3];
-    for (int j = 0; j < 3; ++j) {
-      u[j] = mulAdd(side.m.Rb[k][j], n[0], mulAdd(side.m.Rb[k][3 + j], n[1], side.m.Rb[k][6 + j] * Lanes(n[2])));
-    }
+    const Vec3Lanes u = transposedTimes(side.m.Rb[k], n);
     coreRange(*side.moving, moving, u, lanes, lower[k], upper[k]);
     const Lanes g = dot(side.m.cb[k], n);
     lower[k] = lower[k] + g;
@@ -50,7 +47,7 @@ FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piec
 /// over the whole interval.
 /// @param n  in the frame of side.still.
 /// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
-FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const double* n,
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
                                              unsigned lanes, double margin, double pad, double& sign) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
@@ -94,8 +91,8 @@ inline double positivePrefix(const double* G) {
 
 /// Bernstein coefficients of a lower bound of the gap beyond `margin` along n, over each lane's interval.
 /// @param n  in the frame of side.still, from still to moving.
-FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const double* n,
-                               double margin, double pad, Lanes* G) {
+FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const Vec3& n, double margin,
+                               double pad, Lanes* G) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
@@ -106,7 +103,7 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
 
 /// A direction that turns: over each lane's interval it goes straight from `begin` to `end`. It need not be unit.
 struct TurningDirection {
-  Lanes begin[3], end[3];
+  Vec3Lanes begin, end;
 };
 
 /// The same along a direction that turns, as the gap's own does between edges and curved surfaces, in neither body's
@@ -127,18 +124,14 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
                        Lanes((1 + 8 * kUlp) * slackOf(side, still, moving, margin, pad));
   for (int k = 0; k < 4; ++k) {
     // Point k of the cubic: (k n_1 X_(k-1) + (3 - k) n_0 X_k) / 3.
-    Lanes u[3], origin(0.0);
-    for (int j = 0; j < 3; ++j) u[j] = Lanes(0.0);
+    Vec3Lanes u = spread(Vec3(0, 0, 0));
+    Lanes origin(0.0);
     for (int end = 0; end < 2; ++end) {
       const int point = k - end;
       if (point < 0 || point > 2) continue;
       const Lanes weight = Lanes(end ? k : 3 - k) * third;
-      Lanes m[3];
-      for (int i = 0; i < 3; ++i) m[i] = (end ? n.end : n.begin)[i] * weight;
-      for (int j = 0; j < 3; ++j) {
-        const Lanes* R = side.m.Rb[point];
-        u[j] = mulAdd(R[j], m[0], mulAdd(R[3 + j], m[1], mulAdd(R[6 + j], m[2], u[j])));
-      }
+      const Vec3Lanes m = (end ? n.end : n.begin) * weight;
+      u = mulAdd(transposed(side.m.Rb[point]), m, u);
       origin = origin + dot(side.m.cb[point], m);
     }
     Lanes upper;

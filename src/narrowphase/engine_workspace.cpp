@@ -95,11 +95,11 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   constexpr double kSpan = 0x1p-14;
   const double tm = std::min(std::max(contact.t_lower, kSpan), 1 - kSpan), tau = (contact.t_lower - tm) / kSpan;
   const PairMotion motion = pairMotion(contact.pair, tm, kSpan);
-  const auto quadratic = [&](const auto& x, int i) { return x[0][i] + tau * (x[1][i] + tau * x[2][i]); };
+  const auto quadratic = [&](const auto& x0, const auto& x1, const auto& x2) { return x0 + (x1 + x2 * tau) * tau; };
   sse2::DifferenceBody body;
-  for (int i = 0; i < 9; ++i) body.pose.R[i] = quadratic(motion.R, i);
-  for (int i = 0; i < 3; ++i) body.pose.c[i] = quadratic(motion.c, i);
-  const Vector3d of_b = Rotation::Map(body.pose.R).transpose() * (point - Vector3d::Map(body.pose.c));
+  body.pose.R = quadratic(sse2::Mat3(motion.R[0]), sse2::Mat3(motion.R[1]), sse2::Mat3(motion.R[2]));
+  body.pose.c = quadratic(sse2::Vec3(motion.c[0]), sse2::Vec3(motion.c[1]), sse2::Vec3(motion.c[2]));
+  const Vector3d of_b = Vector3d::Map(sse2::transposedTimes(body.pose.R, sse2::Vec3(contact.point) - body.pose.c).k);
   const auto change = [&](int order) -> Vector3d {
     return Rotation::Map(motion.R[order]) * of_b + Vector3d::Map(motion.c[order]);
   };
@@ -113,12 +113,13 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   body.tree_b = problem.bodies[contact.body_b].tree;
   sse2::GjkResult found;
   constexpr int kMostIterations = 64;
-  sse2::gjk(body, contact.normal, 1e-6, body.a->radius + body.b->radius, kMostIterations, found);
+  sse2::gjk(body, sse2::Vec3(contact.normal), 1e-6, body.a->radius + body.b->radius, kMostIterations, found);
   if (found.overlap) return;
   sse2::originWeights(found.simplex);
-  sse2::combine(body, found.simplex, contact.nearest_a, contact.nearest_b);
-  Vector3d::Map(contact.nearest_a) += body.a->radius * Vector3d::Map(found.n);
-  Vector3d::Map(contact.nearest_b) -= body.b->radius * Vector3d::Map(found.n);
+  sse2::Vec3 a, b;
+  sse2::combine(body, found.simplex, a, b);
+  (a + found.n * body.a->radius).store(contact.nearest_a);
+  (b - found.n * body.b->radius).store(contact.nearest_b);
   contact.t_nearest = contact.t_lower;
 }
 

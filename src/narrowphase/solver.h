@@ -88,8 +88,8 @@ inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion
   motion.set(pair, TimeBatch::around(tm, d));
   const RigidLanes& m = motion.seenFromA();
   for (int order = 0; order < 3; ++order) {
-    for (int i = 0; i < 9; ++i) seen.R[order][i] = m.R[order][i][0];
-    for (int i = 0; i < 3; ++i) seen.c[order][i] = m.c[order][i][0];
+    laneOf(m.R[order], 0).store(seen.R[order]);
+    laneOf(m.c[order], 0).store(seen.c[order]);
   }
   seen.rem_c = m.rem_c;
   seen.rem_R = m.rem_R;

@@ -19,28 +19,27 @@ class SweptDifference {
   SweptDifference(const Side& side, const Piece& still, const Piece& moving, int lane)
       : side_(side), still_(still), moving_(moving) {
     for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < 9; ++i) R_[k][i] = side.m.Rb[k][i][lane];
-      for (int i = 0; i < 3; ++i) c_[k][i] = side.m.cb[k][i][lane];
+      R_[k] = laneOf(side.m.Rb[k], lane);
+      c_[k] = laneOf(side.m.cb[k], lane);
     }
   }
   /// The difference's point that is least along n.
-  void support(const double* n, DifferencePoint& p) const {
-    double s[3], u[3][3], origin[3], x[3];
-    supportPoint(*side_.still, still_, n, s);
+  void support(const Vec3& n, DifferencePoint& p) const {
+    Vec3 x, u[3];
+    double origin[3];
     for (int k = 0; k < 3; ++k) {
-      const double* R = R_[k];
-      for (int j = 0; j < 3; ++j) u[k][j] = -(R[j] * n[0] + R[3 + j] * n[1] + R[6 + j] * n[2]);
+      u[k] = -transposedTimes(R_[k], n);
       origin[k] = -dot(n, c_[k]);
     }
     const int pose = farthest(u, origin, x);
-    for (int k = 0; k < 3; ++k) p.w[k] = dot(R_[pose] + 3 * k, x) + c_[pose][k] - s[k];
+    p.w = R_[pose] * x + c_[pose] - supportPoint(*side_.still, still_, n);
   }
   /// A point's w is all there is: no simplex of another pose is begun with.
   void subtract(DifferencePoint&) const {}
 
  private:
   /// The pose k, and the moving core's point x, for which u_k.x + origin_k is largest.
-  int farthest(const double (*u)[3], const double* origin, double* x) const {
+  int farthest(const Vec3* u, const double* origin, Vec3& x) const {
     constexpr int kStride = kNumbered / 4;
     if (moving_.kind == PieceKind::hull && moving_.num_vertices <= kStride) {  // all poses in one pass
       const double* p = side_.moving->hulls + moving_.first_vertex;
@@ -58,20 +57,20 @@ class SweptDifference {
     int pose = 0;
     double most = -kInfinite;
     for (int k = 0; k < 3; ++k) {
-      double y[3];
-      supportPoint(*side_.moving, moving_, u[k], y);
+      const Vec3 y = supportPoint(*side_.moving, moving_, u[k]);
       const double value = dot(u[k], y) + origin[k];
       if (!(value > most)) continue;
       most = value;
       pose = k;
-      for (int i = 0; i < 3; ++i) x[i] = y[i];
+      x = y;
     }
     return pose;
   }
 
   const Side& side_;
   const Piece &still_, &moving_;
-  double R_[3][9], c_[3][3];
+  Mat3 R_[3];
+  Vec3 c_[3];
 };
 
 }  // namespace FCL_ARTIC_ISA

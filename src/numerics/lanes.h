@@ -48,17 +48,6 @@ FCL_ARTIC_INLINE double sqrt(double a) {
 FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) {
   return a * b + c;
 }
-FCL_ARTIC_INLINE double dot(const double* a, const double* b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-FCL_ARTIC_INLINE void cross(const double* a, const double* b, double* o) {
-  o[0] = a[1] * b[2] - a[2] * b[1];
-  o[1] = a[2] * b[0] - a[0] * b[2];
-  o[2] = a[0] * b[1] - a[1] * b[0];
-}
-FCL_ARTIC_INLINE double norm(const double* a) {
-  return __builtin_sqrt(dot(a, a));
-}
 
 constexpr int kLanes = 8;
 constexpr unsigned kAllLanes = 0xff;
@@ -327,18 +316,6 @@ FCL_ARTIC_INLINE double maxLane(Lanes a) {
 }
 FCL_ARTIC_INLINE double minLane(Lanes a) {
   return -maxLane(-a);
-}
-
-FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const Lanes* b) {
-  return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * b[0]));
-}
-FCL_ARTIC_INLINE Lanes dot(const Lanes* a, const double* b) {
-  return mulAdd(a[2], b[2], mulAdd(a[1], b[1], a[0] * Lanes(b[0])));
-}
-FCL_ARTIC_INLINE void cross(const Lanes* a, const Lanes* b, Lanes* o) {
-  o[0] = a[1] * b[2] - a[2] * b[1];
-  o[1] = a[2] * b[0] - a[0] * b[2];
-  o[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /// Sine and cosine for |x| <= kMaxAngle, error at most 4 * 2^-52 in any rounding mode (doc/NUMERICS.md, "Sine and

@@ -15,8 +15,8 @@
 
 #define FCL_ARTIC_ISA interval_chain
 #define FCL_ARTIC_ISA_BITS 128
+#include "motion/chain.h"
 #include "motion/frame_sweep.h"
-#include "motion/lane_motion.h"
 
 namespace fcl_artic {
 
@@ -142,7 +142,7 @@ IntervalVec3 vectorWithin(const double* x, double part) {
 }
 
 /// What the author of a motion tells, over T: its state at the middle and how far bounds let that go; or the inverse
-/// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/lane_motion.h give.
+/// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
 void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
   const double middle = T.middle();
   double x[24], bound[6];

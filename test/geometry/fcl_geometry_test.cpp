@@ -129,9 +129,8 @@ std::map<std::string, std::shared_ptr<fcl::CollisionGeometry<S>>> shapes() {
 
 /// Farthest point of a piece along u, its rounding included.
 Vector3d support(const TreeView& view, const Piece& piece, const Vector3d& u) {
-  Vector3d x;
-  sse2::supportPoint(view, piece, u.data(), x.data());
-  return x + piece.radius * u.normalized();
+  const sse2::Vec3 x = sse2::supportPoint(view, piece, sse2::Vec3(u.data()));
+  return Vector3d::Map(x.k) + piece.radius * u.normalized();
 }
 
 bool fclSaysTouching(const fcl::CollisionGeometryd& geometry, const fcl::CollisionGeometryd& other,
@@ -339,7 +338,7 @@ TEST(FclGeometry, ConvexIsTheHullOfItsVertices) {
         most = std::max(most, u.dot(v.template cast<double>()));
         least = std::min(least, u.dot(v.template cast<double>()));
       }
-      sse2::coreRange(view, piece, u.data(), lower, upper);
+      sse2::coreRange(view, piece, sse2::Vec3(u.data()), lower, upper);
       EXPECT_NEAR(upper, most, 1e-14);
       EXPECT_NEAR(lower, least, 1e-14);
       EXPECT_NEAR(support(view, piece, u).dot(u), most, 1e-14);

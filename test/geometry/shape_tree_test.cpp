@@ -102,13 +102,13 @@ TEST(OuterHull, HoldsEachPointOfAMesh) {
     body.tree_a = body.tree_b = &view;
     body.a = &piece;
     body.b = &origin;
-    for (int i = 0; i < 9; ++i) body.pose.R[i] = i % 4 == 0;
+    body.pose.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     double farthest = 0;
     for (const Vector3d& p : points) {
-      for (int k = 0; k < 3; ++k) body.pose.c[k] = p[k];
+      body.pose.c = sse2::Vec3(p.data());
       sse2::GjkResult g;
-      sse2::gjk(body, p.data(), 1e-6, 0, 100, g);
-      const Vector3d u = Vector3d::Map(g.n);
+      sse2::gjk(body, body.pose.c, 1e-6, 0, 100, g);
+      const Vector3d u = Vector3d::Map(g.n.k);
       double inside = -INFINITY;
       for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v));
       ASSERT_LE(u.dot(p), inside + hull.radius) << "round " << round;

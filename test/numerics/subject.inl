@@ -54,7 +54,7 @@ void write(const Side* side, const PairPads& pads, PairOutput& out) {
     const RigidLanes& m = side[s].m;
     for (int order = 0; order < 3; ++order) {
       for (int lane = 0; lane < kLanes; ++lane) {
-        for (int i = 0; i < 9; ++i) out.R[s][order][i][lane] = m.R[order][i][lane];
+        for (int i = 0; i < 9; ++i) out.R[s][order][i][lane] = m.R[order][i / 3][i % 3][lane];
         for (int i = 0; i < 3; ++i) out.c[s][order][i][lane] = m.c[order][i][lane];
       }
     }
@@ -80,15 +80,15 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   const Side& s = side[in.side];
   const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
   out.sign = 0;
-  out.separated = certainlySeparated(s, still, moving, in.n, kAllLanes, in.motion.margin, pads.pad, out.sign);
+  out.separated = certainlySeparated(s, still, moving, Vec3(in.n), kAllLanes, in.motion.margin, pads.pad, out.sign);
   out.separated_few = 0;
   for (unsigned lanes = (1u << kFewLanes) - 1; lanes & kAllLanes; lanes <<= kFewLanes) {
     double sign = 0;
     out.separated_few |=
-        certainlySeparated(s, still, moving, in.n, lanes & kAllLanes, in.motion.margin, pads.pad, sign);
+        certainlySeparated(s, still, moving, Vec3(in.n), lanes & kAllLanes, in.motion.margin, pads.pad, sign);
   }
   Lanes G[3];
-  gapBound(s, still, moving, in.n, in.motion.margin, pads.pad, G);
+  gapBound(s, still, moving, Vec3(in.n), in.motion.margin, pads.pad, G);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int k = 0; k < 3; ++k) out.G[lane][k] = G[k][lane];
     out.prefix[lane] = positivePrefix(out.G[lane]);
@@ -117,12 +117,12 @@ void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
   for (int lane = 0; lane < kLanes; ++lane) {
     const SweptDifference difference(s, still, moving, lane);
     DifferencePoint p;
-    difference.support(in.n, p);
-    out.least[lane] = dot(in.n, p.w);
+    difference.support(Vec3(in.n), p);
+    out.least[lane] = dot(Vec3(in.n), p.w);
     double sign = 0;
     const unsigned bit = 1u << lane;
     GjkResult g;
-    searchNearest(difference, in.n, kWitnessAccuracy, out.slack, out.slack, 48, g);
+    searchNearest(difference, Vec3(in.n), kWitnessAccuracy, out.slack, out.slack, 48, g);
     if (g.lower > out.slack) {
       out.told |= bit;
       out.certified |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
@@ -132,9 +132,8 @@ void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
     body.tree_b = s.moving;
     body.a = &still;
     body.b = &moving;
-    for (int i = 0; i < 9; ++i) body.pose.R[i] = s.m.R[0][i][lane];
-    for (int i = 0; i < 3; ++i) body.pose.c[i] = s.m.c[0][i][lane];
-    gjk(body, in.n, 1e-7, still.radius + moving.radius + in.motion.margin, 48, g);
+    body.pose = {laneOf(s.m.R[0], lane), laneOf(s.m.c[0], lane)};
+    gjk(body, Vec3(in.n), 1e-7, still.radius + moving.radius + in.motion.margin, 48, g);
     if (g.overlap) continue;
     out.middle |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
   }
@@ -165,7 +164,7 @@ void boundLssOf(const PairInput& in, const LssInput& lss, BoxOutput& out) {
   const Chain chain(in);
   SweptLss swept;
   sweepLssOf(chain, in, lss, swept);
-  Lanes lo[3], hi[3];
+  Vec3Lanes lo, hi;
   boundLss(swept, 0, lo, hi);
   for (int k = 0; k < 3; ++k) {
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -184,7 +183,8 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
     box.hi[k] = still.hi[k];
   }
   box.radius = still.radius;
-  Lanes square, nearest[3], l[3];
+  Lanes square;
+  Vec3Lanes nearest, l;
   return certainlyApart(swept, box, still.inverse, in.margin, square, nearest, l);
 }
 
@@ -217,32 +217,29 @@ DifferenceBody differenceOf(const TouchInput& in) {
   body.tree_b = &in.b;
   body.a = in.a.pieces;
   body.b = in.b.pieces;
-  for (int i = 0; i < 9; ++i) body.pose.R[i] = in.R[i];
-  for (int i = 0; i < 3; ++i) body.pose.c[i] = in.c[i];
+  body.pose = {Mat3(in.R), Vec3(in.c)};
   return body;
 }
 
 bool certainlyTouchingOf(const TouchInput& in) {
   const DifferenceBody body = differenceOf(in);
-  double point[3];
-  return certainlyTouching(body, in.margin, in.eps, in.guess, point);
+  Vec3 point;
+  return certainlyTouching(body, in.margin, in.eps, Vec3(in.guess), point);
 }
 
 bool certainlyWithinOf(const TouchInput& in) {
   const DifferenceBody body = differenceOf(in);
-  double x[3];
-  body.place(body.b->kind == PieceKind::vertices ? in.b.vertices : body.b->center, x);
-  return certainlyWithin(*body.a, x, in.eps);
+  const Vec3 x(body.b->kind == PieceKind::vertices ? in.b.vertices : body.b->center);
+  return certainlyWithin(*body.a, body.place(x), in.eps);
 }
 
 bool certainlyPiercesOf(const TouchInput& in) {
   const DifferenceBody body = differenceOf(in);
-  double chord[2][3], corners[3][3], middle[3];
-  for (int i = 0; i < 3; ++i) body.place(in.b.vertices + 3 * i, corners[i]);
-  for (int k = 0; k < 3; ++k) middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
-  if (!longChord(*body.a, middle, chord)) return false;
+  Vec3 chord[2], corners[3];
+  for (int i = 0; i < 3; ++i) corners[i] = body.place(Vec3(in.b.vertices + 3 * i));
+  if (!longChord(*body.a, (corners[0] + corners[1] + corners[2]) / 3, chord)) return false;
   for (int i = 0; i < 3; ++i) {
-    const double weights[3] = {double(i == 0), double(i == 1), double(i == 2)};
+    const Vec3 weights(i == 0, i == 1, i == 2);
     if (certainlyPierces(chord, corners, in.eps, weights, 0.5)) return true;
   }
   return false;

@@ -189,13 +189,13 @@ TEST(RelativeMotion, SeesEachBodyFromTheOther) {
 TEST(RelativeMotion, WitnessIsThePairs) {
   TwoBalls world;
   world.asPair().begin();
-  const double up[3] = {0, 0, 1};
+  const Vec3 up(0, 0, 1);
   world.motion.set(0, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
   world.motion.setWitness(up);
   world.motion.set(0, TimeBatch::middles());  // another batch: it serves still
   ASSERT_NE(world.motion.witness(), nullptr);
-  EXPECT_EQ(world.motion.witness()[2], 1);
+  EXPECT_EQ((*world.motion.witness())[2], 1);
   world.begin();
   world.motion.set(0, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
@@ -255,7 +255,7 @@ TEST(PoseProofs, ProveContactWhereItIs) {
     ASSERT_EQ(world.contacts.size(), touch) << k;
     if (touch) {
       EXPECT_EQ(world.contacts.data()[0].t_upper, world.task.whole.at[k]);
-      EXPECT_LE(norm(world.contacts.data()[0].point), 0.5 + 1e-9);
+      EXPECT_LE(norm(Vec3(world.contacts.data()[0].point)), 0.5 + 1e-9);
     }
   }
 }

@@ -22,7 +22,7 @@ struct BoxesAtPose {
 
   explicit BoxesAtPose(const PoseAt& pose) {
     for (int i = 0; i < 9; ++i) {
-      R[i] = static_cast<float>(pose.R[i]);
+      R[i] = static_cast<float>(pose.R[i / 3][i % 3]);
       absolute[i] = __builtin_fabsf(R[i]);
     }
     for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(pose.c[k]);
@@ -74,7 +74,7 @@ class AnyContact : PartOfSolver {
   /// Hulls of a pair overlap, or so it seems, in the middles of these lanes of [0, 1].
   void guessOverlap(int pair, unsigned lanes) { overlap_guesses_.push({pair, 0, 0, lanes}); }
   void forgetOverlaps() { overlap_guesses_.clear(); }
-  bool tryObstacle(int pair, int lane, const double* near, bool thin);
+  bool tryObstacle(int pair, int lane, const Vec3& near, bool thin);
   void considerLinks(int pair, Lanes square, double radii);
   bool tryLinks();
   bool tryOverlaps(Buffer<Entry>& open);
@@ -119,7 +119,7 @@ class AnyContact : PartOfSolver {
 /// A link whose line swept sphere is deep in a solid: a ball inside the link, a vertex in the solid, and a chord of the
 /// solid, the chord first where the solid is thin.
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
-inline bool AnyContact::tryObstacle(int pair, int lane, const double* near, bool thin) {
+inline bool AnyContact::tryObstacle(int pair, int lane, const Vec3& near, bool thin) {
   if (balls_.inSolid(pair, lane)) return true;
   motion_.set(pair, whole());
   if (thin && proofs_.chordPierces(lane, near)) return true;

@@ -19,38 +19,23 @@ using engine::InnerBalls;
 /// A link's tree frame in another frame at one time. A point p of the link, |p| <= extent, is at R p + c up to
 /// kUlp (ulps + kPoseUlps) sizes.
 struct PlacedLink {
-  double R[9], c[3];
+  Mat3 R;
+  Vec3 c;
   double ulps, sizes;
 
-  PlacedLink(const Placement& P, double extent) : ulps(P.ulps), sizes(P.length + extent) {
-    for (int i = 0; i < 9; ++i) R[i] = P.R[i];
-    for (int k = 0; k < 3; ++k) c[k] = P.t[k];
-  }
-  template <class T>
-  FCL_ARTIC_INLINE void place(const T* p, T* x) const {
-    for (int k = 0; k < 3; ++k) x[k] = dot(p, R + 3 * k) + T(c[k]);
-  }
-  template <class T>
-  FCL_ARTIC_INLINE void turnBack(const T* d, T* p) const {
-    for (int k = 0; k < 3; ++k) p[k] = mulAdd(d[2], T(R[6 + k]), mulAdd(d[1], T(R[3 + k]), d[0] * T(R[k])));
-  }
-  template <class T>
-  FCL_ARTIC_INLINE void opposite(const T* x, T* p) const {
-    const T d[3] = {x[0] - T(c[0]), x[1] - T(c[1]), x[2] - T(c[2])};
-    turnBack(d, p);
-  }
+  PlacedLink(const Placement& P, double extent) : R(P.R), c(P.t), ulps(P.ulps), sizes(P.length + extent) {}
+
+  FCL_ARTIC_INLINE Vec3 place(const Vec3& p) const { return R * p + c; }
+  FCL_ARTIC_INLINE Vec3Lanes place(const Vec3Lanes& p) const { return R * p + spread(c); }
+  FCL_ARTIC_INLINE Vec3Lanes seenFromLink(const Vec3Lanes& x) const { return transposedTimes(R, x - spread(c)); }
   double error() const { return kUlp * (ulps + kPoseUlps) * sizes + kLeastLength; }
 };
 
 /// The same behind one more placement.
 inline PlacedLink seenFrom(const Placement& P, const PlacedLink& link) {
   PlacedLink seen = {P, 0};
-  for (int k = 0; k < 3; ++k) {
-    const double* row = P.R + 3 * k;
-    for (int j = 0; j < 3; ++j)
-      seen.R[3 * k + j] = row[0] * link.R[j] + row[1] * link.R[3 + j] + row[2] * link.R[6 + j];
-    seen.c[k] += dot(row, link.c);
-  }
+  seen.c = seen.place(link.c);
+  seen.R = seen.R * link.R;
   seen.ulps += link.ulps;
   seen.sizes += link.sizes;
   return seen;
@@ -64,9 +49,13 @@ inline double differenceError(const PlacedLink& a, const PlacedLink& b) {
 FCL_ARTIC_INLINE const Lanes& lanesAt(const double* x) {
   return *reinterpret_cast<const Lanes*>(x);
 }
+/// Eight points, of which the coordinates lie in three rows.
+FCL_ARTIC_INLINE Vec3Lanes pointsAt(const double* x, const double* y, const double* z) {
+  return {lanesAt(x), lanesAt(y), lanesAt(z)};
+}
 
 /// One of eight points, in a part's tree frame and off by `error` at most, certainly lies outside the part's box.
-inline bool certainlyOutside(const ClosedPart& part, const Lanes* points, double error) {
+inline bool certainlyOutside(const ClosedPart& part, const Vec3Lanes& points, double error) {
   unsigned out = 0;
   for (int k = 0; k < 3; ++k) {
     out |= greater(points[k], Lanes(part.hi[k] + error)) | greater(Lanes(part.lo[k] - error), points[k]);
@@ -77,11 +66,8 @@ inline bool certainlyOutside(const ClosedPart& part, const Lanes* points, double
 /// A link's part certainly reaches out of another link's part.
 inline bool certainlyReachesOut(const ClosedPart& part, const PlacedLink& link, const ClosedPart& other_part,
                                 const PlacedLink& other, double error) {
-  const Lanes p[3] = {lanesAt(part.points[0]), lanesAt(part.points[1]), lanesAt(part.points[2])};
-  Lanes x[3], seen[3];
-  link.place(p, x);
-  other.opposite(x, seen);
-  return certainlyOutside(other_part, seen, error);
+  const Vec3Lanes x = link.place(pointsAt(part.points[0], part.points[1], part.points[2]));
+  return certainlyOutside(other_part, other.seenFromLink(x), error);
 }
 
 /// Proofs at the middle of a lane of the present batch. What is proven is recorded, and true is returned.
@@ -108,8 +94,8 @@ inline PlacedLink BallProofs::placedLink(int index, int lane) {
   const FrameLanes& frame = frames_.of(0)[mover.step];
   const StepBounds& b = frames_.bounds(0, mover.step);
   Placement step;
-  for (int i = 0; i < 9; ++i) step.R[i] = frame.R[i][lane];
-  for (int k = 0; k < 3; ++k) step.t[k] = frame.o[k][lane];
+  laneOf(frame.R, lane).store(step.R);
+  laneOf(frame.o, lane).store(step.t);
   step.ulps = b.ulps;
   step.length = b.length + b.D1 * frames_.batch().d;
   return seenFrom(step, {mover.placement, mover.tree->extent});
@@ -130,20 +116,15 @@ inline bool BallProofs::inLinks(int pair, int lane) {
   const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
   const PlacedLink a = placedLink(A.mover, lane), b = placedLink(B.mover, lane);
   const double error = 4 * differenceError(a, b);
-  Lanes centers[InnerBalls::kMost / kLanes][3];
+  Vec3Lanes centers[InnerBalls::kMost / kLanes];
   for (int i = 0; i < of_a.count; i += kLanes) {
-    Lanes c[3];
-    for (int k = 0; k < 3; ++k) c[k] = lanesAt(of_a.center[k] + i);
-    a.place(c, centers[i / kLanes]);
+    centers[i / kLanes] = a.place(pointsAt(of_a.center[0] + i, of_a.center[1] + i, of_a.center[2] + i));
   }
   int nested_a = -1, nested_b = -1;  // parts of which the one may lie within the other
   for (int j = 0; j < of_b.count; ++j) {
-    const double c[3] = {of_b.center[0][j], of_b.center[1][j], of_b.center[2][j]};
-    double center[3];
-    b.place(c, center);
+    const Vec3 center = b.place(Vec3(of_b.center[0][j], of_b.center[1][j], of_b.center[2][j]));
     for (int first = 0; first < of_a.count; first += kLanes) {
-      const Lanes* x = centers[first / kLanes];
-      const Lanes d[3] = {x[0] - Lanes(center[0]), x[1] - Lanes(center[1]), x[2] - Lanes(center[2])};
+      const Vec3Lanes d = centers[first / kLanes] - spread(center);
       const Lanes radii = lanesAt(of_a.radius + first) + Lanes(of_b.radius[j] - error);
       for (unsigned meet = greater(radii, Lanes(0.0)) & greater(radii * radii, dot(d, d)); meet; meet &= meet - 1) {
         const int i = first + __builtin_ctz(meet);
@@ -160,14 +141,11 @@ inline bool BallProofs::inLinks(int pair, int lane) {
         LeafContact& contact = *recorded;
         contact.feature = engine::kVolume;
         // From A's centre towards B's, in the middle of what both balls have in common.
-        const double seen[3] = {-d[0][i - first], -d[1][i - first], -d[2][i - first]};
-        a.turnBack(seen, contact.normal);
-        const double distance = norm(contact.normal);
+        const Vec3 towards = transposedTimes(a.R, -laneOf(d, i - first)), normal = unitOrZ(towards);
+        const double distance = norm(towards);
         const double along = 0.5 * (max(distance - of_b.radius[j], 0.0) + min(of_a.radius[i], distance));
-        for (int k = 0; k < 3; ++k) {
-          contact.normal[k] = distance > 0 ? contact.normal[k] / distance : (k == 2);
-          contact.point[k] = of_a.center[k][i] + along * contact.normal[k];
-        }
+        normal.store(contact.normal);
+        (Vec3(of_a.center[0][i], of_a.center[1][i], of_a.center[2][i]) + normal * along).store(contact.point);
         return true;
       }
     }
@@ -176,15 +154,15 @@ inline bool BallProofs::inLinks(int pair, int lane) {
 }
 
 /// Points of a solid, farthest along eight directions, in its tree frame.
-inline void farPoints(const TreeView& solid, Lanes* points) {
-  static const double kDirections[8][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},
-                                           {0, 0, 1}, {0, 0, -1}, {1, 1, 1}, {-1, -1, -1}};
+inline Vec3Lanes farPoints(const TreeView& solid) {
+  static const Vec3 kDirections[8] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0},
+                                      {0, 0, 1}, {0, 0, -1}, {1, 1, 1}, {-1, -1, -1}};
+  Vec3Lanes points;
   for (int i = 0; i < 8; ++i) {
-    double x[3];
-    supportPoint(solid, solid.pieces[0], kDirections[i], x);
     const double radius = i < 6 ? solid.pieces[0].radius : 0;
-    for (int k = 0; k < 3; ++k) points[k].set(i, x[k] + radius * kDirections[i][k]);
+    setLane(points, i, supportPoint(solid, solid.pieces[0], kDirections[i]) + kDirections[i] * radius);
   }
+  return points;
 }
 
 /// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid, and that, being of one piece,
@@ -198,31 +176,24 @@ inline bool BallProofs::inSolid(int pair, int lane) {
   place.sizes += solid.tree->extent;
   const double error = 4 * place.error();
   for (int first = 0; first < balls.count; first += kLanes) {
-    Lanes c[3], x[3];
-    for (int k = 0; k < 3; ++k) c[k] = lanesAt(balls.center[k] + first);
-    place.place(c, x);
+    const Vec3Lanes x =
+        place.place(pointsAt(balls.center[0] + first, balls.center[1] + first, balls.center[2] + first));
     const Lanes depth = lanesAt(balls.radius + first) - (distanceFrom(solid.tree->pieces[0], x) + Lanes(error));
     const double deepest = maxLane(depth);
     if (!(deepest > 0)) continue;
     const int i = __builtin_ctz(kAllLanes & ~greater(Lanes(deepest), depth));
     ++statistics().contact_proofs;
-    Lanes far[3], seen[3];
-    farPoints(*solid.tree, far);
-    place.opposite(far, seen);
-    if (!certainlyOutside(balls.parts[balls.part[first + i]], seen, error)) continue;
+    const Vec3Lanes far = place.seenFromLink(farPoints(*solid.tree));
+    if (!certainlyOutside(balls.parts[balls.part[first + i]], far, error)) continue;
     LeafContact* const recorded = contacts_.record(pair, 0, -1, frames_.batch().at[lane]);
     if (!recorded) return false;
     LeafContact& contact = *recorded;
     contact.feature = engine::kVolume;
     // From the solid's point next to the ball's centre towards that; away from the solid's middle where it is within.
-    const double center[3] = {x[0][i], x[1][i], x[2][i]};
-    nearestPoint(solid.tree->pieces[0], center, contact.point);
-    double middle[3];
-    middleOf(solid.tree->nodes[0], middle);
+    const Vec3 center = laneOf(x, i), point = nearestPoint(solid.tree->pieces[0], center);
     const bool within = distanceFrom(solid.tree->pieces[0], x)[i] <= 0;
-    for (int k = 0; k < 3; ++k) contact.normal[k] = center[k] - (within ? middle : contact.point)[k];
-    const double length = norm(contact.normal);
-    for (int k = 0; k < 3; ++k) contact.normal[k] = length > 0 ? contact.normal[k] / length : (k == 2);
+    point.store(contact.point);
+    unitOrZ(center - (within ? middleOf(solid.tree->nodes[0]) : point)).store(contact.normal);
     return true;
   }
   return false;

@@ -46,8 +46,8 @@ class Containment : PartOfSolver {
   const Body &a = body(bodies.a), &b = body(bodies.b);
   engine::PairPose pose;
   const RigidLanes& m = motion_.seenFromA();
-  for (int i = 0; i < 9; ++i) pose.R[i] = m.R[0][i][0];
-  for (int i = 0; i < 3; ++i) pose.c[i] = m.c[0][i][0];
+  laneOf(m.R[0], 0).store(pose.R);
+  laneOf(m.c[0], 0).store(pose.c);
   // 4: points are seen both ways, and as far from the frames as both bodies are large (doc/NUMERICS.md).
   pose.error = 4 * (motion_.poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
   ++statistics().contact_proofs;

@@ -25,7 +25,7 @@ struct Candidate {
   std::int32_t piece_a, piece_b;  ///< of a leaf pair
   std::int32_t first, count;      ///< of a lane of the first batch: its entries
   double t_lower;                 ///< free before
-  double normal[3];               ///< GJK's witness at t_lower
+  Vec3 normal;                    ///< GJK's witness at t_lower
   double gap;                     ///< along it: a lower bound, when GJK ends early far below
   double apart;                   ///< an upper bound of the gap, from points of both
   double speed;                   ///< of the one body seen from the other, about
@@ -33,7 +33,8 @@ struct Candidate {
   Simplex simplex;  ///< GJK's last
   bool stuck;       ///< the gap is gone at t_lower, as far as can be told
   bool certain;
-  double t_upper, point[3];  ///< a proven contact
+  double t_upper;  ///< of a proven contact
+  Vec3 point;      ///< likewise
 
   bool isHulls() const { return target == Target::hulls; }
   bool isLeafPair() const { return target == Target::leafPair; }
@@ -49,7 +50,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_
   for (int k = 1; k < simplex.n; ++k) {
     if (simplex.weight[k] > simplex.weight[heaviest]) heaviest = k;
   }
-  const double* x = point(heaviest);
+  const Vec3 x = point(heaviest);
   int best = -1, count = 1;
   double most = 0;
   constexpr int kDeepest = 64;
@@ -70,7 +71,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_
     double weight = 0;
     for (int j = 0; j < piece.num_vertices; ++j, v += 3) {
       for (int k = 0; k < simplex.n; ++k) {
-        const double* y = point(k);
+        const Vec3 y = point(k);
         if (y[0] == v[0] && y[1] == v[1] && y[2] == v[2]) weight += simplex.weight[k];
       }
     }
@@ -116,7 +117,8 @@ class Follower : PartOfSolver {
 inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query().tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
-  double seen = f.t_lower, turn[3] = {0, 0, 0};  // when f.normal was found; how it turns, per unit of time
+  double seen = f.t_lower;  // when f.normal was found
+  Vec3 turn(0, 0, 0);       // how it turns, per unit of time
   bool turns = false;
   f.stuck = false;
   for (int round = 0; round < (patient ? 48 : 24); ++round) {
@@ -144,7 +146,7 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
       ++statistics().gjk;
       f.simplex = g.simplex;
       if (g.overlap) return false;
-      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.normal = g.n;
       motion_.setWitness(g.n);
       f.gap = g.lower - radii;
       f.apart = g.distance - radii;
@@ -157,16 +159,11 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     const int bounds = turns ? 1 : 2;
     if (turns) {
       TurningDirection n;
-      const Lanes begin = batch.tm - Lanes(seen + d);
-      for (int k = 0; k < 3; ++k) {
-        n.begin[k] = mulAdd(begin, turn[k], f.normal[k]);
-        n.end[k] = n.begin[k] + Lanes(2 * d * turn[k]);
-      }
+      n.begin = mulAdd(spread(turn), batch.tm - Lanes(seen + d), spread(f.normal));
+      n.end = n.begin + spread(turn * (2 * d));
       gapBound(motion_.side(0), a, b, n, motion_.margin(), motion_.pad(), G[0]);
     } else {
-      const DifferenceBody here = motion_.differenceAt(a, b, 0);
-      double n[3];
-      here.opposite(f.normal, n);
+      const Vec3 n = motion_.differenceAt(a, b, 0).opposite(f.normal);
       gapBound(motion_.side(0), a, b, f.normal, motion_.margin(), motion_.pad(), G[0]);
       gapBound(motion_.side(1), b, a, n, motion_.margin(), motion_.pad(), G[1]);
     }
@@ -188,10 +185,11 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     // Lanes before it are free, and it is [tm - d, tm + d].
     const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
-    const double progress = f.t_lower - seen, gap = f.gap, before[3] = {f.normal[0], f.normal[1], f.normal[2]};
+    const double progress = f.t_lower - seen, gap = f.gap;
+    const Vec3 before = f.normal;
     if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
     turns = progress > 0 && dot(before, f.normal) > 0.5 && !unbounded(a) && !unbounded(b);
-    for (int k = 0; k < 3; ++k) turn[k] = turns ? (f.normal[k] - before[k]) / progress : 0;
+    turn = turns ? (f.normal - before) / progress : Vec3(0, 0, 0);
     seen = f.t_lower;
     if (seen > t && gap > 0) {
       const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
@@ -292,7 +290,7 @@ inline void Follower::lookBack(Candidate& f) {
     gjk(body, body.pose.c, 1e-7, a->radius + b->radius + motion_.margin(), 64, g);
     ++statistics().gjk;
     if (g.overlap) continue;
-    for (int j = 0; j < 3; ++j) f.normal[j] = g.n[j];
+    f.normal = g.n;
     f.have_normal = true;
   }
 }
@@ -311,35 +309,28 @@ inline void Follower::record(Candidate& f) {
   horizon_.joinLower(f.t_lower);
   const Piece &a = motion_.a().pieces[contact.piece_a], &b = motion_.b().pieces[contact.piece_b];
   const DifferenceBody body = motion_.differenceAt(a, b, 0);
-  for (int k = 0; k < 3; ++k) contact.point[k] = f.point[k];
+  Vec3 point = f.point;
   if (!f.certain) {
     GjkResult g;
     gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
     originWeights(g.simplex);
     if (!f.have_normal && !g.overlap) {
-      for (int k = 0; k < 3; ++k) f.normal[k] = g.n[k];
+      f.normal = g.n;
       f.have_normal = true;
     }
     // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
     const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
-    double x[3], y[3];
+    Vec3 x, y;
     combine(body, g.simplex, x, y);
-    for (int k = 0; k < 3; ++k) contact.point[k] = out * f.normal[k] + 0.5 * (x[k] + y[k]);
+    point = f.normal * out + (x + y) * 0.5;
   }
   if (!f.have_normal) {
     // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.
-    double x[3], y[3], m[3], size = 0;
-    middleOf(motion_.a().nodes[f.entry.a], x);
-    middleOf(motion_.b().nodes[f.entry.b], y);
-    for (int k = 0; k < 3; ++k) {
-      m[k] = dot(body.pose.R + 3 * k, y) + body.pose.c[k] - x[k];
-      if (unbounded(a)) m[k] = a.size[k];
-      if (unbounded(b)) m[k] = -dot(body.pose.R + 3 * k, b.size);
-      size += m[k] * m[k];
-    }
-    for (int k = 0; k < 3; ++k) f.normal[k] = size > 0 ? m[k] / sqrt(size) : (k == 2);
+    const Vec3 x = middleOf(motion_.a().nodes[f.entry.a]), y = middleOf(motion_.b().nodes[f.entry.b]);
+    f.normal = unitOrZ(unbounded(a) || unbounded(b) ? unboundedNormal(body) : body.place(y) - x);
   }
-  for (int k = 0; k < 3; ++k) contact.normal[k] = f.normal[k];
+  point.store(contact.point);
+  f.normal.store(contact.normal);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -263,7 +263,7 @@ inline void PairSearch::solvePieces(Buffer<Entry>& open, const Candidate& f, dou
     open.truncate(roots);
     return;
   }
-  motion_.setWitness(f.entry.pair, f.have_normal ? f.normal : nullptr);
+  motion_.setWitness(f.entry.pair, f.have_normal ? &f.normal : nullptr);
   const PairParts pair = problem().parts(f.entry.pair);
   const double size = kFirstWindow * min(body(pair.a).tree->nodes[0].radius, body(pair.b).tree->nodes[0].radius);
   stop = min(stop, horizon_.end());

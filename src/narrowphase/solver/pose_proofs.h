@@ -21,7 +21,7 @@ class PoseProofs : PartOfSolver {
       : PartOfSolver(task), motion_(motion), contacts_(contacts) {}
 
   bool vertexInside(int lane);
-  bool chordPierces(int lane, const double* near);
+  bool chordPierces(int lane, const Vec3& near);
   bool triangles(int piece_a, int piece_b, int lane);
   bool leaves(int piece_a, int piece_b, int lane);
 
@@ -35,6 +35,11 @@ class PoseProofs : PartOfSolver {
   ContactList& contacts_;
 };
 
+/// Corners of a triangle, in its tree's frame.
+inline void cornersOf(const TreeView& mesh, const Piece& triangle, Vec3* corners) {
+  for (int i = 0; i < 3; ++i) corners[i] = Vec3(VerticesKind::points(mesh, triangle) + 3 * i);
+}
+
 /// Where any contact is asked for: a vertex of the one body's mesh that lies within the other, a single solid piece, at
 /// a lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
 inline bool PoseProofs::vertexInside(int lane) {
@@ -44,11 +49,9 @@ inline bool PoseProofs::vertexInside(int lane) {
     if (!isSolid(solid)) continue;
     const RigidLanes& m = s ? motion_.side(1).m : motion_.seenFromA();
     DifferenceBody body;
-    for (int i = 0; i < 9; ++i) body.pose.R[i] = m.R[0][i][lane];
-    for (int i = 0; i < 3; ++i) body.pose.c[i] = m.c[0][i][lane];
+    body.pose = {laneOf(m.R[0], lane), laneOf(m.c[0], lane)};
     const Node& box = solid.nodes[0];
-    double center[3];
-    middleOf(box, center);
+    const Vec3 center = middleOf(box), size = doublesOf(box.hi) - doublesOf(box.lo);
     const double* x = mesh.hulls + mesh.outer->first_vertex;
     const int n = mesh.outer->num_vertices;
     double best = 1;
@@ -56,9 +59,8 @@ inline bool PoseProofs::vertexInside(int lane) {
     for (int i = 0; i < n; i += kLanes) {  // lanes go over vertices
       Lanes depth(0.0);
       for (int k = 0; k < 3; ++k) {
-        const double reach = 2 / (static_cast<double>(box.hi[k]) - static_cast<double>(box.lo[k]));
-        const Lanes y = hullValues(x, n, i, body.pose.R + 3 * k) + Lanes(body.pose.c[k] - center[k]);
-        depth = max(depth, abs(y) * Lanes(reach));
+        const Lanes y = hullValues(x, n, i, body.pose.R[k]) + Lanes(body.pose.c[k] - center[k]);
+        depth = max(depth, abs(y) * Lanes(2 / size[k]));
       }
       const double least = minLane(depth);
       if (least >= best) continue;
@@ -68,49 +70,36 @@ inline bool PoseProofs::vertexInside(int lane) {
     if (vertex < 0) continue;
     Piece point;
     point.kind = PieceKind::point;
-    for (int k = 0; k < 3; ++k) point.center[k] = x[k * n + vertex];
+    const Vec3 tip(x[vertex], x[n + vertex], x[2 * n + vertex]);
+    tip.store(point.center);
     body.tree_a = &solid;
     body.a = &solid.pieces[0];
     body.tree_b = &mesh;
     body.b = &point;
-    double guess[3], where[3];
-    body.place(point.center, where);
-    for (int k = 0; k < 3; ++k) guess[k] = where[k] - center[k];
+    Vec3 where = body.place(tip);
+    const Vec3 guess = where - center;
     // Seen from the other side a pose errs by twice as much (doc/NUMERICS.md, "Pads").
     const double eps = (s ? 2.5 : 1) * motion_.poseError();
     ++statistics().contact_proofs;
     if (!certainlyWithin(*body.a, where, eps) && !certainlyTouching(body, motion_.margin(), eps, guess, where))
       continue;
-    const int piece = pieceAt(mesh, point.center);
+    const int piece = pieceAt(mesh, tip);
     if (piece < 0) continue;
     LeafContact* const recorded = record(s ? piece : 0, s ? 0 : piece, lane);
     if (!recorded) return false;
     LeafContact& contact = *recorded;
     // Outwards from the solid, through the side of its box that is nearest.
-    double n_solid[3] = {0, 0, 0}, most = -1;
     int axis = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double part = abs(guess[k]) / (static_cast<double>(box.hi[k]) - static_cast<double>(box.lo[k]));
-      if (part > most) {
-        most = part;
-        axis = k;
-      }
+    for (int k = 1; k < 3; ++k) axis = abs(guess[k]) / size[k] > abs(guess[axis]) / size[axis] ? k : axis;
+    Vec3 outwards(0, 0, 0);
+    outwards[axis] = guess[axis] < 0 ? -1 : 1;
+    if (s) {  // the solid is B
+      const Mat3 R = laneOf(motion_.seenFromA().R[0], lane);
+      where = R * where + laneOf(motion_.seenFromA().c[0], lane);
+      outwards = -(R * outwards);
     }
-    n_solid[axis] = guess[axis] < 0 ? -1 : 1;
-    for (int k = 0; k < 3; ++k) {
-      if (s == 0) {
-        contact.point[k] = where[k];
-        contact.normal[k] = n_solid[k];
-      } else {  // the solid is B
-        double p = motion_.seenFromA().c[0][k][lane], m_b = 0;
-        for (int j = 0; j < 3; ++j) {
-          p += motion_.seenFromA().R[0][3 * k + j][lane] * where[j];
-          m_b -= motion_.seenFromA().R[0][3 * k + j][lane] * n_solid[j];
-        }
-        contact.point[k] = p;
-        contact.normal[k] = m_b;
-      }
-    }
+    where.store(contact.point);
+    outwards.store(contact.normal);
     return true;
   }
   return false;
@@ -119,41 +108,34 @@ inline bool PoseProofs::vertexInside(int lane) {
 /// Where any contact is asked for: a triangle of B's mesh that a chord of A, a single solid piece, pierces at a lane's
 /// middle.
 /// @param near  a point of A's frame that the chord should pass near to.
-inline bool PoseProofs::chordPierces(int lane, const double* near) {
+inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
   const TreeView &solid = motion_.a(), &mesh = motion_.b();
-  double chord[2][3], seen[2][3];
+  Vec3 chord[2];
   if (!isSolid(solid) || mesh.pieces[0].kind != PieceKind::vertices || !longChord(solid.pieces[0], near, chord))
     return false;
   const DifferenceBody body = motion_.differenceAt(solid.pieces[0], mesh.pieces[0], lane);
-  for (int end = 0; end < 2; ++end) {
-    double d[3];
-    for (int k = 0; k < 3; ++k) d[k] = body.pose.c[k] - chord[end][k];
-    body.pose.opposite(d, seen[end]);
-  }
-  const Probe probe(seen[0], seen[1]);
+  // The chord's ends, seen from B.
+  const Probe probe(body.pose.opposite(body.pose.c - chord[0]), body.pose.opposite(body.pose.c - chord[1]));
   return anyLeaf(
       mesh, [&](const Node& node) { return probe.meets(node); },
       [&](int index) {
         const Piece& piece = mesh.pieces[index];
-        const double* v = mesh.vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
-        double part, weights[3], corners[3][3];
-        if (piece.num_vertices != 3 || !probe.meets(v, weights, part)) return false;
-        for (int i = 0; i < 3; ++i) body.place(v + 3 * i, corners[i]);
+        if (piece.num_vertices != 3) return false;
+        Vec3 corners[3], weights;
+        double part;
+        cornersOf(mesh, piece, corners);
+        if (!probe.meets(corners, weights, part)) return false;
+        for (Vec3& corner : corners) corner = body.place(corner);
         ++statistics().contact_proofs;
         if (!certainlyPierces(chord, corners, motion_.poseError(), weights, part)) return false;
         LeafContact* const recorded = record(0, index, lane);
         if (!recorded) return false;
         LeafContact& contact = *recorded;
         // The triangle's normal, towards the mesh's middle.
-        double normal[3], middle[3], placed[3], inwards = 0;
-        middleOf(mesh.nodes[0], middle);
-        body.place(middle, placed);
-        for (int k = 0; k < 3; ++k) {
-          contact.point[k] = chord[0][k] + part * (chord[1][k] - chord[0][k]);
-          normal[k] = dot(body.pose.R + 3 * k, piece.size);
-          inwards += normal[k] * (placed[k] - contact.point[k]);
-        }
-        for (int k = 0; k < 3; ++k) contact.normal[k] = inwards < 0 ? -normal[k] : normal[k];
+        const Vec3 point = chord[0] + (chord[1] - chord[0]) * part, normal = body.pose.R * sizeOf(piece);
+        const double inwards = dot(normal, body.place(middleOf(mesh.nodes[0])) - point);
+        point.store(contact.point);
+        (inwards < 0 ? -normal : normal).store(contact.normal);
         return true;
       });
 }
@@ -162,25 +144,20 @@ inline bool PoseProofs::chordPierces(int lane, const double* near) {
 inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
   const TreeView* trees[2] = {&motion_.a(), &motion_.b()};
   const int pieces[2] = {piece_a, piece_b};
-  double corners[2][3][3];
+  Vec3 corners[2][3];
   const DifferenceBody body = motion_.differenceAt(trees[0]->pieces[piece_a], trees[1]->pieces[piece_b], lane);
   for (int s = 0; s < 2; ++s) {
     const Piece& piece = trees[s]->pieces[pieces[s]];
     if (piece.kind != PieceKind::vertices || piece.num_vertices != 3) return false;
-    const double* v = trees[s]->vertices + 3 * static_cast<std::ptrdiff_t>(piece.first_vertex);
-    for (int i = 0; i < 3; ++i, v += 3) {
-      for (int k = 0; k < 3; ++k) corners[s][i][k] = v[k];
-      if (s) body.place(v, corners[s][i]);
-    }
+    cornersOf(*trees[s], piece, corners[s]);
   }
+  for (Vec3& corner : corners[1]) corner = body.place(corner);
   for (int s = 0; s < 2; ++s) {  // edges of this one
     for (int i = 0; i < 3; ++i) {
-      double chord[2][3], weights[3], part;
-      for (int k = 0; k < 3; ++k) {
-        chord[0][k] = corners[s][i][k];
-        chord[1][k] = corners[s][i < 2 ? i + 1 : 0][k];
-      }
-      if (!Probe(chord[0], chord[1]).meets(&corners[1 - s][0][0], weights, part)) continue;
+      const Vec3 chord[2] = {corners[s][i], corners[s][i < 2 ? i + 1 : 0]};
+      Vec3 weights;
+      double part;
+      if (!Probe(chord[0], chord[1]).meets(corners[1 - s], weights, part)) continue;
       ++statistics().contact_proofs;
       if (!certainlyPierces(chord, corners[1 - s], motion_.poseError(), weights, part)) continue;
       LeafContact* const recorded = record(piece_a, piece_b, lane);
@@ -189,19 +166,11 @@ inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
       contact.feature = s ? engine::kFaceEdge : engine::kEdgeFace;
       // The pierced triangle's normal: out of A, or into B.
       const TreeView& pierced = *trees[1 - s];
-      const double* flat = pierced.pieces[pieces[1 - s]].size;
-      double middle[3], placed[3], inwards = 0;
-      middleOf(pierced.nodes[0], middle);
-      for (int k = 0; k < 3; ++k) placed[k] = middle[k];
-      if (!s) body.place(middle, placed);
-      for (int k = 0; k < 3; ++k) {
-        contact.point[k] = chord[0][k] + part * (chord[1][k] - chord[0][k]);
-        contact.normal[k] = s ? flat[k] : dot(body.pose.R + 3 * k, flat);
-        inwards += contact.normal[k] * (placed[k] - contact.point[k]);
-      }
-      if ((inwards < 0) != (s == 1)) {
-        for (double& x : contact.normal) x = -x;
-      }
+      const Vec3 flat = sizeOf(pierced.pieces[pieces[1 - s]]), middle = middleOf(pierced.nodes[0]);
+      const Vec3 point = chord[0] + (chord[1] - chord[0]) * part, normal = s ? flat : body.pose.R * flat;
+      const double inwards = dot(normal, (s ? middle : body.place(middle)) - point);
+      point.store(contact.point);
+      ((inwards < 0) != (s == 1) ? -normal : normal).store(contact.normal);
       return true;
     }
   }
@@ -214,17 +183,13 @@ inline bool PoseProofs::leaves(int piece_a, int piece_b, int lane) {
   const DifferenceBody body = motion_.differenceAt(a, b, lane);
   if (triangles(piece_a, piece_b, lane)) return true;
   ++statistics().contact_proofs;
-  const double* start = motion_.witness() ? motion_.witness() : body.pose.c;
-  double point[3];
+  const Vec3 start = motion_.witness() ? *motion_.witness() : body.pose.c;
+  Vec3 point;
   if (!certainlyTouching(body, motion_.margin(), motion_.poseError(), start, point)) return false;
   LeafContact* const recorded = record(piece_a, piece_b, lane);
   if (!recorded) return false;
-  LeafContact& contact = *recorded;
-  const double size = norm(start);
-  for (int k = 0; k < 3; ++k) {
-    contact.point[k] = point[k];
-    contact.normal[k] = size > 0 ? start[k] / size : (k == 2);
-  }
+  point.store(recorded->point);
+  unitOrZ(start).store(recorded->normal);
   return true;
 }
 

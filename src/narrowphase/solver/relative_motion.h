@@ -71,16 +71,16 @@ class RelativeMotion : PartOfSolver {
   double amplitude() const { return amplitude_; }
 
   /// The last direction that GJK found between pieces of this pair; null: none.
-  const double* witness() const { return have_witness_ ? witness_ : nullptr; }
-  void setWitness(const double* direction) {
-    for (int k = 0; k < 3; ++k) witness_[k] = direction[k];
+  const Vec3* witness() const { return have_witness_ ? &witness_ : nullptr; }
+  void setWitness(const Vec3& direction) {
+    witness_ = direction;
     have_witness_ = true;
   }
   /// That of a pair that is to be set next; null: none.
-  void setWitness(int pair, const double* direction) {
+  void setWitness(int pair, const Vec3* direction) {
     witness_pair_ = pair;
     have_witness_ = false;
-    if (direction) setWitness(direction);
+    if (direction) setWitness(*direction);
   }
 
   /// The pieces at a lane's middle, or, but for the remainder, at any tau of it.
@@ -91,11 +91,10 @@ class RelativeMotion : PartOfSolver {
     body.a = &piece_a;
     body.b = &piece_b;
     const RigidLanes& m = side_[0].m;
-    for (int i = 0; i < 9; ++i) body.pose.R[i] = m.R[0][i][lane];
-    for (int i = 0; i < 3; ++i) body.pose.c[i] = m.c[0][i][lane];
+    body.pose = {laneOf(m.R[0], lane), laneOf(m.c[0], lane)};
     if (tau != 0) {
-      for (int i = 0; i < 9; ++i) body.pose.R[i] += tau * (m.R[1][i][lane] + tau * m.R[2][i][lane]);
-      for (int i = 0; i < 3; ++i) body.pose.c[i] += tau * (m.c[1][i][lane] + tau * m.c[2][i][lane]);
+      body.pose.R = body.pose.R + (laneOf(m.R[1], lane) + laneOf(m.R[2], lane) * tau) * tau;
+      body.pose.c = body.pose.c + (laneOf(m.c[1], lane) + laneOf(m.c[2], lane) * tau) * tau;
     }
     return body;
   }
@@ -124,7 +123,7 @@ class RelativeMotion : PartOfSolver {
   Side side_[2];
   bool side_ready_[2] = {false, false};
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
-  double witness_[3];
+  Vec3 witness_;
   bool have_witness_ = false;
   std::int32_t witness_pair_ = -1;
 
@@ -161,10 +160,7 @@ inline void RelativeMotion::relate() {
   const bool from_a = B.tree->nodes[0].radius < engine::kUnbounded;
   const Side& seen = from_a ? side_[0] : side(1);
   const Node& root = seen.moving->nodes[0];
-  double center[3];
-  middleOf(root, center);
-  Lanes v[3];
-  for (int k = 0; k < 3; ++k) v[k] = dot(seen.m.R[1] + 3 * k, center) + seen.m.c[1][k];
+  const Vec3Lanes v = seen.m.R[1] * middleOf(root) + seen.m.c[1];
   amplitude_ = sqrt(maxLane(dot(v, v))) + bounds.rates.a * d * root.radius;
 }
 

@@ -40,7 +40,7 @@ class StageOne : PartOfSolver {
   /// Pairs of links and still obstacles that advisors prove free (stage 2) are left out of `open`.
   void refine(Traversal& traversal, Buffer<Entry>& open);
   /// Of the i-th pair left: from A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
-  const Lanes* direction(int i) const { return i < directions_.size() ? directions_[i].l : nullptr; }
+  const Vec3Lanes* direction(int i) const { return i < directions_.size() ? &directions_[i] : nullptr; }
 
   const Buffer<BoxHit>& meetObstacles(int mover);
   /// Lanes in which the boxes of two movers are certainly apart.
@@ -50,9 +50,9 @@ class StageOne : PartOfSolver {
   void sweepMover(int mover);
   void cullObstacles(int mover, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
-  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction);
+  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
   void expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
-                     const Lanes* nearest);
+                     const Vec3Lanes& nearest);
   void sweptSegments(int mover, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
@@ -68,10 +68,7 @@ class StageOne : PartOfSolver {
   Buffer<std::int32_t> open_nodes_;
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidates_;
-  struct Direction {
-    Lanes l[3];
-  };
-  Buffer<Direction> directions_;  ///< of pairs of links and still obstacles, which come first
+  Buffer<Vec3Lanes> directions_;  ///< of pairs of links and still obstacles, which come first
 };
 
 /// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). Of a moving
@@ -85,7 +82,7 @@ inline void StageOne::sweepMover(int mover) {
     sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole().d,
              mover_lss_[mover]);
     if (frame) {
-      Lanes lo[3], hi[3];
+      Vec3Lanes lo, hi;
       boundLss(mover_lss_[mover], margin, lo, hi);
       for (int k = 0; k < 3; ++k) {
         box.lo[k] = narrowDown(lo[k]);
@@ -141,11 +138,12 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
 /// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept
 /// sphere.
 /// @param[out] direction  from the obstacle to the link, as in direction().
-inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Lanes* direction) {
+inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction) {
   const int pair = problem().scenePair(mover, obstacle_number);
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   const SweptLss& lss = mover_lss_[mover];
-  Lanes square, nearest[3];
+  Lanes square;
+  Vec3Lanes nearest;
   mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, query().margins.of(pair), square, nearest, direction);
   if (mask && obstacle.solid) expectContact(pair, lss, obstacle, mask, square, nearest);
   return mask;
@@ -154,7 +152,7 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
 /// Where a line swept sphere is deep in a solid contact is expected: lanes after it are put off, or, where any contact
 /// will do, it is looked for at once, and the pose is put down where the link's axis is very near.
 inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask,
-                                    Lanes square, const Lanes* nearest) {
+                                    Lanes square, const Vec3Lanes& nearest) {
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
@@ -165,9 +163,8 @@ inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine:
   double least = square[__builtin_ctz(deep)];
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
   const int lane = middleLane(deep & ~greater(square, Lanes(least)));
-  const double near[3] = {nearest[0][lane], nearest[1][lane], nearest[2][lane]};
   const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThin * lss.radius;
-  if (any_.tryObstacle(pair, lane, near, thin)) return;
+  if (any_.tryObstacle(pair, lane, laneOf(nearest, lane), thin)) return;
   if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
 }
 
@@ -176,8 +173,8 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   for (int i = 0; i < met.size() && !horizon_.isOver(); ++i) {
     const int pair = problem().scenePair(mover, met[i].obstacle);
     if (problem().isAllowed(pair)) continue;
-    Direction direction;
-    if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction.l)) {
+    Vec3Lanes direction;
+    if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction)) {
       open.push({pair, 0, 0, left});
       directions_.push(direction);
       prefetch(problem().still_bounds[met[i].obstacle].tree);
@@ -244,12 +241,11 @@ inline void StageOne::sweptSegments(int mover, engine::SweptLink* parts) {
   const SweptLss& s = mover_lss_[mover];
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int end = 0; end < 2; ++end) {
-      for (int k = 0; k < 3; ++k) {
-        const double c0 = s.end[end][0][k][lane], c1 = s.end[end][1][k][lane], c2 = s.end[end][2][k][lane];
-        parts[lane].points[end][k] = c0 - c1 + c2;
-        parts[lane].points[2 + end][k] = c0 + c1 + c2;
-        parts[lane].points[4 + end][k] = c0 - c2;
-      }
+      const PointLanes& p = s.end[end];
+      const Vec3 c0 = laneOf(p.c[0], lane), c1 = laneOf(p.c[1], lane), c2 = laneOf(p.c[2], lane);
+      (c0 - c1 + c2).store(parts[lane].points[end]);
+      (c0 + c1 + c2).store(parts[lane].points[2 + end]);
+      (c0 - c2).store(parts[lane].points[4 + end]);
     }
     parts[lane].radius = s.radius * (1 + 4 * kUlp);
   }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "model/tree_view.h"
-#include "motion/lane_motion.h"
+#include "motion/rigid_lanes.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -16,33 +16,29 @@ struct SweptBox {
   FloatLanes lo[3], hi[3];
 };
 
-FCL_ARTIC_INLINE void middleOf(const Node& node, double* center) {
-  for (int k = 0; k < 3; ++k) center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
+FCL_ARTIC_INLINE Vec3 doublesOf(const float* x) {
+  return {x[0], x[1], x[2]};
+}
+FCL_ARTIC_INLINE Vec3 middleOf(const Node& node) {
+  return (doublesOf(node.lo) + doublesOf(node.hi)) * 0.5;
 }
 
 /// Bounds of a moving node in the still body's frame, grown by `slack` and the remainder.
 FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double slack, SweptBox& box) {
-  double c[3], h[3], far2 = 0;  // c and h: sums of floats, exact but for far smaller addends
-  for (int k = 0; k < 3; ++k) {
-    const double lo = node.lo[k], hi = node.hi[k], far = max(-lo, hi);
-    c[k] = 0.5 * (lo + hi);
-    h[k] = 0.5 * (hi - lo);
-    far2 += far * far;
-  }
+  // c and h: sums of floats, exact but for far smaller addends
+  const Vec3 lo = doublesOf(node.lo), hi = doublesOf(node.hi), c = (lo + hi) * 0.5, h = (hi - lo) * 0.5;
   // |p| over the box; a square, two sums and a root are off by less than 8 ulp.
-  const Lanes grow(m.rem_c + m.rem_R * (sqrt(far2) * (1 + 8 * kUlp)) + slack);
+  const Lanes grow(m.rem_c + m.rem_R * (norm(max(-lo, hi)) * (1 + 8 * kUlp)) + slack);
   for (int i = 0; i < 3; ++i) {
-    const Lanes* S = m.spread + 3 * i;
-    const Lanes half = mulAdd(S[0], h[0], mulAdd(S[1], h[1], mulAdd(S[2], h[2], grow)));
-    Lanes lo, hi;
+    const Lanes half = dotPlus(m.largest[i], h, grow);
+    Lanes least, most;
     for (int k = 0; k < 3; ++k) {
-      const Lanes* R = m.Rb[k] + 3 * i;
-      const Lanes center = mulAdd(R[0], c[0], mulAdd(R[1], c[1], mulAdd(R[2], c[2], m.cb[k][i])));
-      lo = k ? min(lo, center) : center;
-      hi = k ? max(hi, center) : center;
+      const Lanes center = dotPlus(m.Rb[k][i], c, m.cb[k][i]);
+      least = k ? min(least, center) : center;
+      most = k ? max(most, center) : center;
     }
-    box.lo[i] = narrowDown(lo - half);
-    box.hi[i] = narrowUp(hi + half);
+    box.lo[i] = narrowDown(least - half);
+    box.hi[i] = narrowUp(most + half);
   }
 }
 

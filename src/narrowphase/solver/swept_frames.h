@@ -3,6 +3,7 @@
 // Frames of all sweeps over one batch, evaluated when first asked for.
 #pragma once
 
+#include "motion/chain.h"
 #include "narrowphase/solver/task.h"
 #include "narrowphase/solver/time_batch.h"
 #include "numerics/buffer.h"

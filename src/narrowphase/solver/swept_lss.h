@@ -6,7 +6,7 @@
 #pragma once
 
 #include "model/problem.h"
-#include "motion/lane_motion.h"
+#include "motion/rigid_lanes.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -19,11 +19,11 @@ constexpr double kLeastSquare = 1e-200;
 
 /// A segment in the world, each end a quadratic, grown by a ball.
 struct SweptLss {
-  Lanes end[2][3][3];  ///< end, order, coordinate
-  Lanes per_square;    ///< one over the segment's squared length
-  double radius;       ///< remainder and rounding in it
-  double sizes;        ///< of all numbers that the ends are made of
-  double ulps, rate;   ///< what a difference with something else rounds by: roundingPart(ulps, rate)
+  PointLanes end[2];
+  Lanes per_square;   ///< one over the segment's squared length
+  double radius;      ///< remainder and rounding in it
+  double sizes;       ///< of all numbers that the ends are made of
+  double ulps, rate;  ///< what a difference with something else rounds by: roundingPart(ulps, rate)
 };
 
 /// @param f  frame of the step that carries the body, seen from the world; null where it stands still.
@@ -32,20 +32,16 @@ FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const StepBounds& b, bool fi
   s.radius = 0;
   double reach = 0;
   for (int end = 0; end < 2; ++end) {
-    const double* p = body.lss + 3 * end;
+    const Vec3 p(body.lss + 3 * end);
     reach = max(reach, norm(p) * (1 + 8 * kUlp));
     if (f) {
       s.radius = max(s.radius, sweepCenter(*f, b, first_order, p, body.lss[6], d, s.end[end]));
       continue;
     }
     s.radius = body.lss[6];
-    for (int k = 0; k < 3; ++k) {
-      s.end[end][0][k] = Lanes(p[k]);
-      s.end[end][1][k] = s.end[end][2][k] = Lanes(0.0);
-    }
+    s.end[end] = {{spread(p), spread(Vec3(0, 0, 0)), spread(Vec3(0, 0, 0))}};
   }
-  Lanes e[3];
-  for (int k = 0; k < 3; ++k) e[k] = s.end[1][0][k] - s.end[0][0][k];
+  const Vec3Lanes e = s.end[1].c[0] - s.end[0].c[0];
   s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
   s.sizes = (f ? b.length + b.D1 * d : 0) + reach + s.radius;
   s.ulps = f ? b.ulps : 0;
@@ -53,19 +49,17 @@ FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const StepBounds& b, bool fi
 }
 
 /// Box in the world, `margin` wider.
-FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Lanes* lo, Lanes* hi) {
+FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Vec3Lanes& lo, Vec3Lanes& hi) {
   const Lanes slack((s.radius + margin) * (1 + 4 * kUlp));
-  for (int k = 0; k < 3; ++k) {
-    for (int end = 0; end < 2; ++end) {
-      const Lanes *c0 = s.end[end][0], *c1 = s.end[end][1], *c2 = s.end[end][2];
-      const Lanes sum = c0[k] + c2[k], middle = c0[k] - c2[k], reach1 = abs(c1[k]);
-      const Lanes low = min(sum - reach1, middle), high = max(sum + reach1, middle);
-      lo[k] = end ? min(lo[k], low) : low;
-      hi[k] = end ? max(hi[k], high) : high;
-    }
-    lo[k] = lo[k] - slack;
-    hi[k] = hi[k] + slack;
+  for (int end = 0; end < 2; ++end) {
+    const Vec3Lanes* c = s.end[end].c;
+    const Vec3Lanes sum = c[0] + c[2], middle = c[0] - c[2], reach1 = abs(c[1]);
+    const Vec3Lanes low = min(sum - reach1, middle), high = max(sum + reach1, middle);
+    lo = end ? min(lo, low) : low;
+    hi = end ? max(hi, high) : high;
   }
+  lo = lo - Vec3Lanes(slack, slack, slack);
+  hi = hi + Vec3Lanes(slack, slack, slack);
 }
 
 /// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
@@ -94,35 +88,27 @@ constexpr int kNearestSteps = 1;
 /// @param[out] nearest  the segment's point there, in the body's tree frame.
 /// @param[out] l  the direction.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
-                               Lanes& square, Lanes* nearest, Lanes* l) {
-  Lanes y[2][3], e[3], u[3];
-  for (int k = 0; k < 3; ++k) {
-    const double* R = inverse.R + 3 * k;
-    for (int end = 0; end < 2; ++end) y[end][k] = dot(s.end[end][0], R) + Lanes(inverse.t[k]);
-    e[k] = y[1][k] - y[0][k];
-  }
+                               Lanes& square, Vec3Lanes& nearest, Vec3Lanes& l) {
+  const Mat3 R(inverse.R);
+  const Vec3Lanes t = spread(Vec3(inverse.t)), lo = spread(Vec3(box.lo)), hi = spread(Vec3(box.hi));
+  const Vec3Lanes begin = R * s.end[0].c[0] + t, e = R * s.end[1].c[0] + t - begin;
   Lanes part(0.5);
   for (int step = 0;; ++step) {
-    Lanes p[3];
-    for (int k = 0; k < 3; ++k) {
-      const Lanes q = mulAdd(part, e[k], y[0][k]);
-      nearest[k] = q;
-      p[k] = min(max(q, Lanes(box.lo[k])), Lanes(box.hi[k]));
-      l[k] = q - p[k];
-      p[k] = p[k] - y[0][k];
-    }
+    nearest = mulAdd(e, part, begin);
+    const Vec3Lanes p = min(max(nearest, lo), hi);
+    l = nearest - p;
     if (step == kNearestSteps) break;
-    part = min(max(dot(p, e) * s.per_square, Lanes(0.0)), Lanes(1.0));
+    part = min(max(dot(p - begin, e) * s.per_square, Lanes(0.0)), Lanes(1.0));
   }
   Lanes h(0.0), at(0.0);
   for (int k = 0; k < 3; ++k) {
-    h = h + max(l[k] * Lanes(box.lo[k]), l[k] * Lanes(box.hi[k]));
-    at = mulAdd(l[k], inverse.t[k], at);
-    u[k] = mulAdd(l[0], inverse.R[k], mulAdd(l[1], inverse.R[3 + k], l[2] * Lanes(inverse.R[6 + k])));
+    h = h + max(l[k] * lo[k], l[k] * hi[k]);
+    at = mulAdd(l[k], t[k], at);
   }
+  const Vec3Lanes u = transposed(R) * l;
   Lanes least[2];
   for (int end = 0; end < 2; ++end) {
-    const auto* c = s.end[end];
+    const Vec3Lanes* c = s.end[end].c;
     least[end] = leastPoint(dot(u, c[0]), dot(u, c[1]), dot(u, c[2]));
   }
   double extent = box.radius + margin;
@@ -138,24 +124,20 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
 /// @param[out] square  of the segments' distance in the middle of each lane, about.
 inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin, Lanes& square) {
   // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.
-  Lanes x[3], y[3], r[3], l[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = a.end[1][0][k] - a.end[0][0][k];
-    y[k] = b.end[1][0][k] - b.end[0][0][k];
-    r[k] = b.end[0][0][k] - a.end[0][0][k];
-  }
+  const Vec3Lanes x = a.end[1].c[0] - a.end[0].c[0], y = b.end[1].c[0] - b.end[0].c[0],
+                  r = b.end[0].c[0] - a.end[0].c[0];
   const Lanes zero(0.0), one(1.0), tiny(kLeastSquare);
   const Lanes xx = max(dot(x, x), tiny), yy = max(dot(y, y), tiny), xy = dot(x, y), xr = dot(x, r), yr = dot(y, r);
   Lanes s = min(max((xr * yy - yr * xy) / max(xx * yy - xy * xy, tiny), zero), one);
   const Lanes t = min(max((s * xy - yr) / yy, zero), one);
   s = min(max(mulAdd(t, xy, xr) / xx, zero), one);
-  for (int k = 0; k < 3; ++k) l[k] = mulAdd(t, y[k], r[k]) - s * x[k];
+  const Vec3Lanes l = mulAdd(y, t, r) - x * s;
 
   Lanes of_a[2][3], of_b[2][3], least;
   for (int end = 0; end < 2; ++end) {
     for (int order = 0; order < 3; ++order) {
-      of_a[end][order] = dot(l, a.end[end][order]);
-      of_b[end][order] = dot(l, b.end[end][order]);
+      of_a[end][order] = dot(l, a.end[end].c[order]);
+      of_b[end][order] = dot(l, b.end[end].c[order]);
     }
   }
   for (int i = 0; i < 4; ++i) {

@@ -3,7 +3,7 @@
 // Eight intervals of time, one a lane: a value. Motions are bounded over all of them at once.
 #pragma once
 
-#include "motion/lane_motion.h"
+#include "motion/remainder.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

@@ -49,7 +49,7 @@ struct LaneSearch {
   bool wanted = false;
   /// Initial guesses, from A to B in A's frame, one a lane. Null: where the witness at a lane's middle does not certify
   /// the lane, that is the guess.
-  const Lanes* towards = nullptr;
+  const Vec3Lanes* towards = nullptr;
 };
 
 /// All are of the present pair and batch (RelativeMotion), in the lanes that Horizon watches.
@@ -92,7 +92,7 @@ class Traversal : PartOfSolver {
   unsigned leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect);
   bool isWithin();
   /// Lanes of `mask` in which direction n, in the frame of side s's still body, certainly keeps the pieces apart.
-  FCL_ARTIC_INLINE unsigned separated(int s, const Piece& still, const Piece& moving, const double* n, unsigned mask) {
+  FCL_ARTIC_INLINE unsigned separated(int s, const Piece& still, const Piece& moving, const Vec3& n, unsigned mask) {
     ++statistics().certificates;
     double sign;
     return certainlySeparated(motion_.side(s), still, moving, n, mask, motion_.margin(), motion_.pad(), sign);
@@ -144,15 +144,11 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
     Piece box;
     box.kind = PieceKind::box;
-    middleOf(node, box.center);
-    double far2 = 0;
-    for (int k = 0; k < 3; ++k) {
-      box.size[k] = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
-      const double far = max(abs(node.lo[k]), abs(node.hi[k]));
-      far2 += far * far;
-    }
-    box.reach = sqrt(far2) * (1 + 8 * kUlp);
-    apart |= separated(s, still, box, still.size, kAllLanes);
+    const Vec3 lo = doublesOf(node.lo), hi = doublesOf(node.hi);
+    middleOf(node).store(box.center);
+    ((hi - lo) * 0.5).store(box.size);
+    box.reach = norm(max(abs(lo), abs(hi))) * (1 + 8 * kUlp);
+    apart |= separated(s, still, box, sizeOf(still), kAllLanes);
   }
   return apart;
 }
@@ -167,7 +163,7 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
 template <class F>
 inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
                                         LaneSearch search, const F& onOverlap) {
-  double guess[3];
+  Vec3 guess;
   bool have_guess = false;
   unsigned untried = mask;
   search.wanted = search.wanted && !unbounded(a) && !unbounded(b);
@@ -185,19 +181,17 @@ inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned
     const int lane = middleLane(untried);
     untried &= ~(1u << lane);
     if (search.wanted && search.towards) {
-      for (int k = 0; k < 3; ++k) guess[k] = search.towards[k][lane];
+      guess = laneOf(*search.towards, lane);
       have_guess = true;
       if (separatesWhole(lane)) continue;
     }
     const DifferenceBody body = motion_.differenceAt(a, b, lane);
-    if (!have_guess) {
-      for (int k = 0; k < 3; ++k) guess[k] = body.pose.c[k];
-    }
+    if (!have_guess) guess = body.pose.c;
     GjkResult g;
     gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + motion_.margin(), 48, g, &last);
     last = g.simplex;
     ++statistics().gjk;
-    for (int k = 0; k < 3; ++k) guess[k] = g.n[k];
+    guess = g.n;
     have_guess = true;
     if (g.overlap) {
       --most;
@@ -207,8 +201,7 @@ inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned
     motion_.setWitness(g.n);
     // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving
     // one's 24.
-    double n[3];
-    body.opposite(g.n, n);
+    const Vec3 n = body.opposite(g.n);
     const int first = a.num_vertices > b.num_vertices ? 0 : 1;
     for (int i = 0; i < 2 && mask; ++i) {
       mask &= ~((first + i) & 1 ? separated(1, b, a, n, mask) : separated(0, a, b, g.n, mask));
@@ -224,13 +217,9 @@ inline bool Traversal::isWithin() {
     const Node &large = motion_.still(s).nodes[0], &small = motion_.moving(s).nodes[0];
     if (motion_.still(s).num_pieces == 1 || large.radius < 2 * small.radius) continue;
     const Side& side = motion_.side(s);
-    double center[3];
-    middleOf(small, center);
+    const Vec3 x = laneOf(side.m.R[0], kLanes / 2) * middleOf(small) + laneOf(side.m.c[0], kLanes / 2);
     bool inside = true;
-    for (int k = 0; k < 3; ++k) {
-      const double x = dot(side.m.R[0] + 3 * k, center)[kLanes / 2] + side.m.c[0][k][kLanes / 2];
-      inside = inside && x > large.lo[k] && x < large.hi[k];
-    }
+    for (int k = 0; k < 3; ++k) inside = inside && x[k] > large.lo[k] && x[k] < large.hi[k];
     if (!inside) continue;
     const Piece &a = *motion_.a().outer, &b = *motion_.b().outer;
     const DifferenceBody body = motion_.differenceAt(a, b, kLanes / 2);
@@ -280,9 +269,9 @@ inline unsigned Traversal::partsMayTouch(int a, int b, unsigned mask) {
 inline unsigned Traversal::leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect) {
   ++statistics().leaf_tests;
   const Piece &a = motion_.a().pieces[piece_a], &b = motion_.b().pieces[piece_b];
-  if (hasDirection(a)) mask &= ~separated(0, a, b, a.size, mask);
-  if (mask && hasDirection(b)) mask &= ~separated(1, b, a, b.size, mask);
-  if (mask && motion_.witness()) mask &= ~separated(0, a, b, motion_.witness(), mask);
+  if (hasDirection(a)) mask &= ~separated(0, a, b, sizeOf(a), mask);
+  if (mask && hasDirection(b)) mask &= ~separated(1, b, a, sizeOf(b), mask);
+  if (mask && motion_.witness()) mask &= ~separated(0, a, b, *motion_.witness(), mask);
   if (!mask) return 0;
   Simplex last;
   return notSeparated(a, b, mask, kLanes, last, {}, [&](int lane) {
