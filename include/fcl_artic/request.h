@@ -86,9 +86,9 @@ struct Effort {
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
   /// Maximum number of node and leaf tests, for Method::redon2004 also of box tests and evaluations; 0: no limit. When
-  /// it is exceeded, the answer is `undecided` (its t_lower is the begin with `firstOfEveryPair`,
-  /// and may be with ignore_initial_contact). It counts work, not time, so that the answer does not depend on the
-  /// machine's speed. The pieces of a trajectory, and the pairs of a ContinuousCollisionManager, share one budget.
+  /// it is exceeded, the answer is `undecided` (its t_lower is the begin with `firstOfEveryPair`, and may be with
+  /// ignore_initial_contact). It counts work, not time, so that the answer does not depend on the machine's speed. The
+  /// pieces of a trajectory, and the pairs of a ContinuousCollisionManager, share one budget.
   std::uint64_t work_budget = 0;
   /// Whether to measure the time of each stage (QueryStatistics). Counts are always kept.
   bool measure_times = false;
