@@ -42,7 +42,7 @@ struct Mimic {
   double offset = 0;      ///< Value at q_master = 0, rad or m; finite.
 };
 
-/// One joint, as in URDF: it carries the child link, whose frame is the joint's frame.
+/// One joint, as in URDF: it carries the child link, whose frame is the joint's frame at q = 0.
 struct Joint {
   std::string name;                   ///< Unique in the tree.
   JointType type = JointType::fixed;  ///< Kind of joint.
@@ -53,7 +53,7 @@ struct Joint {
   /// Axis in the joint's frame, for a planar joint the plane's normal; addJoint() normalises it. Unused for fixed,
   /// spherical and floating joints.
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
-  /// Limits, rad or m; both 0: no limits (hasLimits()). Queries do not ask for them.
+  /// Limits, rad or m; both 0: no limits (hasLimits()). Queries accept values beyond them.
   double lower = 0, upper = 0;
   bool mimics = false;  ///< Whether the joint follows another one, as `mimic` says, instead of having its own variable.
   Mimic mimic;          ///< How it follows another joint; unused unless `mimics`.
