@@ -68,8 +68,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @param object  kept as a pointer; must stay alive until it is unregistered.
   /// @param name    unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
   /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has,
-  ///   geometry that is unsupported, empty, degenerate (no triangle) or not finite, a transform that is not rigid to
-  ///   1e-6 or farther than 1e9 m away.
+  ///   geometry that is unsupported (point clouds), has no triangle or vertex, or is not finite, a transform that is
+  ///   not rigid to 1e-6 or farther than 1e9 m away.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name = {});
   /// Adds an obstacle that stands still, as above; the manager keeps the object alive as long as it is registered.
   /// @throws std::invalid_argument as above.
