@@ -117,15 +117,24 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// @throws std::logic_error if objects were registered or unregistered after the last setup() or update().
   /// @throws std::invalid_argument: callback null, margin negative or not finite.
   void collide(void* cdata, Callback callback, double margin = 0) const;
-  /// Hands pairs of one object with registered ones to the callback, as above; the object comes first, and is not
-  /// paired with itself.
+  /// Hands every pair of one object and a registered one whose swept boxes come within `margin` of each other to the
+  /// callback, once, until it returns true. The object comes first, and is not paired with itself.
   /// @param object  need not be registered; it is read by this call then, else it is taken as it was read last.
-  /// @throws as above, and std::invalid_argument for what registerObject() refuses of an object.
+  /// @param cdata   passed to the callback.
+  /// @param margin  m, finite, at least 0.
+  /// @throws std::logic_error if objects were registered or unregistered after the last setup() or update().
+  /// @throws std::invalid_argument: callback null, margin negative or not finite, what registerObject() refuses of an
+  ///   object.
   void collide(Object* object, void* cdata, Callback callback, double margin = 0) const;
-  /// Hands pairs of an object of this manager, which comes first, and one of another manager to the callback, as above.
-  /// An object is not paired with itself; two objects that are in both managers are paired once.
-  /// @param other  not null; may be this manager.
-  /// @throws as above, std::logic_error for either manager, std::invalid_argument if `other` is null.
+  /// Hands every pair of an object of this manager and one of another manager whose swept boxes come within `margin` of
+  /// each other to the callback, once, until it returns true. The object of this manager comes first. An object is not
+  /// paired with itself; two objects that are in both managers are paired once.
+  /// @param other   not null; may be this manager.
+  /// @param cdata   passed to the callback.
+  /// @param margin  m, finite, at least 0.
+  /// @throws std::logic_error if objects of either manager were registered or unregistered after its last setup() or
+  ///   update().
+  /// @throws std::invalid_argument: `other` or callback null, margin negative or not finite.
   void collide(const ContinuousCollisionManager* other, void* cdata, Callback callback, double margin = 0) const;
 
   /// Finds the first contact of all pairs of registered objects, or proves that there is none.
@@ -136,14 +145,20 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   ///   finite.
   /// @throws std::logic_error as collide().
   void continuousCollide(const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
-  /// Finds the first contact of one object with registered ones, as above, for the pairs of the corresponding
-  /// collide().
-  /// @param object  need not be registered; it is read by this call then, else it is taken as it was read last.
-  /// @throws as above and as the corresponding collide().
+  /// Finds the first contact of one object with the registered ones, or proves that there is none. The object is not
+  /// paired with itself, and is object1 of each MovingPair.
+  /// @param object   need not be registered; it is read by this call then, else it is taken as it was read last.
+  /// @param request  as for all pairs of registered objects.
+  /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for all pairs, and for what registerObject() refuses of an
+  ///   object.
   void continuousCollide(Object* object, const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
-  /// Finds the first contact of objects of this manager with those of another one, as above, for the pairs of the
-  /// corresponding collide().
-  /// @throws as above and as the corresponding collide().
+  /// Finds the first contact of the objects of this manager with those of another one, or proves that there is none. An
+  /// object is not paired with itself; two objects that are in both managers are paired once.
+  /// @param other    not null; may be this manager.
+  /// @param request  as for all pairs of registered objects.
+  /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for all pairs, for either manager, and if `other` is null.
   void continuousCollide(const ContinuousCollisionManager* other, const CertifiedPairRequest& request,
                          CertifiedPairsResult& result) const;
 

@@ -71,8 +71,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   geometry that is unsupported (point clouds), has no triangle or vertex, or is not finite, a transform that is
   ///   not rigid to 1e-6 or farther than 1e9 m away.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name = {});
-  /// Adds an obstacle that stands still, as above; the manager keeps the object alive as long as it is registered.
-  /// @throws std::invalid_argument as above.
+  /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup(). The manager keeps
+  /// the object alive as long as it is registered or attached.
+  /// @param name  unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
+  /// @throws std::invalid_argument as registerObject() of a pointer.
   void registerObject(std::shared_ptr<const fcl::CollisionObjectd> object, const std::string& name = {});
   /// Adds obstacles that stand still, named "obstacle<N>": all of them or, if this throws, none. Needs setup().
   /// @throws std::invalid_argument as registerObject().
@@ -101,16 +103,22 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   or an offset that is not rigid to 1e-6.
   void bind(LinkId link, const fcl::CollisionObjectd* object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to the link of this name, as above.
-  /// @throws std::invalid_argument as above.
+  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup().
+  /// @param object  kept as a pointer; must stay alive until it is unbound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() to a LinkId.
   void bind(const std::string& link, const fcl::CollisionObjectd* object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to a link, as above; the manager keeps the object alive as long as it is bound.
-  /// @throws std::invalid_argument as above.
+  /// Fixes a geometry to a link; the object's own transform is not used. Needs setup(). The manager keeps the object
+  /// alive as long as it is bound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() of a pointer.
   void bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to the link of this name, as above; the manager keeps the object alive as long as it is bound.
-  /// @throws std::invalid_argument as above.
+  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup(). The manager
+  /// keeps the object alive as long as it is bound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() of a pointer.
   void bind(const std::string& link, std::shared_ptr<const fcl::CollisionObjectd> object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
   /// Removes a geometry from its link. Needs setup().
@@ -128,8 +136,11 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   that is not rigid to 1e-6.
   void attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
-  /// Attaches a registered obstacle to the link of this name, as above.
-  /// @throws std::invalid_argument as above.
+  /// Attaches a registered obstacle to the link of this name: does what attach() to a LinkId does.
+  /// @param object  an obstacle that stands still.
+  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  names of further links that it may touch.
+  /// @throws std::invalid_argument as attach() to a LinkId.
   void attach(const std::string& link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
   /// Puts an attached object down: it is an obstacle again, at the object's own transform. Needs setup().
@@ -174,17 +185,19 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Effective at once. What VisibilityMode::automatic has measured is forgotten.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
-  /// Makes all changes effective. Needed before the first query, and after changes of objects, bindings, allowed pairs,
-  /// margins or the tree; queries throw std::logic_error otherwise.
+  /// Makes all changes effective. Needed before the first query, after every member that says so, and after the tree
+  /// has grown; queries throw std::logic_error otherwise.
   ///
-  /// It looks for changes in all that callers may have changed in place: geometry of links and obstacles, transforms
-  /// and motions of obstacles. What is the same, byte for byte, is kept with all that was computed from it. To find
-  /// that out takes as long as comparing all vertices and triangles and walking through OcTrees: 17 µs for 9 meshes of
-  /// 1,800 triangles, 2 ms for one of 500,000. With large maps in the scene update(object) is cheaper.
+  /// It also looks for what callers have changed in place, which queries do not notice by themselves: geometry of links
+  /// and obstacles, transforms and motions of obstacles. What is the same, byte for byte, is kept with all that was
+  /// computed from it. To find that out takes as long as comparing all vertices and triangles and walking through
+  /// OcTrees: 17 µs for 9 meshes of 1,800 triangles, 2 ms for one of 500,000. With large maps in the scene
+  /// update(object) is cheaper.
   /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. What was
   ///   read before is kept then, and what was set up stays in use.
   void setup();
-  /// Does the same as setup().
+  /// Makes all changes effective, also those that callers have made in place: does what setup() does.
+  /// @throws std::invalid_argument as setup().
   void update();
   /// Reads one object again, an obstacle or one that a link carries, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
@@ -225,26 +238,29 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   numbers, and for margins that are negative or not finite.
   /// @throws std::logic_error if setup() or update() was not called after the last change, of the tree too.
   void continuousCollide(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
-  /// Finds the first contact of a motion, as above, and returns the answer. (In a loop the form with `result` is a
-  /// little faster.)
-  /// @throws as above.
+  /// Finds the first contact of a motion, or proves that there is none (doc/PROMISE.md), and returns the answer. (In a
+  /// loop the form with `result` is a little faster.)
+  /// @param motion  over t in [0, 1], made for tree() or one with the same joint variables (JointMotion::isOf()).
+  /// @throws std::invalid_argument, std::logic_error as the form with `result`.
   [[nodiscard]] CertifiedResult continuousCollide(const JointMotion& motion,
                                                   const CertifiedRequest& request = {}) const;
   /// Finds the first contact on the straight way from q0 to q1 in joint space (JointMotion::linear()), or proves that
   /// there is none.
   /// @param q0, q1  tree().dof() joint values each, rad or m.
-  /// @throws as for a motion, and as JointMotion::linear().
+  /// @throws std::invalid_argument, std::logic_error as for a motion, and as JointMotion::linear().
   [[nodiscard]] CertifiedResult continuousCollide(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                                                   const CertifiedRequest& request = {}) const;
   /// Whether the straight way from q0 to q1 in joint space is proven free: the fastest question. False also if contact
   /// can't be excluded within the tolerances, and if the work budget ran out.
   /// @param q0, q1  tree().dof() joint values each, rad or m.
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
-  /// @throws as continuousCollide().
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                             const CertifiedRequest& request = {}) const;
-  /// Whether a motion is proven free, as above.
-  /// @throws as continuousCollide().
+  /// Whether a motion is proven free: the fastest question. False also if contact can't be excluded within the
+  /// tolerances, and if the work budget ran out.
+  /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
 
   /// Finds the first contacts of many motions on several threads. Result i is what motion i gets by itself, bit for
@@ -269,22 +285,26 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// shorter time may be taken as never apart. With ContactMode::firstOfEveryPair, a budget that ends after a contact
   /// leaves the answer undecided, with the contacts found so far.
   /// @param trajectory  made for tree() or one with the same joint variables.
-  /// @param[out] result  written in full; reset if this throws.
-  /// @throws as for a motion.
+  /// @param[out] result  written in full; reset (undecided, t_lower at the trajectory's begin) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for a motion.
   void continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                          CertifiedResult& result) const;
-  /// Finds the first contact of a whole trajectory, as above, and returns the answer.
-  /// @throws as above.
+  /// Finds the first contact of a whole trajectory, in the trajectory's own time, or proves that there is none, and
+  /// returns the answer.
+  /// @param trajectory  made for tree() or one with the same joint variables.
+  /// @throws std::invalid_argument, std::logic_error as the form with `result`.
   [[nodiscard]] CertifiedResult continuousCollide(const JointTrajectory& trajectory,
                                                   const CertifiedRequest& request = {}) const;
 
   /// Finds what touches while the links stand still at one configuration. (Obstacles that move do so all the same.)
   /// @param q  tree().dof() joint values, rad or m.
   /// @param[out] result  written in full; reset if this throws. Without moving obstacles a contact is at t_lower = 0.
-  /// @throws as continuousCollide() from q to q.
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide() from q to q.
   void collide(const Eigen::VectorXd& q, const CertifiedRequest& request, CertifiedResult& result) const;
-  /// Finds what touches while the links stand still at one configuration, as above, and returns the answer.
-  /// @throws as above.
+  /// Finds what touches while the links stand still at one configuration, and returns the answer. (Obstacles that move
+  /// do so all the same. Without them a contact is at t_lower = 0.)
+  /// @param q  tree().dof() joint values, rad or m.
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide() from q to q.
   [[nodiscard]] CertifiedResult collide(const Eigen::VectorXd& q, const CertifiedRequest& request = {}) const;
 
   /// Finds the smallest distance of any checked pair over a whole motion, proven from below and from above, with the
@@ -294,9 +314,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   out of range (ClearanceRequest).
   /// @throws std::logic_error as continuousCollide().
   [[nodiscard]] Clearance clearance(const JointMotion& motion, const ClearanceRequest& request = {}) const;
-  /// Finds the smallest distance of any checked pair over a whole trajectory, as above; Clearance::time is the
-  /// trajectory's own.
-  /// @throws as above.
+  /// Finds the smallest distance of any checked pair over a whole trajectory, proven from below and from above, with
+  /// the pair and the time, the trajectory's own, at which it is nearly reached. Margins that are set do not count.
+  /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
 
  private:

@@ -66,8 +66,8 @@ struct Tolerances {
   /// Wanted width of [t_lower, t_upper], above 0: in normalized time, [0, 1]; for a trajectory in the unit of its
   /// times.
   double tolerance_time = 1e-6;
-  /// A gap that can't be proven counts as contact, with certain = false, only if it is below this length, in m, or too
-  /// small for rounding. Above 0.
+  /// Bodies whose gap can't be proven count as touching, with certain = false, only if the gap is below this length, in
+  /// m, or too small for rounding to decide. Above 0.
   double tolerance_distance = 1e-6;
   /// Bodies nearer than this, in m, count as touching; finite, at least 0. Margins of a pair's or body's own replace it
   /// (ArticulatedCollisionManager::setMargin).

@@ -122,8 +122,10 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                             const CertifiedRequest& request = planningRequest());
-  /// Creates a validator, as above, for all variables of the manager's tree in its order.
-  /// @throws std::invalid_argument as above, and as JointMapping for the space of `si`.
+  /// Creates a validator for a space information whose space has all variables of the manager's tree in its order.
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param request  mode, max_contacts and progress are not used.
+  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager,
                             const CertifiedRequest& request = planningRequest());
@@ -142,7 +144,7 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// is valid by itself and can be left again. If there is no such room at s1, or what touched there has not separated
   /// by then, the time is 0 and the state s1. If true, lastValid is not touched.
   /// @param[out] lastValid  state and fraction of the motion, in [0, 1].
-  /// @throws as above; the time is 0 and the state s1 then, too.
+  /// @throws as checkMotion(s1, s2); the time is 0 and the state s1 then, too.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 
@@ -183,8 +185,10 @@ class FCL_ARTIC_EXPORT CollisionStateValidityChecker : public ::ompl::base::Stat
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                                 const CertifiedRequest& request = planningRequest());
-  /// Creates a checker, as above, for all variables of the manager's tree in its order.
-  /// @throws std::invalid_argument as above, and as JointMapping for the space of `si`.
+  /// Creates a checker for a space information whose space has all variables of the manager's tree in its order.
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param request  mode, max_contacts, progress and ignore_initial_contact are not used.
+  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager,
                                 const CertifiedRequest& request = planningRequest());
