@@ -22,7 +22,8 @@ FCL_ARTIC_EXPORT std::shared_ptr<const KinematicTree> inBetweenTree(const Kinema
 /// @param M_0_begin, M_0_end  poses of all links at t = 0 and t = 1, link to world, in the order of the links; without
 ///   the further link, which rests at the origin.
 /// @throws std::invalid_argument for another number of poses, one that is not rigid to 1e-6, a tree that was not made
-///   by inBetweenTree(), and as JointMotion::linear(): a link's origin is at most 1e5 m from its parent's.
+///   by inBetweenTree(), and as JointMotion::linear(): coordinates of a link's origin in its parent's frame are at most
+///   1e5 m.
 FCL_ARTIC_EXPORT JointMotion inBetweenMotion(const KinematicTree& tree, const std::vector<Eigen::Isometry3d>& M_0_begin,
                                              const std::vector<Eigen::Isometry3d>& M_0_end);
 

@@ -8,8 +8,8 @@
 
 namespace fcl_artic {
 
-/// A motion in joint space over t in [0, 1]: a polynomial of t for every joint variable, in the simplest case q(t) = q0
-/// + t Δq (Redon 2004, Section 3).
+/// A motion in joint space over t in [0, 1]: every joint variable is a polynomial of t. The simplest case is linear,
+/// q(t) = q0 + t Δq (Redon 2004, Section 3).
 ///
 /// The orientation of a floating or spherical joint is exp([w(t)]) R0, with R0 the orientation at t = 0 and the
 /// rotation vector w(t) a polynomial in the joint's frame, w(0) = 0.

@@ -34,8 +34,8 @@ enum class FeatureKind {
 };
 
 /// A body of a query: a geometry bound to a link, an object attached to a link, or an obstacle. The pointers are the
-/// caller's own objects. A query of two objects has no names and leaves the fields at their defaults, except that
-/// continuousCollide() of two fcl::CollisionObjects sets `object`.
+/// caller's own objects. Queries of two objects, and a ContinuousCollisionManager, know no names and leave the fields
+/// at their defaults, except that continuousCollide() of two fcl::CollisionObjects sets `object`.
 struct BodyRef {
   LinkId link = -1;                               ///< The link that carries it; -1 for an obstacle.
   const fcl::CollisionObjectd* object = nullptr;  ///< As registered or bound; null for a moving obstacle.

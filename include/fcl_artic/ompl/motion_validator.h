@@ -17,8 +17,8 @@
 
 namespace fcl_artic::planning {
 
-/// Returns the request that planners ask with by default: tolerance_time 1/4096 of the motion (which matters only where
-/// the time of contact is wanted), tolerance_distance 0.01 mm, and the defaults of CertifiedRequest for the rest.
+/// Returns the request that planners ask with by default: tolerance_time 1/4096 of the motion, for queries that want
+/// the first contact, tolerance_distance 0.01 mm, and the defaults of CertifiedRequest for the rest.
 FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
 
 /// How the states of an OMPL space place the joints of a tree, and the motion that StateSpace::interpolate() describes.
