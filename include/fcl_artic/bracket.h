@@ -8,26 +8,30 @@
 
 namespace fcl_artic {
 
+/// The verdict of a query.
 enum class Status : std::int32_t {
-  free,       ///< proven: no checked pair touches during the motion
-  contact,    ///< first contact within [t_lower, t_upper] (see Bracket::certain)
-  undecided,  ///< the work budget ran out, or `progress` ended the query; free on [0, t_lower) is proven
+  free,       ///< Proven: no checked pair comes within its margin (0: touches) at any time of the motion.
+  contact,    ///< Contact, proven if Bracket::certain; otherwise it can't be excluded within the tolerances.
+  undecided,  ///< The work budget ran out, or `progress` ended the query. The motion is proven free on [0, t_lower).
 };
 
-/// The verdict of a query, and the bracket [t_lower, t_upper] that holds the first contact. Time is the motion's,
-/// t in [0, 1]; of a trajectory it is the trajectory's own.
+/// The verdict of a query, and the bracket [t_lower, t_upper] of the time of first contact. Base of all results.
+///
+/// Time is the motion's, t in [0, 1]; for a trajectory it is the trajectory's own time. What is proven, and what the
+/// proof rests on: doc/PROMISE.md.
 struct Bracket {
+  /// The verdict. `undecided` until a query has answered, and after a query that throws.
   Status status = Status::undecided;
-  /// The motion is proven free on [begin, t_lower).
+  /// The motion is proven free on [begin, t_lower), whatever the status. The motion's end if it is free.
   double t_lower = 0;
-  /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise the motion's end, or the time
-  /// of a later proven contact.
+  /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise t_upper is the time of some
+  /// proven contact, more than tolerance_time after t_lower, or the motion's end.
   double t_upper = 1;
-  /// Contact is proven, not only undecidable within the tolerances; t_upper - t_lower is no more than tolerance_time
-  /// then, but with ContactMode::any.
+  /// True if contact is proven and, except with ContactMode::any, t_upper - t_lower <= tolerance_time. False if the
+  /// status is not `contact`. (In a trajectory's time, rounding adds a few ulp to the width.)
   bool certain = false;
 
-  /// Proven: nothing touches. Neither a contact nor an undecided motion is free.
+  /// Whether the motion is proven free of contact. False for a contact that is not certain and for `undecided`.
   [[nodiscard, gnu::always_inline]] bool isFree() const { return status == Status::free; }
 };
 

@@ -8,30 +8,38 @@
 
 namespace fcl_artic {
 
-/// What ArticulatedCollisionManager::clearance() is asked. All defaults are safe: nothing has to be tuned.
+/// Request of ArticulatedCollisionManager::clearance(). All defaults are safe: nothing has to be tuned. clearance()
+/// throws std::invalid_argument, naming the value, for values outside the ranges given here.
 struct ClearanceRequest {
-  /// Wanted: upper - lower is below the larger one of this part of `upper` and this length, m.
-  /// From 0 to below 1, and above 0.
+  /// Wanted accuracy: upper - lower is at most the larger one of tolerance_relative * upper (at least 0, below 1) and
+  /// tolerance_distance (m, above 0).
   double tolerance_relative = 0.01, tolerance_distance = 1e-4;
-  /// Nothing farther apart than this, in m, is of interest: where nothing comes so near, that is the answer.
+  /// Largest distance of interest, m, above 0: if nothing comes within it, that is the answer.
   double most = 1;
-  bool check_scene = true;  ///< links against obstacles
-  bool check_self = true;   ///< links against links
-  /// Node and leaf tests after which the search ends with what is proven so far; 0: no limit.
+  bool check_scene = true;  ///< Links against obstacles.
+  bool check_self = true;   ///< Links, and the objects attached to them, against each other.
+  /// Maximum number of node and leaf tests; after it the search ends with what is proven so far; 0: no limit.
   std::uint64_t work_budget = 0;
 };
 
-/// The smallest distance of any checked pair over a whole motion. lower <= distance <= upper, both proven.
+/// The smallest distance of any checked pair over a whole motion: lower <= distance <= upper, both proven. It is found
+/// by queries with margins (CertifiedRequest::margin).
 struct Clearance {
-  /// No checked pair comes nearer than this, in m, at any time. 0 when something touches.
+  /// No checked pair comes nearer than this, in m, at any time. 0 if something touches, and if nothing larger is
+  /// proven.
   double lower = 0;
-  /// body1 and body2 are no farther apart than this, in m, at `time`; infinite where nothing comes within `most`.
+  /// At `time`, body1 and body2 are proven to be no farther apart than this, in m. Infinite if nothing is proven to
+  /// come within ClearanceRequest::most.
   double upper = std::numeric_limits<double>::infinity();
-  double time = 0;  ///< 0 to 1, of a trajectory in its own time
+  /// Time to which `upper` belongs: in [0, 1], for a trajectory its own time. 0 if `upper` is infinite.
+  double time = 0;
+  /// The pair to which `upper` belongs; without names if `upper` is infinite.
   BodyRef body1, body2;
-  /// upper - lower is within the tolerances, or nothing comes within `most`. False where the work budget ended first.
+  /// Whether upper - lower is within the tolerances, or nothing comes within ClearanceRequest::most. False if the work
+  /// budget ran out, or if a query could not be decided.
   bool within_tolerance = false;
-  QueryStatistics statistics;  ///< of all queries together
+  /// Work of all queries together.
+  QueryStatistics statistics;
 };
 
 }  // namespace fcl_artic

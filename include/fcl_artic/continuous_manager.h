@@ -15,98 +15,150 @@
 
 namespace fcl_artic {
 
-/// Box in the world that certainly holds the object at every time of its motion, rounding included; infinite where the
-/// object is. (fcl::ContinuousCollisionObject::computeAABB() does not hold the motion; this neither calls it nor
-/// changes what getAABB() returns.)
-/// @throws std::invalid_argument: null geometry or motion, and what fcl_artic::continuousCollide refuses of either.
+/// Returns a box in the world, m, that is proven to hold the object at every time of its motion, rounding included;
+/// infinite where the object is unbounded. (fcl::ContinuousCollisionObject::computeAABB() does not hold the motion;
+/// this function neither calls it nor changes what getAABB() returns.)
+/// @throws std::invalid_argument for a null geometry or motion, and for what fcl_artic::continuousCollide() refuses of
+///   either.
 FCL_ARTIC_EXPORT fcl::AABBd sweptAABB(const fcl::ContinuousCollisionObjectd& object);
 
-/// Two moving objects and what was found of them.
+/// Two moving objects and the answer for them.
 struct MovingPair {
-  fcl::ContinuousCollisionObjectd* object1 = nullptr;
-  fcl::ContinuousCollisionObjectd* object2 = nullptr;
+  fcl::ContinuousCollisionObjectd* object1 = nullptr;  ///< The first object: as registered, or as given to the query.
+  fcl::ContinuousCollisionObjectd* object2 = nullptr;  ///< The second object, as registered.
+  /// The pair's own verdict, bracket, contacts and poses; body 1 is object1.
   CertifiedPairResult result;
 };
 
-/// The answer for many moving objects. Always written in full.
+/// The answer for many moving objects: verdict and bracket of all pairs together (Bracket), and the pairs found. A
+/// query writes every field; if it throws, the result is reset to its defaults.
 struct CertifiedPairsResult : Bracket {
-  /// Empty when free. Otherwise the pair with the earliest t_lower comes first; with ContactMode::first it is the only
-  /// one, with firstOfEveryPair all that are not proven free follow. Pairs of the same t_lower are in order of
-  /// registration.
+  /// Pairs that are not proven free, in the order of their t_lower, and of registration if that is the same. With
+  /// ContactMode::firstOfEveryPair these are all (if the work budget runs out, up to the first pair that it leaves
+  /// undecided), with other modes only the first.
   std::vector<MovingPair> pairs;
-  /// Pairs that touch at t = 0, where that was ignored (CertifiedPairRequest::ignore_initial_contact).
+  /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
-  QueryStatistics statistics;  ///< summed over the pairs
+  /// Work, summed over the pairs. `pairs` counts all pairs asked about, `pairs_after_culling` those whose boxes meet.
+  QueryStatistics statistics;
 };
 
-/// Continuous collision of many moving objects, in FCL's manager idiom: boxes around whole motions tell which pairs may
-/// meet. What FCL declares for this, BroadPhaseContinuousCollisionManager, is no base of this class: its collide()
+/// Certified continuous collision detection of many moving objects, in FCL's manager idiom: boxes around whole motions
+/// decide which pairs may meet. FCL's BroadPhaseContinuousCollisionManager is no base of this class: its collide()
 /// takes callbacks for pairs of *still* objects, so that no moving pair could be delivered through it.
 ///
-/// Objects, geometries and motions stay the caller's and are never written to. An object is read when it is registered
-/// or updated: whoever then changes its motion or geometry in place calls update(). An object without motion is
-/// refused; one that stands still has a motion from a pose to the same pose, `fcl::TranslationMotiond(tf, tf)`. Many
-/// still objects that touch each other are best kept in a manager of their own, to be asked against the moving ones.
+/// Objects, geometries and motions stay the caller's, are never written to, and must stay alive while registered. An
+/// object is read when it is registered or updated: call update() after its motion or geometry was changed in place. An
+/// object without motion is refused; one that stands still has a motion from a pose to the same pose,
+/// `fcl::TranslationMotiond(tf, tf)`. Many still objects that touch each other are best kept in a manager of their own,
+/// to be asked against the moving ones.
 ///
-/// After setup() all const members may be called from many threads at once.
+/// After setup() all const members may be called from many threads at once. Members that are not const must not run
+/// beside any other. A manager that was moved from may only be destroyed or assigned to.
 class FCL_ARTIC_EXPORT ContinuousCollisionManager {
  public:
+  /// FCL's type of moving objects.
   using Object = fcl::ContinuousCollisionObjectd;
-  /// Is given two objects and cdata; returns true to stop.
+  /// Function that gets the two objects of a pair and cdata, and returns true to stop.
   using Callback = fcl::ContinuousCollisionCallBack<double>;
 
+  /// Creates a manager without objects.
   ContinuousCollisionManager();
+  /// Releases the objects, which stay the caller's.
   ~ContinuousCollisionManager();
+  /// Takes over all objects of another manager.
   ContinuousCollisionManager(ContinuousCollisionManager&&) noexcept;
+  /// Takes over all objects of another manager.
   ContinuousCollisionManager& operator=(ContinuousCollisionManager&&) noexcept;
 
+  /// Adds an object. Needs setup().
+  /// @param object  kept as a pointer; must stay alive until it is unregistered.
   /// @throws std::invalid_argument: null, registered already, or what sweptAABB() throws. Nothing is changed then.
   void registerObject(Object* object);
+  /// Adds objects: all of them or, if this throws, none. Needs setup().
+  /// @throws std::invalid_argument as registerObject(), naming the object by its index.
   void registerObjects(const std::vector<Object*>& objects);
-  /// @throws std::invalid_argument when it is not registered.
+  /// Removes an object. Needs setup().
+  /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(Object* object);
 
-  /// Makes all changes effective; needed before the first query and after objects were registered or unregistered.
+  /// Makes all changes effective. Needed before the first query and after objects were registered or unregistered.
+  /// Reads no object again; update() does.
   void setup();
-  /// Reads motions and geometries again, of all objects or of some, and makes all changes effective. (Of a mesh that is
-  /// what it was, that costs a comparison.)
-  /// @throws std::invalid_argument as registerObject(); when one is not registered. Nothing is changed then.
+  /// Reads motions and geometries of all objects again, and makes all changes effective. (For a mesh that has not
+  /// changed, this costs a comparison.)
+  /// @throws std::invalid_argument for what sweptAABB() refuses. Nothing is changed then.
   void update();
+  /// Reads motion and geometry of one object again, and makes all changes effective.
+  /// @throws std::invalid_argument if it is not registered, or for what sweptAABB() refuses. Nothing is changed then.
   void update(Object* object);
+  /// Reads motions and geometries of these objects again, and makes all changes effective.
+  /// @throws std::invalid_argument if one is not registered, or for what sweptAABB() refuses. Nothing is changed then.
   void update(const std::vector<Object*>& objects);
+  /// Removes all objects.
   void clear();
 
-  /// In order of registration.
+  /// Lists the objects in the order of registration.
+  /// @param[out] objects  replaced.
   void getObjects(std::vector<Object*>& objects) const;
+  /// Number of objects.
   std::size_t size() const;
+  /// Whether there is no object.
   bool empty() const { return size() == 0; }
-  /// sweptAABB() of a registered object, as it was read last.
+  /// Returns the swept box of a registered object, as it was read last (fcl_artic::sweptAABB()).
+  /// @throws std::invalid_argument if it is not registered.
   fcl::AABBd sweptAABB(const Object* object) const;
 
-  /// Hands every pair whose swept boxes come within `margin` of each other to the callback, once, until it returns
-  /// true: all that touch at some time are among them. Pairs and their objects come in order of registration.
-  /// @param margin  m; for callbacks that ask whether objects come nearer than that.
-  /// @throws std::logic_error when objects were registered or unregistered after the last setup() or update().
+  /// Hands every pair of registered objects whose swept boxes come within `margin` of each other to the callback, once,
+  /// until it returns true. All pairs that come so near at some time are among them. Pairs, and the two objects of
+  /// each, come in the order of registration.
+  /// @param cdata   passed to the callback.
+  /// @param margin  m, finite, at least 0; for callbacks that ask whether objects come nearer than that.
+  /// @throws std::logic_error if objects were registered or unregistered after the last setup() or update().
   /// @throws std::invalid_argument: callback null, margin negative or not finite.
   void collide(void* cdata, Callback callback, double margin = 0) const;
-  /// One object against all registered ones but itself. It need not be registered, and is read then; else it is taken
-  /// as read last.
-  /// @throws std::invalid_argument also what registerObject() throws of an object.
+  /// Hands every pair of one object and a registered one whose swept boxes come within `margin` of each other to the
+  /// callback, once, until it returns true. The object comes first, and is not paired with itself.
+  /// @param object  need not be registered; it is read by this call then, else it is taken as it was read last.
+  /// @param cdata   passed to the callback.
+  /// @param margin  m, finite, at least 0.
+  /// @throws std::logic_error if objects were registered or unregistered after the last setup() or update().
+  /// @throws std::invalid_argument: callback null, margin negative or not finite, what registerObject() refuses of an
+  ///   object.
   void collide(Object* object, void* cdata, Callback callback, double margin = 0) const;
-  /// Objects of this manager, which come first, against those of another one. An object is not paired with itself; two
-  /// that are in both managers are paired once.
+  /// Hands every pair of an object of this manager and one of another manager whose swept boxes come within `margin` of
+  /// each other to the callback, once, until it returns true. The object of this manager comes first. An object is not
+  /// paired with itself; two objects that are in both managers are paired once.
+  /// @param other   not null; may be this manager.
+  /// @param cdata   passed to the callback.
+  /// @param margin  m, finite, at least 0.
+  /// @throws std::logic_error if objects of either manager were registered or unregistered after its last setup() or
+  ///   update().
+  /// @throws std::invalid_argument: `other` or callback null, margin negative or not finite.
   void collide(const ContinuousCollisionManager* other, void* cdata, Callback callback, double margin = 0) const;
 
-  /// First contact of all pairs of registered objects, or the proof that there is none.
-  /// @param request  check_scene and check_self have no meaning here, progress is not called. max_contacts is per pair,
-  ///   work_budget for all of them together.
-  /// When it throws, the result is reset: undecided on [0, 1].
-  /// @throws std::invalid_argument for a tolerance that is not a positive number (0 is none), and a margin that is
-  ///   negative or not finite.
+  /// Finds the first contact of all pairs of registered objects, or proves that there is none.
+  /// @param request  max_contacts is per pair, work_budget for all pairs together; progress is not called, and
+  ///   ContactMode::any ends the search in each pair only.
+  /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
+  /// @throws std::invalid_argument for tolerances that are not positive numbers, and margins that are negative or not
+  ///   finite.
   /// @throws std::logic_error as collide().
   void continuousCollide(const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
-  /// The same for the pairs that the corresponding collide() asks about.
+  /// Finds the first contact of one object with the registered ones, or proves that there is none. The object is not
+  /// paired with itself, and is object1 of each MovingPair.
+  /// @param object   need not be registered; it is read by this call then, else it is taken as it was read last.
+  /// @param request  as for all pairs of registered objects.
+  /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for all pairs, and for what registerObject() refuses of an
+  ///   object.
   void continuousCollide(Object* object, const CertifiedPairRequest& request, CertifiedPairsResult& result) const;
+  /// Finds the first contact of the objects of this manager with those of another one, or proves that there is none. An
+  /// object is not paired with itself; two objects that are in both managers are paired once.
+  /// @param other    not null; may be this manager.
+  /// @param request  as for all pairs of registered objects.
+  /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for all pairs, for either manager, and if `other` is null.
   void continuousCollide(const ContinuousCollisionManager* other, const CertifiedPairRequest& request,
                          CertifiedPairsResult& result) const;
 

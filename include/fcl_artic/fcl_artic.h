@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// All of the core library. Components have headers of their own: <fcl_artic/urdf/urdf.h>,
+// <fcl_artic/visibility/offscreen.h>, <fcl_artic/ompl/planning_setup.h>.
 #pragma once
 
 #include "fcl_artic/bounded_motion.h"

@@ -11,45 +11,54 @@ namespace fcl_artic {
 
 struct BodyMotion;
 
-/// Motion of a geometry that is fixed to one link, as FCL's motion type: FCL's own conservative advancement, and its
-/// naive stepping, then run on exactly the motion of a certified query.
+/// Motion of a geometry that is fixed to one link, as FCL's motion type: it lets FCL's own conservative advancement and
+/// naive stepping run on exactly the motion of a certified query. This library's queries take it too.
 ///
-/// Trust FCL's oriented routine for meshes only, `fcl::detail::conservativeAdvancementMeshOriented` on RSS or OBBRSS;
-/// the public entry loses most mesh contacts whatever the motion. Two habits of FCL to know:
-/// - advancement starts from the state that integrate() left behind, so call integrate(0) before each query;
+/// Of FCL's advancement, trust the oriented routine for meshes only, `fcl::detail::conservativeAdvancementMeshOriented`
+/// on RSS or OBBRSS; the public entry loses most mesh contacts whatever the motion. Two habits of FCL to know:
+/// - advancement starts from the state that integrate() left, so call integrate(0) before each query;
 /// - integrate() is const but writes that state: give each thread its own copy. pose(), speedBound() and
 ///   accelerationBound() touch no state.
 class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
  public:
   /// Copies what it needs of tree and motion; starts at t = 0.
-  /// @param offset  geometry frame in the link's frame, rigid.
+  /// @param motion  of degree 1: joints at constant speed, as JointMotion::linear() makes it.
+  /// @param offset  pose of the geometry's frame in the link's frame, rigid to 1e-9.
   /// @throws std::out_of_range for an unknown link.
-  /// @throws std::invalid_argument when the motion is not one of this tree, or for an offset that is not rigid.
+  /// @throws std::invalid_argument if the motion is not one of this tree or of a higher degree, or for an offset that
+  ///   is not rigid.
   FclLinkMotion(const KinematicTree& tree, const JointMotion& motion, LinkId link,
                 const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
 
-  /// Pose of the geometry in the world at t in [0, 1].
+  /// Returns the pose of the geometry in the world at t in [0, 1].
   Eigen::Isometry3d pose(double t) const;
 
-  /// Bounds |x'(t)|, in m per unit of t, over [0, 1] for every point x within `radius` of the geometry frame's origin.
+  /// Returns a bound on |x'(t)| over [0, 1], in m per unit of t, for every point x within `radius` (m) of the geometry
+  /// frame's origin. Not rounded outward, as all bounds of this class: FCL's advancement proves nothing anyway.
   double speedBound(double radius) const;
-  /// Bounds |x''(t)|, in m per unit of t squared, for the same points.
+  /// Returns a bound on |x''(t)| over [0, 1], in m per unit of t squared, for the same points as speedBound().
   double accelerationBound(double radius) const;
 
+  /// FCL's overload that returns the rotation and the translation of the current state.
   using fcl::MotionBased::getCurrentTransform;
 
-  /// Goes to time t, clamped to [0, 1]. Always true.
+  /// Moves the state to time t, clamped to [0, 1]. Always returns true.
   bool integrate(double t) const override;
+  /// Writes the pose of the geometry in the world at the time of the last integrate().
   void getCurrentTransform(fcl::Transform3d& M_0g) const override;
 
-  /// Bounds the displacement along the visitor's direction over the rest of the motion, per unit of t.
+  /// Returns a bound, in m per unit of t, on the displacement of the visitor's bounding volume along the visitor's
+  /// direction over the rest of the motion.
   /// @throws std::invalid_argument for bounding volumes other than RSS and OBBRSS: FCL's oriented routine knows no
   ///   other, and a number made up for them could let a contact pass.
   double computeMotionBound(const fcl::BVMotionBoundVisitor<double>& visitor) const override;
+  /// Returns a bound, in m per unit of t, on the displacement of the visitor's triangle along the visitor's direction
+  /// over the rest of the motion.
   double computeMotionBound(const fcl::TriangleMotionBoundVisitor<double>& visitor) const override;
 
-  /// A constant with a remainder that holds for all of [0, 1]: fcl::ContinuousCollisionObjectd::computeAABB() then
-  /// gives a box that contains the motion (wide for long motions). FCL's own trigonometric Taylor models don't.
+  /// Writes a Taylor model: a constant with a remainder that holds for all of [0, 1]. It makes
+  /// fcl::ContinuousCollisionObjectd::computeAABB() give a box that contains the motion (wide for long motions); FCL's
+  /// own trigonometric Taylor models don't.
   void getTaylorModel(fcl::TMatrix3<double>& R, fcl::TVector3<double>& T) const override;
 
  private:

@@ -484,13 +484,16 @@ using fcl::distance;
 // parameter of its own to make these templates the less specialised ones: an unqualified call, which sees FCL's too, is
 // not ambiguous.
 
-/// FCL's static query.
+/// Asks FCL's static query of two objects at their own transforms: fcl::collide(). Nothing is proven by this library.
+/// @return the number of contacts found.
 template <typename S, typename Request>
 std::size_t collide(const CollisionObject<S>* o1, const CollisionObject<S>* o2, const Request& request,
                     CollisionResult<S>& result) {
   return fcl::collide(o1, o2, request, result);
 }
-/// FCL's static query.
+/// Asks FCL's static query of two geometries at given transforms, in the world: fcl::collide(). Nothing is proven by
+/// this library.
+/// @return the number of contacts found.
 template <typename S, typename Request>
 std::size_t collide(const CollisionGeometry<S>* o1, const Transform3<S>& tf1, const CollisionGeometry<S>* o2,
                     const Transform3<S>& tf2, const Request& request, CollisionResult<S>& result) {

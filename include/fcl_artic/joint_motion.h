@@ -8,56 +8,66 @@
 
 namespace fcl_artic {
 
-/// Motion in joint space for t in [0, 1], a polynomial for every joint variable; q(t) = q0 + t Δq in the simplest case
-/// (Redon 2004, Section 3).
+/// A motion in joint space over t in [0, 1]: every joint variable is a polynomial of t. The simplest case is linear,
+/// q(t) = q0 + t Δq (Redon 2004, Section 3).
 ///
-/// A quaternion (floating, spherical joint) turns by a rotation vector: the orientation is exp([w(t)]) R0, with R0 the
-/// orientation at t = 0 and w(t) a polynomial in the joint's frame, w(0) = 0.
+/// The orientation of a floating or spherical joint is exp([w(t)]) R0, with R0 the orientation at t = 0 and the
+/// rotation vector w(t) a polynomial in the joint's frame, w(0) = 0.
 ///
-/// A motion belongs to the joint variables of the tree that it was made for (KinematicTree::jointSpace()): a tree of
-/// other ones refuses it, whatever their number. What has been moved from is no motion; all trees refuse it.
+/// A motion belongs to the joint variables of the tree that it was made for (KinematicTree::jointSpace()); trees with
+/// other ones refuse it, whatever their number. It keeps no reference to the tree. A motion that was moved from is
+/// none: all trees refuse it, and it may only be destroyed or assigned to.
 class FCL_ARTIC_EXPORT JointMotion {
  public:
-  /// Every joint variable goes straight from q0 to q1, also where that is the longer way round. A quaternion takes the
-  /// shortest rotation at constant speed (slerp, as OMPL's SO3 and SE3 spaces); of a quaternion and its negative, which
-  /// are one orientation, the nearer is meant.
-  /// @throws std::invalid_argument for wrong sizes, values that are not finite, or beyond 1e5 rad or 1e5 m.
+  /// Moves every joint variable straight from q0 to q1, even if that is the longer way round. A quaternion takes the
+  /// shortest rotation at constant speed (slerp, as OMPL's SO3 and SE3 spaces); a quaternion and its negative, which
+  /// are one orientation, make no difference.
+  /// @param q0, q1  tree.dof() joint values each, rad or m.
+  /// @throws std::invalid_argument for a wrong size, values that are not finite or, also for mimic joints, beyond 1e5
+  ///   rad or m, and quaternions whose lengths are not 1 within 1e-3.
   static JointMotion linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
-  /// As linear(), but continuous joints and a planar joint's angle take the shorter way: their Δq is wrapped to [-π,
-  /// π].
-  /// @throws also when a joint mimics a wrapped continuous one with a multiplier that is no integer: its end pose
-  ///   would not be the one of q1.
+  /// Moves as linear(), except that continuous joints and the angles of planar joints take the shorter way round: their
+  /// Δq is wrapped to [-π, π].
+  /// @param q0, q1  tree.dof() joint values each, rad or m.
+  /// @throws std::invalid_argument as linear(), and if a joint that mimics a wrapped one would end in another pose than
+  ///   at q1: a prismatic joint, or one whose multiplier is no integer.
   static JointMotion shortest(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
-  /// The polynomials themselves, up to the fifth degree.
-  /// @param coefficients  dof() rows; column 0 is the configuration at t = 0, column k belongs to t^k. From column 1 on
-  ///   the rows x, y, z of a quaternion hold the rotation vector w, and its row w is 0.
-  /// @throws std::invalid_argument for wrong sizes, values that are not finite, or where the absolute coefficients of a
-  ///   joint, mimic joints too, sum to more than 1e5 rad or 1e5 m.
+  /// Moves along given polynomials, up to the fifth degree.
+  /// @param coefficients  tree.dof() rows, 1 to 6 columns. Column 0 is the configuration at t = 0, rad or m; column k
+  ///   belongs to t^k. For a quaternion the rows x, y, z hold the rotation vector w from column 1 on, and the row w is
+  ///   0.
+  /// @throws std::invalid_argument for wrong sizes, values that are not finite, a column 0 that is no configuration, or
+  ///   if the absolute coefficients of a joint, mimic joints too, sum to more than 1e5 rad or m.
   static JointMotion polynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients);
 
-  /// The configuration at t = 0, quaternions normalised.
+  /// Returns the configuration at t = 0, size() entries, with normalised quaternions.
   Eigen::VectorXd q0() const { return configuration(0); }
-  /// The coefficients of t (with linear(): q1 - q0).
+  /// Returns the coefficients of t, size() entries: for linear() q1 - q0, for a quaternion the rotation vector and 0.
   Eigen::VectorXd dq() const { return variables_.col(1); }
+  /// Returns the configuration at time t, size() entries, rad or m. t is not clamped to [0, 1].
+  /// @throws std::invalid_argument if the motion was moved from.
   Eigen::VectorXd configuration(double t) const;
-  /// Number of joint variables.
+  /// Number of joint variables: dof() of the tree.
   Eigen::Index size() const { return variables_.rows(); }
-  /// Highest power of t that there is a column for, at least 1.
+  /// Highest power of t that has a column of coefficients; at least 1.
   Eigen::Index degree() const { return variables_.cols() - 1; }
-  /// As polynomial() takes them.
+  /// Returns the coefficients, size() by degree() + 1, as polynomial() takes them.
   Eigen::MatrixXd coefficients() const;
 
-  /// Whether it is a motion of the tree's joint variables.
+  /// Whether the motion is of the tree's joint variables.
   bool isOf(const KinematicTree& tree) const { return joint_space_.sameAs(tree.jointSpace()); }
-  /// @throws std::invalid_argument when it is not, beginning with `what` and naming both trees.
+  /// Checks that the motion is of the tree's joint variables.
+  /// @param what  begins the message.
+  /// @throws std::invalid_argument if it is not, or was moved from, naming both trees.
   void requireOf(const KinematicTree& tree, const char* what = "the motion") const {
     if (!isOf(tree)) refuse(tree, what);
   }
 
-  /// As the queries take them: coefficients(), but w(0) = 0 in place of quaternions, which are in orientations().
+  /// The coefficients as queries take them: coefficients(), with w(0) = 0 in place of quaternions, whose orientations
+  /// at t = 0 are in orientations().
   const Eigen::MatrixXd& variables() const { return variables_; }
-  /// Orientations at t = 0 of the joints that have a quaternion, in the order of the joints: rotation matrices,
-  /// row-major.
+  /// Orientations R0 at t = 0 of the joints that have a quaternion, in the order of the joints: nine numbers each, a
+  /// rotation matrix by rows.
   const std::vector<double>& orientations() const { return orientations_; }
 
  private:

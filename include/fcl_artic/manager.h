@@ -16,12 +16,18 @@
 
 namespace fcl_artic {
 
-/// Pairs of names (links, obstacles, attached objects) that may touch: they are not checked.
+/// Pairs of names (of links, obstacles, attached objects) that may touch and are therefore not checked. The order of
+/// two names does not matter. Names are taken as they are; ArticulatedCollisionManager::setAllowedCollisions() checks
+/// them.
 class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
  public:
+  /// Adds the pair.
   void allow(const std::string& a, const std::string& b) { pairs_.insert(key(a, b)); }
+  /// Removes the pair, if it is there.
   void disallow(const std::string& a, const std::string& b) { pairs_.erase(key(a, b)); }
+  /// Whether the pair is in the matrix.
   bool allowed(const std::string& a, const std::string& b) const { return pairs_.count(key(a, b)) != 0; }
+  /// All pairs, the alphabetically smaller name first in each.
   const std::set<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
 
  private:
@@ -31,196 +37,286 @@ class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
   std::set<std::pair<std::string, std::string>> pairs_;
 };
 
-/// Certified continuous collision detection of a forest of links against obstacles and against itself, in FCL's
-/// manager idiom. Objects and geometries stay the caller's and are never written to. Their geometry is read when they
-/// are registered or bound, and by setup() and update() wherever it is not what was read before, also where it was
-/// changed in place: a shape's sizes, a mesh's vertices, an OcTree's cells or threshold. Queries go by what was read.
+/// Certified continuous collision detection of a forest of links against obstacles and against itself, in FCL's manager
+/// idiom: register obstacles, bind geometry to links, call setup(), ask.
 ///
-/// After setup() all const members may be called from many threads at once.
+/// Objects and geometries stay the caller's and are never written to; they must stay alive while they are registered or
+/// bound (overloads that take a shared_ptr see to that). Geometry is read by registerObject() and bind(), and again by
+/// setup() and update() if it has changed, also in place: a shape's sizes, a mesh's vertices, an OcTree's cells or
+/// threshold. Queries use what was read last.
+///
+/// After setup() all const members may be called from many threads at once. Members that are not const must not run
+/// beside any other. A manager that was moved from may only be destroyed or assigned to.
 class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
  public:
-  /// @throws std::invalid_argument when tree is null.
+  /// Creates a manager without obstacles and geometry. It shares ownership of the tree.
+  /// @throws std::invalid_argument if tree is null.
   explicit ArticulatedCollisionManager(std::shared_ptr<const KinematicTree> tree);
+  /// Releases the objects; those that the caller owns are not touched.
   ~ArticulatedCollisionManager();
+  /// Takes over everything from another manager.
   ArticulatedCollisionManager(ArticulatedCollisionManager&&) noexcept;
+  /// Takes over everything from another manager.
   ArticulatedCollisionManager& operator=(ArticulatedCollisionManager&&) noexcept;
 
+  /// The tree of links and joints.
   const KinematicTree& tree() const;
+  /// The tree of links and joints, shared.
   std::shared_ptr<const KinematicTree> sharedTree() const;
 
-  /// Adds an obstacle that stands still at its own transform. An empty name becomes "obstacle<N>".
+  /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup().
+  /// @param object  kept as a pointer; must stay alive until it is unregistered.
+  /// @param name    unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
   /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has,
-  ///   geometry that is unsupported, empty, degenerate (no triangle) or not finite.
+  ///   geometry that is unsupported (point clouds), has no triangle or vertex, or is not finite, a transform that is
+  ///   not rigid to 1e-6 or farther than 1e9 m away.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name = {});
-  /// The same, and the manager keeps the object alive as long as it is registered.
+  /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup(). The manager keeps
+  /// the object alive as long as it is registered or attached.
+  /// @param name  unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
+  /// @throws std::invalid_argument as registerObject() of a pointer.
   void registerObject(std::shared_ptr<const fcl::CollisionObjectd> object, const std::string& name = {});
-  /// Adds obstacles named "obstacle<N>", all or none of them.
+  /// Adds obstacles that stand still, named "obstacle<N>": all of them or, if this throws, none. Needs setup().
   /// @throws std::invalid_argument as registerObject().
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
-  /// @throws std::invalid_argument when it is not registered.
+  /// Removes an obstacle that stands still, also one that is attached to a link. Needs setup().
+  /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::CollisionObjectd* object);
 
-  /// Adds an obstacle that moves: its motion's time is the query's, t in [0, 1], whatever the robot does. Links are
-  /// checked against it as against any obstacle (CertifiedRequest::check_scene); obstacles are not checked against each
-  /// other. The geometry may be unbounded. Object, geometry and motion must outlive the manager's use of them; the
-  /// motion is read by registerObject(), setup() and update(); a BoundedMotion is asked in queries too.
-  /// @throws std::invalid_argument as above, and for a motion that fcl_artic::continuousCollide refuses.
+  /// Adds an obstacle that moves. The time of its motion is the query's, t in [0, 1] (for a trajectory, all of it),
+  /// whatever the robot does. Links are checked against it as against any obstacle (CertifiedRequest::check_scene);
+  /// obstacles are not checked against each other. The geometry may be unbounded. Needs setup().
+  ///
+  /// Object, geometry and motion must stay alive until it is unregistered. The motion is read by registerObject(),
+  /// setup() and update(); a BoundedMotion is asked during queries too.
+  /// @throws std::invalid_argument as for an obstacle that stands still, and for a motion that
+  ///   fcl_artic::continuousCollide() refuses.
   void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name = {});
+  /// Removes an obstacle that moves. Needs setup().
+  /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
 
-  /// Fixes a geometry to a link; the object's own transform is not used.
-  /// @param offset  geometry frame in the link's frame.
-  /// @throws std::invalid_argument as registerObject(), and for an unknown link or an offset that is not rigid.
+  /// Fixes a geometry to a link; the object's own transform is not used. Needs setup().
+  /// @param object  kept as a pointer; must stay alive until it is unbound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as registerObject(), and for an unknown link, unbounded geometry (Halfspace, Plane)
+  ///   or an offset that is not rigid to 1e-6.
   void bind(LinkId link, const fcl::CollisionObjectd* object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
+  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup().
+  /// @param object  kept as a pointer; must stay alive until it is unbound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() to a LinkId.
   void bind(const std::string& link, const fcl::CollisionObjectd* object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// The same, and the manager keeps the object alive as long as it is bound.
+  /// Fixes a geometry to a link; the object's own transform is not used. Needs setup(). The manager keeps the object
+  /// alive as long as it is bound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() of a pointer.
   void bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
+  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup(). The manager
+  /// keeps the object alive as long as it is bound.
+  /// @param offset  pose of the geometry's frame in the link's frame.
+  /// @throws std::invalid_argument as bind() of a pointer.
   void bind(const std::string& link, std::shared_ptr<const fcl::CollisionObjectd> object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Takes the geometry off its link.
-  /// @throws std::invalid_argument when it is bound to no link, or attached (detach() it).
+  /// Removes a geometry from its link. Needs setup().
+  /// @throws std::invalid_argument if it is bound to no link, or attached (use detach()).
   void unbind(const fcl::CollisionObjectd* object);
 
-  /// Takes a registered obstacle up, as a gripper does: from the next setup() on the link carries it. It keeps its
-  /// name, and with it what is allowed of it; all other links but `touch_links` are checked against it, neighbours too,
-  /// and so is the rest of the scene. It is no obstacle meanwhile: getObjects() and size() leave it out, boundObjects()
-  /// has it.
-  /// @param offset  geometry frame in the link's frame; the object's own transform is not used.
-  /// @param touch_links  links that it may touch; the link that carries it always may.
-  /// @throws std::invalid_argument: not an obstacle that stands still, unbounded, an unknown link, an offset that is
-  ///   not rigid.
+  /// Attaches a registered obstacle to a link, as a gripper picks it up: after the next setup() the link carries it. It
+  /// keeps its name, and with it its allowed pairs and margins. It is checked against the rest of the scene and against
+  /// all links, neighbours too, except the link that carries it and `touch_links`. Meanwhile it is no obstacle:
+  /// getObjects() and size() leave it out, boundObjects() contains it.
+  /// @param object  an obstacle that stands still.
+  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  names of further links that it may touch.
+  /// @throws std::invalid_argument: not an obstacle that stands still, unbounded geometry, an unknown link, an offset
+  ///   that is not rigid to 1e-6.
   void attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
+  /// Attaches a registered obstacle to the link of this name: does what attach() to a LinkId does.
+  /// @param object  an obstacle that stands still.
+  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  names of further links that it may touch.
+  /// @throws std::invalid_argument as attach() to a LinkId.
   void attach(const std::string& link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
-  /// Puts it down: an obstacle again, where the object's own transform says. (unregisterObject() removes it, attached
-  /// or not.)
-  /// @throws std::invalid_argument when it is not attached, or for its transform.
+  /// Puts an attached object down: it is an obstacle again, at the object's own transform. Needs setup().
+  /// (unregisterObject() removes it altogether.)
+  /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
   void detach(const fcl::CollisionObjectd* object);
 
-  /// Pairs that may touch, by link and obstacle name. Neighbours may always touch: links with one moving joint at most
-  /// between them, and no other link with geometry; but what a planar or floating joint moves about in the world is no
-  /// neighbour of what stands still. (Others that are rigidly attached are checked: allow them where they touch by
+  /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup().
+  ///
+  /// Neighbours may always touch: links with at most one moving joint between them and no other link with geometry.
+  /// (But a link that a planar or floating joint moves freely in the world is no neighbour of what stands still. Links
+  /// that are rigidly connected through another link with geometry are checked: allow them if they touch by
   /// construction.)
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
-  /// The pair may touch from now on, beside those of setAllowedCollisions().
+  /// Lets one more pair touch. Needs setup().
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object.
   void allow(const std::string& a, const std::string& b);
-  /// The pair is checked again (neighbours still are not).
+  /// Has a pair checked again. Neighbours (setAllowedCollisions()) are still not checked. Needs setup().
   /// @throws std::invalid_argument as allow().
   void disallow(const std::string& a, const std::string& b);
+  /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); neighbours are not listed.
   const AllowedCollisionMatrix& allowedCollisions() const;
 
-  /// A margin of the body's own, in m, in place of CertifiedRequest::margin, for all pairs that it belongs to
-  /// (CertifiedRequest::added_margin is added to it too). Of two bodies that both have one the larger counts.
-  /// @param body  a link (all of its geometry), an obstacle or an attached object, by name. The margin belongs to the
-  ///   name: it waits for an obstacle that is unregistered to come back.
+  /// Sets a margin of the body's own. It replaces CertifiedRequest::margin for all pairs of the body;
+  /// CertifiedRequest::added_margin is added to it too. If both bodies of a pair have one, the larger counts. Needs
+  /// setup().
+  /// @param body  name of a link (all of its geometry), an obstacle or an attached object. The margin belongs to the
+  ///   name: it is kept while an obstacle of that name is unregistered.
+  /// @param margin  m, finite, at least 0.
   /// @throws std::invalid_argument: no such name, margin negative or not finite.
   void setMargin(const std::string& body, double margin);
-  /// The same for one pair, whatever the margins of its bodies and of the request: 0 where a gripper has to get near.
+  /// Sets a margin of one pair's own, which replaces those of its bodies and of the request: for example 0 where a
+  /// gripper has to get near. CertifiedRequest::added_margin is added to it. Needs setup().
+  /// @param margin  m, finite, at least 0.
+  /// @throws std::invalid_argument: no such name, margin negative or not finite.
   void setMargin(const std::string& a, const std::string& b, double margin);
-  /// Forgets all margins of bodies and pairs.
+  /// Forgets all margins of bodies and pairs. Needs setup().
   void resetMargins();
 
-  /// Who does stage 2 (CertifiedRequest::visibility) from now on; null: the executor cpu again, as at first. What
-  /// `automatic` has measured is forgotten.
+  /// Selects who does stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, the default.
+  /// Effective at once. What VisibilityMode::automatic has measured is forgotten.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
-  /// Makes all changes effective; needed before the first query and after register, bind, allow or setMargin. Reads all
-  /// that callers may have changed of their objects: the geometry that links carry and that of obstacles, transforms
-  /// and motions of obstacles. What is the same, byte for byte, stays as it is, with all that was made of it; finding
-  /// that out takes as long as comparing all vertices and triangles and walking through OcTrees does: 17 us for 9
-  /// meshes of 1,800 triangles, 2 ms for one of 500,000. With large maps in the scene update(object) is cheaper.
-  /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. Nothing
-  ///   that was read is changed then; what was set up stays in use.
+  /// Makes all changes effective. Needed before the first query, after every member that says so, and after the tree
+  /// has grown; queries throw std::logic_error otherwise.
+  ///
+  /// It also looks for what callers have changed in place, which queries do not notice by themselves: geometry of links
+  /// and obstacles, transforms and motions of obstacles. What is the same, byte for byte, is kept with all that was
+  /// computed from it. To find that out takes as long as comparing all vertices and triangles and walking through
+  /// OcTrees: 17 µs for 9 meshes of 1,800 triangles, 2 ms for one of 500,000. With large maps in the scene
+  /// update(object) is cheaper.
+  /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. What was
+  ///   read before is kept then, and what was set up stays in use.
   void setup();
-  /// The same as setup().
+  /// Makes all changes effective, also those that callers have made in place: does what setup() does.
+  /// @throws std::invalid_argument as setup().
   void update();
-  /// Reads these objects only, obstacles or what links carry, and makes all changes effective.
-  /// @throws std::invalid_argument also for an object that is not there.
+  /// Reads one object again, an obstacle or one that a link carries, and makes all changes effective.
+  /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
   void update(const fcl::CollisionObjectd* object);
+  /// Reads these objects again, obstacles or those that links carry, and makes all changes effective.
+  /// @throws std::invalid_argument as setup(), and for an object that is neither registered nor bound.
   void update(const std::vector<fcl::CollisionObjectd*>& objects);
+  /// Reads one obstacle that moves again, and makes all changes effective.
+  /// @throws std::invalid_argument as setup(), and if the object is not registered.
   void update(const fcl::ContinuousCollisionObjectd* object);
-  /// Removes all obstacles and all bindings.
+  /// Removes all obstacles, bindings and attached objects. Allowed pairs and margins, which go by names, are kept.
+  /// Needs setup().
   void clear();
 
-  /// The obstacles that stand still.
+  /// Lists the obstacles that stand still; attached objects are not among them.
+  /// @param[out] objects  replaced.
   void getObjects(std::vector<const fcl::CollisionObjectd*>& objects) const;
-  /// Those that move.
+  /// Lists the obstacles that move.
+  /// @param[out] objects  replaced.
   void getObjects(std::vector<const fcl::ContinuousCollisionObjectd*>& objects) const;
-  /// Geometry that links carry, attached objects included.
+  /// Returns all objects that links carry, bound or attached, each with its link.
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> boundObjects() const;
-  /// Pose of a bound geometry's frame in its link's frame.
+  /// Returns the pose of a bound or attached geometry's frame in its link's frame.
+  /// @throws std::invalid_argument if no link carries the object.
   Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;
-  /// Number of obstacles, moving ones included.
+  /// Number of obstacles, moving ones included; attached objects are not.
   std::size_t size() const;
+  /// Whether there is no obstacle.
   bool empty() const { return size() == 0; }
 
-  /// First contact of the motion, or the proof that there is none (doc/PROMISE.md).
+  /// Finds the first contact of a motion, or proves that there is none (doc/PROMISE.md).
   ///
-  /// A query that throws, whatever it is, claims nothing: its result is reset, to `undecided` with t_lower at the
-  /// beginning of the motion and no contacts. (So is it while the query runs, for callbacks that look.)
-  /// @throws std::invalid_argument when the motion is not one of this tree's joint variables (JointMotion::isOf()), for
-  ///   a tolerance that is not a positive number (0 is none), and a margin that is negative or not finite.
-  /// @throws std::logic_error when changes were made after the last setup() or update(), of the tree too.
+  /// If it throws, whatever it is, the result claims nothing: it is reset to `undecided` with t_lower at the motion's
+  /// begin and no contacts. (A callback sees it like that while the query runs.)
+  /// @param motion  over t in [0, 1], made for tree() or one with the same joint variables (JointMotion::isOf()).
+  /// @param[out] result  written in full; its memory is used again.
+  /// @throws std::invalid_argument if the motion is of other joint variables, for tolerances that are not positive
+  ///   numbers, and for margins that are negative or not finite.
+  /// @throws std::logic_error if setup() or update() was not called after the last change, of the tree too.
   void continuousCollide(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
-  /// The same, answer returned. (In a loop the form with `result` is a little faster: it uses its memory again.)
+  /// Finds the first contact of a motion, or proves that there is none (doc/PROMISE.md), and returns the answer. (In a
+  /// loop the form with `result` is a little faster.)
+  /// @param motion  over t in [0, 1], made for tree() or one with the same joint variables (JointMotion::isOf()).
+  /// @throws std::invalid_argument, std::logic_error as the form with `result`.
   [[nodiscard]] CertifiedResult continuousCollide(const JointMotion& motion,
                                                   const CertifiedRequest& request = {}) const;
-  /// The first contact on the straight way from q0 to q1 in joint space (JointMotion::linear), or the proof that there
-  /// is none.
+  /// Finds the first contact on the straight way from q0 to q1 in joint space (JointMotion::linear()), or proves that
+  /// there is none.
   /// @param q0, q1  tree().dof() joint values each, rad or m.
-  /// @throws as above, and as JointMotion::linear().
+  /// @throws std::invalid_argument, std::logic_error as for a motion, and as JointMotion::linear().
   [[nodiscard]] CertifiedResult continuousCollide(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                                                   const CertifiedRequest& request = {}) const;
-  /// Whether the straight way from q0 to q1 is proven free: the fastest question (ContactMode::any in place of the
-  /// request's mode). False also where contact can't be told from none, and when the work budget ran out.
-  /// @throws as continuousCollide().
+  /// Whether the straight way from q0 to q1 in joint space is proven free: the fastest question. False also if contact
+  /// can't be excluded within the tolerances, and if the work budget ran out.
+  /// @param q0, q1  tree().dof() joint values each, rad or m.
+  /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
                             const CertifiedRequest& request = {}) const;
-  /// The same of any motion.
+  /// Whether a motion is proven free: the fastest question. False also if contact can't be excluded within the
+  /// tolerances, and if the work budget ran out.
+  /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
 
-  /// First contacts of many motions, over threads: result i is the answer to motion i, bit for bit the one that it gets
-  /// by itself (but for measured times). The request's `progress` is not called.
-  /// @param[out] results  resized; what is in them is used as memory.
-  /// @param threads  at most so many; 0: as many as the machine runs at once.
-  /// @throws as above, naming the motion that is not of this tree; all results are reset then.
+  /// Finds the first contacts of many motions on several threads. Result i is what motion i gets by itself, bit for
+  /// bit, except for measured times and what VisibilityMode::automatic chose.
+  /// @param request  `progress` is not called.
+  /// @param[out] results  resized to the number of motions; its memory is used again.
+  /// @param threads  maximum number of threads; 0: as many as the machine runs at once.
+  /// @throws std::invalid_argument, std::logic_error as for one motion, naming a motion that is of other joint
+  ///   variables, and for a negative number of threads. All results are reset then.
   void continuousCollide(const std::vector<JointMotion>& motions, const CertifiedRequest& request,
                          std::vector<CertifiedResult>& results, int threads = 0) const;
 
-  /// First contact of a whole trajectory, or the proof that there is none, in its time: t_lower, t_upper, those of the
-  /// contacts, tolerance_time and progress are in the unit of its times, and free means all of it. Both ends are
-  /// rounded outward: by that t_upper - t_lower may exceed tolerance_time by 4 ulp of the times and 8 of a piece's
-  /// duration (1e-6 s at 1.7e9 s, where doubles are 2.4e-7 s apart). With ignore_initial_contact pairs that touch at
-  /// its beginning may separate; they are watched from the moment they have (in steps of 1/512 of a piece at most) and
-  /// not ignored again. A pair that separates for less time than that may be taken as never apart. The motions of
-  /// obstacles that move take as long as the trajectory. With ContactMode::firstOfEveryPair a budget that ends after a
-  /// contact leaves the answer undecided, with the contacts so far.
-  /// @throws as for a motion.
+  /// Finds the first contact of a whole trajectory, or proves that there is none.
+  ///
+  /// All times are the trajectory's own: the request's tolerance_time and progress, t_lower and t_upper of the result
+  /// and of its contacts. Both ends are rounded outward, so that t_upper - t_lower may exceed tolerance_time by 4 ulp
+  /// of the times and 8 ulp of a piece's duration (1e-6 s at 1.7e9 s, where doubles are 2.4e-7 s apart). Obstacles that
+  /// move take as long as the trajectory.
+  ///
+  /// With ignore_initial_contact, pairs that touch at the trajectory's begin may separate; each is watched from the
+  /// moment it has (found in steps of 1/512 of a piece at most) and is not ignored again. A pair that separates for a
+  /// shorter time may be taken as never apart. With ContactMode::firstOfEveryPair, a budget that ends after a contact
+  /// leaves the answer undecided, with the contacts found so far.
+  /// @param trajectory  made for tree() or one with the same joint variables.
+  /// @param[out] result  written in full; reset (undecided, t_lower at the trajectory's begin) if this throws.
+  /// @throws std::invalid_argument, std::logic_error as for a motion.
   void continuousCollide(const JointTrajectory& trajectory, const CertifiedRequest& request,
                          CertifiedResult& result) const;
-  /// The same, answer returned.
+  /// Finds the first contact of a whole trajectory, in the trajectory's own time, or proves that there is none, and
+  /// returns the answer.
+  /// @param trajectory  made for tree() or one with the same joint variables.
+  /// @throws std::invalid_argument, std::logic_error as the form with `result`.
   [[nodiscard]] CertifiedResult continuousCollide(const JointTrajectory& trajectory,
                                                   const CertifiedRequest& request = {}) const;
 
-  /// What touches at one configuration that stands still: t_lower is 0 then, else the answer is free.
+  /// Finds what touches while the links stand still at one configuration. (Obstacles that move do so all the same.)
   /// @param q  tree().dof() joint values, rad or m.
-  /// @throws as continuousCollide().
+  /// @param[out] result  written in full; reset if this throws. Without moving obstacles a contact is at t_lower = 0.
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide() from q to q.
   void collide(const Eigen::VectorXd& q, const CertifiedRequest& request, CertifiedResult& result) const;
-  /// The same, answer returned.
+  /// Finds what touches while the links stand still at one configuration, and returns the answer. (Obstacles that move
+  /// do so all the same. Without them a contact is at t_lower = 0.)
+  /// @param q  tree().dof() joint values, rad or m.
+  /// @throws std::invalid_argument, std::logic_error as continuousCollide() from q to q.
   [[nodiscard]] CertifiedResult collide(const Eigen::VectorXd& q, const CertifiedRequest& request = {}) const;
 
-  /// The smallest distance of any checked pair over the whole motion, proven from below and from above, with the pair
-  /// and the time at which it is nearly reached. It is the distance of the bodies themselves, whatever margins are set.
-  /// (Pairs that are near by construction cap it; take them out by allowing them, or ask without check_self.)
-  /// @throws std::invalid_argument as continuousCollide(), and for tolerances or `most` out of range.
+  /// Finds the smallest distance of any checked pair over a whole motion, proven from below and from above, with the
+  /// pair and the time at which it is nearly reached. It is the distance of the bodies themselves, whatever margins are
+  /// set. Pairs that are near by construction limit it: allow them, or ask without check_self.
+  /// @throws std::invalid_argument if the motion is of other joint variables, and for values of the request that are
+  ///   out of range (ClearanceRequest).
   /// @throws std::logic_error as continuousCollide().
   [[nodiscard]] Clearance clearance(const JointMotion& motion, const ClearanceRequest& request = {}) const;
+  /// Finds the smallest distance of any checked pair over a whole trajectory, proven from below and from above, with
+  /// the pair and the time, the trajectory's own, at which it is nearly reached. Margins that are set do not count.
+  /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
 
  private:

@@ -9,18 +9,24 @@
 
 namespace fcl_artic {
 
-/// The answer for two moving objects: verdict and bracket (Bracket), contacts, poses, work. Always written in full.
+/// The answer for two moving objects: verdict and bracket (Bracket), contacts, poses, work. A query writes every field;
+/// if it throws, the result is reset to its defaults.
 struct CertifiedPairResult : Bracket {
+  /// At most CertifiedPairRequest::max_contacts: proven contacts in the order of their t_upper, then the others in the
+  /// order of their t_lower. Empty if the motion is free or undecided.
   std::vector<CertifiedContact> contacts;
-  /// Poses of both objects at t_lower, where they do not touch yet, and at t_upper, where, when certain, they do.
+  /// Poses of the objects in the world at t_lower, before which they are proven not to touch; at t = 1 if free.
   Eigen::Isometry3d tf1_at_lower = Eigen::Isometry3d::Identity(), tf2_at_lower = Eigen::Isometry3d::Identity();
+  /// Poses of the objects in the world at t_upper, where, if `certain`, they do touch; at t = 1 if free.
   Eigen::Isometry3d tf1_at_upper = Eigen::Isometry3d::Identity(), tf2_at_upper = Eigen::Isometry3d::Identity();
-  /// The objects touch at t = 0, and that was ignored (CertifiedPairRequest::ignore_initial_contact).
+  /// Whether the objects touch at t = 0 and that was ignored (CertifiedPairRequest::ignore_initial_contact).
   bool ignored_initial_contact = false;
+  /// Work of the query. The counts of stage 2 are 0, report_us and total_us too.
   QueryStatistics statistics;
 
-  /// The first of the contacts; null where there is none.
+  /// The first of the contacts; null if there is none. It points into this result.
   const CertifiedContact* first() const& { return contacts.empty() ? nullptr : &contacts.front(); }
+  /// Not available for a temporary result, whose contacts would be gone.
   const CertifiedContact* first() const&& = delete;
 };
 

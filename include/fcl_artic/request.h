@@ -7,105 +7,124 @@
 
 namespace fcl_artic {
 
-/// What to look for.
+/// Which contacts a query looks for.
 enum class ContactMode {
-  first,  ///< the first contact of the whole motion
-  /// Any contact that can be proven soon: cheaper where only the verdict counts; free is as certain. The contact is
-  /// proven at t_upper; t_lower says only up to when the motion is free, often 0.
+  first,  ///< The first contact of the whole motion.
+  /// Any contact that can be proven soon: cheaper if only the verdict matters. A free answer is as certain as with
+  /// `first`. The contact is proven at t_upper; t_lower, up to which the motion is proven free, is often 0.
   any,
-  firstOfEveryPair,  ///< the first contact of every pair of bodies that touches
+  firstOfEveryPair,  ///< The first contact of every pair of bodies that touches.
 };
 
-/// Stage 2, culling by visibility (doc/VISIBILITY.md): in queries of an ArticulatedCollisionManager, of links against
-/// obstacles that stand still. No answer depends on it. Off with a work budget.
+/// Whether stage 2, culling by visibility (doc/VISIBILITY.md), takes part in a query of an ArticulatedCollisionManager.
+/// It looks at links against obstacles that stand still. Answers do not depend on it. A work budget turns it off.
 enum class VisibilityMode {
-  off,
-  on,
-  automatic,  ///< where it pays, as measured on the manager's own queries
+  off,        ///< Never.
+  on,         ///< Always.
+  automatic,  ///< When it saves time, as measured on the manager's own queries.
 };
 
-/// How a query is solved. Both give the same promise.
+/// The method that solves a query. Both make the same promise (doc/PROMISE.md).
 enum class Method {
-  standard,   ///< the library's own
-  redon2004,  ///< "Fast Continuous Collision Detection for Articulated Models" (Redon, Kim, Lin, Manocha 2004)
+  standard,  ///< The library's own method (doc/ARCHITECTURE.md).
+  /// The method of Redon, Kim, Lin, Manocha, "Fast Continuous Collision Detection for Articulated Models" (2004), with
+  /// the options of RedonOptions (doc/REDON2004.md).
+  redon2004,
 };
 
-/// How the paper's method bounds a link's motion over a time interval.
+/// How Method::redon2004 bounds a link's motion X(t) over a time interval T with middle tm.
 enum class MotionEnclosure {
-  intervalChain,  ///< products of interval matrices down the chain: the paper's
-  meanValue,      ///< X(tm) + X'(T) (T - tm)
-  taylor,         ///< a quadratic with a bounded remainder
+  intervalChain,  ///< Products of interval matrices down the chain, as in the paper.
+  meanValue,      ///< The mean value form X(tm) + X'(T) (T - tm).
+  taylor,         ///< A quadratic in time with a bounded remainder.
 };
 
-/// Each idea of the paper's method by itself (doc/REDON2004.md). The defaults are the paper's, but for the last two:
-/// with both false the method is as the paper has it.
+/// Options of Method::redon2004: each idea of the paper can be switched by itself (doc/REDON2004.md). The defaults are
+/// the paper's except for the last two; with both of these false the method is as the paper describes it. The promise
+/// is the same for all of them.
 struct RedonOptions {
+  /// How a link's motion is bounded over a time interval.
   MotionEnclosure enclosure = MotionEnclosure::intervalChain;
-  /// A link's bounds are kept on 2^level parts of the motion (Section 5.1.1). -1: by the link's motion; 0: undivided;
-  /// at most 6.
+  /// Refinement level: a link's bounds are computed on 2^level parts of the motion (Section 5.1.1). -1: chosen by the
+  /// link's motion; 0: the motion undivided. From -1 to 6; queries throw std::invalid_argument for other values.
   int refinement_level = -1;
-  bool simultaneous = true;  ///< one list of equations per time interval (5.2.2); false: each equation by itself
-  bool newton = true;        ///< interval Newton, eq. (18)
-  /// Whether features of an equation can touch is asked in every interval; false: at the last, as the paper has it.
+  /// True: all equations are solved together, one list per time interval (Section 5.2.2). False: each by itself.
+  bool simultaneous = true;
+  /// Whether interval Newton, eq. (18), narrows the time intervals.
+  bool newton = true;
+  /// True: every interval tests whether the features of an equation can touch. False: only the last one, as in the
+  /// paper.
   bool early_validity = true;
-  /// Boxes and equations go together through the sub-intervals in the order of time, up to the first contact; false:
-  /// all boxes over the whole motion first, as the paper has it.
+  /// True: boxes and equations are processed together, sub-interval after sub-interval up to the first contact. False:
+  /// all boxes over the whole motion first, as in the paper.
   bool in_time_order = true;
 };
 
-/// How near counts as contact, and how finely a query tells when.
+/// How near counts as contact, and how finely a query locates it in time. Queries throw std::invalid_argument, naming
+/// the value, for values outside the ranges given here.
 struct Tolerances {
-  /// Wanted width of [t_lower, t_upper], above 0; t runs from 0 to 1.
+  /// Wanted width of [t_lower, t_upper], above 0: in normalized time, [0, 1]; for a trajectory in the unit of its
+  /// times.
   double tolerance_time = 1e-6;
-  /// A pair counts as touching (with certain = false) only when its gap is below this, in m; above 0.
+  /// Bodies whose gap can't be proven count as touching, with certain = false, only if the gap is below this length, in
+  /// m, or too small for rounding to decide. Above 0.
   double tolerance_distance = 1e-6;
-  /// Bodies nearer than this, in m, count as touching (pairs with a margin of their own go by that:
-  /// ArticulatedCollisionManager::setMargin).
+  /// Bodies nearer than this, in m, count as touching; finite, at least 0. Margins of a pair's or body's own replace it
+  /// (ArticulatedCollisionManager::setMargin).
   double margin = 0;
-  /// Added to every pair's margin, in m: to `margin`, and to the margins that pairs and bodies have in its place too.
-  /// For room that is wanted whatever the margins are. Bodies count as touching that are nearer than the sum, as
-  /// rounded.
+  /// Added to the margin of every pair, in m: to `margin` and to margins that pairs and bodies have of their own.
+  /// Finite, at least 0. What counts is the sum as rounded.
   double added_margin = 0;
 };
 
-/// How a query is solved, and how much work it may be.
+/// How a query is solved, and how much work it may take.
 struct Effort {
-  /// Method::redon2004 solves pairs of meshes and boxes without a margin; other pairs, and what touches at t = 0, are
-  /// left to Method::standard, pair by pair (RedonStatistics::pairs_by_standard). ContactMode::any is answered with the
-  /// first contact.
+  /// The method. Method::redon2004 solves pairs of meshes and boxes without a margin; it leaves other pairs, and those
+  /// that touch at t = 0, to Method::standard, pair by pair (RedonStatistics::pairs_by_standard), and answers
+  /// ContactMode::any with the first contact.
   Method method = Method::standard;
+  /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
-  /// Node and leaf tests after which the answer is `undecided`; 0: no limit. (Of Method::redon2004's own work, box
-  /// tests and evaluations count too.) Counted work, not time, so that the answer does not depend on the machine. A
-  /// trajectory's pieces share one budget.
+  /// Maximum number of node and leaf tests, for Method::redon2004 also of box tests and evaluations; 0: no limit. When
+  /// it is exceeded, the answer is `undecided` (its t_lower is the begin with `firstOfEveryPair`, and may be with
+  /// ignore_initial_contact). It counts work, not time, so that the answer does not depend on the machine's speed. The
+  /// pieces of a trajectory, and the pairs of a ContinuousCollisionManager, share one budget.
   std::uint64_t work_budget = 0;
-  /// Measure the time of each stage too (counts are always there).
+  /// Whether to measure the time of each stage (QueryStatistics). Counts are always kept.
   bool measure_times = false;
 };
 
-/// Which pairs a manager of links and obstacles looks at.
+/// Which pairs an ArticulatedCollisionManager checks.
 struct Scope {
-  bool check_scene = true;  ///< links against obstacles
-  bool check_self = true;   ///< links against links
+  bool check_scene = true;  ///< Links against obstacles.
+  bool check_self = true;   ///< Links, and the objects attached to them, against each other.
 };
 
-/// What a certified continuous query of two moving bodies is asked. All defaults are safe: nothing has to be tuned.
+/// Request of a certified continuous query of two moving bodies. All defaults are safe: nothing has to be tuned.
 struct CertifiedPairRequest : Tolerances, Effort {
+  /// Which contacts are looked for. A query of two bodies has one pair: `firstOfEveryPair` is `first` there.
   ContactMode mode = ContactMode::first;
-  /// At most so many contacts are reported; t_lower and t_upper are those of all. With mode `first` each of them may be
-  /// the first: none begins after t_upper. With `firstOfEveryPair` they are in the order of their t_lower; of more than
-  /// so many every pair's first contact is kept before any pair's second, and of these the earliest.
+  /// Maximum number of contacts reported; t_lower and t_upper take all contacts into account, also with 0. With `first`
+  /// each contact reported may be the first: none begins after t_upper. With `firstOfEveryPair` contacts are in the
+  /// order of their t_lower; if there are too many, every pair's first contact is kept before any pair's second one,
+  /// and the earliest of these. A ContinuousCollisionManager applies the number to each pair.
   std::size_t max_contacts = 1;
-  /// Pairs that touch at t = 0 may separate; they are watched from the moment they have.
+  /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. They are left out
+  /// until the first time interval, among those examined (1/8, 1/64, 1/512 of the motion), on which they are proven
+  /// apart, and watched from its start on. Shorter separations are not looked for.
   bool ignore_initial_contact = false;
-  /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far. False
-  /// ends the query, which is `undecided` then: for a planner's clock, or a button.
+  /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
+  /// `firstOfEveryPair` the motion's or piece's begin). May be empty. If it returns false, the query ends with
+  /// `undecided`: for a planner's clock, or a stop button. Queries of many motions, and those of a
+  /// ContinuousCollisionManager, do not call it.
   std::function<bool(double t_lower)> progress;
 };
 
-/// What a certified continuous query of an ArticulatedCollisionManager is asked: the same, which pairs, and whether
-/// stage 2 takes part. All defaults are safe: nothing has to be tuned.
+/// Request of a certified continuous query of an ArticulatedCollisionManager: what a query of two bodies has, which
+/// pairs are checked, and whether stage 2 takes part. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest : CertifiedPairRequest, Scope {
+  /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects who does
+  /// it.
   VisibilityMode visibility = VisibilityMode::off;
 };
 

@@ -17,54 +17,69 @@
 
 namespace fcl_artic {
 
-/// Features that meet, body 1's first. `volume`: at least one of the bodies is not a triangle there.
+/// Kinds of features that meet at a contact, body 1's first. Vertices, edges and faces are those of triangles.
 enum class FeatureKind {
-  vertexVertex,
-  vertexEdge,
-  edgeVertex,
-  vertexFace,
-  faceVertex,
-  edgeEdge,
-  edgeFace,
-  faceEdge,
-  faceFace,
+  vertexVertex,  ///< A vertex of body 1 and a vertex of body 2.
+  vertexEdge,    ///< A vertex of body 1 and an edge of body 2.
+  edgeVertex,    ///< An edge of body 1 and a vertex of body 2.
+  vertexFace,    ///< A vertex of body 1 and a face of body 2.
+  faceVertex,    ///< A face of body 1 and a vertex of body 2.
+  edgeEdge,      ///< An edge of each body.
+  edgeFace,      ///< An edge of body 1 and a face of body 2.
+  faceEdge,      ///< A face of body 1 and an edge of body 2.
+  faceFace,      ///< A face of each body.
+  /// No features are known: a body is not a triangle there, one body lies within the other, the pair has a margin above
+  /// 0, or the triangles' equations have no root there.
   volume
 };
 
-/// A body of a query: a geometry bound to a link, an object attached to one, or an obstacle.
+/// A body of a query: a geometry bound to a link, an object attached to a link, or an obstacle. The pointers are the
+/// caller's own objects. Queries of two objects, and a ContinuousCollisionManager, know no names and leave the fields
+/// at their defaults, except that continuousCollide() of two fcl::CollisionObjects sets `object`.
 struct BodyRef {
-  LinkId link = -1;                                         ///< -1 for an obstacle
-  const fcl::CollisionObjectd* object = nullptr;            ///< as registered or bound; null for an obstacle that moves
-  std::string name;                                         ///< link name, or the obstacle's or attached object's
-  const fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< an obstacle with a motion of its own, as registered
+  LinkId link = -1;                               ///< The link that carries it; -1 for an obstacle.
+  const fcl::CollisionObjectd* object = nullptr;  ///< As registered or bound; null for a moving obstacle.
+  std::string name;                               ///< The link's name, or the obstacle's or attached object's.
+  const fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< As registered, for a moving obstacle; else null.
 };
 
-/// One contact. As in FCL, `normal` points from body 1 to body 2.
+/// One contact. As in FCL, `normal` points from body 1 to body 2. Of a link and an obstacle, the link is body 1.
 struct CertifiedContact {
+  /// The bodies that touch.
   BodyRef body1, body2;
+  /// Geometry of body 1; the caller's.
   const fcl::CollisionGeometryd* o1 = nullptr;
+  /// Geometry of body 2; the caller's.
   const fcl::CollisionGeometryd* o2 = nullptr;
-  /// Triangle index in a mesh, fcl::Contactd::NONE (-1) for a shape. With ContactMode::any also for a mesh: where
-  /// contact is proven by what closed meshes enclose, no triangle is known, and `point` lies within both bodies. The
-  /// same where one body lies within the other, a SolidMesh, at t = 0: `normal` is the shortest way out then, about.
+  /// The pieces of the bodies that touch: index of a mesh's triangle, id of an OcTree's cell
+  /// (OcTree::getNodeByQueryCellId), fcl::Contactd::NONE (-1) for a shape. -1 for a mesh too if no triangle is known:
+  /// with ContactMode::any where contact is proven by what closed meshes enclose (`point` lies within both bodies
+  /// then), and where one body lies within the other, a SolidMesh, at t = 0 (`normal` is roughly the shortest way out
+  /// then).
   std::intptr_t b1 = -1, b2 = -1;
+  /// The kinds of features that meet, body 1's first.
   FeatureKind feature = FeatureKind::volume;
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< world, at t_upper when certain, else at t_lower
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< world, unit, from body 1 to body 2
-  /// Witness points, world: of the two pieces (b1 of body 1, b2 of body 2) those that are nearest to each other at
-  /// t_lower, just before they touch. Where the pieces overlap then, as bodies in contact from the start do, and with
-  /// ContactMode::any, both are `point`.
+  /// Point of contact in the world, m: at this contact's t_upper if it is certain, else at its t_lower.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  /// Unit normal in the world, from body 1 to body 2, at the same time as `point`.
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+  /// Witness points in the world, m: the points of the two pieces (b1 of body 1, b2 of body 2) that are nearest to each
+  /// other at t_lower, just before they touch. Both are `point` if the pieces overlap then, as pieces in contact from
+  /// the start do, and with ContactMode::any. Not proven.
   Eigen::Vector3d nearest1 = Eigen::Vector3d::Zero(), nearest2 = Eigen::Vector3d::Zero();
-  /// Speed at which the bodies approach each other at `point` along the normal, m per unit of the motion's time t (of a
-  /// trajectory's own time): above 0 when they come together, below when they part. 0 with ContactMode::any.
+  /// Speed at which the bodies approach each other at `point` along the normal, in m per unit of the motion's time t
+  /// (for a trajectory, of its own time): above 0 when they come together, below 0 when they part; 0 with
+  /// ContactMode::any. Not proven.
   double approach_speed = 0;
-  /// These two pieces of the bodies (b1, b2) do not touch before t_lower, counted from when their pair is watched; with
-  /// `certain` they do at or before t_upper, else that is the motion's end. Other pieces may touch earlier,
-  /// but not before the result's t_lower. With ContactMode::any t_lower is often 0.
+  /// The bracket of these two pieces, b1 and b2. They do not touch before t_lower, counted from when their pair is
+  /// watched (ignore_initial_contact); if `certain`, they touch at or before t_upper, else t_upper is the motion's end.
+  /// Other pieces may touch earlier, but not before the result's t_lower. With ContactMode::any t_lower is often 0.
   double t_lower = 0, t_upper = 1;
+  /// Whether contact of these two pieces at or before t_upper is proven. If not, it can't be excluded within the
+  /// tolerances.
   bool certain = false;
 
-  /// The same as FCL's own contact. At first contact nothing has been penetrated: the depth is 0.
+  /// Returns this contact as FCL's own type. At first contact nothing has been penetrated: the depth is 0.
   fcl::Contactd toFcl() const {
     fcl::Contactd contact;
     contact.o1 = o1;
@@ -78,70 +93,84 @@ struct CertifiedContact {
   }
 };
 
-/// Work of the paper's method (Method::redon2004).
+/// Work of the paper's method (Method::redon2004). Symbols and equations are those of Redon et al. (2004). Times are in
+/// µs, and 0 without Effort::measure_times.
 struct RedonStatistics {
-  std::uint64_t pairs_by_standard = 0;  ///< pairs of bodies left to the library's own method
-  std::uint64_t box_tests = 0;          ///< pairs of oriented boxes, one sub-interval each
-  std::uint64_t leaf_pairs = 0;         ///< pairs of triangles whose boxes meet
-  std::uint64_t equations = 0;          ///< n_e
-  std::uint64_t intervals = 0;          ///< time intervals that motions were bounded over: s_max of eq. (17)
-  std::uint64_t evaluations = 0;        ///< equations bounded over an interval: a n_e
-  std::uint64_t steps_bounded = 0;      ///< moving joints of chains, bounded over an interval each
+  std::uint64_t pairs_by_standard = 0;  ///< Pairs of bodies that were left to Method::standard.
+  std::uint64_t box_tests = 0;          ///< Pairs of oriented boxes tested, one sub-interval each.
+  std::uint64_t leaf_pairs = 0;         ///< Pairs of triangles whose boxes meet.
+  std::uint64_t equations = 0;          ///< Elementary equations made: n_e.
+  std::uint64_t intervals = 0;          ///< Time intervals over which motions were bounded: s_max of eq. (17).
+  std::uint64_t evaluations = 0;        ///< Equations bounded, over an interval each: a n_e.
+  std::uint64_t steps_bounded = 0;      ///< Moving joints of chains bounded, over an interval each.
+  /// Times of dynamic BVH culling (Section 4), of the trees of oriented boxes (5.1), and of the equations (5.2), µs.
   double culling_us = 0, boxes_us = 0, equations_us = 0;
-  double visibility_us = 0;  ///< stage 2, the bounds on what links sweep included
+  double visibility_us = 0;  ///< Time of stage 2, including the bounds on what links sweep, µs.
 };
 
-/// Work of a query, by stage. Times only with CertifiedRequest::measure_times.
+/// Work of a query, by stage. Times are in µs, and 0 without Effort::measure_times unless said otherwise. For a
+/// trajectory and for many pairs they are sums.
 struct QueryStatistics {
-  std::uint64_t pairs = 0;                ///< body pairs that the request asks about
-  std::uint64_t pairs_after_culling = 0;  ///< of these, left by the swept bounds (stage 1)
-  std::uint64_t batches = 0;              ///< batches of eight time intervals
-  std::uint64_t motion_evaluations = 0;   ///< (frame, batch) evaluations
-  std::uint64_t node_tests = 0;           ///< bounding volume pairs, eight intervals each
-  std::uint64_t leaf_tests = 0;           ///< pairs of convex pieces, eight intervals each
-  std::uint64_t certificates = 0;         ///< directions checked, eight intervals each
-  std::uint64_t gjk = 0;                  ///< witness searches
-  std::uint64_t contact_proofs = 0;       ///< poses for which a proof of contact was tried
-  std::uint64_t visibility_pairs = 0;     ///< pairs that stage 2 looked at (CertifiedRequest::visibility)
-  std::uint64_t visibility_culled = 0;    ///< of these, proven free
-  std::uint64_t visibility_nodes = 0;     ///< of the others, nodes of obstacles' trees proven free
-  std::uint64_t visibility_pieces = 0;    ///< pieces of obstacles that were drawn for it
-  std::uint64_t visibility_trials = 0;    ///< 1: `automatic` answered the query both ways to compare
-  std::uint64_t visibility_repeated = 0;  ///< 1: solved again without stage 2, as the motion is not free
-  double visibility_us = 0;               ///< always measured, trials included
-  std::string visibility_executor;        ///< that did it: "cpu", "osmesa" or "egl"; empty: nothing was to be done
-  std::string visibility_fallback;        ///< why it is "cpu" where another one was wanted
+  std::uint64_t pairs = 0;                ///< Pairs of bodies that the request asks about.
+  std::uint64_t pairs_after_culling = 0;  ///< Pairs that the swept bounds (stage 1) leave.
+  std::uint64_t batches = 0;              ///< Batches of eight time intervals.
+  std::uint64_t motion_evaluations = 0;   ///< Frames evaluated, over one batch each.
+  std::uint64_t node_tests = 0;           ///< Pairs of bounding volumes tested, over eight time intervals each.
+  std::uint64_t leaf_tests = 0;           ///< Pairs of convex pieces tested, over eight time intervals each.
+  std::uint64_t certificates = 0;         ///< Separating directions checked, over eight time intervals each.
+  std::uint64_t gjk = 0;                  ///< Searches for witness directions by GJK.
+  std::uint64_t contact_proofs = 0;       ///< Poses at which a proof of contact was tried.
+  std::uint64_t visibility_pairs = 0;     ///< Pairs that stage 2 looked at (CertifiedRequest::visibility).
+  std::uint64_t visibility_culled = 0;    ///< Pairs that stage 2 proved free.
+  std::uint64_t visibility_nodes = 0;     ///< Nodes of obstacles' trees that stage 2 proved free, in other pairs.
+  std::uint64_t visibility_pieces = 0;    ///< Pieces of obstacles that stage 2 drew.
+  std::uint64_t visibility_trials = 0;    ///< 1 if `automatic` answered the query both ways, to compare.
+  std::uint64_t visibility_repeated = 0;  ///< 1 if it was solved again without stage 2, as it was not simply free.
+  double visibility_us = 0;               ///< Time of stage 2, trials included, µs; always measured.
+  std::string visibility_executor;        ///< Executor of stage 2: "cpu", "osmesa" or "egl"; empty if it had no work.
+  std::string visibility_fallback;        ///< Why the executor is "cpu" although another one was wanted.
+  /// Times of stage 1 (culling), of the search after stages 1 and 2 (narrowphase), of writing the result (report; of an
+  /// ArticulatedCollisionManager only) and of the whole query (total; of managers only), µs.
   double culling_us = 0, narrowphase_us = 0, report_us = 0, total_us = 0;
+  /// Work of Method::redon2004.
   RedonStatistics redon;
 };
 
-/// The answer of an ArticulatedCollisionManager: verdict and bracket (Bracket), contacts, work. Always written in full.
+/// The answer of an ArticulatedCollisionManager: verdict and bracket (Bracket), contacts, work. A query writes every
+/// field; if it throws, the result is reset: `undecided`, t_lower at the motion's begin, no contacts.
 struct CertifiedResult : Bracket {
-  /// None of a free motion. `undecided` may have some: with every pair asked, those found before the budget ran out.
+  /// At most CertifiedRequest::max_contacts: proven contacts in the order of their t_upper, then the others in the
+  /// order of their t_lower; with ContactMode::firstOfEveryPair all in the order of their t_lower. Empty if the motion
+  /// is free. `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran
+  /// out.
   std::vector<CertifiedContact> contacts;
-  /// Pose of every link in the world at t_lower; empty when the motion is free.
+  /// Pose of every link at t_lower, link to world, in the order of the links; empty if the motion is free.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
-  /// Pairs that touch at t = 0 and were ignored (ignore_initial_contact).
+  /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
+  /// Work of the query.
   QueryStatistics statistics;
 
-  /// The first of the contacts; null where there is none: the motion is free, or undecided before a contact was found.
+  /// The first of the contacts; null if there is none: the motion is free or undecided, or max_contacts is 0. It points
+  /// into this result.
   const CertifiedContact* first() const& { return contacts.empty() ? nullptr : &contacts.front(); }
+  /// Not available for a temporary result, whose contacts would be gone.
   const CertifiedContact* first() const&& = delete;
 };
 
-/// "free", "contact", "undecided".
+/// Returns "free", "contact" or "undecided".
 FCL_ARTIC_EXPORT const char* toString(Status status);
-/// "vertex-face" and so on, body 1's feature first; "volume".
+/// Returns the features with a hyphen, body 1's first, such as "vertex-face"; or "volume".
 FCL_ARTIC_EXPORT const char* toString(FeatureKind kind);
-/// The body's name; of one without a name "body".
+/// Prints the body's name, or "body" if it has none.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body);
-/// As toString().
+/// Prints toString(status).
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, Status status);
+/// Prints toString(kind).
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, FeatureKind kind);
-/// One line without its end: the verdict and the bracket, "contact within [0.25, 0.2500001], proven".
+/// Prints verdict and bracket on one line, without a line end: "contact within [0.25, 0.2500001], proven".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const Bracket& bracket);
-/// One line without its end: who touches whom, with which features, when and where.
+/// Prints on one line, without a line end, which bodies touch, with which features, when and where.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact);
 
 }  // namespace fcl_artic

@@ -9,17 +9,18 @@
 
 namespace fcl_artic {
 
-/// By which this library knows a SolidMesh.
+/// Base class by which this library recognises a SolidMesh, whatever its bounding volumes.
 class FCL_ARTIC_EXPORT SolidMark {
  public:
+  /// Allows destruction through this class.
   virtual ~SolidMark();
 };
 
 /// A triangle mesh that is a solid: what lies within it touches it. (For FCL, and as a BVHModel for this library too, a
 /// mesh is its surface: a ball inside a closed mesh that touches no triangle is free.) It is filled like any BVHModel,
-/// or made from one, and goes wherever FCL geometry goes: into an ArticulatedCollisionManager, as a link's, an
-/// obstacle's or an attached object's geometry, into a ContinuousCollisionManager, into fcl_artic::continuousCollide.
-/// FCL itself takes it for the BVHModel that it is.
+/// or made from one, and goes wherever FCL geometry goes: into an ArticulatedCollisionManager, as the geometry of a
+/// link, an obstacle or an attached object, into a ContinuousCollisionManager, into fcl_artic::continuousCollide(). FCL
+/// itself takes it for the BVHModel that it is.
 ///
 ///     auto solid = std::make_shared<fcl_artic::SolidMesh<fcl::OBBRSSd>>(*mesh);   // copies mesh
 ///     manager.registerObject(new fcl::CollisionObjectd(solid));
@@ -29,20 +30,22 @@ class FCL_ARTIC_EXPORT SolidMark {
 /// way is the border of a cavity, and what is in the cavity is outside; a part inside another one that faces the same
 /// way adds nothing.
 ///
-/// The mesh must be closed and consistently oriented: vertices at the very same coordinates being one, each edge is
-/// passed by triangles as often in one direction as in the other. (Triangles without area count; a triangle with two
-/// corners in one place has no edges.) That is checked where a manager or a query reads it: std::invalid_argument with
-/// the reason and an edge when it is not so.
+/// The mesh must be closed and consistently oriented: with vertices at the very same coordinates taken as one, each
+/// edge is passed by triangles as often in one direction as in the other. (Triangles without area count; a triangle
+/// with two corners in one place has no edges.) Where a manager or a query reads the mesh, it checks that and throws
+/// std::invalid_argument with the reason and an edge if it is not so.
 template <class BV>
 class SolidMesh : public fcl::BVHModel<BV>, public SolidMark {
  public:
+  /// Creates an empty mesh, to be filled with beginModel(), addSubModel() and endModel().
   SolidMesh() = default;
+  /// Copies a mesh, which is not checked here.
   explicit SolidMesh(const fcl::BVHModel<BV>& mesh) : fcl::BVHModel<BV>(mesh) {}
 };
 
-/// A mesh, whatever its bounding volumes, as a SolidMesh of the same kind, that is checked at once.
-/// @param mesh  a BVHModel; copied. A SolidMesh is copied as well.
-/// @throws std::invalid_argument naming the reason: no BVHModel, empty, not closed, not consistently oriented.
+/// Makes a SolidMesh of a mesh, with the same kind of bounding volumes, and checks it at once.
+/// @param mesh  a BVHModel<BV> of doubles, also a SolidMesh; copied.
+/// @throws std::invalid_argument naming the reason: not a BVHModel, empty, not closed, not consistently oriented.
 FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> makeSolid(const fcl::CollisionGeometryd& mesh);
 
 }  // namespace fcl_artic

@@ -9,75 +9,101 @@
 namespace fcl_artic {
 
 /// A trajectory in joint space: motions one after the other, each a polynomial of time up to the fifth degree. Times
-/// are in any unit, seconds mostly; they are finite and increase.
+/// are in any unit, mostly seconds; they are finite and increase, and the whole duration is finite.
 ///
-/// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. Where one
-/// piece ends and the next begins they may differ by rounding, 1e-9 rad or m (and 1e-12 of the values); more is refused
-/// as a jump.
+/// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. The end
+/// of one piece and the beginning of the next may differ by rounding: by 1e-9 rad or m plus 1e-12 of the values. More
+/// is refused as a jump.
+///
+/// It belongs to the joint variables of the tree that it was made for, as a JointMotion does, and keeps no reference to
+/// the tree. A trajectory that was moved from has no pieces: requireOf() throws std::invalid_argument then, and the
+/// other members throw std::out_of_range, except numPieces() and times().
 class FCL_ARTIC_EXPORT JointTrajectory {
  public:
-  /// What a list of waypoints means for joints that turn forever (continuous ones, a planar joint's angle).
+  /// How waypoints of joints that turn forever (continuous joints, a planar joint's angle) are taken.
   enum class Unwrap {
-    no,   ///< from value to value as they are, also where that is the longer way round
-    yes,  ///< each takes the shorter way from its predecessor: whole turns are added from there on
+    no,   ///< As they are: the joint goes from value to value, even if that is the longer way round.
+    yes,  ///< Each is reached by the shorter way from its predecessor: whole turns are added from there on.
   };
 
-  /// Polynomials of t - times[k] on [times[k], times[k + 1]].
+  /// Makes a trajectory of polynomials of t - times[k] on [times[k], times[k + 1]].
   /// @param times  one more than pieces.
   /// @param coefficients  of each piece, as JointMotion::polynomial() takes them; column j belongs to (t - times[k])^j.
-  /// @throws std::invalid_argument, naming piece and joint: as JointMotion::polynomial(), wrong sizes, times that do
-  ///   not increase, a jump from one piece to the next.
+  /// @throws std::invalid_argument, naming piece and joint: as JointMotion::polynomial(), no piece, a wrong number of
+  ///   times, times that do not increase, a jump from one piece to the next.
   static JointTrajectory piecewise(const KinematicTree& tree, const std::vector<double>& times,
                                    const std::vector<Eigen::MatrixXd>& coefficients);
 
-  /// Straight from waypoint to waypoint, quaternions by the shortest rotation, as JointMotion::linear().
-  /// @throws std::invalid_argument, naming the waypoint: fewer than two, as JointMotion::linear(), times that do not
-  /// increase.
+  /// Makes a trajectory that goes straight from waypoint to waypoint, quaternions by the shortest rotation
+  /// (JointMotion::linear()).
+  /// @param times      one for each waypoint.
+  /// @param waypoints  at least two, of tree.dof() joint values each, rad or m.
+  /// @throws std::invalid_argument, naming waypoint or piece: as JointMotion::linear(), fewer than two waypoints, a
+  ///   wrong number of times, times that do not increase; with Unwrap::yes also for a mimic joint that would not come
+  ///   to its waypoint, as JointMotion::shortest().
   static JointTrajectory linear(const KinematicTree& tree, const std::vector<double>& times,
                                 const std::vector<Eigen::VectorXd>& waypoints, Unwrap unwrap = Unwrap::no);
 
-  /// Cubic pieces (Hermite) with these velocities at the waypoints.
-  /// @param velocities  per unit of time; of a quaternion: the angular velocity x, y, z in the joint's frame, and 0.
+  /// Makes a trajectory of cubic (Hermite) pieces through the waypoints, with given velocities there.
+  /// @param times       one for each waypoint.
+  /// @param waypoints   at least two, of tree.dof() joint values each, rad or m.
+  /// @param velocities  for each waypoint, rad or m per unit of time; for a quaternion the angular velocity x, y, z in
+  ///   the joint's frame, and 0.
+  /// @throws std::invalid_argument as linear() and piecewise(), and for velocities of a wrong size, not finite, or with
+  ///   a fourth entry for a quaternion that is not 0.
   static JointTrajectory cubic(const KinematicTree& tree, const std::vector<double>& times,
                                const std::vector<Eigen::VectorXd>& waypoints,
                                const std::vector<Eigen::VectorXd>& velocities, Unwrap unwrap = Unwrap::no);
 
-  /// Quintic pieces with these velocities and accelerations at the waypoints.
-  /// @throws std::invalid_argument also for a joint with a quaternion: use piecewise() there.
+  /// Makes a trajectory of quintic pieces through the waypoints, with given velocities and accelerations there.
+  /// @param times          one for each waypoint.
+  /// @param waypoints      at least two, of tree.dof() joint values each, rad or m.
+  /// @param velocities     for each waypoint, rad or m per unit of time.
+  /// @param accelerations  for each waypoint, rad or m per unit of time squared.
+  /// @throws std::invalid_argument as cubic(), and for a joint with a quaternion (use piecewise() there).
   static JointTrajectory quintic(const KinematicTree& tree, const std::vector<double>& times,
                                  const std::vector<Eigen::VectorXd>& waypoints,
                                  const std::vector<Eigen::VectorXd>& velocities,
                                  const std::vector<Eigen::VectorXd>& accelerations, Unwrap unwrap = Unwrap::no);
 
-  /// Straight lines joined by parabolas: at constant acceleration over [times[k] - blend, times[k] + blend] around each
-  /// inner waypoint, which is passed by, not through.
-  /// @param blend  half a blend's duration, at most half the time between two waypoints; 0: as linear().
-  /// @throws std::invalid_argument also for a joint with a quaternion.
+  /// Makes a trajectory of straight lines joined by parabolas: at constant acceleration over [times[k] - blend,
+  /// times[k] + blend] around each inner waypoint, which is passed by, not passed through.
+  /// @param times      one for each waypoint.
+  /// @param waypoints  at least two, of tree.dof() joint values each, rad or m.
+  /// @param blend      half the duration of a blend, at least 0; blends must not overlap. 0: as linear().
+  /// @throws std::invalid_argument as linear(), for blends that overlap or are negative or not finite, and for a joint
+  ///   with a quaternion.
   static JointTrajectory parabolicBlends(const KinematicTree& tree, const std::vector<double>& times,
                                          const std::vector<Eigen::VectorXd>& waypoints, double blend,
                                          Unwrap unwrap = Unwrap::no);
 
-  /// A B-spline, on the times where it is defined: [knots[degree], knots[n]] for n control points.
+  /// Makes a trajectory along a B-spline, on the times where it is defined: [knots[degree], knots[n]] for n control
+  /// points.
   /// @param degree  1 to 5.
-  /// @param knots   n + degree + 1, not decreasing; inner ones of a multiplicity up to `degree`.
-  /// @throws std::invalid_argument also for a joint with a quaternion.
+  /// @param knots   n + degree + 1 times, not decreasing; inner ones repeated at most `degree` times.
+  /// @param control_points  at least degree + 1, of tree.dof() joint values each, rad or m.
+  /// @throws std::invalid_argument, naming the knot or control point: for values outside these ranges, control points
+  ///   that are no configuration, no time between the inner knots, pieces that JointMotion::polynomial() refuses, and a
+  ///   joint with a quaternion.
   static JointTrajectory bspline(const KinematicTree& tree, int degree, const std::vector<double>& knots,
                                  const std::vector<Eigen::VectorXd>& control_points);
 
-  // What has been moved from has no pieces: the functions below throw std::out_of_range then.
+  /// Time at which the trajectory begins.
   double beginTime() const { return times_.at(0); }
+  /// Time at which the trajectory ends.
   double endTime() const { return times_.at(times_.size() - 1); }
+  /// Number of pieces; 0 only after a move.
   std::size_t numPieces() const { return pieces_.size(); }
-  /// Over t in [0, 1], which stands for [times()[k], times()[k + 1]].
+  /// Piece k as a motion over t in [0, 1], which stands for [times()[k], times()[k + 1]].
   const JointMotion& piece(std::size_t k) const { return pieces_.at(k); }
-  /// Begin of each piece, and the end.
+  /// Times at which the pieces begin, and the end: numPieces() + 1 entries.
   const std::vector<double>& times() const { return times_; }
-  /// Number of joint variables.
+  /// Number of joint variables: dof() of the tree.
   Eigen::Index size() const { return pieces_.at(0).size(); }
-  /// At t, cut to [beginTime(), endTime()].
+  /// Returns the configuration at time t, clamped to [beginTime(), endTime()]: size() entries, rad or m.
   Eigen::VectorXd configuration(double t) const;
-  /// Refuses a trajectory of other joint variables, as JointMotion::requireOf().
-  /// @throws std::invalid_argument
+  /// Checks that the trajectory is of the tree's joint variables.
+  /// @throws std::invalid_argument if it is not, or was moved from, as JointMotion::requireOf().
   void requireOf(const KinematicTree& tree) const;
 
  private:

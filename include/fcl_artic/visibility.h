@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2: culling by visibility (doc/VISIBILITY.md). What it takes out is proven free. Answers do not depend on it, by
+// Stage 2: culling by visibility (doc/VISIBILITY.md). What it removes is proven free. Answers do not depend on it, by
 // construction: it shortens proofs that a motion is free, and any other answer is found without it.
 #pragma once
 
@@ -12,42 +12,57 @@
 
 namespace fcl_artic {
 
-/// How a pair is judged.
+/// The rule by which a piece of an obstacle is proven free of what a link sweeps (doc/VISIBILITY.md, "The rule").
 enum class VisibilityRule {
-  intervals,  ///< each convex piece of an obstacle against the swept volume's interval of depth, pixel by pixel
-  occlusion,  ///< CULLIDE: an obstacle is free that is as a whole visible in front of the swept volume, or behind it
+  /// Each convex piece of an obstacle is compared with the swept volume's interval of depth, pixel by pixel.
+  intervals,
+  /// CULLIDE's (Govindaraju et al. 2003): an obstacle is free if all of it is seen in front of the swept volume, or
+  /// behind it.
+  occlusion,
 };
 
+/// Options of a VisibilityCuller.
 struct VisibilityOptions {
-  VisibilityRule rule = VisibilityRule::intervals;
-  int resolution = 32;  ///< pixels along a view's side, 4 to 128
+  VisibilityRule rule = VisibilityRule::intervals;  ///< The rule by which obstacles are proven free.
+  int resolution = 32;                              ///< Pixels along a side of each view, 4 to 128.
 };
 
+/// Culling by visibility, inside.
 namespace visibility {
+/// Draws what links sweep and the obstacles near it, and judges by the rule; internal.
 class Executor;
+/// Lends an executor to one query; internal.
 class ExecutorLoan;
-/// Makes an executor for one thread at a time. @throws std::runtime_error naming what is missing.
+/// Function that makes an executor, which one thread at a time uses. It throws std::runtime_error naming what is
+/// missing.
 using ExecutorFactory = std::function<std::unique_ptr<Executor>()>;
 }  // namespace visibility
 
-/// Culls by visibility. Safe to use from many threads and by many managers: each query at work has an executor of its
-/// own, made when first needed and kept.
+/// Culls by visibility, for ArticulatedCollisionManager::setVisibility(). May be used by many threads and managers at
+/// once: each query at work has an executor of its own, made when first needed and kept.
 class FCL_ARTIC_EXPORT VisibilityCuller {
  public:
-  /// The executor `cpu`: own scan conversion, without OpenGL.
+  /// Creates a culler with the executor `cpu`: own scan conversion, without OpenGL.
   /// @throws std::invalid_argument for a resolution out of range.
   explicit VisibilityCuller(const VisibilityOptions& options = {});
-  /// Another executor, as the component `visibility` makes them (fcl_artic/visibility/offscreen.h). Where one can't be
-  /// made or fails its self-test, the executor `cpu` takes over.
+  /// Creates a culler with another executor; makeOffscreenCuller() (fcl_artic/visibility/offscreen.h) does so. If one
+  /// can't be made, fails its self-test or fails in a query, the executor `cpu` takes over for good.
+  /// @param executor  its name, as reported.
+  /// @param factory   called when a query first needs an executor; empty: `cpu`.
+  /// @throws std::invalid_argument for a resolution out of range.
   VisibilityCuller(const VisibilityOptions& options, const std::string& executor, visibility::ExecutorFactory factory);
+  /// Destroys the executors; no query may be at work.
   ~VisibilityCuller();
+  /// Not copyable.
   VisibilityCuller(const VisibilityCuller&) = delete;
+  /// Not copyable.
   VisibilityCuller& operator=(const VisibilityCuller&) = delete;
 
+  /// The options that it was created with.
   const VisibilityOptions& options() const;
-  /// Executor at work: "cpu", "osmesa" or "egl". Makes one, when there is none yet.
+  /// Returns the name of the executor at work: "cpu", "osmesa" or "egl". Makes one if there is none yet.
   std::string executor() const;
-  /// Why "cpu" took over; empty while it has not.
+  /// Returns why the executor `cpu` took over; empty if it has not.
   std::string fallbackReason() const;
 
  private:

@@ -17,42 +17,55 @@
 
 namespace fcl_artic::planning {
 
-/// What planners ask for: first contact (where it is wanted at all) within 1/4096 of the motion, 0.01 mm.
+/// Returns the request that planners ask with by default: tolerance_time 1/4096 of the motion, for queries that want
+/// the first contact, tolerance_distance 0.01 mm, and the defaults of CertifiedRequest for the rest.
 FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
 
 /// How the states of an OMPL space place the joints of a tree, and the motion that StateSpace::interpolate() describes.
 ///
-/// The space's parts are taken in order and share out the named joints:
+/// The parts of the space are taken in order, and each takes the next of the named joints:
 ///
 /// | space | joints | motion |
 /// | --- | --- | --- |
 /// | RealVectorStateSpace of n dimensions | n revolute, continuous or prismatic | straight |
-/// | SO2StateSpace | 1 revolute or continuous | the shorter way round, over π where that is it |
+/// | SO2StateSpace | 1 revolute or continuous | the shorter way round, over π if that is it |
 /// | SE2StateSpace | 1 planar | position straight, angle the shorter way round |
 /// | SO3StateSpace | 1 spherical | the shortest rotation at constant speed |
 /// | SE3StateSpace | 1 floating | position straight, shortest rotation |
 /// | CompoundStateSpace | those of its parts | each part's |
 ///
-/// A RealVectorStateSpace or SO2StateSpace may drive single variables of a planar or floating joint too, by their names
-/// (KinematicTree::variableName()). Where two orientations differ by less than 1e-4 rad, SO3StateSpace::interpolate()
-/// stays at the first one until the end; the motion here turns on its way, and does reach the second.
+/// A RealVectorStateSpace or SO2StateSpace may also drive single variables of a planar or floating joint, by their
+/// names (KinematicTree::variableName()). If two orientations differ by less than 1e-4 rad,
+/// SO3StateSpace::interpolate() stays at the first one until the end; the motion here turns on its way, and does reach
+/// the second.
 ///
 /// Any other space is refused, and so is a class derived from these: its interpolate() may take another way.
+///
+/// Const members may be called from many threads at once.
 class FCL_ARTIC_EXPORT JointMapping {
  public:
-  /// @param joints  names of the joints, in the order of the space's parts; none: all variables of the tree in its
-  /// order.
-  /// @param others  dof() joint variables, those of unnamed joints stay at theirs; empty: at the neutral configuration.
-  /// @throws std::invalid_argument naming space or joint: space not supported, wrong number of joints, a joint that is
-  ///   unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a quaternion, SO2
-  ///   for a joint that is mimicked so that a whole turn of it is not one of the mimic.
+  /// Maps the states of a space to the joints of a tree.
+  /// @param space   of the states; must only live until the constructor returns.
+  /// @param tree    shared from here on.
+  /// @param joints  names of the joints, in the order of the space's parts; empty: all variables of the tree in its
+  ///   order.
+  /// @param others  dof() joint variables, rad or m, at which joints that are not named stay; empty: the neutral
+  ///   configuration.
+  /// @throws std::invalid_argument naming space or joint: tree null, space not supported, wrong number of joints, a
+  ///   joint that is unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a
+  ///   quaternion, SO2 for a joint with a mimic joint that is elsewhere after a whole turn, others that are no
+  ///   configuration.
   JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
                const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
 
+  /// The tree whose joints are placed.
   const KinematicTree& tree() const { return *tree_; }
-  /// Joint variables of a state. @param[out] q  dof() entries.
+  /// Computes the joint variables of a state.
+  /// @param state   of the mapped space.
+  /// @param[out] q  dof() joint variables, rad or m.
   void configuration(const ::ompl::base::State* state, Eigen::VectorXd& q) const;
-  /// The motion from s1 to s2. @throws std::invalid_argument as JointMotion::linear().
+  /// Returns the motion from s1 to s2, t in [0, 1]: the one that the space's interpolate() describes.
+  /// @throws std::invalid_argument as JointMotion::linear().
   JointMotion motion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const;
 
  private:
@@ -84,51 +97,68 @@ class FCL_ARTIC_EXPORT JointMapping {
   Eigen::VectorXd others_;
 };
 
-/// Says of a motion that it is valid only when it is proven free of contact, over all of its way. Thread-safe.
+/// Motion validator that accepts a motion only if it is proven free of contact over all of its way. It may be called
+/// from many threads at once.
 ///
-/// A motion is invalid when it touches anything, when contact can't be excluded within the request's tolerances, and
-/// when a work budget ran out. Only collisions are judged, not bounds of the space nor other constraints. By default a
+/// A motion is invalid if it touches anything, if contact can't be excluded within the request's tolerances, and if a
+/// work budget ran out. Only collisions are judged, neither bounds of the space nor other constraints. By default a
 /// motion that starts in contact is invalid.
 ///
 /// With CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way. At s2 all pairs
 /// must be farther than their margin and tolerance_distance from each other, and from such a state on nothing is
-/// ignored: a plan may start in contact, but not come back into it. So of any sequence of states whose motions are
-/// valid one by one, nothing touches after the first motion, and in that one only what touched at its start.
+/// ignored: a plan may start in contact, but not come back into it. So along any sequence of states whose motions are
+/// valid one by one, nothing touches after the first motion, and in that one only what touched at its start, until it
+/// has separated.
 ///
-/// Margins are the pairs' own where they have any (ArticulatedCollisionManager::setMargin), else the request's;
+/// Margins are the pairs' own if they have any (ArticulatedCollisionManager::setMargin()), else the request's;
 /// CertifiedRequest::added_margin is added to either, and so is the room that states are given.
 class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionValidator {
  public:
+  /// Creates a validator for a space information.
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param mapping  made with the manager's own tree (ArticulatedCollisionManager::sharedTree()).
   /// @param request  mode, max_contacts and progress are not used.
-  /// @throws std::invalid_argument when something is null, or when the mapping is not one of the manager's tree.
+  /// @throws std::invalid_argument if something is null, or if the mapping is of another tree than the manager's.
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                             const CertifiedRequest& request = planningRequest());
-  /// The same for all variables of the manager's tree in its order.
+  /// Creates a validator for a space information whose space has all variables of the manager's tree in its order.
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param request  mode, max_contacts and progress are not used.
+  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager,
                             const CertifiedRequest& request = planningRequest());
 
-  /// Any contact will do here: it need not be the first.
+  /// Returns whether the motion from s1 to s2 is proven free. (Any contact decides it; the first one is not looked
+  /// for.)
+  /// @throws as JointMapping::motion() and ArticulatedCollisionManager::continuousCollide().
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const override;
 
-  /// When false: the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its
-  /// first contact, and lastValid.first, unless null, is set to the state there. It may be s1 or s2. The motion from s1
+  /// Returns whether the motion from s1 to s2 is proven free, and if not, how far it is.
+  ///
+  /// If false, the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its
+  /// first contact, and lastValid.first, unless null, is set to the state there; it may be s1 or s2. The motion from s1
   /// to that state is valid. The time is asked for with twice the request's tolerance_distance added to every margin,
-  /// and at the state itself all pairs are proven farther apart than their margin and tolerance_distance: so it is
-  /// valid by itself and can be left again. Where there is no such room at s1, or what touched there has not separated
-  /// by then, the time is 0 and the state s1. When true, lastValid is not touched.
-  /// When it throws, the time is 0 and the state s1, too.
+  /// and at the state itself all pairs are proven farther apart than their margin and tolerance_distance: so the state
+  /// is valid by itself and can be left again. If there is no such room at s1, or what touched there has not separated
+  /// by then, the time is 0 and the state s1. If true, lastValid is not touched.
+  /// @param[out] lastValid  state and fraction of the motion, in [0, 1].
+  /// @throws as checkMotion(s1, s2); the time is 0 and the state s1 then, too.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,
                    std::pair<::ompl::base::State*, double>& lastValid) const override;
 
-  /// OMPL's counters, read and reset so that planners may run meanwhile. (Those of the base class give the same
-  /// numbers, but should be asked when no planner runs.)
+  // The counters of the base class give the same numbers as those below, but should be asked when no planner runs.
+
+  /// Returns how many motions were found valid. May be called while planners run.
   unsigned int getValidMotionCount() const;
+  /// Returns how many motions were found invalid. May be called while planners run.
   unsigned int getInvalidMotionCount() const;
+  /// Returns how many motions were checked. May be called while planners run.
   unsigned int getCheckedMotionCount() const { return getValidMotionCount() + getInvalidMotionCount(); }
+  /// Returns the fraction of checked motions that were valid; 0 if none was. May be called while planners run.
   double getValidMotionFraction() const;
+  /// Sets the counts to 0. May be called while planners run.
   void resetMotionCounter();
 
  private:
@@ -143,18 +173,30 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   CertifiedRequest any_, first_, apart_;
 };
 
-/// A state is valid when it is proven free of contact. Thread-safe. Bounds are not judged, as in the motion validator.
+/// State validity checker that accepts a state only if it is proven free of contact. It may be called from many threads
+/// at once. Bounds are not judged, as in the motion validator.
 class FCL_ARTIC_EXPORT CollisionStateValidityChecker : public ::ompl::base::StateValidityChecker {
  public:
-  /// As ContinuousMotionValidator. ignore_initial_contact has no meaning for a state, and is not used.
+  /// Creates a checker for a space information.
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param mapping  made with the manager's own tree (ArticulatedCollisionManager::sharedTree()).
+  /// @param request  mode, max_contacts, progress and ignore_initial_contact are not used.
+  /// @throws std::invalid_argument if something is null, or if the mapping is of another tree than the manager's.
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                                 const CertifiedRequest& request = planningRequest());
+  /// Creates a checker for a space information whose space has all variables of the manager's tree in its order.
+  /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
+  /// @param request  mode, max_contacts, progress and ignore_initial_contact are not used.
+  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager,
                                 const CertifiedRequest& request = planningRequest());
 
+  /// OMPL's overloads, which also return distances to invalid states.
   using ::ompl::base::StateValidityChecker::isValid;
+  /// Returns whether the state is proven free of contact.
+  /// @throws as ArticulatedCollisionManager::collide().
   bool isValid(const ::ompl::base::State* state) const override;
 
  private:

@@ -16,55 +16,65 @@
 
 namespace fcl_artic::planning {
 
+/// Options of setUpPlanning().
 struct SetupOptions {
-  UrdfOptions urdf;
-  SceneOptions scene;
-  /// Values of joint variables outside the group, by name; the others are at 0, or at the limit that is nearest to 0.
+  UrdfOptions urdf;    ///< How the robot is read; not used for a manager that is set up already.
+  SceneOptions scene;  ///< How the scene is read; not used for a manager that is set up already.
+  /// Values of joint variables that are not planned for, rad or m, by KinematicTree::variableName(). Others are at 0,
+  /// or at the limit that is nearest to 0.
   std::map<std::string, double> fixed;
-  /// Bounds of positions of planar (x, y) and floating joints that are planned for, m; needed for these only.
+  /// Bounds of the positions of planar (x, y) and floating (x, y, z) joints that are planned for, m, within 1e5; not
+  /// needed otherwise.
   Eigen::Vector3d position_lower = Eigen::Vector3d::Zero(), position_upper = Eigen::Vector3d::Zero();
-  CertifiedRequest request = planningRequest();
+  CertifiedRequest request = planningRequest();  ///< What validator and checker ask the manager with.
 };
 
 /// All that a planner needs. `si` keeps everything alive that it uses.
 struct PlanningSetup {
-  /// Set up, with continuous motion validator and state validity checker.
+  /// The space information, set up, with continuous motion validator and state validity checker.
   ::ompl::base::SpaceInformationPtr si;
-  /// A RealVectorStateSpace within the joints' limits; joints without limits that turn are SO2StateSpaces, planar
-  /// joints SE2, spherical SO3 and floating ones SE3, and the space is then a compound of parts in the order of
-  /// `joints`.
+  /// The state space: a RealVectorStateSpace within the joints' limits. Turning joints without limits are
+  /// SO2StateSpaces, planar joints SE2, spherical SO3 and floating ones SE3; the space is then a compound of these
+  /// parts in the order of `joints`, with weights 1.
   ::ompl::base::StateSpacePtr space;
-  std::vector<std::string> joints;  ///< planned for, in the order of a state's values
-  std::shared_ptr<const ArticulatedCollisionManager> manager;
-  std::vector<std::string> notes;  ///< of the loaders
+  std::vector<std::string> joints;  ///< Names of the joints that are planned for, in the order of a state's values.
+  std::shared_ptr<const ArticulatedCollisionManager> manager;  ///< Robot and scene, set up; must not be changed.
+  std::vector<std::string> notes;                              ///< What the loaders accepted though unusual.
 
-  /// Writes joint values into a state.
-  /// @param values  in the order of `joints`, those of a planar joint x, y, theta, of a floating one x, y, z and the
-  ///   quaternion's x, y, z, w.
+  /// Writes joint values into a state. Angles of SO2StateSpaces are brought into (-π, π].
+  /// @param state   of `space`.
+  /// @param values  rad or m, in the order of `joints`: for a planar joint x, y, theta, for a floating one x, y, z and
+  ///   the quaternion's x, y, z, w.
   /// @throws std::invalid_argument for another number of values.
   FCL_ARTIC_EXPORT void setState(::ompl::base::State* state, const std::vector<double>& values) const;
+  /// Returns the joint values of a state, rad or m, in the order that setState() takes them.
   FCL_ARTIC_EXPORT std::vector<double> values(const ::ompl::base::State* state) const;
 };
 
-/// Sets up planning for a group of a robot from files.
-/// @param srdf   allowed pairs and groups.
-/// @param scene  what loadScene() reads; empty: no obstacles. An obstacle with a link's name gets another, see
-/// combineScenes().
+/// Sets up planning for a group of a robot, from files.
+/// @param urdf   robot; see loadUrdf().
+/// @param srdf   allowed pairs and groups; see loadSrdf(), groupJoints().
+/// @param scene  obstacles; see loadScene(). Empty: no obstacles. An obstacle with a link's name gets another one; see
+///   combineScenes().
+/// @param group  name of the group in the SRDF.
 /// @throws std::runtime_error as the loaders, and for an SRDF without the group.
-/// @throws std::invalid_argument as the other one.
+/// @throws std::invalid_argument as for joints of a manager.
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, const std::string& scene,
                                              const std::string& group, const SetupOptions& options = {});
 
 /// Sets up planning for some joints of a manager that is set up already.
-/// @param joints  names; none: all joints of the tree that move.
-/// @throws std::invalid_argument naming the joint: unknown, fixed, mimic, named twice, fixed by an option and planned
-///   for, without room between its limits or with limits beyond 1e5, prismatic without limits, or planar or floating
-///   without bounds in the options (within 1e5 too).
+/// @param manager  must not be changed while planners run, and must keep its objects alive.
+/// @param joints   names; empty: all joints of the tree that move, except those whose limits are one value.
+/// @throws std::invalid_argument: manager null, no joint, or, naming it, a joint that is unknown, fixed, mimic, named
+///   twice, fixed by an option and planned for, without room between its limits or with limits beyond 1e5, prismatic
+///   without limits, or planar or floating without bounds in the options (within 1e5 too).
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 
-/// The joints that a group of an SRDF moves, in the tree's order: its chains, joints, links (their parent joints)
-/// and subgroups, without fixed, mimic and passive joints, and those whose limits are one value.
+/// Returns the names of the joints that a group of an SRDF moves, in the tree's order: its chains, joints, links (their
+/// parent joints) and subgroups, without fixed, mimic and passive joints, and those whose limits are one value.
+/// @param srdf   path of the file.
+/// @param group  name of the group.
 /// @throws std::runtime_error naming file and reason: unreadable, no such group, unknown link, joint or subgroup, a
 ///   subgroup within itself, a chain whose ends are not connected, a group that moves nothing.
 FCL_ARTIC_EXPORT std::vector<std::string> groupJoints(const std::string& srdf, const KinematicTree& tree,

@@ -15,107 +15,133 @@ namespace fcl_artic {
 
 /// A geometry of a robot's link, ready for ArticulatedCollisionManager::bind().
 struct LinkGeometry {
-  LinkId link = -1;
-  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< geometry in the link's frame
-  /// BVHModel<OBBRSSd> or SolidMesh<OBBRSSd> for a mesh; Box, Cylinder, Sphere.
+  LinkId link = -1;                                          ///< The link in Robot::tree.
+  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();  ///< Pose of the geometry's frame in the link's frame.
+  /// The geometry: BVHModel<OBBRSSd> or SolidMesh<OBBRSSd> for a mesh, else Box, Cylinder or Sphere. Its own transform
+  /// is not used. Meshes of the same file and scale share their geometry.
   std::shared_ptr<fcl::CollisionObjectd> object;
-  std::string source;  ///< mesh file, or "box", "cylinder", "sphere"
+  std::string source;  ///< Path of the mesh file, or "box", "cylinder", "sphere".
 };
 
 /// A robot read from URDF: its tree and the collision geometry of its links.
 struct Robot {
-  std::shared_ptr<const KinematicTree> tree;
-  std::vector<LinkGeometry> geometry;
-  AllowedCollisionMatrix allowed;  ///< from loadSrdf() or generateAllowedCollisions(); adjacent links need no entry
-  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
+  std::shared_ptr<const KinematicTree> tree;  ///< Links and joint variables in the order of the file.
+  std::vector<LinkGeometry> geometry;         ///< Collision geometry of the links; a link may have several.
+  /// Pairs of links that may touch: empty after loadUrdf(), to be set from loadSrdf() or generateAllowedCollisions().
+  /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry.
+  AllowedCollisionMatrix allowed;
+  std::vector<std::string> notes;  ///< What was accepted though unusual, one line each.
 
-  /// Binds every geometry and sets the allowed collisions; the manager keeps the geometries alive, the Robot may go.
-  /// setup() is left to the caller.
-  /// @throws std::invalid_argument as bind(); nothing stays bound then.
+  /// Binds every geometry to its link and replaces the manager's allowed collisions. Needs setup() afterwards. The
+  /// manager keeps the geometries alive; the Robot may go.
+  /// @param manager  made for `tree`, or a tree with the same link numbers.
+  /// @throws std::invalid_argument as ArticulatedCollisionManager::bind(), and nothing stays bound then; as
+  ///   setAllowedCollisions(), and everything stays bound then.
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
+/// Options of loadUrdf().
 struct UrdfOptions {
-  /// Folders that stand for "package://NAME/": name to folder. A package that isn't named is looked for in the URDF's
-  /// folder and its parents, by folder name.
+  /// Folders that stand for "package://NAME/": from name to folder. A package that isn't named here is looked for in
+  /// the URDF's folder and its parents, by folder name.
   std::map<std::string, std::string> packages;
-  /// Meshes are solids (SolidMesh), what lies within one touches it. One that is not closed and consistently oriented
-  /// is an error then. (For some meshes only: makeSolid() of what Robot::geometry has.)
+  /// Whether meshes are solids (SolidMesh), so that what lies within one touches it. A mesh that is not closed and
+  /// consistently oriented is an error then. (For some meshes only: apply makeSolid() to the geometries of Robot.)
   bool solid_meshes = false;
 };
 
-/// Reads a robot. Meshes (what assimp reads) come with their scale, by absolute path, path relative to the URDF's
-/// folder, file:// or package://. Degenerate triangles stay out, with a note.
-/// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing
-///   or empty mesh, mesh without a triangle of positive area, mesh that is to be a solid and can't be one.
+/// Reads a robot from a URDF file. Meshes may be in any format that assimp reads, with their scale, and are found by
+/// absolute path, path relative to the URDF's folder, file:// or package://. Triangles without area are left out, with
+/// a note. Xacro files must be expanded before.
+/// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
+///   empty mesh, mesh without a triangle of positive area, mesh that is to be a solid and can't be one.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
-/// One of several robots: every name gets the prefix, such as "left_".
+/// One part of combineRobots().
 struct PlacedRobot {
-  const Robot* robot = nullptr;
-  std::string prefix;
-  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();  ///< of its root links, in the world
+  const Robot* robot = nullptr;  ///< The robot; must live until combineRobots() returns.
+  std::string prefix;            ///< Prepended to all of its link and joint names, such as "left_".
+  /// Pose of its root links in the world.
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
 };
 
-/// Several robots as one, a forest: each stands on a link of its own, PREFIX + "mount". Their variables follow each
+/// Combines several robots into one forest, each on a link of its own, prefix + "mount". Their variables follow each
 /// other in the order of the parts. Allowed pairs are those of the parts; every link of one robot is checked against
-/// every link of the others, those of robots that touch where they stand too.
-/// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid.
+/// every link of the others, also for robots that touch where they stand. Geometries are shared with the parts.
+/// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
+///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
 
-/// Reads the disabled pairs of an SRDF (`disable_collisions`), as MoveIt's assistant writes them.
-/// @throws std::runtime_error naming file and reason; an unknown link is an error.
+/// Reads the pairs of links that need no check from an SRDF file, as MoveIt does: `disable_collisions`, and
+/// `disable_default_collisions` with its exceptions, `enable_collisions`.
+/// @throws std::runtime_error naming file and reason: unreadable, not an SRDF, an unknown link.
 FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree);
 
+/// A pair of links that needs no check, as generateAllowedCollisions() finds it.
 struct AllowedPair {
+  /// Names of the two links.
   std::string link1, link2;
-  std::string reason;  ///< "Adjacent", "Always", "Default" or "Never", as MoveIt's assistant writes them
+  std::string reason;  ///< "Adjacent", "Always", "Default" or "Never", as MoveIt's assistant writes them.
 };
 
-/// Pairs that need no check, found as MoveIt's assistant does: adjacent, in contact in all of `samples` random
-/// configurations within the limits (continuous joints: [-π, π]), at q = 0, or in none of them.
-/// Sampled, not proven: 'never' is for speed, and a pair that does collide rarely may be among them.
+/// Finds pairs of links that need no check, as MoveIt's assistant does: pairs that are adjacent ("Adjacent"), in
+/// contact at q = 0 (where that is beyond a joint's limits, at the middle of these; "Default"), in contact in all of
+/// `samples` random configurations ("Always"), or in none of them ("Never"). Contacts are FCL's static ones.
+///
+/// Sampled, not proven: "Never" is for speed, and a pair that does collide rarely may be among them. Variables are
+/// drawn within the joints' limits, angles without limits from [-π, π]; lengths without limits stay at 0, and links on
+/// two sides of a planar or floating joint are never among the pairs.
+/// @param seed  the same seed gives the same pairs.
+/// @throws std::invalid_argument for a robot without a tree, or fewer than 1 sample.
 FCL_ARTIC_EXPORT std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int samples = 10000,
                                                                     std::uint64_t seed = 1);
-/// Writes an SRDF with these pairs, all or nothing. @throws std::runtime_error naming file and reason.
+/// Writes an SRDF file with these pairs (`disable_collisions`). The file is written as a whole or, if this throws, not
+/// at all.
+/// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name,
                                 const std::vector<AllowedPair>& pairs);
 
 /// Obstacles read from a scene file.
 struct Scene {
+  /// One obstacle that stands still.
   struct Obstacle {
-    std::string name;
-    std::shared_ptr<fcl::CollisionObjectd> object;
+    std::string name;                               ///< Unique in the scene.
+    std::shared_ptr<fcl::CollisionObjectd> object;  ///< Geometry, at its pose in the world.
   };
-  std::vector<Obstacle> obstacles;
-  std::vector<std::string> notes;
-  /// Registers every obstacle; the manager keeps them alive, the Scene may go. setup() is left to the caller.
-  /// @throws std::invalid_argument as registerObject(); none stays registered then.
+  std::vector<Obstacle> obstacles;  ///< The obstacles, in the order of the file.
+  std::vector<std::string> notes;   ///< What was accepted though unusual, one line each.
+  /// Registers every obstacle by its name. Needs setup() afterwards. The manager keeps the obstacles alive; the Scene
+  /// may go.
+  /// @throws std::invalid_argument as ArticulatedCollisionManager::registerObject(); none stays registered then.
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
+/// Options of loadScene().
 struct SceneOptions {
-  /// OctoMap: unknown cells are obstacles too, within the box around all cells that are known (octomap's
-  /// getMetricMin() to getMetricMax()); else unknown space is free.
+  /// OctoMap files: whether unknown cells are obstacles too, within the box around all known cells (octomap's
+  /// getMetricMin() to getMetricMax()). If not, unknown space is free.
   bool unknown_cells = false;
-  bool solid_meshes = false;  ///< as UrdfOptions::solid_meshes
+  bool solid_meshes = false;  ///< Whether meshes are solids, as UrdfOptions::solid_meshes.
 };
 
-/// Reads a scene by its file's ending: meshes (what assimp reads: .obj .stl .ply .dae ...), one obstacle a file;
-/// URDF (.urdf: all links at q = 0, quaternions at no rotation, as obstacles); MoveIt scene text (.scene);
-/// OctoMap (.bt .ot), occupied cells as boxes. Names are given once: NAME#2 and so on for the further shapes of one
-/// object.
+/// Reads a scene. The file's ending decides how: meshes in any format that assimp reads (.obj .stl .ply .dae ...), one
+/// obstacle a file; URDF (.urdf), all links in the neutral configuration as obstacles; MoveIt's scene text (.scene);
+/// OctoMap (.bt .ot), occupied cells as boxes. Names are made unique: further shapes of an object become NAME#2 and so
+/// on.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
-/// Several scenes as one, for a robot: an obstacle whose name another one or a link has becomes NAME#2, or so on, with
-/// a note. (Allowed pairs and margins go by name.)
+/// Combines several scenes into one, for a robot. An obstacle whose name another one or a link has becomes NAME#2 or
+/// so, with a note. (Allowed pairs and margins go by name.) Objects are shared with the scenes.
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
-/// A triangle mesh by assimp, all its parts in one BVHModel, scaled per axis.
-/// @param solid  it is a SolidMesh, triangles without area included; refused when it is not closed and consistently
-///   oriented.
-/// @throws std::runtime_error as loadUrdf().
+/// Reads a triangle mesh by assimp, all parts of the file in one BVHModel<OBBRSSd>.
+/// @param scale  factor for each axis, finite, not 0.
+/// @param notes  what was accepted though unusual is appended, one line each; may be null.
+/// @param solid  whether to return a SolidMesh<OBBRSSd>, triangles without area included. A mesh that is not closed and
+///   consistently oriented is refused then.
+/// @throws std::runtime_error naming file and reason: unreadable, no triangle of positive area, a scale of 0 or not
+///   finite, no solid though it is to be one.
 FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path,
                                                                    const Eigen::Vector3d& scale,
                                                                    std::vector<std::string>* notes = nullptr,
