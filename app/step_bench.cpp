@@ -29,7 +29,7 @@ StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::ve
       if (result.statistics.total_us < best.total_us) best = result.statistics;
     }
     differ += (result.status == Status::contact) != contact;
-    const double sv = paper && stage2 ? best.redon.visibility_us : best.visibility_us;
+    const double sv = paper && stage2 ? best.redon.visibility_us : best.visibility.us;
     const double bvh = paper ? best.redon.culling_us : best.culling_us;
     sum.bvh += bvh;
     sum.sv += sv;
@@ -37,8 +37,8 @@ StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::ve
     sum.total += best.total_us;
     sum.solving += best.redon.equations_us;
     totals.push_back(best.total_us);
-    sum.sv_pairs += static_cast<double>(best.visibility_pairs);
-    sum.sv_culled += static_cast<double>(best.visibility_culled);
+    sum.sv_pairs += static_cast<double>(best.visibility.pairs);
+    sum.sv_culled += static_cast<double>(best.visibility.culled);
     sum.box_tests += static_cast<double>(best.redon.box_tests);
     sum.leaf_pairs += static_cast<double>(best.redon.leaf_pairs);
     sum.equations += static_cast<double>(best.redon.equations);

@@ -120,7 +120,7 @@ std::string automaticBesideOff(ArticulatedCollisionManager& manager, const std::
       for (int k = 0; k < 8; ++k) {
         for (const JointMotion& m : motions) {
           manager.continuousCollide(m, request, result);
-          trials += result.statistics.visibility_trials;
+          trials += result.statistics.visibility.trials;
         }
       }
       us[automatic] = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
@@ -201,7 +201,7 @@ int main(int argc, char** argv) {
               request.measure_times = true;
               Measured measured = measure(motions.size(), passes, [&](std::size_t i) {
                 const Answer answer = ask(motions[i]);
-                stage_least[i] = std::min(stage_least[i], result.statistics.visibility_us);
+                stage_least[i] = std::min(stage_least[i], result.statistics.visibility.us);
                 narrow_least[i] = std::min(narrow_least[i], result.statistics.narrowphase_us);
                 return answer;
               });
@@ -213,9 +213,9 @@ int main(int argc, char** argv) {
                 if (!s.visibility_fallback.empty()) throw std::runtime_error(s.visibility_fallback);
                 addCounters(row, s);
                 after += static_cast<double>(s.pairs_after_culling);
-                pairs += static_cast<double>(s.visibility_pairs);
-                culled += static_cast<double>(s.visibility_culled);
-                pieces += static_cast<double>(s.visibility_pieces);
+                pairs += static_cast<double>(s.visibility.pairs);
+                culled += static_cast<double>(s.visibility.culled);
+                pieces += static_cast<double>(s.visibility.pieces);
                 stage_us += stage_least[i];
                 narrow_us += narrow_least[i];
               }

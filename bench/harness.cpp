@@ -12,6 +12,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 #include <benchmark/benchmark.h>
 #include <fcl/config.h>
@@ -78,17 +79,14 @@ nlohmann::json circumstances() {
 }  // namespace
 
 void addCounters(Row& row, const QueryStatistics& s) {
-  const std::pair<const char*, std::uint64_t> all[] = {{"pairs", s.pairs},
-                                                       {"pairs_after_culling", s.pairs_after_culling},
-                                                       {"batches", s.batches},
-                                                       {"motion_evaluations", s.motion_evaluations},
-                                                       {"node_tests", s.node_tests},
-                                                       {"leaf_tests", s.leaf_tests},
-                                                       {"certificates", s.certificates},
-                                                       {"gjk", s.gjk},
-                                                       {"contact_proofs", s.contact_proofs}};
-  row.per_query.resize(std::size(all));
-  for (std::size_t i = 0; i < std::size(all); ++i) {
+  std::vector<std::pair<const char*, std::uint64_t>> all = {{"pairs", s.pairs},
+                                                            {"pairs_after_culling", s.pairs_after_culling}};
+  StandardStatistics::forEachField([&](const char* name, auto field) {
+    if constexpr (std::is_same_v<decltype(field), std::uint64_t StandardStatistics::*>)
+      all.emplace_back(name, s.*field);
+  });
+  row.per_query.resize(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
     row.per_query[i].first = all[i].first;
     row.per_query[i].second += static_cast<double>(all[i].second) / static_cast<double>(row.queries);
   }

@@ -6,7 +6,7 @@
 
 int main() {
   using namespace fcl_artic;
-  const Robot robot = loadUrdf("data/puma560/puma560.urdf");
+  const Robot robot = loadUrdf("data/puma560/puma560.urdf");  // with an SRDF: see below
   const Scene scene = loadScene("data/pipes.obj");
 
   ArticulatedCollisionManager manager(robot.tree);
@@ -14,7 +14,7 @@ int main() {
   scene.addTo(manager);  // obstacles
   manager.setup();
 
-  Eigen::VectorXd q0(6), q1(6);  // rad
+  Eigen::VectorXd q0(6), q1(6);  // rad, in the order of robot.tree->variableName(v)
   q0 << -2.1, 1.0, -1.0, -0.1, -0.1, 0.0;
   q1 << -0.1, 0.3, -2.3, -1.0, 1.1, 0.0;
   const CertifiedResult result = manager.continuousCollide(q0, q1);

@@ -70,8 +70,8 @@ Fate fateOf(const Robot& robot, const std::vector<LinkGeometry>& links, const st
   request.visibility = VisibilityMode::on;
   CertifiedResult result;
   manager.continuousCollide(motion, request, result);
-  if (!result.statistics.visibility_pairs) return Fate::boxes;
-  return result.statistics.visibility_culled == result.statistics.visibility_pairs ? Fate::visibility : Fate::left;
+  if (!result.statistics.visibility.pairs) return Fate::boxes;
+  return result.statistics.visibility.culled == result.statistics.visibility.pairs ? Fate::visibility : Fate::left;
 }
 
 }  // namespace

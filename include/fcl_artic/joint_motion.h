@@ -32,6 +32,10 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// @throws std::invalid_argument as linear(), and if a joint that mimics a wrapped one would end in another pose than
   ///   at q1: a prismatic joint, or one whose multiplier is no integer.
   static JointMotion shortest(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
+  /// Stands still at q.
+  /// @param q  tree.dof() joint values, rad or m.
+  /// @throws std::invalid_argument as linear().
+  static JointMotion still(const KinematicTree& tree, const Eigen::VectorXd& q);
   /// Moves along given polynomials, up to the fifth degree.
   /// @param coefficients  tree.dof() rows, 1 to 6 columns. Column 0 is the configuration at t = 0, rad or m; column k
   ///   belongs to t^k. For a quaternion the rows x, y, z hold the rotation vector w from column 1 on, and the row w is

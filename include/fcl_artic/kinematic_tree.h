@@ -171,23 +171,24 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// in the order of addJoint(). (A quaternion has four.)
   int dof() const { return static_cast<int>(variables_.size()); }
 
-  /// Name of a link.
-  const std::string& linkName(LinkId link) const { return link_names_.at(static_cast<std::size_t>(link)); }
+  /// Name of a link. (Here and below: @throws std::out_of_range naming robot and number for a link, joint or variable
+  /// that is not there.)
+  const std::string& linkName(LinkId link) const { return entryOf(link_names_, link, "link"); }
   /// A joint by its index, with normalised axis, orthonormal origin and resolved mimic.
-  const Joint& joint(JointId joint) const { return joints_.at(static_cast<std::size_t>(joint)); }
+  const Joint& joint(JointId joint) const { return entryOf(joints_, joint, "joint"); }
   /// A joint by its name.
   /// @throws std::out_of_range naming the joint and the robot.
   const Joint& joint(std::string_view name) const { return joint(jointId(name)); }
   /// The joint that variable v drives. (Mimic joints follow it.)
-  JointId variableJoint(int v) const { return variables_.at(static_cast<std::size_t>(v)); }
+  JointId variableJoint(int v) const { return entryOf(variables_, v, "joint variable"); }
   /// Name of variable v: that of its joint, or for joints of more than one variable with MoveIt's endings: "JOINT/x",
   /// "/y", "/theta" (planar), "/rot_x" to "/rot_w" (spherical), "/trans_x" to "/trans_z" and "/rot_x" to "/rot_w"
   /// (floating).
-  const std::string& variableName(int v) const { return variable_names_.at(static_cast<std::size_t>(v)); }
+  const std::string& variableName(int v) const { return entryOf(variable_names_, v, "joint variable"); }
   /// Whether variable v is an angle (rad); else it is a length (m) or a part of a quaternion.
   bool isAngle(int v) const;
   /// Index of the first variable that drives the joint, for a mimic joint its master's; -1 if it is fixed.
-  int jointVariable(JointId j) const { return joint_variable_.at(static_cast<std::size_t>(j)); }
+  int jointVariable(JointId j) const { return entryOf(joint_variable_, j, "joint"); }
   /// Number of variables that drive the joint: 0 to 7.
   int numVariables(JointId j) const { return numVariables(joint(j).type); }
   /// Number of variables that drive a joint of this type: 0 to 7.
@@ -195,7 +196,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// Index of the first variable (x) of the joint's quaternion; -1 if it has none.
   int quaternionVariable(JointId j) const;
   /// The joint whose child the link is; -1 for a root.
-  JointId parentJoint(LinkId link) const { return parent_joint_.at(static_cast<std::size_t>(link)); }
+  JointId parentJoint(LinkId link) const { return entryOf(parent_joint_, link, "link"); }
   /// The link's parent; -1 for a root.
   LinkId parentLink(LinkId link) const;
   /// All links in an order in which parents come before their children.
@@ -220,11 +221,13 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// Returns the configuration of dof() zeros, with quaternions that do not rotate: every joint is at its origin.
   Eigen::VectorXd neutralConfiguration() const;
   /// Returns the value of a joint of at most one variable, rad or m, with mimic applied; 0 if it is fixed.
-  /// @param q  dof() joint variables, rad or m; not checked.
-  /// @throws std::invalid_argument for a joint of more than one variable (use jointPose()).
+  /// @param q  dof() joint variables, rad or m.
+  /// @throws std::invalid_argument for another number of them, and for a joint of more than one variable (use
+  ///   jointPose()).
   double jointValue(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q) const;
   /// Returns the pose of the child link in the joint's frame, with mimic applied.
-  /// @param q  dof() joint variables, rad or m; not checked.
+  /// @param q  dof() joint variables, rad or m.
+  /// @throws std::invalid_argument for another number of them.
   Eigen::Isometry3d jointPose(JointId joint, const Eigen::Ref<const Eigen::VectorXd>& q) const;
 
   /// Computes the pose of every link in the world; roots are at the identity.
@@ -250,6 +253,13 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<std::string> limitNotes(const Eigen::Ref<const Eigen::VectorXd>& q) const;
 
  private:
+  template <class T>
+  const T& entryOf(const std::vector<T>& all, int index, const char* what) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= all.size()) refuseIndex(what, index, all.size());
+    return all[static_cast<std::size_t>(index)];
+  }
+  [[noreturn]] void refuseIndex(const char* what, int index, std::size_t count) const;
+  void requireSize(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const;
   int findLink(std::string_view name) const;
   void sortLinks();
   void addToFingerprints(const Joint& joint);

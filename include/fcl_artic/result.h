@@ -14,6 +14,7 @@
 #include "fcl_artic/bracket.h"
 #include "fcl_artic/export.h"
 #include "fcl_artic/kinematic_tree.h"
+#include "fcl_artic/statistics.h"
 
 namespace fcl_artic {
 
@@ -93,47 +94,17 @@ struct CertifiedContact {
   }
 };
 
-/// Work of the paper's method (Method::redon2004). Symbols and equations are those of Redon et al. (2004). Times are in
-/// µs, and 0 without Effort::measure_times.
-struct RedonStatistics {
-  std::uint64_t pairs_by_standard = 0;  ///< Pairs of bodies that were left to Method::standard.
-  std::uint64_t box_tests = 0;          ///< Pairs of oriented boxes tested, one sub-interval each.
-  std::uint64_t leaf_pairs = 0;         ///< Pairs of triangles whose boxes meet.
-  std::uint64_t equations = 0;          ///< Elementary equations made: n_e.
-  std::uint64_t intervals = 0;          ///< Time intervals over which motions were bounded: s_max of eq. (17).
-  std::uint64_t evaluations = 0;        ///< Equations bounded, over an interval each: a n_e.
-  std::uint64_t steps_bounded = 0;      ///< Moving joints of chains bounded, over an interval each.
-  /// Times of dynamic BVH culling (Section 4), of the trees of oriented boxes (5.1), and of the equations (5.2), µs.
-  double culling_us = 0, boxes_us = 0, equations_us = 0;
-  double visibility_us = 0;  ///< Time of stage 2, including the bounds on what links sweep, µs.
-};
-
 /// Work of a query, by stage. Times are in µs, and 0 without Effort::measure_times unless said otherwise. For a
-/// trajectory and for many pairs they are sums.
-struct QueryStatistics {
+/// trajectory and for many pairs they are sums. (Fields of Method::standard's work stand here directly.)
+struct QueryStatistics : StandardStatistics {
   std::uint64_t pairs = 0;                ///< Pairs of bodies that the request asks about.
   std::uint64_t pairs_after_culling = 0;  ///< Pairs that the swept bounds (stage 1) leave.
-  std::uint64_t batches = 0;              ///< Batches of eight time intervals.
-  std::uint64_t motion_evaluations = 0;   ///< Frames evaluated, over one batch each.
-  std::uint64_t node_tests = 0;           ///< Pairs of bounding volumes tested, over eight time intervals each.
-  std::uint64_t leaf_tests = 0;           ///< Pairs of convex pieces tested, over eight time intervals each.
-  std::uint64_t certificates = 0;         ///< Separating directions checked, over eight time intervals each.
-  std::uint64_t gjk = 0;                  ///< Searches for witness directions by GJK.
-  std::uint64_t contact_proofs = 0;       ///< Poses at which a proof of contact was tried.
-  std::uint64_t visibility_pairs = 0;     ///< Pairs that stage 2 looked at (CertifiedRequest::visibility).
-  std::uint64_t visibility_culled = 0;    ///< Pairs that stage 2 proved free.
-  std::uint64_t visibility_nodes = 0;     ///< Nodes of obstacles' trees that stage 2 proved free, in other pairs.
-  std::uint64_t visibility_pieces = 0;    ///< Pieces of obstacles that stage 2 drew.
-  std::uint64_t visibility_trials = 0;    ///< 1 if `automatic` answered the query both ways, to compare.
-  std::uint64_t visibility_repeated = 0;  ///< 1 if it was solved again without stage 2, as it was not simply free.
-  double visibility_us = 0;               ///< Time of stage 2, trials included, µs; always measured.
+  VisibilityStatistics visibility;        ///< Work of stage 2 (CertifiedRequest::visibility).
   std::string visibility_executor;        ///< Executor of stage 2: "cpu", "osmesa" or "egl"; empty if it had no work.
   std::string visibility_fallback;        ///< Why the executor is "cpu" although another one was wanted.
-  /// Times of stage 1 (culling), of the search after stages 1 and 2 (narrowphase), of writing the result (report; of an
-  /// ArticulatedCollisionManager only) and of the whole query (total; of managers only), µs.
-  double culling_us = 0, narrowphase_us = 0, report_us = 0, total_us = 0;
-  /// Work of Method::redon2004.
-  RedonStatistics redon;
+  RedonStatistics redon;                  ///< Work of Method::redon2004.
+  double report_us = 0;                   ///< Time of writing the result, µs; of an ArticulatedCollisionManager only.
+  double total_us = 0;                    ///< Time of the whole query, µs; of managers only.
 };
 
 /// The answer of an ArticulatedCollisionManager: verdict and bracket (Bracket), contacts, work. A query writes every

@@ -9,6 +9,7 @@
 #include "kinematics/rotation_vector.h"
 #include "model/sweep.h"
 #include "numerics/rotation.h"
+#include "numerics/shown.h"
 
 namespace fcl_artic {
 namespace {
@@ -29,7 +30,7 @@ void requireSizes(const KinematicTree& tree, const Eigen::VectorXd& sizes, const
       const double own = sizes[tree.jointVariable(j) + i];
       const double value = joint.mimics ? std::abs(joint.mimic.multiplier) * own + std::abs(joint.mimic.offset) : own;
       if (value <= kLargestJointValue) continue;
-      throw std::invalid_argument(what + ": the value " + std::to_string(value) + " of joint '" + joint.name +
+      throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + joint.name +
                                   "' is beyond 1e5");
     }
   }
@@ -41,13 +42,13 @@ void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::
     if (tree.numVariables(j) != 1) continue;
     const double value = tree.jointValue(j, q);
     if (!(std::abs(value) <= kLargestJointValue)) {
-      throw std::invalid_argument(what + ": the value " + std::to_string(value) + " of joint '" + tree.joint(j).name +
+      throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + tree.joint(j).name +
                                   "' is beyond 1e5");
     }
   }
   for (int v = 0; v < tree.dof(); ++v) {
     if (std::abs(q[v]) <= kLargestJointValue) continue;
-    throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + tree.variableName(v) +
+    throw std::invalid_argument(what + ": the value " + shown(q[v]) + " of joint '" + tree.variableName(v) +
                                 "' is beyond 1e5");
   }
 }
@@ -86,6 +87,13 @@ JointMotion JointMotion::linear(const KinematicTree& tree, const Eigen::VectorXd
     const Eigen::Vector3d w = rotationVectorOf(quaternionAt(q1, v) * quaternionAt(q0, v).conjugate());
     coefficients.block<4, 1>(v, 1) << w, 0;
   }
+  return {tree, std::move(coefficients)};
+}
+
+JointMotion JointMotion::still(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  requireEnd(tree, q, "q");
+  Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(q.size(), 2);
+  coefficients.col(0) = q;
   return {tree, std::move(coefficients)};
 }
 

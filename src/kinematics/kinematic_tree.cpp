@@ -276,6 +276,7 @@ double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::Vector
   const int variable = jointVariable(j);
   if (variable < 0) return 0;
   const Joint& joint = joints_[j];
+  requireSize(q, "q");
   if (numVariables(j) > 1) {
     throw std::invalid_argument("robot '" + name_ + "': joint '" + joint.name + "' has no single value");
   }
@@ -327,6 +328,7 @@ void KinematicTree::placeChild(JointId j, const Eigen::Ref<const Eigen::VectorXd
 }
 
 Eigen::Isometry3d KinematicTree::jointPose(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+  requireSize(q, "q");
   Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
   moveBy(j, q, M);
   return M;
@@ -360,14 +362,24 @@ void KinematicTree::moveBy(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q
   }
 }
 
+void KinematicTree::refuseIndex(const char* what, int index, std::size_t count) const {
+  throw std::out_of_range("robot '" + name_ + "' has no " + what + " " + std::to_string(index) + ": there are " +
+                          std::to_string(count));
+}
+
+void KinematicTree::requireSize(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {
+  if (q.size() == dof()) return;
+  std::string message =
+      what + " has " + std::to_string(q.size()) + " entries, robot '" + name_ + "' has " + std::to_string(dof());
+  if (dof() > 0) message += ": " + variableName(0) + (dof() > 1 ? " ... " + variableName(dof() - 1) : "");
+  throw std::invalid_argument(message);
+}
+
 void KinematicTree::requireConfiguration(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {
-  if (q.size() != dof()) {
-    throw std::invalid_argument(what + " has " + std::to_string(q.size()) + " entries, robot '" + name_ + "' has " +
-                                std::to_string(dof()));
-  }
+  requireSize(q, what);
   for (int v = 0; v < dof(); ++v) {
     if (!std::isfinite(q[v])) {
-      throw std::invalid_argument(what + ": the value " + std::to_string(q[v]) + " of joint '" + variableName(v) +
+      throw std::invalid_argument(what + ": the value " + shown(q[v]) + " of joint '" + variableName(v) +
                                   "' is not finite");
     }
   }

@@ -6,14 +6,13 @@
 #include <cstdint>
 
 #include "fcl_artic/bracket.h"
+#include "fcl_artic/statistics.h"
 
 namespace fcl_artic {
 namespace engine {
 
-struct Statistics {
-  std::uint64_t pairs = 0, pairs_after_culling = 0, batches = 0, motion_evaluations = 0, node_tests = 0, leaf_tests = 0,
-                certificates = 0, gjk = 0, contact_proofs = 0;
-  double culling_us = 0, narrowphase_us = 0;
+struct Statistics : StandardStatistics {
+  std::uint64_t pairs = 0, pairs_after_culling = 0;
 };
 
 /// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.

@@ -72,7 +72,7 @@ inline void Solver::answerWithWhatIsFound(Answer& answer) {
   // those that were still to come.
   const engine::FirstContact& first = horizon.first();
   const bool known = !query.ignore_initial && !query.every_pair;
-  const double proven_free = known ? min(horizon.provenFreeUntil(), first.t_lower) : 0;
+  const double proven_free = known ? horizon.freeUntil() : 0;
   static_cast<Bracket&>(answer) = task.ended() ? engine::undecidedBracket(proven_free, first)
                                                : engine::bracketOf(first, query.tolerance_time, query.any);
   FCL_ARTIC_ASSERT(answer.t_lower >= 0 && answer.t_lower <= answer.t_upper && answer.t_upper <= 1);

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "fcl/fcl_geometry.h"
-#include "model/add_work.h"
+#include "model/add_fields.h"
 #include "narrowphase/engine.h"
 #include "numerics/shown.h"
 #include "redon/options.h"
@@ -71,39 +71,19 @@ engine::Query makeQuery(const CertifiedPairRequest& request) {
 
 QueryStatistics statisticsOf(const engine::Statistics& s) {
   QueryStatistics out;
+  static_cast<StandardStatistics&>(out) = s;
   out.pairs = s.pairs;
   out.pairs_after_culling = s.pairs_after_culling;
-  engine::addWork(s, out);
   return out;
 }
 
-void addWork(const RedonStatistics& s, RedonStatistics& sum) {
-  sum.pairs_by_standard += s.pairs_by_standard;
-  sum.box_tests += s.box_tests;
-  sum.leaf_pairs += s.leaf_pairs;
-  sum.equations += s.equations;
-  sum.intervals += s.intervals;
-  sum.evaluations += s.evaluations;
-  sum.steps_bounded += s.steps_bounded;
-  sum.culling_us += s.culling_us;
-  sum.boxes_us += s.boxes_us;
-  sum.equations_us += s.equations_us;
-  sum.visibility_us += s.visibility_us;
-}
-
 void addWork(const QueryStatistics& s, QueryStatistics& sum) {
-  engine::addWork(s, sum);
-  sum.visibility_pairs += s.visibility_pairs;
-  sum.visibility_culled += s.visibility_culled;
-  sum.visibility_nodes += s.visibility_nodes;
-  sum.visibility_pieces += s.visibility_pieces;
-  sum.visibility_trials += s.visibility_trials;
-  sum.visibility_repeated += s.visibility_repeated;
-  sum.visibility_us += s.visibility_us;
+  engine::addFields<StandardStatistics>(s, sum);
+  engine::addFields(s.visibility, sum.visibility);
   if (!s.visibility_executor.empty()) sum.visibility_executor = s.visibility_executor;
   if (!s.visibility_fallback.empty()) sum.visibility_fallback = s.visibility_fallback;
+  engine::addFields(s.redon, sum.redon);
   sum.report_us += s.report_us;
-  addWork(s.redon, sum.redon);
 }
 
 std::uint64_t countedWork(const QueryStatistics& s) {

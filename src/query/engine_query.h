@@ -65,7 +65,6 @@ engine::Query makeQuery(const CertifiedPairRequest& request);
 QueryStatistics statisticsOf(const engine::Statistics& statistics);
 /// Adds one query's work to a sum: all but the counts of pairs and the total time, which the asker knows better.
 void addWork(const QueryStatistics& s, QueryStatistics& sum);
-void addWork(const RedonStatistics& s, RedonStatistics& sum);
 /// What a work budget counts of a query's work.
 std::uint64_t countedWork(const QueryStatistics& s);
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "model/add_fields.h"
 #include "narrowphase/engine_workspace.h"
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
@@ -94,7 +95,7 @@ void solve(const Registry& registry, Stage2& stage2, const CertifiedRequest& req
     const auto method = [&](const engine::Query& asked, engine::Answer& out) {
       RedonStatistics work;
       redon::solve(workspace.redon(), workspace.engine, problem, asked, request.redon, treeOf, out, work);
-      addWork(work, solved.redon);  // of both solves, where there are two
+      engine::addFields(work, solved.redon);  // of both solves, where there are two
       solved.redon.pairs_by_standard = work.pairs_by_standard;
     };
     visibility::solve(*stage2.culler, stage2.redon, request.visibility, method, problem, query, solved.answer,
@@ -130,13 +131,13 @@ CertifiedContact report(const Registry& registry, const JointMotion& motion, con
 QueryStatistics workOf(const Solved& solved) {
   QueryStatistics statistics = statisticsOf(solved.answer.statistics);
   const visibility::Report& stage = solved.stage;
-  statistics.visibility_pairs = stage.pairs;
-  statistics.visibility_culled = stage.culled;
-  statistics.visibility_nodes = stage.nodes;
-  statistics.visibility_pieces = stage.pieces;
-  statistics.visibility_trials = stage.trials;
-  statistics.visibility_repeated = stage.repeated;
-  statistics.visibility_us = stage.elapsed_us;
+  statistics.visibility.pairs = stage.pairs;
+  statistics.visibility.culled = stage.culled;
+  statistics.visibility.nodes = stage.nodes;
+  statistics.visibility.pieces = stage.pieces;
+  statistics.visibility.trials = stage.trials;
+  statistics.visibility.repeated = stage.repeated;
+  statistics.visibility.us = stage.elapsed_us;
   statistics.visibility_executor = stage.executor;
   statistics.visibility_fallback = stage.fallback;
   statistics.redon = solved.redon;
@@ -227,7 +228,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 
 void ArticulatedCollisionManager::collide(const Eigen::VectorXd& q, const CertifiedRequest& request,
                                           CertifiedResult& result) const {
-  answerOrClaimNothing(result, 0, 1, [&] { collideMotion(JointMotion::linear(tree(), q, q), request, result); });
+  answerOrClaimNothing(result, 0, 1, [&] { collideMotion(JointMotion::still(tree(), q), request, result); });
 }
 
 CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointMotion& motion,

@@ -80,17 +80,18 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     own.ignore_initial_contact = k == 0 ? request.ignore_initial_contact : !in_contact.empty();
     if (request.progress) own.progress = [&](double s) { return request.progress(clock.lower(s)); };
     const std::uint64_t used = countedWork(sum.statistics);
-    if (request.work_budget) {
-      if (used >= request.work_budget) {
-        sum.status = Status::undecided;
-        sum.certain = false;
-        if (contact_found) break;  // not of every pair
-        sum.t_lower = clock.begin();
-        tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
-        break;
-      }
-      own.work_budget = request.work_budget - used;
+    // A piece may be free without a single test: between pieces, too, the budget is looked at and the caller is asked.
+    const bool spent = request.work_budget && used >= request.work_budget;
+    const double proven_until = contact_found ? sum.t_lower : clock.begin();
+    if (spent || (k > 0 && request.progress && !request.progress(proven_until))) {
+      sum.status = Status::undecided;
+      sum.certain = false;
+      if (contact_found) break;  // not of every pair
+      sum.t_lower = clock.begin();
+      tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
+      break;
     }
+    if (request.work_budget) own.work_budget = request.work_budget - used;
     std::vector<std::int32_t> still_in_contact;
     Aspects aspects;
     aspects.time = partOfTime(trajectory, k);

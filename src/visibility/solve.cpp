@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "model/add_work.h"
+#include "model/add_fields.h"
 #include "visibility/stage.h"
 
 namespace fcl_artic {
@@ -17,15 +17,17 @@ double since(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
-/// Passes progress on. A second solve begins at 0 again; what is proven stays proven.
+/// Passes progress on. A second solve begins at 0 again; what is proven stays proven. Who has said no is asked no more.
 struct Progress {
   bool (*tell)(void* context, double t_lower);
   void* context;
   double proven = 0;
+  bool ended = false;
   static bool update(void* self, double t_lower) {
     auto& progress = *static_cast<Progress*>(self);
     progress.proven = std::max(progress.proven, t_lower);
-    return progress.tell(progress.context, progress.proven);
+    progress.ended = !progress.tell(progress.context, progress.proven);
+    return !progress.ended;
   }
 };
 
@@ -75,18 +77,19 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
     with_us = since(begin);
     first = answer.statistics;
   }
-  if (!stands || trial) {
+  const bool again = (!stands || trial) && !progress.ended;
+  if (again) {
     const Clock::time_point begin = Clock::now();
     solver(query, answer);
     without_us = since(begin);
-    engine::addWork(first, answer.statistics);
+    engine::addFields<StandardStatistics>(first, answer.statistics);
   }
   query.progress = progress.tell;
   query.progress_context = progress.context;
-  report.repeated = on && !stands;
-  report.trials = trial;
+  report.repeated = on && !stands && again;
+  report.trials = trial && again;
 
-  if (!automatic) return;
+  if (!automatic || progress.ended) return;
   const double on_us = stands ? with_us : with_us + without_us;  // with the second solve, where it takes one
   const double own_us = on ? on_us : without_us;
   choice.addQuery(own_us);

@@ -138,11 +138,11 @@ TEST(RedonVisibility, SameAnswersWithTheStageAndWithout) {
         EXPECT_EQ(on.contacts[k].t_lower, off.contacts[k].t_lower) << family << " " << seed;
       }
       if (mode != VisibilityMode::on) continue;
-      pairs += on.statistics.visibility_pairs;
-      culled += on.statistics.visibility_culled;
+      pairs += on.statistics.visibility.pairs;
+      culled += on.statistics.visibility.culled;
       cut += on.statistics.redon.box_tests < off.statistics.redon.box_tests;
       EXPECT_EQ(on.statistics.redon.pairs_by_standard, off.statistics.redon.pairs_by_standard);
-      if (on.statistics.visibility_repeated) both += on.statistics.redon.box_tests > off.statistics.redon.box_tests;
+      if (on.statistics.visibility.repeated) both += on.statistics.redon.box_tests > off.statistics.redon.box_tests;
     }
   }
   std::cout << n << " queries, " << contacts << " with contact, " << pairs << " pairs seen, " << culled << " culled; "

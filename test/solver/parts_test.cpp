@@ -42,9 +42,9 @@ TEST(Task, EndsWithItsBudgetOrByTheCaller) {
   world.asPair().query.work_budget = 10;
   world.begin();
   world.task.statistics.node_tests = 10;
-  EXPECT_FALSE(world.task.outOfBudget());
+  EXPECT_FALSE(world.task.mustEnd(0));
   world.task.statistics.leaf_tests = 1;
-  EXPECT_TRUE(world.task.outOfBudget());
+  EXPECT_TRUE(world.task.mustEnd(0));
   EXPECT_TRUE(world.task.ended());
   world.begin();
   EXPECT_FALSE(world.task.ended());
@@ -55,12 +55,36 @@ TEST(Task, EndsWithItsBudgetOrByTheCaller) {
     return until < 0.5;
   };
   world.query.progress_context = &told;
+  world.query.work_budget = 0;
   world.begin();
-  world.task.report(0.25);
+  EXPECT_FALSE(world.task.mustEnd(0.25));
+  EXPECT_EQ(told, -1);  // not before some work is done
+  world.task.statistics.node_tests = 5000;
+  EXPECT_FALSE(world.task.mustEnd(0.25));
   EXPECT_EQ(told, 0.25);
-  EXPECT_FALSE(world.task.ended());
-  world.task.report(0.5);
+  EXPECT_FALSE(world.task.mustEnd(0.5));  // not at once again
+  EXPECT_EQ(told, 0.25);
+  world.task.statistics.leaf_tests = 5000;
+  EXPECT_TRUE(world.task.mustEnd(0.5));
   EXPECT_TRUE(world.task.ended());
+}
+
+// The search goes on past a contact in the pairs beside it: what the caller is told does not.
+TEST(Horizon, TellsNoLaterTimeThanTheFirstContact) {
+  TwoBalls world;
+  double told = -1;
+  world.asPair().query.progress = [](void* t, double until) {
+    *static_cast<double*>(t) = until;
+    return true;
+  };
+  world.query.progress_context = &told;
+  world.begin();
+  world.horizon.joinLower(0.3);
+  world.horizon.provenFree(0.5);
+  world.task.statistics.node_tests = 5000;
+  EXPECT_FALSE(world.horizon.mustEnd());
+  EXPECT_EQ(told, 0.3);
+  EXPECT_EQ(world.horizon.provenFreeUntil(), 0.5);
 }
 
 TEST(Horizon, WhatIsSuspectedPutsLaterLanesOffAndNothingElse) {

@@ -247,6 +247,12 @@ TEST(KinematicTree, RefusesConfigurationsOfAnotherSizeOrNotFinite) {
   std::vector<Eigen::Isometry3d> M_0;
   expectContains(messageOf<std::invalid_argument>([&] { tree.forwardKinematics(Eigen::Vector3d(0, 0, 0), M_0); }),
                  "q has 3 entries, robot 'arm' has 2");
+  expectContains(messageOf<std::invalid_argument>([&] { tree.jointValue(0, Eigen::VectorXd::Zero(1)); }),
+                 "q has 1 entries");
+  expectContains(messageOf<std::invalid_argument>([&] { tree.jointPose(0, Eigen::VectorXd::Zero(3)); }),
+                 "q has 3 entries");
+  expectContains(messageOf<std::out_of_range>([&] { tree.linkName(99); }), "has no link 99: there are");
+  expectContains(messageOf<std::out_of_range>([&] { tree.variableName(-1); }), "has no joint variable -1");
   expectContains(messageOf<std::invalid_argument>([&] { tree.requireConfiguration(Eigen::Vector2d(0, kNaN), "goal"); }),
                  "goal: the value nan of joint 'elbow'");
 }

@@ -216,8 +216,25 @@ TEST_F(UrdfTest, IsBoundAsAWholeOrNotAtAll) {
   bad.geometry[1].link = 9;
   expectContains(messageOf<std::invalid_argument>([&] { bad.addTo(manager); }), "no link 9");
   EXPECT_TRUE(manager.boundObjects().empty());
+  bad = r;
+  bad.allowed.allow("nobody", r.tree->linkName(0));
+  expectContains(messageOf<std::invalid_argument>([&] { bad.addTo(manager); }), "nobody");
+  EXPECT_TRUE(manager.boundObjects().empty());
   r.addTo(manager);
   EXPECT_EQ(manager.boundObjects().size(), 2u);
+}
+
+// Geometries go by numbers of links. A manager of another robot would check them at other links.
+TEST_F(UrdfTest, IsRefusedByAManagerOfAnotherRobot) {
+  const Robot r = load(linkWith(collision("<sphere radius='1'/>")));
+  KinematicTree other("other");
+  other.addLink("elsewhere");
+  for (LinkId link = 1; link < r.tree->numLinks(); ++link) other.addLink(r.tree->linkName(link));
+  ArticulatedCollisionManager manager(std::make_shared<const KinematicTree>(other));
+  expectContains(messageOf<std::invalid_argument>([&] { r.addTo(manager); }), "its link 0 is 'elsewhere', not '");
+  ArticulatedCollisionManager none(std::make_shared<const KinematicTree>(KinematicTree()));
+  expectContains(messageOf<std::invalid_argument>([&] { r.addTo(none); }), "its link 0 is missing, not '");
+  EXPECT_TRUE(manager.boundObjects().empty() && none.boundObjects().empty());
 }
 
 TEST_F(UrdfTest, VisualAndInertialElementsDoNotMatter) {

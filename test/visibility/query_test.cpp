@@ -74,10 +74,10 @@ Counts compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::Visibilit
       }
       if (mode != VisibilityMode::on) continue;
       EXPECT_EQ(result.statistics.visibility_fallback, "");
-      counts.pairs += result.statistics.visibility_pairs;
-      counts.culled += result.statistics.visibility_culled;
-      counts.nodes += result.statistics.visibility_nodes;
-      counts.repeated += result.statistics.visibility_repeated;
+      counts.pairs += result.statistics.visibility.pairs;
+      counts.culled += result.statistics.visibility.culled;
+      counts.nodes += result.statistics.visibility.nodes;
+      counts.repeated += result.statistics.visibility.repeated;
     }
   }
   std::cout << counts.queries << " queries, " << counts.contacts << " with contact, " << counts.pairs << " pairs seen, "
@@ -163,8 +163,8 @@ TEST_F(ArmAmidBalls, LinkInsideASolidIsFound) {
   manager_->continuousCollide(motion(0, 0.5), request_, result_);
   EXPECT_EQ(result_.status, fcl_artic::Status::contact);
   EXPECT_EQ(result_.t_lower, 0);
-  EXPECT_EQ(result_.statistics.visibility_pairs, 1u);
-  EXPECT_EQ(result_.statistics.visibility_culled, 0u);
+  EXPECT_EQ(result_.statistics.visibility.pairs, 1u);
+  EXPECT_EQ(result_.statistics.visibility.culled, 0u);
 }
 
 TEST_F(ArmAmidBalls, UnboundedObstacleStays) {
@@ -173,7 +173,7 @@ TEST_F(ArmAmidBalls, UnboundedObstacleStays) {
   request_.visibility = VisibilityMode::on;
   manager_->continuousCollide(motion(0, 0.5), request_, result_);
   EXPECT_EQ(result_.status, fcl_artic::Status::free);
-  EXPECT_EQ(result_.statistics.visibility_culled, 0u);
+  EXPECT_EQ(result_.statistics.visibility.culled, 0u);
 }
 
 /// Cubes of 0.1 m in one mesh.
@@ -210,15 +210,15 @@ TEST_F(ArmAmidBalls, MeshAllAroundIsCulledUntilOneOfItsCubesIsInTheWay) {
   manager_->setup();
   manager_->continuousCollide(motion(0, 0.8), request_, result_);
   EXPECT_EQ(result_.status, fcl_artic::Status::free);
-  EXPECT_EQ(result_.statistics.visibility_pairs, 1u);
-  EXPECT_EQ(result_.statistics.visibility_culled, 1u);
+  EXPECT_EQ(result_.statistics.visibility.pairs, 1u);
+  EXPECT_EQ(result_.statistics.visibility.culled, 1u);
   centers.push_back(around(0.4, 0.7, 0));
   add(cubes(centers), Eigen::Vector3d::Zero());
   manager_->setup();
   manager_->continuousCollide(motion(0, 0.8), request_, result_);
   EXPECT_EQ(result_.status, fcl_artic::Status::contact);
-  EXPECT_EQ(result_.statistics.visibility_pairs, 2u);
-  EXPECT_EQ(result_.statistics.visibility_culled, 1u);
+  EXPECT_EQ(result_.statistics.visibility.pairs, 2u);
+  EXPECT_EQ(result_.statistics.visibility.culled, 1u);
 }
 
 /// Some of its cubes lie in the line swept sphere around the arm and beside the arm: the pair stays, most nodes go, and
@@ -238,12 +238,12 @@ TEST_F(ArmAmidBalls, NodesOfAMeshAreCulled) {
       request_.visibility = mode;
       manager_->continuousCollide(motion(from, from + 0.1), request_, result_);
       different += !sameAnswer(off, result_);
-      if (mode != VisibilityMode::on || result_.statistics.visibility_culled) continue;
+      if (mode != VisibilityMode::on || result_.statistics.visibility.culled) continue;
       const bool contact = off.status == fcl_artic::Status::contact;
       contacts += contact;
-      ASSERT_EQ(result_.statistics.visibility_repeated, contact && result_.statistics.visibility_nodes) << i;
+      ASSERT_EQ(result_.statistics.visibility.repeated, contact && result_.statistics.visibility.nodes) << i;
       if (contact) continue;
-      nodes += result_.statistics.visibility_nodes;
+      nodes += result_.statistics.visibility.nodes;
       ASSERT_LE(result_.statistics.node_tests, off.statistics.node_tests) << i;
       less += result_.statistics.node_tests < off.statistics.node_tests;
     }
@@ -253,6 +253,31 @@ TEST_F(ArmAmidBalls, NodesOfAMeshAreCulled) {
   EXPECT_GT(contacts, 20u);
   EXPECT_GT(nodes, 300u);
   EXPECT_GT(less, 20u);
+}
+
+/// A query that its caller ends while the stage takes part is not begun again without it.
+TEST_F(ArmAmidBalls, EndedIsEnded) {
+  std::vector<Eigen::Vector3d> centers;
+  for (int i = 0; i < 3000; ++i) centers.push_back(around(0.002 * i, 0.4 + 0.02 * (i % 13), 0.095 + 0.01 * (i % 7)));
+  add(cubes(centers), Eigen::Vector3d::Zero());
+  manager_->setup();
+  request_.visibility = VisibilityMode::on;
+  int repeated = 0;
+  for (int i = 0; i < 60; ++i) {
+    int told = 0;
+    request_.progress = [&](double) { return ++told > 0; };
+    manager_->continuousCollide(motion(0.1 * i, 0.1 * i + 0.7), request_, result_);
+    if (!result_.statistics.visibility.repeated || told < 2) continue;
+    ++repeated;
+    told = 0;
+    request_.progress = [&](double) { return ++told > 1; };
+    manager_->continuousCollide(motion(0.1 * i, 0.1 * i + 0.7), request_, result_);
+    EXPECT_EQ(result_.status, fcl_artic::Status::undecided);
+    EXPECT_EQ(told, 1) << "asked again after it had said no";
+    EXPECT_EQ(result_.statistics.visibility.repeated, 0u);
+  }
+  std::cout << repeated << " queries that were ended\n";
+  EXPECT_GT(repeated, 0);
 }
 
 /// The executor cpu, but that it takes one group of a query, or all of them, for free.
@@ -302,8 +327,8 @@ TEST_F(ArmAmidBalls, WrongCullsChangeNoContact) {
     for (lie = 0; lie < 2; ++lie) {
       manager_->continuousCollide(motion(0, 2), request_, result_);
       EXPECT_TRUE(sameAnswer(off, result_)) << one_mesh << lie;
-      EXPECT_EQ(result_.statistics.visibility_culled, one_mesh ? 0u : 1u);
-      EXPECT_EQ(result_.statistics.visibility_repeated, 1u);
+      EXPECT_EQ(result_.statistics.visibility.culled, one_mesh ? 0u : 1u);
+      EXPECT_EQ(result_.statistics.visibility.repeated, 1u);
     }
     lie = Liar::kAll;
     manager_->continuousCollide(motion(0, 2), request_, result_);
@@ -322,7 +347,7 @@ TEST_F(ArmAmidBalls, OffWithAWorkBudget) {
   request_.visibility = VisibilityMode::on;
   manager_->continuousCollide(motion(0, 1.2), request_, result_);
   EXPECT_TRUE(sameAnswer(off, result_));
-  EXPECT_EQ(result_.statistics.visibility_pairs, 0u);
+  EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
 }
 
 /// A margin brings a ball near that is culled without.
@@ -356,9 +381,9 @@ TEST_F(ArmAmidBalls, AutomaticTriesWithinItsShare) {
     request_.measure_times = true;
     manager_->continuousCollide(motion(from, from + 0.5), request_, result_);
     different += !sameAnswer(off, result_);
-    trials += result_.statistics.visibility_trials;
+    trials += result_.statistics.visibility.trials;
     all_us += result_.statistics.total_us;
-    if (result_.statistics.visibility_trials) visibility_us += result_.statistics.visibility_us;
+    if (result_.statistics.visibility.trials) visibility_us += result_.statistics.visibility.us;
   }
   std::cout << trials << " trials in " << all_us << " us, the stage in them " << visibility_us << " us\n";
   EXPECT_EQ(different, 0u);
@@ -367,7 +392,7 @@ TEST_F(ArmAmidBalls, AutomaticTriesWithinItsShare) {
   request_.work_budget = 1000000;                   // what fits in would depend on the clock
   for (int i = 0; i < 100; ++i) {
     manager_->continuousCollide(motion(0, 0.5), request_, result_);
-    EXPECT_EQ(result_.statistics.visibility_pairs, 0u);
+    EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
   }
 }
 
@@ -387,7 +412,7 @@ TEST_F(ArmAmidBalls, FourThreadsGetTheSameAnswers) {
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     EXPECT_TRUE(sameAnswer(off[i], on[i])) << i;
-    pairs += on[i].statistics.visibility_pairs;
+    pairs += on[i].statistics.visibility.pairs;
   }
   EXPECT_GT(pairs, 64u);
 }

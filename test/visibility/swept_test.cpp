@@ -58,7 +58,7 @@ TEST_F(Swept, VolumesHoldTheLink) {
     const JointMotion motion = JointMotion::linear(*tree_, q0, q0 + dq);
     ask(motion, std::make_shared<fcl::Boxd>(20, 20, 20), Eigen::Isometry3d::Identity(), 0);  // all of it in a solid
     ASSERT_EQ(batch_.swept.size(), 8u);
-    EXPECT_EQ(result_.statistics.visibility_culled, 0u);
+    EXPECT_EQ(result_.statistics.visibility.culled, 0u);
     std::vector<Eigen::Isometry3d> M_0;
     for (int lane = 0; lane < 8; ++lane) {
       for (int k = 0; k < 40; ++k) {

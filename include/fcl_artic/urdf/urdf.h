@@ -34,9 +34,9 @@ struct Robot {
 
   /// Binds every geometry to its link and replaces the manager's allowed collisions. Needs setup() afterwards. The
   /// manager keeps the geometries alive; the Robot may go.
-  /// @param manager  made for `tree`, or a tree with the same link numbers.
-  /// @throws std::invalid_argument as ArticulatedCollisionManager::bind(), and nothing stays bound then; as
-  ///   setAllowedCollisions(), and everything stays bound then.
+  /// @param manager  made for `tree`, or for a tree that begins with links of the same names.
+  /// @throws std::invalid_argument for a manager of another robot, and as ArticulatedCollisionManager::bind() and
+  ///   setAllowedCollisions(). Nothing stays bound then.
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 

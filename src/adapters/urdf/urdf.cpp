@@ -339,14 +339,24 @@ class GeometryFactory {
 }  // namespace
 
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
+  if (!tree) throw std::invalid_argument("Robot::addTo: the robot has no tree");
+  // Geometries go by numbers of links: of another robot these are other links.
+  const KinematicTree& other = manager.tree();
+  for (LinkId link = 0; link < tree->numLinks(); ++link) {
+    if (link < other.numLinks() && tree->linkName(link) == other.linkName(link)) continue;
+    throw std::invalid_argument("Robot::addTo: the manager is one of robot '" + other.name() + "', not of '" +
+                                tree->name() + "': its link " + std::to_string(link) + " is " +
+                                (link < other.numLinks() ? "'" + other.linkName(link) + "'" : "missing") + ", not '" +
+                                tree->linkName(link) + "'");
+  }
   auto bound = geometry.begin();
   try {
     for (; bound != geometry.end(); ++bound) manager.bind(bound->link, bound->object, bound->offset);
+    manager.setAllowedCollisions(allowed);
   } catch (...) {
     while (bound != geometry.begin()) manager.unbind((--bound)->object.get());
     throw;
   }
-  manager.setAllowedCollisions(allowed);
 }
 
 Robot loadUrdf(const std::string& path, const UrdfOptions& options) {

@@ -52,6 +52,9 @@ class Horizon : PartOfSolver {
   double end() const { return end_; }
   /// Nothing is left to search: any contact will do and one is found, or the query has ended.
   bool isOver() const { return task_.ended() || isFound(); }
+  /// Asked at every step of the search: its budget is spent, or its caller ends it. (With every pair this is the
+  /// present pair's search: of those that are still to come nothing is known.)
+  bool mustEnd() { return task_.mustEnd(query().every_pair ? 0 : freeUntil()); }
   /// Contact at t is proven, or assumed as it can be told no better: later times don't matter.
   void closeAt(double t) {
     end_ = min(end_, t);
@@ -69,6 +72,8 @@ class Horizon : PartOfSolver {
 
   /// All pairs of this search are proven free before.
   double provenFreeUntil() const { return proven_free_until_; }
+  /// All pairs are proven free up to here: the search may have gone on past a contact, in the pairs beside it.
+  double freeUntil() const { return min(proven_free_until_, first_.t_lower); }
   void provenFree(double t) { proven_free_until_ = max(proven_free_until_, t); }
 
   /// The bracket of the first contact, joined of all contacts of this query.

@@ -111,7 +111,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
         e.within = look.within;
         if (look.overlaps) any_.guessOverlap(e.pair, look.overlaps);
       }
-      task_.outOfBudget();
+      horizon_.mustEnd();
     }
   }
   if (horizon_.isOver()) return;
@@ -229,7 +229,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     }
     if (f.certain) return follower_.record(f);
     candidates_.push(f);
-    task_.outOfBudget();
+    horizon_.mustEnd();
   }
   for (int done = 0; done < candidates_.size() && !horizon_.isOver(); ++done) {
     int first = done;
@@ -284,8 +284,6 @@ inline PairSearch::Step PairSearch::solveInterval(Buffer<Entry>& open, double st
   FCL_ARTIC_ASSERT(begin < end);
   const TimeBatch batch = TimeBatch::partsOf(start, width);
   watch(batch);
-  // With every pair it is the present pair's: of those that are still to come nothing is known.
-  task_.report(query().every_pair ? 0 : horizon_.provenFreeUntil());
   if (task_.ended()) return Step::done;
   const int out_begin = open.size();
   const bool finest = horizon_.isFinest();
@@ -341,7 +339,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, doub
   for (int i = 0; i < leaves_.size(); ++i) {
     Candidate& f = leaves_[i];
     if (!follower_.followToRoot(f, stop, false) && !f.certain) follower_.decide(f, stop);
-    if (task_.outOfBudget()) return Step::done;
+    if (horizon_.mustEnd()) return Step::done;
     // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
     const bool enough = f.certain && f.t_lower <= start && i >= max(64, query().max_contacts);
     if (enough || horizon_.isOver()) leaves_.truncate(i + 1);

@@ -27,7 +27,7 @@ struct SweptLss {
 };
 
 /// @param f  frame of the step that carries the body, seen from the world; null where it stands still.
-FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const StepBounds& b, bool first_order, const Body& body, double d,
+FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const MotionBounds& b, bool first_order, const Body& body, double d,
                                SweptLss& s) {
   s.radius = 0;
   double reach = 0;

@@ -35,19 +35,21 @@ class Task {
     query = &asked;
     statistics = Statistics();
     ended_ = false;
+    told_at_ = 0;
   }
 
   /// The budget is spent, or the caller has ended the query.
   bool ended() const { return ended_; }
-  /// Looks whether the budget is spent.
-  bool outOfBudget() {
-    if (query->work_budget && statistics.node_tests + statistics.leaf_tests > query->work_budget) ended_ = true;
+  /// Looks whether the budget is spent, and tells the caller, every so much work, up to when all is proven free: it may
+  /// end the query.
+  bool mustEnd(double proven_free_until) {
+    const std::uint64_t work = statistics.node_tests + statistics.leaf_tests;
+    if (query->work_budget && work > query->work_budget) ended_ = true;
+    if (query->progress && work >= told_at_ + kToldEvery && !ended_) {
+      told_at_ = work;
+      ended_ = !query->progress(query->progress_context, proven_free_until);
+    }
     return ended_;
-  }
-  /// Tells the caller up to when all is proven free, now and then; it may end the query.
-  void report(double proven_free_until) {
-    if (!query->progress || (statistics.batches & 63) != 0) return;
-    if (!query->progress(query->progress_context, proven_free_until)) ended_ = true;
   }
 
   /// Microseconds; 0 where times are not asked for.
@@ -62,7 +64,10 @@ class Task {
   bool isLink(int mover) const { return mover < problem->num_scene_movers; }
 
  private:
+  /// Tests from one report of progress to the next: a fraction of a millisecond.
+  static constexpr std::uint64_t kToldEvery = 1024;
   bool ended_ = false;
+  std::uint64_t told_at_ = 0;  ///< so many tests
 };
 
 /// A part of the solver: it reads the query at hand and counts its work.

@@ -60,6 +60,7 @@ class Traversal : PartOfSolver {
 
   /// A new query.
   void begin() {
+    for (Buffer<Entry>& stack : stack_) stack.clear();  // what the caller's progress threw out of a query is left
     free_nodes_.clear();
     simplices_.begin();
     roots_tested_ = -1;
@@ -326,7 +327,7 @@ inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& o
       e.mask &= ~later;
       if (!e.mask) continue;
     }
-    if (task_.outOfBudget()) break;
+    if (horizon_.mustEnd()) break;
     if (free_nodes_.size() && isFree(e.a)) continue;
     if (!e.isWhole() || roots_tested_ != motion_.batchNumber()) e.mask = nodesMayTouch(e.a, e.b, e.mask);
     if (e.mask && !e.isWhole()) e.mask = partsMayTouch(e.a, e.b, e.mask);
