@@ -84,19 +84,19 @@ class HullDistance {
     // Neighbours in a mesh are nearest to the same few vertices.
     const double guess = last_.n == 3 ? distanceOfTriangle(p) : INFINITY;
     if (guess <= enough) return guess;
-    body_.pose.c = sse2::Vec3(p.data());
+    body_.pose.c = baseline::Vec3(p.data());
     const Eigen::Vector3d direction = p - sum_ / piece_.num_vertices;
-    sse2::GjkResult g;
-    sse2::gjk(body_, sse2::Vec3(direction.data()), 1e-3, enough * (1 - 1e-9), 48, g);
-    sse2::originWeights(g.simplex);
+    baseline::GjkResult g;
+    baseline::gjk(body_, baseline::Vec3(direction.data()), 1e-3, enough * (1 - 1e-9), 48, g);
+    baseline::originWeights(g.simplex);
     last_ = g.simplex;
     return std::min(guess, distanceOfCombination(p));
   }
 
  private:
   double distanceOfTriangle(const Eigen::Vector3d& p) {
-    const sse2::Vec3 x(p.data());
-    sse2::nearestOnTriangle(last_.v[0].a - x, last_.v[1].a - x, last_.v[2].a - x).store(last_.weight);
+    const baseline::Vec3 x(p.data());
+    baseline::nearestOnTriangle(last_.v[0].a - x, last_.v[1].a - x, last_.v[2].a - x).store(last_.weight);
     return distanceOfCombination(p);
   }
   /// From the convex combination of vertices that a search ended with, wherever that was; from one of them should the
@@ -119,8 +119,8 @@ class HullDistance {
   std::vector<double> packed_;
   engine::TreeView view_;
   engine::Piece piece_, point_;
-  sse2::DifferenceBody body_;
-  sse2::Simplex last_;
+  baseline::DifferenceBody body_;
+  baseline::Simplex last_;
   Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
   double reach_ = 0;
 };

@@ -136,9 +136,9 @@ class Builder {
 /// Box of a bounded shape; sets its reach.
 BoxBounds measure(Piece& piece) {
   BoxBounds box;
-  sse2::Vec3 half;
+  baseline::Vec3 half;
   double sum = 0;
-  if (!sse2::coreHalfSizes(piece, half)) throw std::invalid_argument("this kind of piece has no size of its own");
+  if (!baseline::coreHalfSizes(piece, half)) throw std::invalid_argument("this kind of piece has no size of its own");
   for (int k = 0; k < 3; ++k) {
     const double far = std::abs(piece.center[k]) + half[k];
     sum += far * far;
@@ -253,7 +253,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Ve
 std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
   auto tree = std::make_shared<ShapeTree>(Private());
   tree->outer_ = piece;
-  if (!sse2::unbounded(piece)) {
+  if (!baseline::unbounded(piece)) {
     tree->root_[0] = makeLeaf(measure(tree->outer_), 0);
     tree->show();
     return tree;
@@ -380,12 +380,12 @@ LineSweptSphere ShapeTree::makeLineSweptSphere() const {
   for (std::size_t i = 0; i + 2 < vertices_.size(); i += 3) points.push_back(Eigen::Vector3d::Map(&vertices_[i]));
   for (int i = 0; i < std::max(1, view_.num_pieces); ++i) {
     const Piece& p = view_.pieces[i];
-    if (sse2::unbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
+    if (baseline::unbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
     radius = std::max(radius, p.radius);
     if (p.kind == PieceKind::vertices) continue;  // added above
-    sse2::Vec3 half;
-    if (!sse2::coreHalfSizes(p, half)) {
-      sse2::coverCore(view_, p, [&](double x, double y, double z) { points.emplace_back(x, y, z); });
+    baseline::Vec3 half;
+    if (!baseline::coreHalfSizes(p, half)) {
+      baseline::coverCore(view_, p, [&](double x, double y, double z) { points.emplace_back(x, y, z); });
       continue;
     }
     for (int corner = 0; corner < 8; ++corner) {

@@ -170,10 +170,10 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       const Piece& piece = tree.pieces[i];
       if (piece.kind == PieceKind::hull) {
-        sse2::coverCore(tree, piece, [&](double x, double y, double z) { add(i, {x, y, z}); });
+        baseline::coverCore(tree, piece, [&](double x, double y, double z) { add(i, {x, y, z}); });
       } else {
         for (std::size_t k = 0; k < kPerPart; ++k)
-          sse2::pointWithin(tree, piece, sse2::Vec3(kPlaces[k].data())).store(parts_[i].points[k].data());
+          baseline::pointWithin(tree, piece, baseline::Vec3(kPlaces[k].data())).store(parts_[i].points[k].data());
       }
     }
   }

@@ -10,15 +10,11 @@
 #if !defined(__x86_64__)
 #error "directed rounding is written for x86-64, as the engine is"
 #endif
-#ifdef __FAST_MATH__
-#error "fcl_artic proves bounds in floating point: it cannot be compiled with -ffast-math"
-#endif
-
 #include <immintrin.h>
 
-namespace fcl_artic {
+#include "numerics/inlined.h"
 
-#define FCL_ARTIC_INLINE inline __attribute__((always_inline))
+namespace fcl_artic {
 
 /// Stands for the processor's rounding mode where the compiler orders operations. Never read or written in fact.
 __attribute__((visibility("hidden"))) inline char rounding_mode = 0;

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 
 #include "narrowphase/engine.h"
 
 namespace fcl_artic {
 namespace engine {
 namespace {
+
+// The widest first; the last one runs everywhere.
+#ifdef __x86_64__
+const Engine* const kEngines[] = {&kEngineAvx512, &kEngineAvx2, &kEngineSse2};
 
 bool runs(const Engine& engine) {
   if (&engine == &kEngineAvx512) {
@@ -17,20 +20,27 @@ bool runs(const Engine& engine) {
   if (&engine == &kEngineAvx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   return true;  // SSE2 is part of x86-64
 }
+#else
+const Engine* const kEngines[] = {&kEnginePortable};
+
+bool runs(const Engine&) {
+  return true;
+}
+#endif
 
 const Engine& chooseEngine() {
   if (const char* asked = std::getenv("FCL_ARTIC_ISA")) {
     if (const Engine* found = engineNamed(asked)) return *found;
   }
-  if (runs(kEngineAvx512)) return kEngineAvx512;
-  if (runs(kEngineAvx2)) return kEngineAvx2;
-  return kEngineSse2;
+  const Engine* const* widest = kEngines;
+  while (!runs(**widest)) ++widest;
+  return **widest;
 }
 
 }  // namespace
 
 const Engine* engineNamed(const char* name) {
-  for (const Engine* e : {&kEngineSse2, &kEngineAvx2, &kEngineAvx512}) {
+  for (const Engine* e : kEngines) {
     if (std::strcmp(name, e->name) == 0 && runs(*e)) return e;
   }
   return nullptr;

@@ -22,10 +22,11 @@ struct Engine {
 
 /// The widest engine that this processor runs; FCL_ARTIC_ISA=sse2|avx2|avx512 in the environment asks for less.
 const Engine& engine();
-/// The engine named "sse2", "avx2" or "avx512"; null where the processor lacks it.
+/// The engine named "sse2", "avx2" or "avx512"; null where the processor lacks it. Elsewhere than on x86-64 there is
+/// one, "portable".
 const Engine* engineNamed(const char* name);
 
-extern const Engine kEngineSse2, kEngineAvx2, kEngineAvx512;
+extern const Engine kEnginePortable, kEngineSse2, kEngineAvx2, kEngineAvx512;
 
 }  // namespace engine
 }  // namespace fcl_artic

@@ -96,10 +96,11 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   const double tm = std::min(std::max(contact.t_lower, kSpan), 1 - kSpan), tau = (contact.t_lower - tm) / kSpan;
   const PairMotion motion = pairMotion(contact.pair, tm, kSpan);
   const auto quadratic = [&](const auto& x0, const auto& x1, const auto& x2) { return x0 + (x1 + x2 * tau) * tau; };
-  sse2::DifferenceBody body;
-  body.pose.R = quadratic(sse2::Mat3(motion.R[0]), sse2::Mat3(motion.R[1]), sse2::Mat3(motion.R[2]));
-  body.pose.c = quadratic(sse2::Vec3(motion.c[0]), sse2::Vec3(motion.c[1]), sse2::Vec3(motion.c[2]));
-  const Vector3d of_b = Vector3d::Map(sse2::transposedTimes(body.pose.R, sse2::Vec3(contact.point) - body.pose.c).k);
+  baseline::DifferenceBody body;
+  body.pose.R = quadratic(baseline::Mat3(motion.R[0]), baseline::Mat3(motion.R[1]), baseline::Mat3(motion.R[2]));
+  body.pose.c = quadratic(baseline::Vec3(motion.c[0]), baseline::Vec3(motion.c[1]), baseline::Vec3(motion.c[2]));
+  const Vector3d of_b =
+      Vector3d::Map(baseline::transposedTimes(body.pose.R, baseline::Vec3(contact.point) - body.pose.c).k);
   const auto change = [&](int order) -> Vector3d {
     return Rotation::Map(motion.R[order]) * of_b + Vector3d::Map(motion.c[order]);
   };
@@ -108,16 +109,16 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
 
   body.a = pieceOf(problem, contact.body_a, contact.piece_a);
   body.b = pieceOf(problem, contact.body_b, contact.piece_b);
-  if (!body.a || !body.b || sse2::unbounded(*body.a) || sse2::unbounded(*body.b)) return;
+  if (!body.a || !body.b || baseline::unbounded(*body.a) || baseline::unbounded(*body.b)) return;
   body.tree_a = problem.bodies[contact.body_a].tree;
   body.tree_b = problem.bodies[contact.body_b].tree;
-  sse2::GjkResult found;
+  baseline::GjkResult found;
   constexpr int kMostIterations = 64;
-  sse2::gjk(body, sse2::Vec3(contact.normal), 1e-6, body.a->radius + body.b->radius, kMostIterations, found);
+  baseline::gjk(body, baseline::Vec3(contact.normal), 1e-6, body.a->radius + body.b->radius, kMostIterations, found);
   if (found.overlap) return;
-  sse2::originWeights(found.simplex);
-  sse2::Vec3 a, b;
-  sse2::combine(body, found.simplex, a, b);
+  baseline::originWeights(found.simplex);
+  baseline::Vec3 a, b;
+  baseline::combine(body, found.simplex, a, b);
   (a + found.n * body.a->radius).store(contact.nearest_a);
   (b - found.n * body.b->radius).store(contact.nearest_b);
   contact.t_nearest = contact.t_lower;

@@ -1,24 +1,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Eight doubles that go through together: eight time intervals, one per lane. Compiled once per instruction set: the
-// including file defines FCL_ARTIC_ISA (the namespace) and FCL_ARTIC_ISA_BITS (128, 256 or 512) first. Nothing here or
-// in the files built on it may instantiate inline code of other libraries: the linker could pick that copy for a
-// processor that lacks the instructions.
+// including file defines FCL_ARTIC_ISA (the namespace) and FCL_ARTIC_ISA_BITS (512, 256, 128, or 0 for no particular
+// one) first. Nothing here or in the files built on it may instantiate inline code of other libraries: the linker could
+// pick that copy for a processor that lacks the instructions.
 //
 // Every bound that uses lanes carries its rounding in a pad (doc/NUMERICS.md, "Pads") which holds in any rounding mode,
 // with or without FMA, so mulAdd() may round once or twice.
+//
+// All that depends on the processor is in numerics/register_*.h, one file for each instruction set. For another
+// processor, such a file defines what follows; test/numerics/registers_test.cpp compares it with this list. All work
+// lane by lane, round in the mode that is set at that time, and keep subnormals. Arithmetic may give any NaN.
+//
+//   Register             2, 4 or 8 doubles, a vector type of the compiler's: its + - * / are IEEE 754's, and -a changes
+//                        nothing but the sign bit
+//   regSet(x)            x in every lane
+//   regMin(a, b)         a < b ? a : b; so it is b where either is NaN, and where both are zero
+//   regMax(a, b)         a > b ? a : b; likewise
+//   regAbs(a)            a without its sign bit, NaN's too
+//   regSqrt(a)           IEEE 754's: rounded correctly, -0 of -0, NaN below
+//   regMulAdd(a, b, c)   a b + c, rounded once, or twice as a * b + c is
+//   regGreater(a, b)     an unsigned whose bit i is set where a > b in lane i; not where either is NaN
+//   regWhereGreater(a, b, x, y)   a > b ? x : y, with all bits of x or y
+//   regMaxLane(a)        the largest lane as a double; a zero of either sign; any lane if one is NaN
+//
+//   Integers             as many 32-bit integers
+//   regTruncate(a)       a toward zero; -2^31 for NaN and where the result has more than 32 bits
+//   regPlus(n, int k)    n + k, modulo 2^32
+//   regBits(n, int bits) the Register of the signed integers n & bits
+//
+//   Floats               4 or 8 floats, that only get compared: as 0 or 1 all bits of a lane are clear or set
+//   regNarrow(const Register* a)   the doubles of as many registers as fill one Floats, a[0] first, each rounded
+//   regSpread(float x)   x in every lane
+//   regAbove(a, b)       1 where a > b, 0 elsewhere and with NaN
+//   regOr(a, b)          bitwise
+//   regSigns(a)          an unsigned whose bit i is the sign bit of lane i
 #pragma once
 
-#include <immintrin.h>
-
-#ifdef __FAST_MATH__
-#error "fcl_artic proves bounds in floating point: it cannot be compiled with -ffast-math"
+#if FCL_ARTIC_ISA_BITS == 512
+#include "numerics/register_avx512.h"
+#elif FCL_ARTIC_ISA_BITS == 256
+#include "numerics/register_avx2.h"
+#elif FCL_ARTIC_ISA_BITS == 128
+#include "numerics/register_sse2.h"
+#elif defined(FCL_ARTIC_ISA_BITS) && FCL_ARTIC_ISA_BITS == 0
+#include "numerics/register_portable.h"
+#else
+#error "FCL_ARTIC_ISA_BITS: 512, 256, 128 or 0"
 #endif
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
-
-#define FCL_ARTIC_INLINE inline __attribute__((always_inline))
 
 // Scalars get the vocabulary of lanes, so that one text serves both.
 FCL_ARTIC_INLINE double min(double a, double b) {
@@ -52,116 +84,6 @@ FCL_ARTIC_INLINE double mulAdd(double a, double b, double c) {
 constexpr int kLanes = 8;
 constexpr unsigned kAllLanes = 0xff;
 
-#if FCL_ARTIC_ISA_BITS == 512
-using Register = __m512d;
-FCL_ARTIC_INLINE Register regSet(double x) {
-  return _mm512_set1_pd(x);
-}
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
-  return _mm512_min_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
-  return _mm512_max_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regAbs(Register a) {
-  return _mm512_abs_pd(a);
-}
-FCL_ARTIC_INLINE Register regSqrt(Register a) {
-  return _mm512_sqrt_pd(a);
-}
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
-  return _mm512_fmadd_pd(a, b, c);
-}
-FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
-  return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ);
-}
-FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
-  return _mm512_mask_mov_pd(y, _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ), x);
-}
-using Integers = __m256i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) {
-  return _mm512_cvttpd_epi32(a);
-}
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
-  return _mm256_add_epi32(a, _mm256_set1_epi32(b));
-}
-FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
-  return _mm512_cvtepi32_pd(_mm256_and_si256(a, _mm256_set1_epi32(bits)));
-}
-#elif FCL_ARTIC_ISA_BITS == 256
-using Register = __m256d;
-FCL_ARTIC_INLINE Register regSet(double x) {
-  return _mm256_set1_pd(x);
-}
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
-  return _mm256_min_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
-  return _mm256_max_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regAbs(Register a) {
-  return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
-}
-FCL_ARTIC_INLINE Register regSqrt(Register a) {
-  return _mm256_sqrt_pd(a);
-}
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
-  return _mm256_fmadd_pd(a, b, c);
-}
-FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
-  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)));
-}
-FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
-  return _mm256_blendv_pd(y, x, _mm256_cmp_pd(a, b, _CMP_GT_OQ));
-}
-using Integers = __m128i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) {
-  return _mm256_cvttpd_epi32(a);
-}
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
-  return _mm_add_epi32(a, _mm_set1_epi32(b));
-}
-FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
-  return _mm256_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits)));
-}
-#else
-using Register = __m128d;
-FCL_ARTIC_INLINE Register regSet(double x) {
-  return _mm_set1_pd(x);
-}
-FCL_ARTIC_INLINE Register regMin(Register a, Register b) {
-  return _mm_min_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regMax(Register a, Register b) {
-  return _mm_max_pd(a, b);
-}
-FCL_ARTIC_INLINE Register regAbs(Register a) {
-  return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
-}
-FCL_ARTIC_INLINE Register regSqrt(Register a) {
-  return _mm_sqrt_pd(a);
-}
-FCL_ARTIC_INLINE Register regMulAdd(Register a, Register b, Register c) {
-  return _mm_add_pd(_mm_mul_pd(a, b), c);
-}
-FCL_ARTIC_INLINE unsigned regGreater(Register a, Register b) {
-  return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(a, b)));
-}
-FCL_ARTIC_INLINE Register regWhereGreater(Register a, Register b, Register x, Register y) {
-  const Register which = _mm_cmpgt_pd(a, b);
-  return _mm_or_pd(_mm_and_pd(which, x), _mm_andnot_pd(which, y));
-}
-using Integers = __m128i;
-FCL_ARTIC_INLINE Integers regTruncate(Register a) {
-  return _mm_cvttpd_epi32(a);
-}
-FCL_ARTIC_INLINE Integers regPlus(Integers a, int b) {
-  return _mm_add_epi32(a, _mm_set1_epi32(b));
-}
-FCL_ARTIC_INLINE Register regBits(Integers a, int bits) {
-  return _mm_cvtepi32_pd(_mm_and_si128(a, _mm_set1_epi32(bits)));
-}
-#endif
 constexpr int kRegisterLanes = sizeof(Register) / sizeof(double);
 constexpr int kRegisters = kLanes / kRegisterLanes;
 
@@ -219,52 +141,32 @@ FCL_ARTIC_INLINE unsigned greater(Lanes a, Lanes b) {
 }
 /// Eight floats: ends of boxes, rounded outward, that only get compared. A comparison sets all bits of the lanes where
 /// it holds (never with NaN); lanesOf() makes a mask of them.
+constexpr int kFloatLanes = sizeof(Floats) / sizeof(float);
 struct alignas(32) FloatLanes {
-#if FCL_ARTIC_ISA_BITS == 128
-  __m128 r[2];
-#else
-  __m256 r;
-#endif
+  Floats r[kLanes / kFloatLanes];
 };
-#if FCL_ARTIC_ISA_BITS == 128
+#define FCL_ARTIC_EACH(expression)                                    \
+  FloatLanes o;                                                       \
+  for (int i = 0; i < kLanes / kFloatLanes; ++i) o.r[i] = expression; \
+  return o
 FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
-  FloatLanes o;
-  for (int i = 0; i < 2; ++i) o.r[i] = _mm_movelh_ps(_mm_cvtpd_ps(a.r[2 * i]), _mm_cvtpd_ps(a.r[2 * i + 1]));
-  return o;
+  FCL_ARTIC_EACH(regNarrow(a.r + i * (kFloatLanes / kRegisterLanes)));
 }
 FCL_ARTIC_INLINE FloatLanes spread(float x) {
-  return {{_mm_set1_ps(x), _mm_set1_ps(x)}};
+  FCL_ARTIC_EACH(regSpread(x));
 }
 FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
-  return {{_mm_cmpgt_ps(a.r[0], b.r[0]), _mm_cmpgt_ps(a.r[1], b.r[1])}};
+  FCL_ARTIC_EACH(regAbove(a.r[i], b.r[i]));
 }
 FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) {
-  return {{_mm_or_ps(a.r[0], b.r[0]), _mm_or_ps(a.r[1], b.r[1])}};
+  FCL_ARTIC_EACH(regOr(a.r[i], b.r[i]));
 }
+#undef FCL_ARTIC_EACH
 FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) {
-  return static_cast<unsigned>(_mm_movemask_ps(a.r[0]) | _mm_movemask_ps(a.r[1]) << 4);
+  unsigned mask = 0;
+  for (int i = 0; i < kLanes / kFloatLanes; ++i) mask |= regSigns(a.r[i]) << (i * kFloatLanes);
+  return mask;
 }
-#else
-FCL_ARTIC_INLINE FloatLanes narrow(Lanes a) {
-#if FCL_ARTIC_ISA_BITS == 512
-  return {_mm512_cvtpd_ps(a.r[0])};
-#else
-  return {_mm256_set_m128(_mm256_cvtpd_ps(a.r[1]), _mm256_cvtpd_ps(a.r[0]))};
-#endif
-}
-FCL_ARTIC_INLINE FloatLanes spread(float x) {
-  return {_mm256_set1_ps(x)};
-}
-FCL_ARTIC_INLINE FloatLanes greater(const FloatLanes& a, const FloatLanes& b) {
-  return {_mm256_cmp_ps(a.r, b.r, _CMP_GT_OQ)};
-}
-FCL_ARTIC_INLINE FloatLanes operator|(const FloatLanes& a, const FloatLanes& b) {
-  return {_mm256_or_ps(a.r, b.r)};
-}
-FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) {
-  return static_cast<unsigned>(_mm256_movemask_ps(a.r));
-}
-#endif
 /// Conversion to float errs by at most 2^-23 of the value in any rounding mode; twice that, and a normal number for
 /// values that would vanish, make the result a bound.
 FCL_ARTIC_INLINE FloatLanes narrowDown(Lanes a) {
@@ -302,17 +204,10 @@ FCL_ARTIC_INLINE int numberOf(double a) {
 }
 
 FCL_ARTIC_INLINE double maxLane(Lanes a) {
-#if FCL_ARTIC_ISA_BITS == 128
-  const Register m = regMax(regMax(a.r[0], a.r[1]), regMax(a.r[2], a.r[3]));
-#else
-#if FCL_ARTIC_ISA_BITS == 512
-  const __m256d half = _mm256_max_pd(_mm512_castpd512_pd256(a.r[0]), _mm512_extractf64x4_pd(a.r[0], 1));
-#else
-  const __m256d half = regMax(a.r[0], a.r[1]);
-#endif
-  const __m128d m = _mm_max_pd(_mm256_castpd256_pd128(half), _mm256_extractf128_pd(half, 1));
-#endif
-  return m[0] > m[1] ? m[0] : m[1];
+  for (int n = kRegisters / 2; n > 0; n /= 2) {
+    for (int i = 0; i < n; ++i) a.r[i] = regMax(a.r[2 * i], a.r[2 * i + 1]);
+  }
+  return regMaxLane(a.r[0]);
 }
 FCL_ARTIC_INLINE double minLane(Lanes a) {
   return -maxLane(-a);

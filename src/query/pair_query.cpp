@@ -62,7 +62,7 @@ engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motio
 
 const Piece* unboundedPiece(const ShapeTree& shape) {
   const Piece& piece = shape.view().pieces[0];
-  return shape.view().num_pieces == 1 && sse2::unbounded(piece) ? &piece : nullptr;
+  return shape.view().num_pieces == 1 && baseline::unbounded(piece) ? &piece : nullptr;
 }
 
 /// Poses at t_lower and t_upper.

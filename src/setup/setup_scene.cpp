@@ -114,7 +114,7 @@ void Setup::buildObstacles(const Registry& registry) {
       boxes[o].hi[k] = body.hi[k];
     }
     obstacle_bodies_[o] = static_cast<std::int32_t>(first + o);
-    still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, sse2::isSolid(*body.tree)});
+    still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
   }
   obstacle_tree_ = buildBoxTree(boxes);
 }

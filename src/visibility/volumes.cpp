@@ -136,7 +136,7 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
     batch.points.insert(batch.points.end(), x, x + 3);
     ++volume.count;
   };
-  sse2::coverCore(*body_.tree, piece, add);  // of an unbounded piece no points: the projector finds it unusable
+  baseline::coverCore(*body_.tree, piece, add);  // of an unbounded piece no points: the projector finds it unusable
   return volume;
 }
 

@@ -129,7 +129,7 @@ std::map<std::string, std::shared_ptr<fcl::CollisionGeometry<S>>> shapes() {
 
 /// Farthest point of a piece along u, its rounding included.
 Vector3d support(const TreeView& view, const Piece& piece, const Vector3d& u) {
-  const sse2::Vec3 x = sse2::supportPoint(view, piece, sse2::Vec3(u.data()));
+  const baseline::Vec3 x = baseline::supportPoint(view, piece, baseline::Vec3(u.data()));
   return Vector3d::Map(x.k) + piece.radius * u.normalized();
 }
 
@@ -196,7 +196,7 @@ TEST(FclGeometry, EndsWhereFclSaysThatItEnds) {
     const Piece& piece = view.pieces[0];
     for (int i = 0; i < 100; ++i) {
       Vector3d u = unit(random), x;
-      if (sse2::unbounded(piece)) {
+      if (baseline::unbounded(piece)) {
         u = Vector3d::Map(piece.size) * (name == "Plane" && i % 2 ? -1 : 1);
         Vector3d tangent = unit(random);
         tangent -= u.dot(tangent) * u;
@@ -220,7 +220,7 @@ TEST(FclGeometry, BoundsHoldTheShape) {
     const auto tree = readGeometry(*geometry);
     const TreeView& view = tree->view();
     ASSERT_GE(view.num_pieces, 1) << name;
-    if (sse2::unbounded(view.pieces[0])) {
+    if (baseline::unbounded(view.pieces[0])) {
       EXPECT_EQ(tree->lower(), Vector3d::Constant(-static_cast<double>(engine::kUnbounded)));
       EXPECT_EQ(tree->upper(), Vector3d::Constant(static_cast<double>(engine::kUnbounded)));
       EXPECT_TRUE(std::isfinite(view.nodes[0].radius));
@@ -338,7 +338,7 @@ TEST(FclGeometry, ConvexIsTheHullOfItsVertices) {
         most = std::max(most, u.dot(v.template cast<double>()));
         least = std::min(least, u.dot(v.template cast<double>()));
       }
-      sse2::coreRange(view, piece, sse2::Vec3(u.data()), lower, upper);
+      baseline::coreRange(view, piece, baseline::Vec3(u.data()), lower, upper);
       EXPECT_NEAR(upper, most, 1e-14);
       EXPECT_NEAR(lower, least, 1e-14);
       EXPECT_NEAR(support(view, piece, u).dot(u), most, 1e-14);

@@ -98,16 +98,16 @@ TEST(OuterHull, HoldsEachPointOfAMesh) {
     engine::Piece piece, origin;
     piece.num_vertices = static_cast<std::int32_t>(hull.vertices.size());
     origin.kind = engine::PieceKind::point;
-    sse2::DifferenceBody body;
+    baseline::DifferenceBody body;
     body.tree_a = body.tree_b = &view;
     body.a = &piece;
     body.b = &origin;
     body.pose.R = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     double farthest = 0;
     for (const Vector3d& p : points) {
-      body.pose.c = sse2::Vec3(p.data());
-      sse2::GjkResult g;
-      sse2::gjk(body, body.pose.c, 1e-6, 0, 100, g);
+      body.pose.c = baseline::Vec3(p.data());
+      baseline::GjkResult g;
+      baseline::gjk(body, body.pose.c, 1e-6, 0, 100, g);
       const Vector3d u = Vector3d::Map(g.n.k);
       double inside = -INFINITY;
       for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v));

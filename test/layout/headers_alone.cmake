@@ -25,7 +25,7 @@ foreach(header IN LISTS headers)
   set(isa)
   file(STRINGS ${SOURCE_DIR}/${header} per_isa REGEX "FCL_ARTIC_ISA( |$)" LIMIT_COUNT 1)
   if(per_isa AND NOT header STREQUAL src/numerics/baseline_isa.h)
-    set(isa -DFCL_ARTIC_ISA=sse2 -DFCL_ARTIC_ISA_BITS=128)
+    set(isa -include ${SOURCE_DIR}/src/numerics/baseline_isa.h)
   endif()
   execute_process(COMMAND ${COMPILER} ${flags} ${isa} ${SOURCE_DIR}/${header}
                   RESULT_VARIABLE status ERROR_VARIABLE said)

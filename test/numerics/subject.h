@@ -96,7 +96,7 @@ struct Subject {
   bool (*certainlyPierces)(const TouchInput& in);
 };
 
-extern const Subject kSubjectSse2, kSubjectAvx2, kSubjectAvx512;
+extern const Subject kSubjectPortable, kSubjectSse2, kSubjectAvx2, kSubjectAvx512;
 
 /// Those that this processor runs.
 std::vector<const Subject*> subjects();

@@ -6,7 +6,7 @@
 #include "two_balls.h"
 
 using namespace fcl_artic;
-using namespace fcl_artic::sse2;
+using namespace fcl_artic::baseline;
 using fcl_artic::engine::LeafContact;
 
 namespace {

@@ -9,7 +9,7 @@
 #include "narrowphase/solver.h"
 
 namespace fcl_artic {
-namespace sse2 {
+namespace FCL_ARTIC_ISA {
 
 /// Ball A, radius 0.5, stands in the origin. Ball B, radius 0.25, slides along z from `from` to `to`, which is 4 m for
 /// t in [0, 1]: from -2 it touches at z = -0.75, t = 0.3125, and leaves at z = 0.75, t = 0.6875.
@@ -101,5 +101,5 @@ class TwoBalls : public SolverParts {
   Query query;
 };
 
-}  // namespace sse2
+}  // namespace FCL_ARTIC_ISA
 }  // namespace fcl_artic
