@@ -17,6 +17,7 @@
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "link_pairs.h"
 #include "progress.h"
 #include "redon_options.h"
 #include "render/picture.h"
@@ -28,6 +29,9 @@ namespace {
 
 constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
+// A check looks at an SRDF's pairs in passing; the verb srdf takes its time.
+constexpr std::uint64_t kWorkForAllowed = 50000;
+constexpr std::size_t kSamplesForAllowed = 200;
 
 struct Options {
   std::string robot, srdf, auto_srdf, image, trajectory, interpolation = "linear";
@@ -113,13 +117,22 @@ Robot loadRobot(const Options& options, std::set<std::string>& solids) {
   Robot robot = loadUrdf(options.robot, urdfOptions(options));
   makeSolids(
       robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
-  if (!options.srdf.empty()) robot.allowed = loadSrdf(options.srdf, *robot.tree);
+  if (!options.srdf.empty()) {
+    robot.allowed = loadSrdf(options.srdf, *robot.tree);
+    LinkPairOptions search;
+    search.only = &robot.allowed;
+    search.work = kWorkForAllowed;
+    search.samples = kSamplesForAllowed;
+    const LinkPairReport report = classify(robot, search);
+    robot.proofs = report.proofs;
+    for (const std::string& doubt : doubtsOf(report)) robot.notes.push_back(doubt);
+  }
   if (!options.auto_srdf.empty()) {
-    const std::vector<AllowedPair> pairs = generateAllowedCollisions(robot);
-    writeSrdf(options.auto_srdf, robot.tree->name(), pairs);
-    for (const AllowedPair& pair : pairs) robot.allowed.allow(pair.link1, pair.link2);
-    robot.notes.push_back(fmt::format("{} allowed pairs, found by sampling and not proven, written to {}", pairs.size(),
-                                      options.auto_srdf));
+    const LinkPairReport report = classify(robot, {});
+    writeSrdf(options.auto_srdf, robot.tree->name(), report);
+    robot.allowed = report.alwaysTouching();
+    robot.proofs = report.proofs;
+    robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options.auto_srdf));
   }
   return robot;
 }
@@ -270,8 +283,8 @@ void addCheck(CLI::App& program, int& exit_status) {
                           ->type_name("FILE");
   check
       ->add_option("--auto-srdf", o.auto_srdf,
-                   "Find the pairs of links that may touch by sampling, write them to "
-                   "FILE and use them")
+                   "Find the pairs of links that need no check, proven apart or always in "
+                   "contact, write them to FILE and use them")
       ->group("Robot and scene")
       ->type_name("FILE")
       ->excludes(srdf);

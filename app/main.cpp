@@ -13,6 +13,7 @@
 #include "exit_status.h"
 #include "files/files.h"
 #include "generate.h"
+#include "link_pairs.h"
 
 int main(int argc, char** argv) {
   using namespace fcl_artic::app;
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   addCheck(program, exit_status);
   addCompare(program, exit_status);
   addGenerate(program, exit_status);
+  addSrdf(program, exit_status);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -82,11 +82,15 @@ std::string contactText(const CertifiedContact& c) {
 std::string headline(const Report& r) {
   const CertifiedResult& result = r.result;
   switch (result.status) {
-    case Status::free:
+    case Status::free: {
+      const std::size_t n = result.unproven_allowed_pairs;
+      const std::string unproven =
+          n == 0 ? "" : fmt::format(" but for {} allowed pair{} not proven apart", n, n == 1 ? "" : "s");
       return r.request.margin > 0
-                 ? fmt::format("FREE: proven, no checked pair comes within {:g} m anywhere on the motion.",
+                 ? fmt::format("FREE{}: proven, no checked pair comes within {:g} m anywhere on the motion.", unproven,
                                r.request.margin)
-                 : "FREE: proven, no checked pair touches anywhere on the motion.";
+                 : fmt::format("FREE{}: proven, no checked pair touches anywhere on the motion.", unproven);
+    }
     case Status::contact: {
       const std::string what =
           r.request.margin > 0 ? fmt::format("first approach within {:g} m", r.request.margin) : "first contact";
@@ -250,6 +254,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"poses", posesJson(r)},
           {"clearance", r.clearance ? clearanceJson(*r.clearance) : Json()},
           {"ignored_initial_contacts", ignored},
+          {"unproven_allowed_pairs", result.unproven_allowed_pairs},
           {"request",
            {{"tolerance_time", r.request.tolerance_time},
             {"tolerance_distance", r.request.tolerance_distance},

@@ -119,6 +119,10 @@ struct CertifiedResult : Bracket {
   std::vector<Eigen::Isometry3d> M_0_at_lower;
   /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
+  /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links)
+  /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of
+  /// them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours do not count.
+  std::size_t unproven_allowed_pairs = 0;
   /// Work of the query.
   QueryStatistics statistics;
 
@@ -139,6 +143,9 @@ FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, Status status);
 /// Prints toString(kind).
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, FeatureKind kind);
+/// Prints verdict and bracket on one line as for a Bracket, and what a verdict of `free` leaves out: "free: proven, but
+/// for 3 allowed pairs not proven apart".
+FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedResult& result);
 /// Prints verdict and bracket on one line, without a line end: "contact within [0.25, 0.2500001], proven".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const Bracket& bracket);
 /// Prints on one line, without a line end, which bodies touch, with which features, when and where.

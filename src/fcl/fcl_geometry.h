@@ -42,6 +42,7 @@ class GeometryContent {
   explicit GeometryContent(const fcl::CollisionGeometryd& geometry);
   /// Whether the geometry, this one or another, is byte for byte what was copied. It may be one that is refused.
   bool sameAs(const fcl::CollisionGeometryd& geometry) const;
+  bool sameAs(const GeometryContent& other) const { return bytes_ == other.bytes_; }
 
  private:
   std::vector<char> bytes_;

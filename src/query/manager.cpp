@@ -102,6 +102,11 @@ void ArticulatedCollisionManager::setAllowedCollisions(AllowedCollisionMatrix ma
   impl_->setup.robotChanged();
 }
 
+void ArticulatedCollisionManager::setLinkPairProofs(std::shared_ptr<const LinkPairProofs> proofs) {
+  impl_->registry.setProofs(std::move(proofs));
+  impl_->setup.marginsChanged();
+}
+
 void ArticulatedCollisionManager::allow(const std::string& a, const std::string& b) {
   impl_->registry.allow(a, b);
   impl_->setup.robotChanged();

@@ -21,6 +21,7 @@ namespace {
 /// What tables of two links know of a motion, as the solver's advisor.
 struct TableAdvice {
   const LinkTables& tables;
+  const ProvenPairs& proven;
   const engine::Problem& problem;
   const JointMotion& motion;
   const engine::Margins& margins;
@@ -29,10 +30,14 @@ struct TableAdvice {
   engine::Advisor advisor() {
     engine::Advisor advisor;
     advisor.self = this;
-    if (!tables.empty()) {
-      advisor.freeParts = [](void* self) {
+    if (!tables.empty() || !proven.empty()) {
+      advisor.freeParts = [](void* self) -> const std::uint8_t* {
         const auto& of = *static_cast<TableAdvice*>(self);
-        return of.tables.freeParts(of.problem, of.motion, of.margins, of.workspace.link_free);
+        std::vector<std::uint8_t>& parts = of.workspace.link_free;
+        parts.assign(static_cast<std::size_t>(of.problem.num_link_pairs), 0);
+        of.tables.addFreeParts(of.problem, of.motion, of.margins, parts);
+        of.proven.addFreeParts(of.problem, of.motion, of.margins, parts);
+        return parts.data();
       };
     }
     advisor.suggest = [](void* self, std::int32_t& count) -> const engine::LikelyContact* {
@@ -185,7 +190,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const BoundedParts parts(aspects.time, problem);
   if (aspects.own_margins) setup.margins().putInto(query.margins);
   restrictPairs(request, setup.numSelfPairs(), problem, query.margins);
-  TableAdvice advice{setup.tables(), problem, motion, query.margins, *workspace};
+  TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (aspects.may_ignore) {
     query.may_ignore = aspects.may_ignore->data();
@@ -219,6 +224,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
       if (answer.ignored[i].watch_from > 1) aspects.never_apart->push_back(answer.ignored[i].pair);
     }
   }
+  result.unproven_allowed_pairs =
+      setup.proven().unprovenAllowed(motion, query.margins, request.check_self, request.check_scene);
   result.statistics = workOf(solved);
   if (request.measure_times) {
     result.statistics.report_us = since(end);

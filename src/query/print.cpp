@@ -3,6 +3,7 @@
 // Answers as text.
 #include <ostream>
 
+#include "fcl_artic/link_pairs.h"
 #include "fcl_artic/result.h"
 #include "numerics/shown.h"
 
@@ -68,6 +69,41 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
     case Status::undecided:
       return out << "undecided: free before " << shown(bracket.t_lower);
   }
+  return out;
+}
+
+std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
+  out << static_cast<const Bracket&>(result);
+  const std::size_t n = result.unproven_allowed_pairs;
+  if (result.isFree() && n > 0)
+    out << ", but for " << n << " allowed pair" << (n == 1 ? "" : "s") << " not proven apart";
+  return out;
+}
+
+const char* toString(LinkPairKind kind) {
+  switch (kind) {
+    case LinkPairKind::neighbours:
+      return "neighbours";
+    case LinkPairKind::never:
+      return "never";
+    case LinkPairKind::always:
+      return "always";
+    case LinkPairKind::sometimes:
+      return "sometimes";
+    case LinkPairKind::unproven:
+      return "unproven";
+  }
+  return "?";
+}
+
+std::ostream& operator<<(std::ostream& out, LinkPairKind kind) {
+  return out << toString(kind);
+}
+
+std::ostream& operator<<(std::ostream& out, const LinkPairFinding& finding) {
+  out << finding.link1 << " and " << finding.link2 << ": " << finding.kind;
+  if (finding.tried > 0) out << ", " << finding.touching << " of " << finding.tried << " configurations tried touch";
+  if (finding.proven) out << ", proven";
   return out;
 }
 

@@ -101,6 +101,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.pairs = every_pair ? &pairs_of_part : nullptr;
     collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);
+    sum.unproven_allowed_pairs = std::max(sum.unproven_allowed_pairs, part.unproven_allowed_pairs);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
     in_contact = std::move(still_in_contact);
 

@@ -5,23 +5,8 @@
 
 namespace fcl_artic {
 
-LinkTables::Made::Made(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b, double margin)
-    : shape_a(a.shape),
-      shape_b(b.shape),
-      link_a(a.link),
-      link_b(b.link),
-      offset_a(a.offset.matrix()),
-      offset_b(b.offset.matrix()),
-      margin(margin),
-      tree(tree.content()) {}
-
-bool LinkTables::Made::sameMaking(const Made& other) const {
-  return shape_a == other.shape_a && shape_b == other.shape_b && link_a == other.link_a && link_b == other.link_b &&
-         offset_a == other.offset_a && offset_b == other.offset_b && margin == other.margin && tree.sameAs(other.tree);
-}
-
 void LinkTables::build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
-                       std::size_t num_self_pairs) {
+                       std::size_t num_self_pairs, const ProvenPairs& proven) {
   std::vector<Made> before;
   std::swap(made_, before);
   tables_.clear();
@@ -31,10 +16,11 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   for (std::size_t i = 0; i < num_self_pairs; ++i) {
     const engine::LinkPair& pair = problem.link_pairs[i];
     const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
-    if (a.attached || b.attached) continue;
+    if (a.attached || b.attached || proven.proven(i)) continue;
     const KinematicTree& tree = *registry.tree();
-    Made made(tree, a, b, margins.ofLinkPair(i));
-    const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) { return m.sameMaking(made); });
+    Made made{PairMaking(tree, a, b), margins.ofLinkPair(i), nullptr, nullptr};
+    const auto known = std::find_if(before.begin(), before.end(),
+                                    [&](const Made& m) { return m.margin == made.margin && m.made.sameAs(made.made); });
     const engine::SweepView& sweep = problem.sweeps[pair.sweep];
     if (known != before.end()) {
       made.table = known->table;
@@ -59,15 +45,13 @@ void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, cons
   }
 }
 
-const std::uint8_t* LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion,
-                                          const engine::Margins& margins, std::vector<std::uint8_t>& memory) const {
-  memory.assign(static_cast<std::size_t>(problem.num_link_pairs), 0);
+void LinkTables::addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
+                              std::vector<std::uint8_t>& parts) const {
   for (const auto& [pair, table] : tables_) {
     const std::int32_t number = problem.linkPair(static_cast<std::int32_t>(pair));
     if (margins.of(number) > table->margin()) continue;
-    memory[pair] = static_cast<std::uint8_t>(table->freeParts(motion.variables()));
+    parts[pair] |= static_cast<std::uint8_t>(table->freeParts(motion.variables()));
   }
-  return memory.data();
 }
 
 void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {

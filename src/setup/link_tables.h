@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "model/query.h"
+#include "setup/link_proofs.h"
 #include "setup/margins.h"
+#include "setup/pair_making.h"
 #include "setup/registry.h"
 #include "tables/contact_grid.h"
 #include "tables/pair_table.h"
@@ -21,16 +23,16 @@ class LinkTables {
  public:
   /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.)
   /// @param num_self_pairs  the first so many of the problem's link pairs.
+  /// @param proven  pairs that need no table.
   void build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
-             std::size_t num_self_pairs);
+             std::size_t num_self_pairs, const ProvenPairs& proven);
 
   bool empty() const { return tables_.empty(); }
 
-  /// What tables tell of a motion, as engine::Advisor::freeParts: those built for at least the margin that the pair has
-  /// here.
-  /// @param memory  holds the answer.
-  const std::uint8_t* freeParts(const engine::Problem& problem, const JointMotion& motion,
-                                const engine::Margins& margins, std::vector<std::uint8_t>& memory) const;
+  /// Marks what tables prove apart of a motion: those built for at least the margin that the pair has here.
+  /// @param[in,out] parts  of each link pair, as engine::Advisor::freeParts.
+  void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
+                    std::vector<std::uint8_t>& parts) const;
 
   /// Where links are likely to touch, the motion's end first: a guess, as engine::Advisor::suggest. (None for robots of
   /// more than 64 variables.)
@@ -39,16 +41,10 @@ class LinkTables {
  private:
   /// The tables of two links, and what they were made from.
   struct Made {
-    std::shared_ptr<const ShapeTree> shape_a, shape_b;
-    LinkId link_a, link_b;
-    Eigen::Matrix4d offset_a, offset_b;
+    PairMaking made;
     double margin;
-    Fingerprint tree;
     std::shared_ptr<const PairTable> table;   ///< null: none to be had
     std::shared_ptr<const ContactGrid> grid;  ///< null: none
-
-    Made(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b, double margin);
-    bool sameMaking(const Made& other) const;
   };
 
   /// Of a link pair. (All in one piece of memory: every query comes by.)

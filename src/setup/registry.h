@@ -26,6 +26,7 @@ class Registry {
   const std::vector<ManagedBody>& moving() const { return moving_; }
   const std::vector<ManagedBody>& obstacles() const { return obstacles_; }
   const ManagedBody& body(std::int32_t number) const;
+  bool hasObstacle(const std::string& name) const { return obstacle_names_.count(name) != 0; }
 
   /// Whether the two can and must not touch.
   bool mayTouch(const ManagedBody& a, const ManagedBody& b) const {
@@ -72,6 +73,8 @@ class Registry {
   void allow(const std::string& a, const std::string& b);
   void disallow(const std::string& a, const std::string& b);
   const AllowedCollisionMatrix& allowed() const { return allowed_; }
+  void setProofs(std::shared_ptr<const LinkPairProofs> proofs) { proofs_ = std::move(proofs); }
+  const std::shared_ptr<const LinkPairProofs>& proofs() const { return proofs_; }
 
  private:
   using Bodies = std::vector<ManagedBody>;
@@ -87,6 +90,7 @@ class Registry {
 
   std::shared_ptr<const KinematicTree> tree_;
   AllowedCollisionMatrix allowed_;
+  std::shared_ptr<const LinkPairProofs> proofs_;  ///< null: none
   Bodies links_, moving_, obstacles_;
   std::unordered_set<const void*> objects_;  ///< of all of these
   std::unordered_set<std::string> obstacle_names_;

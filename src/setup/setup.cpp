@@ -12,6 +12,18 @@ void Setup::build(const Registry& registry) {
   buildScene(registry);
   margins_ = PairMargins::of(registry.margins(), problem(),
                              [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
+  readSolids(registry);
+  sweep_views_.clear();
+  for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
+  proven_.buildScene(registry);
+  if (!tables_ready_) {
+    proven_.buildSelf(registry, problem(), margins_, num_self_pairs_);
+    tables_.build(registry, problem(), margins_, num_self_pairs_, proven_);
+  }
+  tables_ready_ = ready_ = true;
+}
+
+void Setup::readSolids(const Registry& registry) {
   // Asked of pairs with a solid mesh only; where there is none queries know nothing of it.
   solids_ = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -21,10 +33,6 @@ void Setup::build(const Registry& registry) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].points = solids_ ? registry.body(static_cast<std::int32_t>(i)).shape->surfacePoints() : nullptr;
   }
-  sweep_views_.clear();
-  for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
-  if (!tables_ready_) tables_.build(registry, problem(), margins_, num_self_pairs_);
-  tables_ready_ = ready_ = true;
 }
 
 engine::Problem Setup::problem() const {

@@ -5,12 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "model/problem.h"
 #include "motion/frame_sweep.h"
+#include "setup/link_proofs.h"
 #include "setup/link_tables.h"
 #include "setup/margins.h"
 #include "setup/registry.h"
@@ -28,6 +30,9 @@ class Setup {
 
   /// Makes all of the registry's changes effective.
   void build(const Registry& registry);
+  /// Makes the robot's links only, and all pairs of two links, allowed ones too, but for neighbours and attached
+  /// objects: for classifyLinkPairs().
+  void buildEveryPair(const Registry& registry);
 
   /// What the engine sees of it.
   engine::Problem problem() const;
@@ -36,6 +41,7 @@ class Setup {
   /// Of the problem's link pairs the first so many are two links, the others moving obstacles and links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
   const LinkTables& tables() const { return tables_; }
+  const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
   const Eigen::MatrixXd& movingCoefficients() const { return moving_coefficients_; }
 
@@ -43,7 +49,9 @@ class Setup {
   // setup_robot.cpp: what depends on the links, and on what is allowed between them.
   void buildRobot(const Registry& registry);
   std::vector<Carrier> buildLinks(const Registry& registry);
-  void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers);
+  using IsChecked = std::function<bool(const ManagedBody&, const ManagedBody&)>;
+  void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked);
+  void readSolids(const Registry& registry);
   // setup_scene.cpp: what depends on the obstacles.
   void buildScene(const Registry& registry);
   void buildMoving(const Registry& registry);
@@ -62,6 +70,7 @@ class Setup {
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;
   PairMargins margins_;
+  ProvenPairs proven_;
   LinkTables tables_;
   Fingerprint tree_;           ///< of what buildRobot() was made for
   bool solids_ = false;        ///< a mesh that is a solid is among the bodies

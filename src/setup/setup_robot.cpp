@@ -5,15 +5,46 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 #include "setup/neighbours.h"
 #include "setup/setup.h"
 
 namespace fcl_artic {
 
+namespace {
+
+/// Links that have geometry of their own, not only attached.
+std::set<LinkId> linksWithGeometry(const Registry& registry) {
+  std::set<LinkId> links;
+  for (const ManagedBody& link : registry.links()) {
+    if (!link.attached) links.insert(link.link);
+  }
+  return links;
+}
+
+}  // namespace
+
+void Setup::buildEveryPair(const Registry& registry) {
+  const KinematicTree& tree = *registry.tree();
+  const std::set<LinkId> with_geometry = linksWithGeometry(registry);
+  buildSelfPairs(registry, buildLinks(registry), [&](const ManagedBody& a, const ManagedBody& b) {
+    return !a.empty() && !b.empty() && !a.attached && !b.attached &&
+           !areNeighbours(tree, with_geometry, a.link, b.link);
+  });
+  readSolids(registry);
+  sweep_views_.clear();
+  for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());
+}
+
 void Setup::buildRobot(const Registry& registry) {
   const std::vector<Carrier> carriers = buildLinks(registry);
-  buildSelfPairs(registry, carriers);
+  const KinematicTree& tree = *registry.tree();
+  const std::set<LinkId> with_geometry = linksWithGeometry(registry);
+  buildSelfPairs(registry, carriers, [&](const ManagedBody& a, const ManagedBody& b) {
+    if (!registry.mayTouch(a, b) || a.mayTouchLink(b) || b.mayTouchLink(a)) return false;
+    return a.attached || b.attached || !areNeighbours(tree, with_geometry, a.link, b.link);
+  });
   tables_ready_ = false;
   tree_ = registry.tree()->content();
   robot_ready_ = true;
@@ -60,22 +91,15 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
   return carriers;
 }
 
-void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers) {
+/// @param checked  of two geometries on different links: whether they make a pair.
+void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked) {
   const KinematicTree& tree = *registry.tree();
   const std::vector<ManagedBody>& links = registry.links();
-  std::set<LinkId> with_geometry;
-  for (const ManagedBody& link : links) {
-    if (!link.attached) with_geometry.insert(link.link);
-  }
-  const auto checked = [&](const ManagedBody& a, const ManagedBody& b) {
-    if (a.link == b.link || !registry.mayTouch(a, b) || a.mayTouchLink(b) || b.mayTouchLink(a)) return false;
-    return a.attached || b.attached || !areNeighbours(tree, with_geometry, a.link, b.link);
-  };
   link_pairs_.clear();
   std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
-      if (!checked(links[i], links[j])) continue;
+      if (links[i].link == links[j].link || !checked(links[i], links[j])) continue;
       // The shorter path first: an ancestor is the base.
       std::size_t a = i, b = j;
       if (linkAbove(tree, links[j].link, links[i].link)) std::swap(a, b);

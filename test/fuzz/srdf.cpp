@@ -14,8 +14,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::Folder::instance().write("robot.srdf", std::string(reinterpret_cast<const char*>(data), size));
   AllowedCollisionMatrix matrix;
   if (!fuzz::loads(path, [&] { matrix = loadSrdf(path, tree); })) return 0;
-  std::vector<AllowedPair> pairs;
-  for (const auto& [a, b] : matrix.pairs()) pairs.push_back({a, b, "Never"});
+  LinkPairReport pairs;
+  for (const auto& [a, b] : matrix.pairs()) {
+    LinkPairFinding& pair = pairs.pairs.emplace_back();
+    pair.link1 = a;
+    pair.link2 = b;
+    pair.kind = LinkPairKind::never;
+  }
   writeSrdf(path, "r", pairs);
   if (loadSrdf(path, tree).pairs() != matrix.pairs()) fuzz::fault("pairs that were written are not those read back");
   return 0;

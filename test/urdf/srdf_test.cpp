@@ -71,42 +71,48 @@ const char* const kRobot = R"(<robot name="mill">
 <joint name="s" type="fixed"><parent link="wall"/><child link="shelf"/><origin xyz="2.2 0 0"/></joint>
 </robot>)";
 
-std::map<std::pair<std::string, std::string>, std::string> reasons(const std::vector<AllowedPair>& pairs) {
-  std::map<std::pair<std::string, std::string>, std::string> by_name;
-  for (const AllowedPair& p : pairs) {
-    EXPECT_TRUE(by_name.emplace(std::minmax(p.link1, p.link2), p.reason).second) << p.link1 << " " << p.link2;
+using Kinds = std::map<std::pair<std::string, std::string>, LinkPairKind>;
+
+Kinds kinds(const LinkPairReport& report) {
+  Kinds by_name;
+  for (const LinkPairFinding& p : report.pairs) {
+    EXPECT_TRUE(by_name.emplace(std::minmax(p.link1, p.link2), p.kind).second) << p.link1 << " " << p.link2;
   }
   return by_name;
 }
 
-TEST_F(SrdfTest, GeneratesPairsWithTheirReasons) {
+TEST_F(SrdfTest, GeneratesPairsWithTheirKinds) {
   const Robot robot = loadUrdf(write("mill.urdf", kRobot));
-  const auto pairs = generateAllowedCollisions(robot, 500, 7);
-  const auto by_name = reasons(pairs);
-  const auto reason = [&](const char* a, const char* b) {
-    const auto it = by_name.find(std::minmax(std::string(a), std::string(b)));
-    return it == by_name.end() ? "" : it->second;
-  };
-  EXPECT_EQ(reason("base", "arm"), "Adjacent");
-  EXPECT_EQ(reason("arm", "tip"), "Adjacent") << "over a link without geometry";
-  EXPECT_EQ(reason("base", "near"), "Default") << "overlaps at rest already";
-  EXPECT_EQ(reason("arm", "far"), "Never");
-  EXPECT_EQ(reason("tip", "far"), "Never");
-  EXPECT_EQ(reason("tip", "shelf"), "Default") << "touches at q = 0, though not everywhere";
-  EXPECT_EQ(reason("tip", "wall"), "") << "touches at some angles: stays checked";
+  const LinkPairReport report = generateAllowedCollisions(robot);
+  const Kinds by_name = kinds(report);
+  const auto kind = [&](const std::string& a, const std::string& b) { return by_name.at(std::minmax(a, b)); };
+  EXPECT_EQ(kind("base", "arm"), LinkPairKind::neighbours);
+  EXPECT_EQ(kind("arm", "tip"), LinkPairKind::neighbours) << "over a link without geometry";
+  EXPECT_EQ(kind("base", "near"), LinkPairKind::always) << "no joint moves them apart";
+  EXPECT_EQ(kind("arm", "far"), LinkPairKind::never);
+  EXPECT_EQ(kind("tip", "far"), LinkPairKind::never);
+  EXPECT_EQ(kind("tip", "shelf"), LinkPairKind::sometimes) << "touches at q = 0, though not everywhere";
+  EXPECT_EQ(kind("tip", "wall"), LinkPairKind::sometimes);
   EXPECT_EQ(by_name.count({"frame", "tip"}), 0u) << "no geometry, no entry";
 
-  const auto again = generateAllowedCollisions(robot, 500, 7);
-  ASSERT_EQ(again.size(), pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    EXPECT_EQ(again[i].link1 + again[i].link2 + again[i].reason, pairs[i].link1 + pairs[i].link2 + pairs[i].reason);
-  }
-
   // Written and read again it is the same matrix.
-  writeSrdf(path("mill.srdf"), "mill", pairs);
-  const auto matrix = loadSrdf(path("mill.srdf"), *robot.tree);
-  EXPECT_EQ(matrix.pairs().size(), pairs.size());
-  for (const AllowedPair& p : pairs) EXPECT_TRUE(matrix.allowed(p.link1, p.link2)) << p.link1 << " " << p.link2;
+  writeSrdf(path("mill.srdf"), "mill", report);
+  EXPECT_EQ(loadSrdf(path("mill.srdf"), *robot.tree).pairs(), report.needNoCheck().pairs());
+}
+
+TEST_F(SrdfTest, ProofsGoWithTheRobot) {
+  Robot robot = loadUrdf(write("mill.urdf", kRobot));
+  const LinkPairReport report = generateAllowedCollisions(robot);
+  robot.allowed = report.needNoCheck();
+  const auto unproven = [&] {
+    ArticulatedCollisionManager manager(robot.tree);
+    robot.addTo(manager);
+    manager.setup();
+    return manager.collide(Eigen::Vector2d(1, 0)).unproven_allowed_pairs;
+  };
+  EXPECT_EQ(unproven(), report.count(LinkPairKind::never) + report.count(LinkPairKind::always));
+  robot.proofs = report.proofs;
+  EXPECT_EQ(unproven(), report.count(LinkPairKind::always));
 }
 
 /// base -x- slider, and base - stop - block, all of them boxes along x.
@@ -124,24 +130,27 @@ std::string slideRobot(const std::string& limits, const std::string& block) {
 <joint name="b" type="fixed"><parent link="stop"/><child link="block"/></joint></robot>)";
 }
 
-TEST_F(SrdfTest, FindsPairsThatTouchInAllSamples) {
+TEST_F(SrdfTest, WhatIsApartAtRestIsNotAlwaysInContact) {
   // The block has a slot for the slider, 1e-6 m wider than it: at 0 they are apart, elsewhere they touch.
   const Robot robot = loadUrdf(write("slide.urdf", slideRobot(R"(lower="-1" upper="1")", R"(
 <collision><origin xyz="1.1000005 0 0"/><geometry><box size="2 0.2 0.2"/></geometry></collision>
 <collision><origin xyz="-1.1000005 0 0"/><geometry><box size="2 0.2 0.2"/></geometry></collision>)")));
-  const auto by_name = reasons(generateAllowedCollisions(robot, 200));
-  EXPECT_EQ(by_name.at({"block", "slider"}), "Always");
-  EXPECT_EQ(by_name.at({"slider", "stop"}), "Never");
+  const Kinds by_name = kinds(generateAllowedCollisions(robot));
+  EXPECT_EQ(by_name.at({"block", "slider"}), LinkPairKind::sometimes);
+  EXPECT_EQ(by_name.at({"slider", "stop"}), LinkPairKind::never);
 }
 
 TEST_F(SrdfTest, RestIsWithinTheLimits) {
   // They touch at 0, which the limits exclude, and at few of the places within: the pair must stay checked.
   const Robot robot = loadUrdf(write("slide.urdf", slideRobot(R"(lower="1" upper="2")", R"(
 <collision><geometry><box size="2 0.2 0.2"/></geometry></collision>)")));
-  EXPECT_EQ(reasons(generateAllowedCollisions(robot, 200)).count({"block", "slider"}), 0u);
+  EXPECT_EQ(kinds(generateAllowedCollisions(robot)).at({"block", "slider"}), LinkPairKind::sometimes);
+  for (const LinkPairFinding& pair : generateAllowedCollisions(robot).pairs) {
+    if (pair.kind == LinkPairKind::sometimes) EXPECT_GE(pair.configuration[0], 1);
+  }
 }
 
-TEST_F(SrdfTest, SamplesSayNothingAcrossPlanarAndFloatingJoints) {
+TEST_F(SrdfTest, NothingIsProvenAcrossPlanarAndFloatingJoints) {
   // Two of a kind float apart, each with a far tip on a spherical joint's stem, which never comes near its foot.
   std::string xml = "<robot name='two'><link name='world'/>";
   for (const std::string name : {"a", "b"}) {
@@ -158,16 +167,19 @@ TEST_F(SrdfTest, SamplesSayNothingAcrossPlanarAndFloatingJoints) {
     xml += "<joint name='" + name + "3' type='continuous'><parent link='" + name + "stem'/><child link='" + name +
            "tip'/><origin xyz='1 0 0'/></joint>";
   }
-  const auto by_name = reasons(generateAllowedCollisions(loadUrdf(write("two.urdf", xml + "</robot>")), 50));
-  EXPECT_EQ(by_name.at({"afoot", "atip"}), "Never");
-  EXPECT_EQ(by_name.at({"bfoot", "btip"}), "Never");
-  for (const auto& [pair, reason] : by_name)
-    EXPECT_EQ(pair.first[0], pair.second[0]) << pair.first << " " << pair.second;
+  const Kinds by_name = kinds(generateAllowedCollisions(loadUrdf(write("two.urdf", xml + "</robot>"))));
+  EXPECT_EQ(by_name.at({"afoot", "atip"}), LinkPairKind::never);
+  EXPECT_EQ(by_name.at({"bfoot", "btip"}), LinkPairKind::never);
+  for (const auto& [pair, kind] : by_name) {
+    if (pair.first[0] != pair.second[0]) EXPECT_EQ(kind, LinkPairKind::unproven) << pair.first << " " << pair.second;
+  }
 }
 
 TEST_F(SrdfTest, RefusesBadArguments) {
   const Robot robot = loadUrdf(write("mill.urdf", kRobot));
-  expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(robot, 0); }), "samples is 0");
+  LinkPairOptions none;
+  none.samples = 0;
+  expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(robot, none); }), "samples is 0");
   expectContains(messageOf<std::invalid_argument>([&] { generateAllowedCollisions(Robot()); }), "no tree");
   expectContains(messageOf([&] { writeSrdf(path("none/x.srdf"), "r", {}); }), "x.srdf': No such file");
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -30,10 +29,12 @@ struct Robot {
   /// Pairs of links that may touch: empty after loadUrdf(), to be set from loadSrdf() or generateAllowedCollisions().
   /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry.
   AllowedCollisionMatrix allowed;
+  /// Proofs of pairs that never touch, from generateAllowedCollisions(); null: none.
+  std::shared_ptr<const LinkPairProofs> proofs;
   std::vector<std::string> notes;  ///< What was accepted though unusual, one line each.
 
-  /// Binds every geometry to its link and replaces the manager's allowed collisions. Needs setup() afterwards. The
-  /// manager keeps the geometries alive; the Robot may go.
+  /// Binds every geometry to its link and replaces the manager's allowed collisions and proofs. Needs setup()
+  /// afterwards. The manager keeps the geometries alive; the Robot may go.
   /// @param manager  made for `tree`, or for a tree that begins with links of the same names.
   /// @throws std::invalid_argument for a manager of another robot, and as ArticulatedCollisionManager::bind() and
   ///   setAllowedCollisions(). Nothing stays bound then.
@@ -66,8 +67,9 @@ struct PlacedRobot {
 };
 
 /// Combines several robots into one forest, each on a link of its own, prefix + "mount". Their variables follow each
-/// other in the order of the parts. Allowed pairs are those of the parts; every link of one robot is checked against
-/// every link of the others, also for robots that touch where they stand. Geometries are shared with the parts.
+/// other in the order of the parts. Allowed pairs are those of the parts, proofs are none; every link of one robot is
+/// checked against every link of the others, also for robots that touch where they stand. Geometries are shared with
+/// the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
@@ -77,29 +79,17 @@ FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, cons
 /// @throws std::runtime_error naming file and reason: unreadable, not an SRDF, an unknown link.
 FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree);
 
-/// A pair of links that needs no check, as generateAllowedCollisions() finds it.
-struct AllowedPair {
-  /// Names of the two links.
-  std::string link1, link2;
-  std::string reason;  ///< "Adjacent", "Always", "Default" or "Never", as MoveIt's assistant writes them.
-};
-
-/// Finds pairs of links that need no check, as MoveIt's assistant does: pairs that are adjacent ("Adjacent"), in
-/// contact at q = 0 (where that is beyond a joint's limits, at the middle of these; "Default"), in contact in all of
-/// `samples` random configurations ("Always"), or in none of them ("Never"). Contacts are FCL's static ones.
-///
-/// Sampled, not proven: "Never" is for speed, and a pair that does collide rarely may be among them. Variables are
-/// drawn within the joints' limits, angles without limits from [-π, π]; lengths without limits stay at 0, and links on
-/// two sides of a planar or floating joint are never among the pairs.
-/// @param seed  the same seed gives the same pairs.
-/// @throws std::invalid_argument for a robot without a tree, or fewer than 1 sample.
-FCL_ARTIC_EXPORT std::vector<AllowedPair> generateAllowedCollisions(const Robot& robot, int samples = 10000,
-                                                                    std::uint64_t seed = 1);
-/// Writes an SRDF file with these pairs (`disable_collisions`). The file is written as a whole or, if this throws, not
-/// at all.
+/// Finds the pairs of a robot's links that need no check: the manager's classifyLinkPairs(), which says what of its
+/// answer is proven. (`never` is. MoveIt's assistant samples.) To use what it finds:
+/// `robot.allowed = report.alwaysTouching(); robot.proofs = report.proofs;`, then addTo().
+/// @throws std::invalid_argument for a robot without a tree, and as ArticulatedCollisionManager::bind() and
+///   classifyLinkPairs().
+FCL_ARTIC_EXPORT LinkPairReport generateAllowedCollisions(const Robot& robot, const LinkPairOptions& options = {});
+/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): neighbours
+/// ("Adjacent"), pairs that never touch, proven ("Never"), and that always do ("Always"). The file is written as a
+/// whole or, if this throws, not at all.
 /// @throws std::runtime_error naming file and reason.
-FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name,
-                                const std::vector<AllowedPair>& pairs);
+FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report);
 
 /// Obstacles read from a scene file.
 struct Scene {

@@ -353,6 +353,7 @@ void Robot::addTo(ArticulatedCollisionManager& manager) const {
   try {
     for (; bound != geometry.end(); ++bound) manager.bind(bound->link, bound->object, bound->offset);
     manager.setAllowedCollisions(allowed);
+    manager.setLinkPairProofs(proofs);
   } catch (...) {
     while (bound != geometry.begin()) manager.unbind((--bound)->object.get());
     throw;

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "link_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "exit_status.h"
+#include "progress.h"
+#include "render/picture.h"
+
+namespace fcl_artic::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr LinkPairKind kKinds[] = {LinkPairKind::neighbours, LinkPairKind::never, LinkPairKind::always,
+                                   LinkPairKind::sometimes, LinkPairKind::unproven};
+
+struct Options {
+  std::string robot, check, write, images;
+  std::vector<std::string> packages;
+  LinkPairOptions search;
+  bool json = false, solid_meshes = false;
+};
+
+const char* meaningOf(LinkPairKind kind) {
+  switch (kind) {
+    case LinkPairKind::neighbours:
+      return "at most one moving joint between them: never checked, no entry needed";
+    case LinkPairKind::never:
+      return "never touch within the joints' limits: proven";
+    case LinkPairKind::always:
+      return "touch in every configuration that was tried";
+    case LinkPairKind::sometimes:
+      return "touch in some configurations";
+    case LinkPairKind::unproven:
+      return "touch in no configuration that was tried, but are not proven apart";
+  }
+  return "";
+}
+
+/// Values of the joints that are not at rest, which is 0 or as near as the limits let them.
+std::string configurationText(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd rest = tree.neutralConfiguration();
+  std::string text;
+  for (int v = 0; v < tree.dof(); ++v) {
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    if (q[v] == (hasLimits(joint) ? std::clamp(rest[v], joint.lower, joint.upper) : rest[v])) continue;
+    text += fmt::format("{}{}={:.6g}", text.empty() ? "" : ",", tree.variableName(v), q[v]);
+  }
+  return text.empty() ? "rest" : text;
+}
+
+std::string lineOf(const KinematicTree& tree, const LinkPairFinding& pair) {
+  std::string text = fmt::format("{} and {}", pair.link1, pair.link2);
+  switch (pair.kind) {
+    case LinkPairKind::neighbours:
+    case LinkPairKind::never:
+      break;
+    case LinkPairKind::always:
+      text += pair.proven ? ": proven, no joint moves them apart" : fmt::format(": in all {} tried", pair.tried);
+      break;
+    case LinkPairKind::sometimes:
+      text += fmt::format(": in {} of {} tried, as at {}", pair.touching, pair.tried,
+                          configurationText(tree, pair.configuration));
+      break;
+    case LinkPairKind::unproven:
+      if (pair.tried == 0) text += ": a joint between them has no bounds";
+      if (std::isfinite(pair.nearest)) {
+        text += fmt::format(": within {:.3g} m at {}", pair.nearest, configurationText(tree, pair.configuration));
+      }
+      break;
+  }
+  return text;
+}
+
+Json jsonOf(const KinematicTree& tree, const LinkPairFinding& pair) {
+  Json out = {{"link1", pair.link1},
+              {"link2", pair.link2},
+              {"kind", toString(pair.kind)},
+              {"proven", pair.proven},
+              {"tried", pair.tried},
+              {"touching", pair.touching},
+              {"nearest", std::isfinite(pair.nearest) ? Json(pair.nearest) : Json()},
+              {"configuration", Json()}};
+  if (pair.configuration.size() == 0) return out;
+  Json& q = out["configuration"] = Json::object();
+  for (int v = 0; v < tree.dof(); ++v) q[tree.variableName(v)] = pair.configuration[v];
+  return out;
+}
+
+/// Draws each pair that touches sometimes, where it does.
+void drawTouching(const Robot& robot, const LinkPairReport& report, const std::string& folder) {
+  render::requirePictures();
+  std::filesystem::create_directories(folder);
+  for (const LinkPairFinding& pair : report.pairs) {
+    if (pair.kind != LinkPairKind::sometimes) continue;
+    ArticulatedCollisionManager manager(robot.tree);
+    for (const LinkGeometry& geometry : robot.geometry) {
+      const std::string& name = robot.tree->linkName(geometry.link);
+      if (name == pair.link1 || name == pair.link2) manager.bind(geometry.link, geometry.object, geometry.offset);
+    }
+    manager.setup();
+    render::PictureOptions options;
+    options.title = fmt::format("{} and {}", pair.link1, pair.link2);
+    const std::string path = folder + "/" + pair.link1 + "-" + pair.link2 + ".png";
+    render::writePicture(
+        path, robot, {}, [&](double) { return pair.configuration; }, manager.collide(pair.configuration), options);
+    fmt::print("picture {}\n", path);
+  }
+}
+
+/// Status for what is told of pairs: those that an SRDF disables, or all.
+int exitStatusOf(const LinkPairReport& disabled) {
+  if (disabled.count(LinkPairKind::sometimes) > 0) return kExitContact;
+  return disabled.count(LinkPairKind::unproven) > 0 ? kExitUndecided : kExitFree;
+}
+
+void printPairs(const KinematicTree& tree, const LinkPairReport& report, bool all) {
+  for (const LinkPairKind kind : kKinds) {
+    const std::size_t count = report.count(kind);
+    if (count == 0) continue;
+    fmt::print("  {:4} {}: {}\n", count, toString(kind), meaningOf(kind));
+    if (!all && (kind == LinkPairKind::neighbours || kind == LinkPairKind::never)) continue;
+    for (const LinkPairFinding& pair : report.pairs) {
+      if (pair.kind == kind) fmt::print("         {}\n", lineOf(tree, pair));
+    }
+  }
+}
+
+int run(const Options& options) {
+  UrdfOptions urdf;
+  urdf.solid_meshes = options.solid_meshes;
+  for (const std::string& package : options.packages) {
+    const std::size_t equals = package.find('=');
+    if (equals == std::string::npos) throw std::invalid_argument("--package '" + package + "' is not NAME=DIR");
+    urdf.packages[package.substr(0, equals)] = package.substr(equals + 1);
+  }
+  const Robot robot = loadUrdf(options.robot, urdf);
+  const KinematicTree& tree = *robot.tree;
+  std::optional<AllowedCollisionMatrix> disabled;
+  if (!options.check.empty()) disabled = loadSrdf(options.check, tree);
+  const LinkPairReport report = classify(robot, options.search);
+  LinkPairReport of_file;
+  if (disabled) {
+    for (const LinkPairFinding& pair : report.pairs) {
+      if (disabled->allowed(pair.link1, pair.link2)) of_file.pairs.push_back(pair);
+    }
+  }
+  if (!options.write.empty()) writeSrdf(options.write, tree.name(), report);
+  if (options.json) {
+    Json out = {{"robot", tree.name()}, {"margin", options.search.margin}, {"pairs", Json::array()}};
+    for (const LinkPairFinding& pair : report.pairs) {
+      Json one = jsonOf(tree, pair);
+      if (disabled) one["disabled"] = disabled->allowed(pair.link1, pair.link2);
+      out["pairs"].push_back(std::move(one));
+    }
+    fmt::print("{}\n", out.dump(2));
+  } else if (disabled) {
+    fmt::print("{} disables {} pairs of links with geometry:\n", options.check, of_file.pairs.size());
+    printPairs(tree, of_file, false);
+    LinkPairReport missing;
+    for (const LinkPairFinding& pair : report.pairs) {
+      if (pair.kind == LinkPairKind::always && !disabled->allowed(pair.link1, pair.link2))
+        missing.pairs.push_back(pair);
+    }
+    if (!missing.pairs.empty()) {
+      fmt::print("It leaves {} to be checked that no motion is free of:\n", missing.pairs.size());
+      printPairs(tree, missing, true);
+    }
+  } else {
+    fmt::print("{}: {} pairs of links with geometry:\n", tree.name(), report.pairs.size());
+    printPairs(tree, report, true);
+  }
+  if (!options.write.empty() && !options.json) fmt::print("{} written to {}\n", summaryOf(report), options.write);
+  if (!options.images.empty()) drawTouching(robot, disabled ? of_file : report, options.images);
+  return disabled ? exitStatusOf(of_file) : kExitFree;
+}
+
+}  // namespace
+
+LinkPairReport classify(const Robot& robot, LinkPairOptions options) {
+  ProgressBar bar;
+  options.progress = [&bar](std::size_t done, std::size_t total) {
+    bar.show(static_cast<double>(done) / static_cast<double>(total));
+  };
+  return generateAllowedCollisions(robot, options);
+}
+
+std::string summaryOf(const LinkPairReport& report) {
+  return fmt::format("{} pairs of links that need no check ({} neighbours, {} proven apart, {} always in contact)",
+                     report.needNoCheck().pairs().size(), report.count(LinkPairKind::neighbours),
+                     report.count(LinkPairKind::never), report.count(LinkPairKind::always));
+}
+
+std::vector<std::string> doubtsOf(const LinkPairReport& disabled) {
+  std::vector<std::string> lines;
+  const auto names = [&](LinkPairKind kind) {
+    constexpr std::size_t kMost = 3;
+    std::string text;
+    std::size_t count = 0;
+    for (const LinkPairFinding& pair : disabled.pairs) {
+      if (pair.kind != kind) continue;
+      if (count++ < kMost) text += fmt::format("{}{} and {}", text.empty() ? "" : "; ", pair.link1, pair.link2);
+    }
+    if (count > kMost) text += fmt::format("; and {} more", count - kMost);
+    return std::make_pair(count, text);
+  };
+  if (const auto [count, text] = names(LinkPairKind::sometimes); count > 0) {
+    lines.push_back(fmt::format("{} allowed pair{} can touch, and {} not checked: {}", count, count == 1 ? "" : "s",
+                                count == 1 ? "is" : "are", text));
+  }
+  if (const auto [count, text] = names(LinkPairKind::unproven); count > 0) {
+    lines.push_back(fmt::format("{} allowed pair{} not proven apart: {}", count, count == 1 ? " is" : "s are", text));
+  }
+  return lines;
+}
+
+void addSrdf(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<Options>();
+  Options& o = *options;
+  CLI::App* srdf = program.add_subcommand(
+      "srdf", "Which pairs of a robot's links need no check, proven; and whether an SRDF's are right");
+  srdf->footer(
+      "Pairs that never touch are proven apart for all joint values within their limits; pairs that touch are shown\n"
+      "with a configuration. The answer depends on no random numbers.\n"
+      "Exit status: 0, or with --check: 0 no disabled pair can touch, proven; 1 one can; 3 neither is known; 2 error.");
+  srdf->add_option("--robot", o.robot, "Robot (URDF)")->required()->type_name("FILE");
+  srdf->add_option("--check", o.check, "Look at the pairs that this SRDF disables")->type_name("FILE");
+  srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");
+  srdf->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
+      ->type_name("NAME=DIR");
+  srdf->add_flag("--solid-meshes", o.solid_meshes, "Meshes are solids: what lies within one touches it");
+  srdf->add_option("--margin", o.search.margin, "Links must keep this distance to count as apart, in m")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  srdf->add_option("--work", o.search.work, "Tests at most for one pair; what needs more is checked")
+      ->capture_default_str();
+  srdf->add_option("--samples", o.search.samples, "Configurations to try for one pair")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  srdf->add_option("--threads", o.search.threads, "Threads at most; 0: as many as the machine runs at once")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  srdf->add_option("--images", o.images, "Draw each pair that touches sometimes to a PNG in this folder")
+      ->type_name("DIR");
+  srdf->add_flag("--json", o.json, "JSON instead of text");
+  srdf->callback([options, &exit_status] { exit_status = run(*options); });
+}
+
+}  // namespace fcl_artic::app

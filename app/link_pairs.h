@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fcl_artic/link_pairs.h"
+#include "fcl_artic/urdf/urdf.h"
+
+namespace CLI {
+class App;
+}
+
+namespace fcl_artic::app {
+
+/// Adds the verb `srdf`: which pairs of a robot's links need no check, and whether an SRDF's are right.
+void addSrdf(CLI::App& program, int& exit_status);
+
+/// All pairs of the robot's links; a bar of progress on a terminal.
+LinkPairReport classify(const Robot& robot, LinkPairOptions options);
+
+/// How many pairs are of which kind: one line.
+std::string summaryOf(const LinkPairReport& report);
+
+/// What is to be said of pairs that an SRDF disables: those that do touch, those that are not proven apart. A line
+/// each; nothing where all is proven.
+std::vector<std::string> doubtsOf(const LinkPairReport& disabled);
+
+}  // namespace fcl_artic::app

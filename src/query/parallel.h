@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Many calls over threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <thread>
+
+#ifdef FCL_ARTIC_TBB
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#else
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <vector>
+#endif
+
+namespace fcl_artic {
+
+/// Calls f(i) for i in [0, n), over so many threads at most (0: as many as the machine runs at once); what a call
+/// throws comes out once all have ended.
+template <class F>
+void parallelFor(std::size_t n, int most_threads, const F& f) {
+  const int threads =
+      most_threads > 0 ? most_threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (threads == 1 || n < 2) {
+    for (std::size_t i = 0; i < n; ++i) f(i);
+    return;
+  }
+#ifdef FCL_ARTIC_TBB
+  if (threads >= tbb::info::default_concurrency())
+    return tbb::parallel_for(std::size_t{0}, n, f);  // oneTBB's own arena
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, f); });
+#else
+  // Queries of microseconds: the counter is not to be fought for. Few are long: each goes by itself.
+  const std::size_t chunk = n >= 1024 ? 16 : 1;
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr thrown;
+  std::mutex mutex;
+  const auto work = [&] {
+    try {
+      for (std::size_t i; (i = next.fetch_add(chunk)) < n;) {
+        for (const std::size_t end = std::min(n, i + chunk); i < end; ++i) f(i);
+      }
+    } catch (...) {
+      next = n;
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  try {
+    for (std::size_t k = 1; k < std::min<std::size_t>(static_cast<std::size_t>(threads), n); ++k)
+      others.emplace_back(work);
+  } catch (const std::system_error&) {
+    // No more threads to be had: those that there are do it.
+  }
+  work();
+  for (std::thread& thread : others) thread.join();
+  if (thrown) std::rethrow_exception(thrown);
+#endif
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup/link_proofs.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "setup/neighbours.h"
+
+namespace fcl_artic {
+namespace {
+
+/// Whether a variable keeps within a range over a whole motion. (Each power of t is within [0, 1]; 64 ulp of the
+/// coefficients' sizes are more than the rounding of their sums.)
+bool keepsWithin(const Eigen::MatrixXd& variables, int v, const ValueRange& range) {
+  double least = variables(v, 0), most = least, size = std::abs(least);
+  for (Eigen::Index k = 1; k < variables.cols(); ++k) {
+    const double c = variables(v, k);
+    least += std::min(c, 0.0);
+    most += std::max(c, 0.0);
+    size += std::abs(c);
+  }
+  const double slack = 64 * 0x1p-52 * size;
+  return least - slack >= range.lower && most + slack <= range.upper;
+}
+
+}  // namespace
+
+void LinkPairProofs::add(Proof proof) {
+  const std::pair<LinkId, LinkId> links(proof.made.link_a, proof.made.link_b);
+  proofs_.emplace(links, std::move(proof));
+}
+
+const LinkPairProofs::Proof* LinkPairProofs::find(const PairMaking& made, double margin) const {
+  const auto [begin, end] = proofs_.equal_range({made.link_a, made.link_b});
+  const auto found = std::find_if(
+      begin, end, [&](const auto& entry) { return entry.second.margin >= margin && entry.second.made.sameAs(made); });
+  return found == end ? nullptr : &found->second;
+}
+
+void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
+                            std::size_t num_self_pairs) {
+  checked_.clear();
+  allowed_.clear();
+  is_proven_.assign(num_self_pairs, false);
+  ranges_.clear();
+  allowed_self_ = 0;
+  const KinematicTree& tree = *registry.tree();
+  for (int v = 0; v < tree.dof(); ++v) ranges_.push_back(wholeRange(tree, v));
+  const LinkPairProofs* proofs = registry.proofs().get();
+  // A proof is of two links, the one with the lower number first.
+  const auto find = [&](const ManagedBody& a, const ManagedBody& b, double margin) {
+    if (!proofs || a.attached || b.attached) return static_cast<const LinkPairProofs::Proof*>(nullptr);
+    return a.link < b.link ? proofs->find(PairMaking(tree, a, b), margin)
+                           : proofs->find(PairMaking(tree, b, a), margin);
+  };
+  for (std::size_t i = 0; proofs && i < num_self_pairs; ++i) {
+    const engine::LinkPair& pair = problem.link_pairs[i];
+    if (const auto* proof = find(registry.body(pair.a), registry.body(pair.b), margins.ofLinkPair(i))) {
+      checked_.push_back({i, proof->margin, proof->variables});
+      is_proven_[i] = true;
+    }
+  }
+
+  // Allowed pairs count by their names: a link may have several geometries.
+  std::set<LinkId> with_geometry;
+  for (const ManagedBody& link : registry.links()) {
+    if (!link.attached) with_geometry.insert(link.link);
+  }
+  std::map<std::pair<std::string, std::string>, std::vector<const LinkPairProofs::Proof*>> excused;
+  const std::vector<ManagedBody>& links = registry.links();
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    for (std::size_t j = i + 1; j < links.size(); ++j) {
+      const ManagedBody &a = links[i], &b = links[j];
+      if (a.link == b.link || a.empty() || b.empty()) continue;
+      const bool neighbours = !a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link);
+      const bool touch_links = a.mayTouchLink(b) || b.mayTouchLink(a);
+      if (neighbours || (registry.mayTouch(a, b) && !touch_links)) continue;
+      excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
+    }
+  }
+  for (const auto& [names, found] : excused) {
+    for (const LinkPairProofs::Proof* proof : found) {
+      if (proof) allowed_.push_back({allowed_self_, proof->margin, proof->variables});
+    }
+    // A pair is proven apart where all of its geometries are.
+    if (std::count(found.begin(), found.end(), nullptr) > 0) {
+      while (!allowed_.empty() && allowed_.back().number == allowed_self_) allowed_.pop_back();
+    }
+    ++allowed_self_;
+  }
+}
+
+void ProvenPairs::buildScene(const Registry& registry) {
+  allowed_scene_ = 0;
+  const auto& allowed = registry.allowed().pairs();
+  if (allowed.empty()) return;
+  std::set<std::string> links, obstacles;
+  for (const ManagedBody& link : registry.links()) links.insert(link.name);
+  const auto isObstacle = [&](const std::string& name) { return !links.count(name) && registry.hasObstacle(name); };
+  allowed_scene_ = static_cast<std::size_t>(std::count_if(allowed.begin(), allowed.end(), [&](const auto& names) {
+    return (links.count(names.first) && isObstacle(names.second)) ||
+           (links.count(names.second) && isObstacle(names.first));
+  }));
+}
+
+bool ProvenPairs::within(const Pair& pair, const JointMotion& motion) const {
+  return std::all_of(pair.variables.begin(), pair.variables.end(),
+                     [&](int v) { return keepsWithin(motion.variables(), v, ranges_[static_cast<std::size_t>(v)]); });
+}
+
+void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion& motion,
+                               const engine::Margins& margins, std::vector<std::uint8_t>& parts) const {
+  constexpr std::uint8_t kAll = 0xff;
+  for (const Pair& pair : checked_) {
+    if (margins.of(problem.linkPair(static_cast<std::int32_t>(pair.number))) > pair.margin) continue;
+    if (within(pair, motion)) parts[pair.number] = kAll;
+  }
+}
+
+std::size_t ProvenPairs::unprovenAllowed(const JointMotion& motion, const engine::Margins& margins, bool self,
+                                         bool scene) const {
+  std::size_t unproven = scene ? allowed_scene_ : 0;
+  if (!self || allowed_self_ == 0) return unproven;
+  unproven += allowed_self_;
+  for (std::size_t i = 0; i < allowed_.size();) {
+    // Entries of one pair of names lie together.
+    const std::size_t number = allowed_[i].number;
+    bool all = true;
+    for (; i < allowed_.size() && allowed_[i].number == number; ++i) {
+      all = all && margins.largest() <= allowed_[i].margin && within(allowed_[i], motion);
+    }
+    unproven -= all;
+  }
+  return unproven;
+}
+
+}  // namespace fcl_artic

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is proven of pairs of links over the whole ranges of their joints (tables/range_proof.h), with what it was
+// proven for; and what a query may take from that.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fcl_artic/joint_motion.h"
+#include "fcl_artic/link_pairs.h"
+#include "model/margins.h"
+#include "setup/pair_making.h"
+#include "setup/registry.h"
+#include "tables/range_proof.h"
+
+namespace fcl_artic {
+
+class LinkPairProofs {
+ public:
+  /// Proven: more than `margin` apart for all values of these variables within their whole ranges.
+  struct Proof {
+    PairMaking made;
+    double margin;
+    std::vector<int> variables;
+  };
+  void add(Proof proof);
+  /// Null where there is none for just these two bodies and this margin.
+  const Proof* find(const PairMaking& made, double margin) const;
+  std::size_t size() const { return proofs_.size(); }
+
+ private:
+  std::multimap<std::pair<LinkId, LinkId>, Proof> proofs_;
+};
+
+/// The proofs that hold for a set-up, by its pairs.
+class ProvenPairs {
+ public:
+  /// @param margins  of the pairs' own.
+  /// @param num_self_pairs  the first so many of the problem's link pairs.
+  void buildSelf(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
+                 std::size_t num_self_pairs);
+  /// What depends on the obstacles.
+  void buildScene(const Registry& registry);
+
+  bool empty() const { return checked_.empty(); }
+  /// Whether the link pair is proven apart within the joints' limits, for the margin that it has of its own.
+  bool proven(std::size_t link_pair) const { return link_pair < is_proven_.size() && is_proven_[link_pair]; }
+
+  /// Marks the pairs that are proven apart for a whole motion.
+  /// @param[in,out] parts  of each link pair, as engine::Advisor::freeParts.
+  void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
+                    std::vector<std::uint8_t>& parts) const;
+
+  /// Number of allowed pairs of names, of two links or of link and obstacle, which nothing proves apart for this
+  /// motion.
+  std::size_t unprovenAllowed(const JointMotion& motion, const engine::Margins& margins, bool self, bool scene) const;
+
+ private:
+  struct Pair {
+    std::size_t number;  ///< of a link pair, or of an allowed pair of names
+    double margin;
+    std::vector<int> variables;
+  };
+  bool within(const Pair& pair, const JointMotion& motion) const;
+
+  std::vector<Pair> checked_, allowed_;
+  std::vector<bool> is_proven_;
+  std::vector<ValueRange> ranges_;                    ///< by variable
+  std::size_t allowed_self_ = 0, allowed_scene_ = 0;  ///< pairs of names
+};
+
+}  // namespace fcl_artic

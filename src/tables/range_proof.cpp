@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tables/range_proof.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kinematics/angles.h"
+#include "numerics/assertion.h"
+#include "numerics/sine_cosine.h"
+
+namespace fcl_artic {
+namespace {
+
+constexpr double kUlp = 0x1p-52;
+/// Joints may stand at their limits: ranges go on behind them by this part of themselves.
+constexpr double kBeyondLimits = 1e-3;
+/// Variables, factors and offsets beyond, rad or m, are left alone: the pads below are for these.
+constexpr double kMostValue = 100;
+/// Counts as so many tests: a look at witnesses.
+constexpr std::uint64_t kGlanceWork = 5;
+/// Tests of nodes and leaves for one box; what needs more is cut in two. Measured on the Panda: 120 take 1.5 times as
+/// long, 3000 as long.
+constexpr std::uint64_t kWorkOfBox = 600;
+/// What the margin pays for a box that is not cut any further, m: links that come as near are not proven apart.
+constexpr double kFinest = 2e-5;
+/// A proof is given up when at its pace so far it would take so many times the work allowed.
+constexpr double kMostHope = 8;
+/// The way of the variable that the engine moves, as compared with ways that the margin pays for: where it is longer
+/// by more than this, it is halved first. Measured on the Panda: 0.3 takes 1.4 times as long, 1 and 2 take 1.2 times as
+/// long.
+constexpr double kMovedWeight = 0.6;
+
+using RowMajor = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+using Points = Eigen::Matrix<double, 3, 10>;
+
+}  // namespace
+
+double ValueRange::half() const {
+  return std::max(upper - middle(), middle() - lower) * (1 + 4 * kUlp);
+}
+
+ValueRange wholeRange(const KinematicTree& tree, int variable) {
+  constexpr double kAll = std::numeric_limits<double>::infinity();
+  const Joint& joint = tree.joint(tree.variableJoint(variable));
+  if (KinematicTree::numVariables(joint.type) != 1) return {kAll, -kAll};
+  if (hasLimits(joint)) {
+    const double beyond = kBeyondLimits * (joint.upper - joint.lower);
+    return {joint.lower - beyond, joint.upper + beyond};
+  }
+  if (!tree.isAngle(variable)) return {kAll, -kAll};
+  return {-kAll, kAll};
+}
+
+RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair,
+                       double margin, engine::EngineWorkspace& workspace)
+    : workspace_(workspace),
+      pair_(pair),
+      margin_(margin),
+      of_a_(outlineOf(problem.bodies[pair.a])),
+      of_b_(outlineOf(problem.bodies[pair.b])) {
+  const engine::SweepView& sweep = problem.sweeps[pair.sweep];
+  for (int s = pair.step_b; s >= 0; s = sweep.steps[s].parent) path_.push_back(sweep.steps[s]);
+  std::reverse(path_.begin(), path_.end());
+  const engine::Body &a = problem.bodies[pair.a], &b = problem.bodies[pair.b];
+  double length = pair.inverse_a.length + pair.placement_b.length + 4 * (a.tree->extent + b.tree->extent);
+  double ulps = pair.inverse_a.ulps + pair.placement_b.ulps + 128;
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    engine::SweepStep& step = path_[i];
+    step.parent = static_cast<std::int32_t>(i) - 1;
+    if (step.kind != engine::StepKind::revolute && step.kind != engine::StepKind::prismatic) {
+      bounded_ = false;
+      return;
+    }
+    const auto known = std::find(variables_.begin(), variables_.end(), step.variable);
+    const auto number = static_cast<std::size_t>(known - variables_.begin());
+    if (known == variables_.end()) {
+      variables_.push_back(step.variable);
+      steps_of_.push_back(0);
+      whole_.push_back(wholeRange(tree, step.variable));
+    }
+    ++steps_of_[number];
+    ValueRange& range = whole_[number];
+    // Poses have the period 2 pi in a variable that drives nothing but turns by whole multiples: one turn is all.
+    const bool whole_turns = step.kind == engine::StepKind::revolute && step.multiplier == std::round(step.multiplier);
+    if (std::isinf(range.lower) && !whole_turns) range = {1, -1};
+    step.variable = static_cast<std::int32_t>(number);
+  }
+  for (ValueRange& range : whole_) {
+    if (std::isinf(range.lower) && range.lower < 0) range = {-0.5 * kTwoPi - 1e-9, 0.5 * kTwoPi + 1e-9};
+    bounded_ =
+        bounded_ && range.lower <= range.upper && std::max(std::abs(range.lower), std::abs(range.upper)) <= kMostValue;
+  }
+  if (!bounded_) return;
+  for (const engine::SweepStep& step : path_) {
+    const ValueRange& range = whole_[static_cast<std::size_t>(step.variable)];
+    const double most =
+        std::abs(step.multiplier) * std::max(std::abs(range.lower), std::abs(range.upper)) + std::abs(step.offset);
+    bounded_ = bounded_ && most <= kMostValue;
+    length += step.length + (step.kind == engine::StepKind::prismatic ? most : 0);
+    ulps += step.ulps + 64 + 4 * most;
+  }
+  // Every product of the path is off by less than 64 ulp of the lengths so far, an angle by 4 ulp of its terms.
+  pad_ = kUlp * ulps * length;
+
+  sweep_.steps = path_.data();
+  sweep_.num_steps = static_cast<std::int32_t>(path_.size());
+  pair_.sweep = 0;
+  pair_.step_b = sweep_.num_steps - 1;
+  problem_.bodies = problem.bodies;
+  problem_.num_bodies = problem.num_bodies;
+  problem_.sweeps = &sweep_;
+  problem_.num_sweeps = 1;
+  problem_.link_pairs = &pair_;
+  problem_.num_link_pairs = 1;
+  problem_.contained = problem.contained;
+  of_a_.points =
+      RowMajor(pair_.inverse_a.R).transpose() * (of_a_.points.colwise() - Eigen::Vector3d::Map(pair_.inverse_a.t));
+  of_b_.points = (RowMajor(pair_.placement_b.R) * of_b_.points).colwise() + Eigen::Vector3d::Map(pair_.placement_b.t);
+  middle_.resize(path_.size());
+  way_of_a_.resize(path_.size());
+  way_of_b_.resize(path_.size());
+  coefficients_.resize(2 * std::max<std::size_t>(1, variables_.size()));
+  query_.coefficients = coefficients_.data();
+  query_.num_variables = static_cast<std::int32_t>(std::max<std::size_t>(1, variables_.size()));
+  query_.check_scene = false;
+  query_.describe_contacts = false;
+  query_.any = true;
+}
+
+RangeProof::Outline RangeProof::outlineOf(const engine::Body& body) {
+  Outline outline;
+  const engine::Node& root = body.tree->nodes[0];
+  for (int corner = 0; corner < 8; ++corner) {
+    for (int k = 0; k < 3; ++k) {
+      outline.points(k, corner) = static_cast<double>(corner >> k & 1 ? root.hi[k] : root.lo[k]);
+    }
+  }
+  // The line swept sphere is in the frame of the body's step in the world.
+  const RowMajor R(body.placement.R, 3, 3);
+  for (int end = 0; end < 2; ++end) {
+    outline.points.col(8 + end) =
+        R.transpose() * (Eigen::Vector3d::Map(body.lss + 3 * end) - Eigen::Vector3d::Map(body.placement.t));
+  }
+  outline.radius = body.lss[6] + kUlp * (body.placement.ulps + 64) * (body.placement.length + 4 * body.tree->extent);
+  return outline;
+}
+
+/// Upper bound of a body's distance from the z axis of the frame that its outline is given in, without rounding.
+double RangeProof::farthestFromAxis(const Outline& outline) {
+  const auto squared = outline.points.topRows<2>().colwise().squaredNorm().eval();
+  return std::sqrt(
+      std::min(squared.head<8>().maxCoeff(), std::pow(std::sqrt(squared.tail<2>().maxCoeff()) + outline.radius, 2)));
+}
+
+void RangeProof::Joint::set(const engine::SweepStep& step, double variable) {
+  const double value = step.multiplier * variable + step.offset;
+  if (step.kind == engine::StepKind::prismatic) {
+    slide = value;
+    return;
+  }
+  __m128d sines, cosines;
+  sineCosine(_mm_set1_pd(value), sines, cosines);
+  sine = _mm_cvtsd_f64(sines);
+  cosine = _mm_cvtsd_f64(cosines);
+}
+
+template <class Points>
+void RangeProof::Joint::apply(Points& points) const {
+  const auto x = points.row(0).eval();
+  points.row(0) = cosine * x - sine * points.row(1);
+  points.row(1) = sine * x + cosine * points.row(1);
+  if (Points::ColsAtCompileTime == 4) {
+    points(2, 3) += slide;  // a frame: its axes have no place
+  } else {
+    points.row(2).array() += slide;
+  }
+}
+
+void RangeProof::measureWays(const Box& box) {
+  const std::size_t n = path_.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    middle_[i].set(path_[i], box[static_cast<std::size_t>(path_[i].variable)].middle());
+  }
+  const auto wayOf = [&](const engine::SweepStep& step, const Outline& outline) {
+    const double half = std::abs(step.multiplier) * box[static_cast<std::size_t>(step.variable)].half();
+    // A chord: no longer than the arc, nor than two radii.
+    return step.kind == engine::StepKind::prismatic ? half : (farthestFromAxis(outline) + pad_) * std::min(half, 2.0);
+  };
+  Outline a = of_a_, b = of_b_;
+  for (std::size_t i = 0; i < n; ++i) {
+    a.points = RowMajor(path_[i].C).transpose() * (a.points.colwise() - Eigen::Vector3d::Map(path_[i].p));
+    way_of_a_[i] = wayOf(path_[i], a);
+    middle_[i].inverse().apply(a.points);
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    way_of_b_[i] = wayOf(path_[i], b);
+    middle_[i].apply(b.points);
+    b.points = (RowMajor(path_[i].C) * b.points).colwise() + Eigen::Vector3d::Map(path_[i].p);
+  }
+}
+
+void RangeProof::solve() {
+  workspace_.solve(problem_, query_, answer_);
+  work_ += kQueryWork + answer_.statistics.node_tests + answer_.statistics.leaf_tests;
+}
+
+RangeProof::Contact RangeProof::at(const std::vector<double>& values, double margin) {
+  FCL_ARTIC_ASSERT(bounded_ && values.size() == variables_.size());
+  std::fill(coefficients_.begin(), coefficients_.end(), 0);
+  std::copy(values.begin(), values.end(), coefficients_.begin());
+  query_.margins = engine::Margins(margin);
+  query_.work_budget = 0;
+  solve();
+  if (answer_.isFree()) return Contact::none;
+  return answer_.certain ? Contact::touch : Contact::unknown;
+}
+
+/// Keeps the nearest points of a contact of the bodies grown by the margin.
+void RangeProof::addWitness() {
+  if (answer_.num_contacts == 0) return;
+  engine::LeafContact contact = answer_.contacts[0];
+  if (contact.piece_a < 0 || contact.piece_b < 0) return;
+  engine::Query query = query_;
+  query.any = false;
+  contact.t_lower = contact.t;
+  workspace_.addWitness(problem_, query, contact);
+  // The points in the base frame and in the last step's.
+  Witness witness;
+  witness.a = RowMajor(pair_.inverse_a.R).transpose() *
+              (Eigen::Vector3d::Map(contact.nearest_a) - Eigen::Vector3d::Map(pair_.inverse_a.t));
+  witness.b = RowMajor(pair_.inverse_a.R).transpose() *
+              (Eigen::Vector3d::Map(contact.nearest_b) - Eigen::Vector3d::Map(pair_.inverse_a.t));
+  for (const engine::SweepStep& step : path_) {
+    const auto v = static_cast<std::size_t>(step.variable);
+    Joint joint;
+    joint.set(step, coefficients_[v] + contact.t_nearest * coefficients_[variables_.size() + v]);
+    witness.b = RowMajor(step.C).transpose() * (witness.b - Eigen::Vector3d::Map(step.p));
+    joint.inverse().apply(witness.b);
+  }
+  if (witnesses_.size() < kMostWitnesses) {
+    witnesses_.push_back(witness);
+  } else {
+    witnesses_[next_witness_++ % kMostWitnesses] = witness;
+  }
+}
+
+/// Whether points of both bodies are known that come as near as the margin where the box is to be proven.
+/// @param moved  step that moves; the others stand in the middle.
+bool RangeProof::mustFail(const Box& box, std::size_t moved, double margin) const {
+  // Seen from the moved step's frame, before it turns or slides and after.
+  const std::size_t n = path_.size(), before = std::min(moved, n - 1);
+  Joint parts[5];
+  int num_parts = 1;
+  parts[0] = middle_[before];
+  if (moved < n) {
+    const ValueRange& range = box[static_cast<std::size_t>(path_[moved].variable)];
+    for (const double part : {0.0, 1.0, 0.25, 0.75}) {
+      parts[num_parts++].set(path_[moved], range.lower + part * (range.upper - range.lower));
+    }
+  }
+  // Where the base frame's and the last step's axes and origins are: columns of a frame.
+  using Frame = Eigen::Matrix<double, 3, 4>;
+  Frame base = Frame::Identity(), last = Frame::Identity();
+  for (std::size_t i = 0; i <= before; ++i) {
+    if (i > 0) middle_[i - 1].inverse().apply(base);
+    base.col(3) -= Eigen::Vector3d::Map(path_[i].p);
+    base = (RowMajor(path_[i].C).transpose() * base).eval();
+  }
+  for (std::size_t i = n - 1; i > before; --i) {
+    middle_[i].apply(last);
+    last = (RowMajor(path_[i].C) * last).eval();
+    last.col(3) += Eigen::Vector3d::Map(path_[i].p);
+  }
+  for (const Witness& witness : witnesses_) {
+    const Eigen::Vector3d a = base.leftCols<3>() * witness.a + base.col(3);
+    const Eigen::Vector3d b = last.leftCols<3>() * witness.b + last.col(3);
+    for (int k = 0; k < num_parts; ++k) {
+      Eigen::Vector3d turned = b;
+      parts[k].apply(turned);
+      if ((turned - a).squaredNorm() <= margin * margin) return true;
+    }
+  }
+  return false;
+}
+
+/// Lemma 8: the engine moves one step over its whole range while the others stand in the middle of theirs; the margin
+/// pays for A's ways by the steps before it and for B's by the steps after it.
+RangeProof::Tried RangeProof::tryBox(const Box& box) {
+  measureWays(box);
+  const std::size_t n = path_.size();
+  double after = 0;
+  for (std::size_t i = 0; i < n; ++i) after += way_of_b_[i];
+  // Without a step that moves alone, the steps before the cut pay by A's ways and the others by B's.
+  double before = 0, least = after;
+  std::size_t moved = n, cut = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    after -= way_of_b_[i];
+    const bool alone = steps_of_[static_cast<std::size_t>(path_[i].variable)] == 1;
+    if (alone && before + after < least) {
+      least = before + after;
+      moved = cut = i;
+    }
+    before += way_of_a_[i];
+    if (before + after < least) {
+      least = before + after;
+      moved = n;
+      cut = i + 1;
+    }
+  }
+  // (The sums of differences above only choose.)
+  double margin = 0;
+  std::vector<double> paid(variables_.size(), 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto v = static_cast<std::size_t>(path_[i].variable);
+    const double way = i < cut ? way_of_a_[i] : way_of_b_[i];
+    if (i == moved) {
+      paid[v] = kMovedWeight * std::min(way_of_a_[i], way_of_b_[i]);
+    } else {
+      margin += way;
+      paid[v] += way;
+    }
+  }
+  std::fill(coefficients_.begin(), coefficients_.end(), 0);
+  for (std::size_t v = 0; v < box.size(); ++v) coefficients_[v] = box[v].middle();
+  if (moved < n) {
+    const auto v = static_cast<std::size_t>(path_[moved].variable);
+    const double slack = 64 * kUlp * std::max(std::abs(box[v].lower), std::abs(box[v].upper));
+    coefficients_[v] = box[v].lower - slack;
+    coefficients_[box.size() + v] = box[v].upper + slack - coefficients_[v];
+  }
+  const double whole_margin = margin_ + margin * (1 + 1e-9);
+  Tried tried;
+  bool out_of_work = false;
+  if (path_.empty() || !mustFail(box, moved, whole_margin)) {
+    query_.margins = engine::Margins(whole_margin);
+    query_.work_budget = kWorkOfBox;
+    solve();
+    tried.apart = answer_.isFree();
+    if (!tried.apart) addWitness();
+    out_of_work = answer_.status == Status::undecided;
+  } else {
+    work_ += kGlanceWork;
+  }
+  if (tried.apart || box.empty()) {
+    tried.give_up = !tried.apart;
+    return tried;
+  }
+  tried.split = static_cast<std::size_t>(std::max_element(paid.begin(), paid.end()) - paid.begin());
+  if (margin < kFinest) {
+    // A finer margin would not help. Less of a motion might, where it is work that ran out.
+    tried.give_up = moved == n || !out_of_work;
+    if (!tried.give_up) tried.split = static_cast<std::size_t>(path_[moved].variable);
+  }
+  return tried;
+}
+
+RangeProof::Finding RangeProof::prove(std::uint64_t work) {
+  Finding finding;
+  if (!bounded_) return finding;
+  work_ = 0;
+  struct Open {
+    Box box;
+    double share;  ///< of all values
+  };
+  std::vector<Open> open;
+  open.push_back({whole_, 1});
+  double proven = 0;
+  while (!open.empty()) {
+    Open next = std::move(open.back());
+    open.pop_back();
+    const Tried tried = tryBox(next.box);
+    if (tried.apart) {
+      proven += next.share;
+      continue;
+    }
+    // A sixteenth of the work shows whether all of it can do.
+    const bool hopeless = work_ > work || (work_ > work / 16 &&
+                                           proven * kMostHope * static_cast<double>(work) < static_cast<double>(work_));
+    const ValueRange range = tried.give_up ? ValueRange() : next.box[tried.split];
+    const double middle = range.middle();
+    if (tried.give_up || hopeless || !(range.lower < middle && middle < range.upper)) {
+      for (const ValueRange& r : next.box) finding.values.push_back(r.middle());
+      finding.work = work_;
+      return finding;
+    }
+    Open other{next.box, next.share *= 0.5};
+    other.box[tried.split].lower = next.box[tried.split].upper = middle;
+    open.push_back(std::move(other));
+    open.push_back(std::move(next));
+  }
+  finding.apart = true;
+  finding.work = work_;
+  return finding;
+}
+
+}  // namespace fcl_artic

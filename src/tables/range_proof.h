@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Two links over the whole ranges of all joint variables between them, however many: proven apart, or where they touch.
+// The ranges are cut into boxes, as finely as it takes; the engine proves one box at a time (doc/NUMERICS.md,
+// section 10, Lemma 8).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "fcl_artic/kinematic_tree.h"
+#include "model/problem.h"
+#include "narrowphase/engine_workspace.h"
+
+namespace fcl_artic {
+
+/// Values of a joint variable, both ends included. Any value is meant where they are infinite.
+struct ValueRange {
+  double lower = 0, upper = 0;
+
+  double middle() const { return 0.5 * (lower + upper); }
+  /// No value in the range is farther from the middle; rounding of a sum and a half included.
+  double half() const;
+};
+
+/// What a variable can be, as far as proofs for its whole range go: its limits and a little more, as joints may stand
+/// at them; all values, where an angle has no limits. Nothing (lower > upper) for what has no bounds: a slide without
+/// limits, the variables of planar and floating joints.
+ValueRange wholeRange(const KinematicTree& tree, int variable);
+
+/// Two links and the joint variables between them.
+class RangeProof {
+ public:
+  /// @param problem, pair  must stay as they are as long as this lives.
+  /// @param margin  m, that the links are proven to keep.
+  /// @param workspace  of this thread.
+  RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair, double margin,
+             engine::EngineWorkspace& workspace);
+  RangeProof(const RangeProof&) = delete;
+  RangeProof& operator=(const RangeProof&) = delete;
+
+  /// Whether the ranges of all variables between the links are bounded, and their joints turn about or slide along an
+  /// axis. If not, nothing can be proven.
+  bool bounded() const { return bounded_; }
+  /// The variables between the links, each once, from the first link on.
+  const std::vector<int>& variables() const { return variables_; }
+
+  /// What is certain of the links where the variables have given values.
+  enum class Contact : std::uint8_t {
+    none,     ///< more than the margin apart
+    touch,    ///< in contact, or nearer than the margin
+    unknown,  ///< too near to be told
+  };
+  /// @param margin  m, in place of the one that is proven.
+  Contact at(const std::vector<double>& values, double margin);
+
+  struct Finding {
+    bool apart = false;          ///< proven, for all values in the ranges
+    std::uint64_t work = 0;      ///< tests of nodes and leaves, and kQueryWork for each query
+    std::vector<double> values;  ///< not apart: where the proof failed, a value of each variable
+  };
+  /// Proves the links apart over the whole ranges, with `work` at most; or gives up.
+  Finding prove(std::uint64_t work);
+
+  /// Counts as so many tests: what a query costs before its first one.
+  static constexpr std::uint64_t kQueryWork = 20;
+
+ private:
+  /// Points about a body and, of the last two, a radius: the body lies in the hull of the first eight, and in the hull
+  /// of the last two grown by the radius.
+  struct Outline {
+    Eigen::Matrix<double, 3, 10> points;
+    double radius;
+  };
+  /// Ranges of all variables between the links. What is proven of a box is proven for all values in it.
+  using Box = std::vector<ValueRange>;
+  /// What became of a box.
+  struct Tried {
+    bool apart = false, give_up = false;
+    std::size_t split = 0;  ///< else: the variable to halve
+  };
+
+  /// A step's own motion, along and about z: of points after it, as seen from before it.
+  struct Joint {
+    double sine = 0, cosine = 1, slide = 0;
+
+    void set(const engine::SweepStep& step, double variable);
+    Joint inverse() const { return {-sine, cosine, -slide}; }
+    template <class Points>
+    void apply(Points& points) const;
+  };
+
+  static Outline outlineOf(const engine::Body& body);
+  static double farthestFromAxis(const Outline& outline);
+  void measureWays(const Box& box);
+  Tried tryBox(const Box& box);
+  void solve();
+  void addWitness();
+  bool mustFail(const Box& box, std::size_t moved, double margin) const;
+
+  engine::EngineWorkspace& workspace_;
+  std::vector<engine::SweepStep> path_;  ///< from the first link on; the variables are numbers among variables_
+  engine::SweepView sweep_;
+  engine::LinkPair pair_;
+  engine::Problem problem_;
+  engine::Query query_;
+  engine::Answer answer_;
+  std::vector<int> variables_;
+  std::vector<int> steps_of_;  ///< by variable: how many steps it drives
+  Box whole_;
+  bool bounded_ = true;
+  double margin_, pad_ = 0;
+  Outline of_a_, of_b_;        ///< in the base frame, and in the last step's
+  std::vector<Joint> middle_;  ///< per step, of the box measured last: where it stands in the middle
+  /// Per step, of the box measured last: how far a point goes at most when the step leaves the middle of its range,
+  /// one of A as seen from B, one of B as seen from A.
+  std::vector<double> way_of_a_, way_of_b_;
+  std::vector<double> coefficients_;
+  std::uint64_t work_ = 0;
+  /// Points of both bodies, A's in the base frame and B's in the last step's, that were found near each other: they
+  /// show at once that a box can't be proven. (A guess only spares work: nothing is proven with them.)
+  struct Witness {
+    Eigen::Vector3d a, b;
+  };
+  static constexpr std::size_t kMostWitnesses = 8;
+  std::vector<Witness> witnesses_;
+  std::size_t next_witness_ = 0;
+};
+
+}  // namespace fcl_artic
