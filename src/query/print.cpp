@@ -71,6 +71,11 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
   return out;
 }
 
+std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
+  if (result.nothingChecked()) return out << "free: nothing was checked, there is no pair of bodies";
+  return out << static_cast<const Bracket&>(result);
+}
+
 std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact) {
   const Eigen::Vector3d& p = contact.point;
   return out << contact.body1 << " and " << contact.body2 << " (" << contact.feature << ") within ["
