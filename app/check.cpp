@@ -22,6 +22,7 @@
 #include "redon_options.h"
 #include "render/picture.h"
 #include "report.h"
+#include "usage.h"
 #include "waypoints.h"
 
 namespace fcl_artic::app {
@@ -80,6 +81,7 @@ std::string requirePackage(const std::string& text) {
 UrdfOptions urdfOptions(const Options& options) {
   UrdfOptions out;
   out.solid_meshes = options.scene.solid_meshes;
+  out.collada_up_axis = options.scene.collada_up_axis;
   for (const std::string& package : options.packages) {
     const std::size_t equals = package.find('=');
     out.packages[package.substr(0, equals)] = package.substr(equals + 1);
@@ -208,13 +210,13 @@ int run(const Options& options) {
   {
     ProgressBar bar;
     request.progress = [&bar](double t_lower) {
-      bar.show(t_lower);
+      bar.showFree(t_lower, t_lower);
       return true;
     };
     if (trajectory) {
       const double begin = trajectory->beginTime(), length = trajectory->endTime() - begin;
       request.progress = [&bar, begin, length](double t_lower) {
-        bar.show((t_lower - begin) / length);
+        bar.showFree((t_lower - begin) / length, t_lower);
         return true;
       };
       manager.continuousCollide(*trajectory, request, result);
@@ -234,11 +236,17 @@ int run(const Options& options) {
 
   std::vector<std::string> notes = robot.notes;
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  for (const std::string& note : unitNotes(robot, scene)) notes.push_back(note);
   notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
   const auto configuration = [&](double t) {
     return trajectory ? trajectory->configuration(t) : motion->configuration(t);
   };
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
+  if (result.status == Status::contact && result.t_lower <= begin && !request.ignore_initial_contact) {
+    notes.push_back(
+        "nothing is known of what comes after that contact; pairs that may touch at the start, as a base and "
+        "its floor, are left out until they part with --ignore-initial-contact");
+  }
   const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
 
   if (!options.image.empty()) {
@@ -251,6 +259,7 @@ int run(const Options& options) {
     CertifiedResult drawn = result;  // in the time of a picture
     drawn.t_lower = (result.t_lower - begin) / (end - begin);
     const auto path = [&](double t) { return configuration(begin + t * (end - begin)); };
+    const WaitingNote note("drawing " + options.image);
     render::writePicture(options.image, robot, scene.obstacles, path, drawn, picture);
   }
   if (options.json) {
@@ -277,8 +286,13 @@ void addCheck(CLI::App& program, int& exit_status) {
       "file's.\n"
       "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget).");
 
-  check->add_option("--robot", o.robot, "Robot (URDF)")->required()->group("Robot and scene")->type_name("FILE");
+  check->add_option("--robot", o.robot, "Robot (URDF)")
+      ->required()
+      ->check(requireInput)
+      ->group("Robot and scene")
+      ->type_name("FILE");
   CLI::Option* srdf = check->add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
+                          ->check(requireInput)
                           ->group("Robot and scene")
                           ->type_name("FILE");
   check
@@ -289,8 +303,18 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->type_name("FILE")
       ->excludes(srdf);
   check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
+      ->check(requireInput)
       ->group("Robot and scene")
       ->type_name("FILE...");
+  check->add_option("--scale", o.scene.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
+      ->check(requirePositive)
+      ->group("Robot and scene")
+      ->type_name("FACTOR")
+      ->capture_default_str();
+  check
+      ->add_flag("--collada-up-axis", o.scene.collada_up_axis,
+                 "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
+      ->group("Robot and scene");
   check->add_flag("--unknown-cells", o.scene.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
   check
@@ -309,6 +333,7 @@ void addCheck(CLI::App& program, int& exit_status) {
   CLI::Option* to = check->add_option("--to", o.to, "Configuration at t = 1")->group("Motion")->type_name("Q");
   CLI::Option* trajectory =
       check->add_option("--trajectory", o.trajectory, "Waypoints (CSV) instead of --from and --to")
+          ->check(requireInput)
           ->excludes(from)
           ->excludes(to)
           ->group("Motion")
@@ -323,14 +348,14 @@ void addCheck(CLI::App& program, int& exit_status) {
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   const auto number = [&](const std::string& name, double& value, const std::string& help) {
-    return check->add_option(name, value, help)->check(CLI::NonNegativeNumber)->group("Query")->capture_default_str();
+    return check->add_option(name, value, help)->check(requireNotNegative)->group("Query")->capture_default_str();
   };
   number("--margin", request.margin, "Nearer than this counts as touching, in m");
   CLI::Option* clearance =
       check->add_flag("--clearance", o.clearance, "Also the smallest distance over the whole motion, proven")
           ->group("Query");
   check->add_option("--clearance-most", o.clearance_request.most, "Distances beyond this are of no interest, in m")
-      ->check(CLI::PositiveNumber)
+      ->check(requirePositive)
       ->needs(clearance)
       ->group("Query")
       ->capture_default_str();
@@ -364,8 +389,10 @@ void addCheck(CLI::App& program, int& exit_status) {
   addRedonOptions(*check, request.redon);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
-  CLI::Option* image =
-      check->add_option("--image", o.image, "Draw robot, sweep and contact as PNG")->group("Output")->type_name("FILE");
+  CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and first contact as PNG")
+                           ->check(requirePng)
+                           ->group("Output")
+                           ->type_name("FILE");
   check->add_option("--size", o.size, "Size of the picture in pixels")
       ->check(requireSize)
       ->needs(image)

@@ -132,7 +132,7 @@ int runDepth(const DepthOptions& o) {
                                 : fmt::format("{:.1f}", series.values.back() / chart.series[0].values.back())});
     }
   }
-  fmt::print("{}", textOf(table, 2, 2, table.columns.size()));
+  fmt::print("{}", textOf(table, 2));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) files::write(o.csv, csvOf(table));
   if (!o.svg.empty()) files::write(o.svg, toSvg({chart}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program fcl_artic: verbs in files of their own, errors in one place.
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "files/files.h"
 #include "generate.h"
 #include "link_pairs.h"
+#include "usage.h"
 
 int main(int argc, char** argv) {
   using namespace fcl_artic::app;
@@ -30,13 +32,13 @@ int main(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const std::vector<std::string> unknown = program.remaining();  // CLI11 misses the verb first, and doesn't name them
-    if (program.get_subcommands().empty() && !unknown.empty()) {
-      fmt::print(stderr, "fcl_artic: error: '{}' is neither a verb nor an option\n", unknown.front());
+    exit_status = error.get_exit_code() == 0 ? program.exit(error) : kExitError;  // help and version are no errors
+    if (exit_status) {
+      fmt::print(stderr, "fcl_artic: error: {}\nRun with --help for more information.\n", usageError(program, error));
     }
-    exit_status = program.exit(error) == 0 ? 0 : kExitError;  // help and version are no errors
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
+    // (What can't be printed is told below.)
+    if (!std::ferror(stdout)) fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
     exit_status = kExitError;
   }
   try {

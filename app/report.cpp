@@ -86,6 +86,9 @@ std::string headline(const Report& r) {
       const std::size_t n = result.unproven_allowed_pairs;
       const std::string unproven =
           n == 0 ? "" : fmt::format(" but for {} allowed pair{} not proven apart", n, n == 1 ? "" : "s");
+      if (result.nothingChecked()) {
+        return fmt::format("FREE{}: nothing was checked, there is no pair of bodies that may touch.", unproven);
+      }
       return r.request.margin > 0
                  ? fmt::format("FREE{}: proven, no checked pair comes within {:g} m anywhere on the motion.", unproven,
                                r.request.margin)
@@ -97,12 +100,14 @@ std::string headline(const Report& r) {
       if (result.t_upper <= r.begin) {
         return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
       }
+      // At the start there is no before.
+      const bool at_start = result.t_lower <= r.begin;
       return result.certain
-                 ? fmt::format("CONTACT: {} at t = {:.6g}, proven; free before.", what, result.t_lower)
-                 : fmt::format(
-                       "CONTACT (not certain): at t = {:.6g} a pair is nearer than can be decided within the "
-                       "tolerances; free before, proven.",
-                       result.t_lower);
+                 ? fmt::format("CONTACT: {} at t = {:.6g}, proven{}.", what, result.t_lower,
+                               at_start ? "" : "; free before")
+                 : fmt::format("CONTACT (not certain): {}t = {:.6g}, a pair is nearer than can be decided{}.",
+                               at_start ? "at the start, " : "at ", result.t_lower,
+                               at_start ? " within the tolerances" : "; free before, proven");
     }
     case Status::undecided:
       return fmt::format("UNDECIDED: the work budget of {} tests ran out; proven free only for t < {:.6g}.",
@@ -204,6 +209,7 @@ Json posesJson(const Report& r) {
 
 std::string titleLine(const Report& r) {
   const CertifiedResult& result = r.result;
+  if (result.nothingChecked()) return "free: nothing was checked";
   if (result.status == Status::free) return "free: proven for the whole motion";
   if (result.status == Status::undecided)
     return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
@@ -244,6 +250,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"t_lower", result.t_lower},
           {"t_upper", result.t_upper},
           {"certain", result.certain},
+          {"nothing_checked", result.nothingChecked()},
           {"t_begin", r.begin},
           {"t_end", r.end},
           {"robot", r.tree.name()},

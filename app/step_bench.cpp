@@ -61,33 +61,52 @@ StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::ve
   return sum;
 }
 
-std::string textOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end) {
-  std::vector<std::size_t> wanted, widths;
-  const auto telling = [&](const std::vector<std::string>& row) {
-    for (std::size_t c = begin; c < end; ++c) {
-      if (!row[c].empty()) return true;
-    }
-    return false;
-  };
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    if (c >= names && (c < begin || c >= end)) continue;
-    std::size_t width = table.columns[c].title.size();
-    for (const auto& row : table.rows) width = std::max(width, row[c].size());
-    wanted.push_back(c);
-    widths.push_back(width);
-  }
+namespace {
+
+constexpr std::size_t kColumns = 80, kGap = 2;
+
+std::size_t widthOf(const Table& table, std::size_t column) {
+  std::size_t width = table.columns[column].title.size();
+  for (const auto& row : table.rows) width = std::max(width, row[column].size());
+  return width;
+}
+
+/// The first `names` columns, then those from `begin` to `end`.
+std::string partOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end) {
   std::string out;
   const auto add = [&](const auto& cellOf) {
     std::string line;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      const std::string cell = cellOf(wanted[i]);
-      line += i < names ? fmt::format("{:<{}}", cell, widths[i] + 2) : fmt::format("{:>{}}", cell, widths[i] + 2);
+    for (std::size_t c = 0; c < end; c = c + 1 == names ? begin : c + 1) {
+      const std::size_t width = widthOf(table, c);
+      line += c < names ? fmt::format("{:<{}}", cellOf(c), width + (c + 1 < names ? kGap : 0))
+                        : fmt::format("{:>{}}", cellOf(c), width + kGap);
     }
     out += line + '\n';
   };
   add([&](std::size_t c) { return table.columns[c].title; });
   for (const auto& row : table.rows) {
-    if (telling(row)) add([&](std::size_t c) { return row[c].empty() ? std::string("-") : row[c]; });
+    const auto first = row.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = row.begin() + static_cast<std::ptrdiff_t>(end);
+    if (std::all_of(first, last, [](const std::string& cell) { return cell.empty(); })) continue;
+    add([&](std::size_t c) { return row[c].empty() ? std::string("-") : row[c]; });
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string textOf(const Table& table, std::size_t names) {
+  std::size_t before = 0;
+  for (std::size_t c = 0; c < names; ++c) before += widthOf(table, c) + (c + 1 < names ? kGap : 0);
+  std::string out;
+  for (std::size_t begin = names; begin < table.columns.size();) {
+    std::size_t end = begin, width = before;
+    do {
+      width += widthOf(table, end) + kGap;
+    } while (++end < table.columns.size() && width + widthOf(table, end) + kGap <= kColumns);
+    if (begin > names) out += '\n';
+    out += partOf(table, names, begin, end);
+    begin = end;
   }
   return out;
 }

@@ -47,8 +47,9 @@ struct Table {
   std::vector<Column> columns;
   std::vector<std::vector<std::string>> rows;  ///< a cell per column; empty: nothing is known
 };
-/// @param begin, end  columns to print behind the first `names`; rows without a cell in them are left out.
-std::string textOf(const Table& table, std::size_t names, std::size_t begin, std::size_t end);
+/// The table in parts, one below the other, so that lines stay within 80 columns; each begins with the first `names`
+/// columns. Rows without a cell in a part are left out of it.
+std::string textOf(const Table& table, std::size_t names);
 std::string csvOf(const Table& table);
 
 }  // namespace fcl_artic::app

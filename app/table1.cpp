@@ -285,15 +285,14 @@ int runTable1(const Table1Options& o) {
   }
   const Table table = tableOf(groups, variants);
   fmt::print(
-      "PUMA 560 in Pipes of {} triangles, every joint by the angle up or down; {} colliding and {} free steps each, "
-      "the fastest of {} runs.\nThe paper's own scene of that name is another one; its size isn't known. SV: culling "
-      "by "
-      "visibility, executor {}{}.\nprinted : and written : are the factors by which a total is below the printed one "
-      "and "
-      "below that of redon2004-as-written without SV.\n\n{}\n{}",
+      "PUMA 560 in Pipes of {} triangles, every joint by the angle up or down;\n"
+      "{} colliding and {} free steps each, the fastest of {} runs. The paper's own scene of\n"
+      "that name is another one; its size isn't known.\n"
+      "SV: culling by visibility, executor {}{}.\n"
+      "printed : and written : are the factors by which a total is below the printed one\n"
+      "and below that of redon2004-as-written without SV.\n\n{}",
       o.triangles, o.queries, o.queries, o.passes, executor,
-      executor == o.executor ? "" : fmt::format(" ({})", culler->fallbackReason()), textOf(table, 3, 3, 11),
-      textOf(table, 3, 11, table.columns.size()));
+      executor == o.executor ? "" : fmt::format("\n({})", culler->fallbackReason()), textOf(table, 3));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) files::write(o.csv, csvOf(table));
   if (!o.svg.empty()) files::write(o.svg, svgOf(groups, variants, o));

@@ -157,8 +157,8 @@ class Composer {
     for (const LinkGeometry& g : robot.geometry) {
       parts_.push_back({g.link, g.offset, surfaces_.of(g.object->collisionGeometry().get())});
     }
-    for (const CertifiedContact& c : result.contacts) {
-      for (const BodyRef* body : {&c.body1, &c.body2}) {
+    if (const CertifiedContact* c = contact()) {
+      for (const BodyRef* body : {&c->body1, &c->body2}) {
         if (body->link >= 0)
           touching_links_.insert(body->link);
         else
@@ -246,13 +246,13 @@ class Composer {
   /// The stage with the annotations that this camera calls for.
   Stage stageFor(const Camera& camera) const {
     Stage stage = stage_;
-    for (const CertifiedContact& c : result_.contacts) {
-      const double view_height = 2 * (camera.eye - c.point).norm() * std::tan(kFieldOfView / 2);
+    if (const CertifiedContact* c = contact()) {
+      const double view_height = 2 * (camera.eye - c->point).norm() * std::tan(kFieldOfView / 2);
       Triangles mark;
-      addBall(mark, c.point, 0.0085 * view_height);
-      const Vector3d tip = c.point + 0.13 * view_height * c.normal;
-      const Vector3d neck = c.point + 0.095 * view_height * c.normal;
-      addRod(mark, c.point, neck, 0.0032 * view_height, 0.0032 * view_height);
+      addBall(mark, c->point, 0.0085 * view_height);
+      const Vector3d tip = c->point + 0.13 * view_height * c->normal;
+      const Vector3d neck = c->point + 0.095 * view_height * c->normal;
+      addRod(mark, c->point, neck, 0.0032 * view_height, 0.0032 * view_height);
       addRod(mark, neck, tip, 0.0105 * view_height, 0);
       stage.annotations.push_back(annotation(mark, kMarker, 0.35f));
     }

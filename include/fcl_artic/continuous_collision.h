@@ -31,8 +31,9 @@ namespace fcl_artic {
 //   OcTree that stands still only the cells near the other object's path are read, so that a large map costs little; of
 //   one that moves, and against what is unbounded, all.
 // - Of the request, toc_err is the wanted tolerance of time (1e-12 if it is less, such as 0), and ccd_motion_type the
-//   way between two transforms. num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one
-//   answer.
+//   way between two transforms. A toc_err of 1 or more asks whether there is contact, not when (ContactMode::any): the
+//   cheapest question; the returned time is then often 0, and free is as certain as ever. num_max_iterations,
+//   gjk_solver_type and ccd_solver_type have no effect: there is one answer.
 // - Geometries, motions and objects are only read: many threads may share them. Neither the state that a motion's
 //   integrate() left nor an object's AABB matters.
 // - Nothing is printed.
@@ -46,7 +47,8 @@ namespace fcl_artic {
 /// @param o1, o2  any geometries but point clouds; must outlive the call only.
 /// @param motion1, motion2  TranslationMotion, InterpMotion, ScrewMotion, SplineMotion, FclLinkMotion, or a class that
 ///   is a BoundedMotion too; pose of the geometry in the world, m.
-/// @param request  toc_err is the wanted tolerance of time (at least 1e-12 is used); nothing else is read.
+/// @param request  toc_err is the wanted tolerance of time (at least 1e-12 is used; of 1 or more: any contact will do);
+///   nothing else is read.
 /// @param[out] result  written in full, with the poses at the returned time; contact at t = 0 if this throws.
 /// @return a time in [0, 1] before which contact is proven to be impossible; 1 also without contact
 ///   (result.is_collide).
@@ -63,7 +65,8 @@ FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionGeometry<S>* o1, const 
 /// @param request  ccd_motion_type is the way between the poses: CCDM_TRANS (FCL's default) goes straight, keeps the
 ///   start's rotation and drops the end's; CCDM_LINEAR turns about the geometry's origin while that goes straight;
 ///   CCDM_SCREW turns about an axis and slides along it. CCDM_SPLINE, an empty stub in FCL, throws: two poses don't
-///   make a spline. toc_err is the wanted tolerance of time (at least 1e-12 is used).
+///   make a spline. toc_err is the wanted tolerance of time (at least 1e-12 is used; of 1 or more: any
+///   contact will do).
 /// @param[out] result  written in full, with the poses at the returned time; contact at t = 0 if this throws.
 /// @return a time in [0, 1] before which contact is proven to be impossible; 1 also without contact
 ///   (result.is_collide).
@@ -90,7 +93,8 @@ FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionObject<S>* o1, const fc
                                      fcl::ContinuousCollisionResult<S>& result);
 
 /// Finds the first contact of two objects along their own motions, with FCL's signature and a proven answer.
-/// @param request  toc_err is the wanted tolerance of time (at least 1e-12 is used); nothing else is read.
+/// @param request  toc_err is the wanted tolerance of time (at least 1e-12 is used; of 1 or more: any contact will do);
+///   nothing else is read.
 /// @param[out] result  written in full, with the poses at the returned time; contact at t = 0 if this throws.
 /// @return a time in [0, 1] before which contact is proven to be impossible; 1 also without contact
 ///   (result.is_collide).

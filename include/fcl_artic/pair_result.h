@@ -12,8 +12,7 @@ namespace fcl_artic {
 /// The answer for two moving objects: verdict and bracket (Bracket), contacts, poses, work. A query writes every field;
 /// if it throws, the result is reset to its defaults.
 struct CertifiedPairResult : Bracket {
-  /// At most CertifiedPairRequest::max_contacts: proven contacts in the order of their t_upper, then the others in the
-  /// order of their t_lower. Empty if the motion is free or undecided.
+  /// The first contact, if CertifiedPairRequest::max_contacts is not 0. Empty if the motion is free or undecided.
   std::vector<CertifiedContact> contacts;
   /// Poses of the objects in the world at t_lower, before which they are proven not to touch; at t = 1 if free.
   Eigen::Isometry3d tf1_at_lower = Eigen::Isometry3d::Identity(), tf2_at_lower = Eigen::Isometry3d::Identity();

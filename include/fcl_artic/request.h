@@ -104,10 +104,9 @@ struct Scope {
 struct CertifiedPairRequest : Tolerances, Effort {
   /// Which contacts are looked for. A query of two bodies has one pair: `firstOfEveryPair` is `first` there.
   ContactMode mode = ContactMode::first;
-  /// Maximum number of contacts reported; t_lower and t_upper take all contacts into account, also with 0. With `first`
-  /// each contact reported may be the first: none begins after t_upper. With `firstOfEveryPair` contacts are in the
-  /// order of their t_lower; if there are too many, every pair's first contact is kept before any pair's second one,
-  /// and the earliest of these. A ContinuousCollisionManager applies the number to each pair.
+  /// Maximum number of contacts reported, each of another pair of bodies; t_lower and t_upper take all contacts into
+  /// account, also with 0. With `first` each contact reported may be the first: none begins after t_upper. If there are
+  /// too many, the earliest are kept. A query of two bodies has one contact at most.
   std::size_t max_contacts = 1;
   /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. They are left out
   /// until the first time interval, among those examined (1/8, 1/64, 1/512 of the motion), on which they are proven

@@ -110,10 +110,9 @@ struct QueryStatistics : StandardStatistics {
 /// The answer of an ArticulatedCollisionManager: verdict and bracket (Bracket), contacts, work. A query writes every
 /// field; if it throws, the result is reset: `undecided`, t_lower at the motion's begin, no contacts.
 struct CertifiedResult : Bracket {
-  /// At most CertifiedRequest::max_contacts: proven contacts in the order of their t_upper, then the others in the
-  /// order of their t_lower; with ContactMode::firstOfEveryPair all in the order of their t_lower. Empty if the motion
-  /// is free. `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran
-  /// out.
+  /// The first contact of every two bodies, in the order of their t_lower, at most CertifiedRequest::max_contacts; if
+  /// the result is `certain`, the first one is that which is proven first. Empty if the motion is free.
+  /// `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran out.
   std::vector<CertifiedContact> contacts;
   /// Pose of every link at t_lower, link to world, in the order of the links; empty if the motion is free.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
@@ -126,6 +125,9 @@ struct CertifiedResult : Bracket {
   /// Work of the query.
   QueryStatistics statistics;
 
+  /// Whether the motion is free because no pair of bodies was to be checked: no geometry, or all pairs are allowed or
+  /// out of scope.
+  [[nodiscard]] bool nothingChecked() const { return status == Status::free && statistics.pairs == 0; }
   /// The first of the contacts; null if there is none: the motion is free or undecided, or max_contacts is 0. It points
   /// into this result.
   const CertifiedContact* first() const& { return contacts.empty() ? nullptr : &contacts.front(); }
@@ -143,11 +145,11 @@ FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, Status status);
 /// Prints toString(kind).
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, FeatureKind kind);
-/// Prints verdict and bracket on one line as for a Bracket, and what a verdict of `free` leaves out: "free: proven, but
-/// for 3 allowed pairs not proven apart".
-FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedResult& result);
 /// Prints verdict and bracket on one line, without a line end: "contact within [0.25, 0.2500001], proven".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const Bracket& bracket);
+/// Prints verdict and bracket on one line, without a line end, and what a verdict of `free` leaves out: "free: proven, but
+/// for 3 allowed pairs not proven apart", "free: nothing was checked, there is no pair of bodies".
+FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedResult& result);
 /// Prints on one line, without a line end, which bodies touch, with which features, when and where.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact);
 

@@ -28,10 +28,10 @@ std::string number(std::size_t k) {
 
 void requireTimes(const std::vector<double>& times) {
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (!std::isfinite(times[k])) throw std::invalid_argument("trajectory: time " + number(k) + " is not finite");
+    if (!std::isfinite(times[k])) throw std::invalid_argument("trajectory: times[" + number(k) + "] is not finite");
     if (k > 0 && !(times[k] > times[k - 1] && std::isfinite(times[k] - times[k - 1]))) {
-      throw std::invalid_argument("trajectory: time " + number(k) + ", " + shown(times[k]) +
-                                  ", is not later than the one before, " + shown(times[k - 1]));
+      throw std::invalid_argument("trajectory: times[" + number(k) + "] = " + shown(times[k]) +
+                                  " is not later than times[" + number(k - 1) + "] = " + shown(times[k - 1]));
     }
   }
   // Parts of the whole are what obstacles that move go by.

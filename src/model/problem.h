@@ -85,6 +85,7 @@ struct Problem {
   const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
   std::int32_t num_scene_pairs = 0;
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
+  std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
   const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
   const StillBounds* still_bounds = nullptr;    ///< of obstacle o
   std::int32_t num_obstacles = 0;

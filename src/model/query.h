@@ -22,7 +22,7 @@ struct Query {
   Margins margins;
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   bool any = false;               ///< stop at the first contact that is proven, wherever on the way it is
-  std::int32_t max_contacts = 1;  ///< with every_pair: of each pair
+  std::int32_t max_contacts = 1;  ///< each of another pair; the search does not depend on it
   /// With ignore_initial: the only pairs whose initial contact may be ignored.
   const std::int32_t* may_ignore = nullptr;
   std::int32_t num_may_ignore = -1;  ///< -1: that of all pairs may

@@ -16,7 +16,6 @@ struct ArticulatedCollisionManager::Aspects {
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<std::int32_t>* may_ignore = nullptr;
   std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
-  std::vector<std::int32_t>* pairs = nullptr;        ///< out: the pair of each contact
 };
 
 }  // namespace fcl_artic

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "fcl/fcl_geometry.h"
@@ -58,7 +59,8 @@ engine::Query makeQuery(const CertifiedPairRequest& request) {
   query.any = request.mode == ContactMode::any && request.method == Method::standard;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
-  query.max_contacts = static_cast<std::int32_t>(std::min<std::size_t>(request.max_contacts, 1u << 20));
+  // A link may have several geometries: more than one contact is chosen when all are known (keepFirstOfEachPair).
+  query.max_contacts = request.max_contacts <= 1 ? static_cast<std::int32_t>(request.max_contacts) : 1 << 20;
   query.work_budget = request.work_budget;
   if (request.progress) {
     query.progress = [](void* context, double t_lower) {
@@ -90,26 +92,27 @@ std::uint64_t countedWork(const QueryStatistics& s) {
   return s.node_tests + s.leaf_tests + redon::workOf(s.redon);
 }
 
-void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts) {
-  struct Place {
-    std::size_t contact;
-    int number;  ///< among its pair's
-  };
-  std::vector<Place> places;
-  std::map<std::int32_t, int> seen;
-  for (std::size_t i = 0; i < contacts.size(); ++i) places.push_back({i, seen[pairs[i]]++});
-  const auto earlier = [&](const Place& a, const Place& b) {
-    return contacts[a.contact].t_lower < contacts[b.contact].t_lower;
-  };
-  std::stable_sort(places.begin(), places.end(), [&](const Place& a, const Place& b) {
-    return a.number != b.number ? a.number < b.number : earlier(a, b);
+void keepFirstOfEachPair(bool certain, std::vector<CertifiedContact>& contacts) {
+  if (contacts.size() < 2) return;
+  std::stable_sort(contacts.begin(), contacts.end(), [](const CertifiedContact& x, const CertifiedContact& y) {
+    return std::make_tuple(x.t_lower, !x.certain, x.t_upper) < std::make_tuple(y.t_lower, !y.certain, y.t_upper);
   });
-  if (places.size() > most) places.resize(most);
-  std::stable_sort(places.begin(), places.end(), earlier);
-  std::vector<CertifiedContact> kept;
-  kept.reserve(places.size());
-  for (const Place& place : places) kept.push_back(std::move(contacts[place.contact]));
-  contacts = std::move(kept);
+  if (certain) {
+    // What proves the answer comes first, though another one that is not proven, or later, may begin a little earlier:
+    // its bracket then begins with that one's. (A pair that is free before a time is so before an earlier one.)
+    const auto proof = std::min_element(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
+      return std::make_tuple(!x.certain, x.t_upper) < std::make_tuple(!y.certain, y.t_upper);
+    });
+    if (proof->certain) {
+      proof->t_lower = contacts.front().t_lower;
+      std::rotate(contacts.begin(), proof, proof + 1);
+    }
+  }
+  std::set<std::pair<std::string, std::string>> seen;
+  const auto again = [&](const CertifiedContact& contact) {
+    return !seen.insert(std::minmax(contact.body1.name, contact.body2.name)).second;
+  };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), again), contacts.end());
 }
 
 }  // namespace fcl_artic

@@ -68,9 +68,9 @@ void addWork(const QueryStatistics& s, QueryStatistics& sum);
 /// What a work budget counts of a query's work.
 std::uint64_t countedWork(const QueryStatistics& s);
 
-/// Puts contacts in the order of their t_lower and leaves `most` of them: the first one of every pair before any pair's
-/// second, and of these the earliest.
-/// @param pairs  of each contact; those of one pair in the order in which they are wanted.
-void keepEarliest(std::size_t most, const std::vector<std::int32_t>& pairs, std::vector<CertifiedContact>& contacts);
+/// Puts a manager's contacts in the order of their t_lower and leaves the first one of every two bodies: a link may
+/// have several geometries.
+/// @param certain  of the answer: its first contact is the one that is proven first.
+void keepFirstOfEachPair(bool certain, std::vector<CertifiedContact>& contacts);
 
 }  // namespace fcl_artic

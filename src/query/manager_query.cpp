@@ -158,12 +158,8 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
                                                 CertifiedResult& result) const {
-  Aspects aspects;
-  if (request.mode != ContactMode::firstOfEveryPair) return collideMotion(motion, request, aspects, result);
-  std::vector<std::int32_t> pairs;
-  aspects.pairs = &pairs;
-  collideMotion(motion, request, aspects, result);
-  keepEarliest(request.max_contacts, pairs, result.contacts);
+  collideMotion(motion, request, Aspects(), result);
+  if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
@@ -207,16 +203,13 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(report(registry, motion, aspects.time, answer.contacts[i]));
   }
+  keepFirstOfEachPair(result.certain, result.contacts);
   result.M_0_at_lower.clear();
   if (!result.isFree()) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.ignored_initial_contacts.clear();
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
                                                  registry.body(answer.ignored[i].body_b).reference());
-  }
-  if (aspects.pairs) {
-    aspects.pairs->clear();
-    for (std::int32_t i = 0; i < answer.num_contacts; ++i) aspects.pairs->push_back(answer.contacts[i].pair);
   }
   if (aspects.never_apart) {
     aspects.never_apart->clear();

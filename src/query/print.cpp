@@ -73,7 +73,11 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
 }
 
 std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
-  out << static_cast<const Bracket&>(result);
+  if (result.nothingChecked()) {
+    out << "free: nothing was checked, there is no pair of bodies";
+  } else {
+    out << static_cast<const Bracket&>(result);
+  }
   const std::size_t n = result.unproven_allowed_pairs;
   if (result.isFree() && n > 0)
     out << ", but for " << n << " allowed pair" << (n == 1 ? "" : "s") << " not proven apart";

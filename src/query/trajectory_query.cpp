@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -69,8 +68,6 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();
   std::vector<std::int32_t> in_contact;  // pairs of which the initial contact has not ended yet
-  std::vector<std::int32_t> pairs_of_part, pairs;
-  std::set<std::int32_t> seen;
   bool contact_found = false;
   CertifiedResult part;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) {
@@ -98,7 +95,6 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
-    aspects.pairs = every_pair ? &pairs_of_part : nullptr;
     collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);
     sum.unproven_allowed_pairs = std::max(sum.unproven_allowed_pairs, part.unproven_allowed_pairs);
@@ -120,24 +116,23 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
     const double proven_by = engine::provenBy(part);
     if (proven_by <= 1) sum.t_upper = std::min(sum.t_upper, clock.upper(proven_by));
-    for (std::size_t i = 0; i < part.contacts.size(); ++i) {
-      if (every_pair && seen.count(pairs_of_part[i])) continue;
-      CertifiedContact& contact = part.contacts[i];
+    for (CertifiedContact& contact : part.contacts) {
       contact.t_lower = clock.lower(contact.t_lower);
       contact.t_upper = contact.certain ? clock.upper(contact.t_upper) : trajectory.endTime();
       contact.approach_speed /= clock.duration();
-      sum.contacts.push_back(contact);
-      if (every_pair) pairs.push_back(pairs_of_part[i]);
+      sum.contacts.push_back(std::move(contact));
     }
-    seen.insert(pairs.begin(), pairs.end());
+    keepFirstOfEachPair(sum.certain, sum.contacts);
     if (contact_found && part.status == Status::undecided) {
       sum.status = Status::undecided;
       sum.certain = false;
     }
     contact_found = contact_found || part.status == Status::contact;
-    if (!every_pair || part.status == Status::undecided || seen.size() >= request.max_contacts) break;
+    if (!every_pair || part.status == Status::undecided || sum.contacts.size() >= request.max_contacts) {
+      break;
+    }
   }
-  if (every_pair) keepEarliest(request.max_contacts, pairs, sum.contacts);
+  if (sum.contacts.size() > request.max_contacts) sum.contacts.resize(request.max_contacts);
   result = std::move(sum);
 }
 

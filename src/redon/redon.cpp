@@ -258,11 +258,16 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// Of the contacts from `begin` on those within the bracket, the first one first, as many as are asked for.
+/// Of the contacts from `begin` on those within the bracket, the first one of each pair, as many as are asked for.
 void Run::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
   all.erase(std::remove_if(first, all.end(), [&](const LeafContact& c) { return c.t_lower > bracket; }), all.end());
+  std::stable_sort(first, all.end(), [](const LeafContact& x, const LeafContact& y) {
+    return x.pair != y.pair ? x.pair < y.pair : engine::comesBefore(x, y);
+  });
+  const auto samePair = [](const LeafContact& x, const LeafContact& y) { return x.pair == y.pair; };
+  all.erase(std::unique(first, all.end(), samePair), all.end());
   std::stable_sort(first, all.end(), engine::comesBefore);
   all.resize(std::min(all.size(), begin + static_cast<std::size_t>(query_.max_contacts)));
 }
@@ -313,7 +318,7 @@ void Run::solve(Answer& answer) {
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
   const bool certain = contact && engine::isCertain(FirstContact{t_lower, t_upper}, query_.tolerance_time, false);
-  // Nothing is dropped before t_lower and t_upper are known. (With every pair max_contacts is of each.)
+  // Nothing is dropped before t_lower and t_upper are known.
   if (!query_.every_pair) keepFirst(0, certain ? t_upper : t_lower + query_.tolerance_time);
   const bool undecided = out_of_budget || (!contact && t_lower < 1);
   const FirstContact first = contact || undecided ? FirstContact{t_lower, t_upper} : FirstContact();

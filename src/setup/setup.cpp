@@ -48,6 +48,7 @@ engine::Problem Setup::problem() const {
   p.num_link_pairs = static_cast<std::int32_t>(link_pairs_.size());
   p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * obstacle_bodies_.size());
   p.scene_allowed = scene_allowed_.empty() ? nullptr : scene_allowed_.data();
+  p.num_scene_allowed = num_scene_allowed_;
   p.obstacles = obstacle_bodies_.data();
   p.num_obstacles = static_cast<std::int32_t>(obstacle_bodies_.size());
   p.obstacle_tree = obstacle_tree_.empty() ? nullptr : obstacle_tree_.data();

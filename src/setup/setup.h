@@ -65,6 +65,7 @@ class Setup {
   std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
   std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
   std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
+  std::int32_t num_scene_allowed_ = 0;
   std::vector<engine::Node> obstacle_tree_;
   std::vector<engine::StillBounds> still_bounds_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions

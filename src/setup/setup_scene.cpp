@@ -123,9 +123,12 @@ void Setup::buildObstacles(const Registry& registry) {
 void Setup::allowScenePairs(const Registry& registry) {
   const std::vector<ManagedBody>& obstacles = registry.obstacles();
   scene_allowed_.clear();
+  num_scene_allowed_ = 0;
   const auto allow = [&](std::size_t m, std::size_t o) {
     scene_allowed_.resize(num_links_ * obstacles.size(), 0);
-    scene_allowed_[m * obstacles.size() + o] = 1;
+    std::uint8_t& allowed = scene_allowed_[m * obstacles.size() + o];
+    num_scene_allowed_ += !allowed;
+    allowed = 1;
   };
   const auto link = [&](std::size_t m) -> const ManagedBody& { return registry.body(movers_[m]); };
   std::map<std::string, std::size_t> obstacle_named;

@@ -226,6 +226,74 @@ TEST_F(ProgramTest, PackagesAreFoundWhereTheyAreNamed) {
   EXPECT_EQ(found.status, 0) << found.err;
 }
 
+TEST_F(ProgramTest, ScenesInMillimetresAreNotedAndScaled) {
+  const std::string scene = write("ball.urdf", R"(<robot name="ball">
+  <link name="ball"><collision><origin xyz="300 519.615242270663 0"/><geometry><sphere radius="100"/></geometry></collision></link>
+</robot>)");
+  const std::string query = "check --robot " + arm() + " --scene " + scene + " --from 0,0 --to 90deg,0";
+  const Outcome metres = this->run(query);
+  EXPECT_EQ(metres.status, 0);
+  std::string text = metres.out;
+  for (std::size_t at; (at = text.find("\n            ")) != std::string::npos;) text.replace(at, 13, " ");
+  EXPECT_NE(text.find("no obstacle can be reached: 'ball'"), std::string::npos) << text;
+  EXPECT_NE(text.find("is the scene in millimetres?"), std::string::npos) << text;
+  const Outcome scaled = this->run(query + " --scale 0.001");
+  EXPECT_EQ(scaled.status, 1) << scaled.out;
+  EXPECT_EQ(scaled.out.find("millimetres"), std::string::npos) << scaled.out;
+}
+
+TEST_F(ProgramTest, NothingCheckedIsSaid) {
+  const std::string query = "check " + armAndBall() + " --from 0,0 --to 1,0 --no-self --no-scene";
+  const Outcome run = this->run(query);
+  EXPECT_EQ(run.status, 0);
+  EXPECT_EQ(run.out.rfind("FREE: nothing was checked", 0), 0u) << run.out;
+  EXPECT_EQ(Json::parse(this->run(query + " --json").out).at("nothing_checked"), true);
+  EXPECT_EQ(Json::parse(this->run("check --json " + armAndBall() + " --from 0,0 --to 0,0").out).at("nothing_checked"),
+            false);
+}
+
+TEST_F(ProgramTest, ContactAtTheStartIsNotFreeBefore) {
+  const std::string motion = " --from " + std::to_string(kContactAngle + 0.01) + ",0 --to 0,0";
+  const Outcome run = this->run("check " + armAndBall() + motion);
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(run.out.find("free before"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("--ignore-initial-contact"), std::string::npos) << run.out;
+  // A base that stands exactly on its floor: nearer than can be decided.
+  const std::string floor = write("floor.urdf", R"(<robot name="floor"><link name="floor"><collision>
+    <origin xyz="0 0 -0.1"/><geometry><box size="4 4 0.1"/></geometry></collision></link></robot>)");
+  const Outcome stands = this->run("check --robot " + arm() + " --scene " + floor + " --from 0,0 --to 1,0");
+  EXPECT_EQ(stands.status, 1);
+  EXPECT_EQ(stands.out.find("free before"), std::string::npos) << stands.out;
+  EXPECT_NE(stands.out.find("--ignore-initial-contact"), std::string::npos) << stands.out;
+}
+
+TEST_F(ProgramTest, ErrorsHaveOneStyleAndTellWhatWasMeant) {
+  const std::string motion = " --from 0,0 --to 1,0", query = "check " + armAndBall() + motion;
+  const std::string robot = arm();
+  const struct {
+    std::string arguments, said;
+  } cases[] = {
+      {"chek", "'chek' is neither a verb nor an option of fcl_artic; did you mean 'check'?"},
+      {"bench tabel1", "'tabel1' is neither a verb nor an option of 'bench'; did you mean 'table1'?"},
+      {"check --rboot " + robot + motion, "'--rboot' is no option of 'check'; did you mean '--robot'?"},
+      {query + " --every-pairs=1", "'--every-pairs' is no option of 'check'; did you mean '--every-pair'?"},
+      {query + " --zzzzzz", "'--zzzzzz' is no option of 'check'\n"},
+      {"check more " + armAndBall() + motion, "'more' is not an argument of 'check'\n"},
+      {"check --robot " + robot.substr(0, robot.size() - 5) + ".udrf" + motion, "did you mean '" + robot + "'?"},
+      {query + " --margin 5cm", "--margin: '5cm' is not a number of at least 0, without a unit\n"},
+      {query + " --scale 0", "--scale: '0' is not a number above 0, without a unit\n"},
+      {query + " --image a.jpg", "--image: 'a.jpg': pictures are written as PNG; call it 'a.png'\n"},
+      {"check --robot " + robot + " --from 0,0", "--to is required\n"},
+  };
+  for (const auto& c : cases) {
+    const Outcome run = this->run(c.arguments);
+    EXPECT_EQ(run.status, 2) << c.arguments;
+    EXPECT_EQ(run.err.rfind("fcl_artic: error: ", 0), 0u) << run.err;
+    EXPECT_NE(run.err.find(c.said), std::string::npos) << run.err;
+    EXPECT_LT(run.err.size(), 300u) << run.err;
+  }
+}
+
 /// Each refusal exits with 2, prints nothing but an error, and the error names what is wrong.
 TEST_F(ProgramTest, ErrorsAreTwoAndNameTheThing) {
   const std::string robot = "--robot " + arm(), motion = " --from 0,0 --to 1,0";

@@ -8,12 +8,14 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 
 namespace {
 
 using fcl_artic::app::ProgressBar;
+using fcl_artic::app::WaitingNote;
 
 /// What `draw` writes to standard error when that is `file`; read from `from` afterwards.
 std::string written(int file, int from, const std::function<void()>& draw) {
@@ -31,25 +33,55 @@ std::string written(int file, int from, const std::function<void()>& draw) {
 
 void shortThenLong() {
   ProgressBar bar;
-  bar.show(0.25);
+  bar.showFree(0.25, 2.5);
   std::this_thread::sleep_for(std::chrono::milliseconds(1050));
-  bar.show(0.5);
+  bar.showFree(0.5, 5);
   bar.show(0.75);  // too soon after the last one
 }
 
-TEST(ProgressBar, ShowsOnATerminalAfterASecond) {
+/// What `draw` writes to a terminal; nothing where none can be had.
+std::optional<std::string> onATerminal(const std::function<void()>& draw) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
-  if (terminal < 0 || grantpt(terminal) || unlockpt(terminal))
-    GTEST_SKIP() << "ProgressBar: no terminal to be had here";
+  if (terminal < 0 || grantpt(terminal) || unlockpt(terminal)) return std::nullopt;
   const int side = open(ptsname(terminal), O_RDWR | O_NOCTTY);
-  ASSERT_GE(side, 0);
-  const std::string text = written(side, terminal, shortThenLong);
-  EXPECT_EQ(text.find("0.25"), std::string::npos) << text;
-  EXPECT_NE(text.find("[####################....................] free up to t = 0.5000"), std::string::npos) << text;
-  EXPECT_EQ(text.find("0.75"), std::string::npos) << text;
-  EXPECT_EQ(text.substr(text.size() - 4), "\r\x1b[K") << "the bar is wiped";
+  if (side < 0) return std::nullopt;
+  const std::string text = written(side, terminal, draw);
   close(side);
   close(terminal);
+  return text;
+}
+
+TEST(ProgressBar, ShowsOnATerminalAfterASecond) {
+  const auto written = onATerminal(shortThenLong);
+  if (!written) GTEST_SKIP() << "ProgressBar: no terminal to be had here";
+  const std::string& text = *written;
+  EXPECT_EQ(text.find("2.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("[####################....................] free up to t = 5.0000"), std::string::npos) << text;
+  EXPECT_EQ(text.find("75 %"), std::string::npos) << text;
+  EXPECT_EQ(text.substr(text.size() - 4), "\r\x1b[K") << "the bar is wiped";
+}
+
+TEST(ProgressBar, SaysPercentWhereThereIsNoTime) {
+  const auto text = onATerminal([] {
+    ProgressBar bar;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1050));
+    bar.show(0.5);
+  });
+  if (!text) GTEST_SKIP() << "ProgressBar: no terminal to be had here";
+  EXPECT_NE(text->find("....] 50 %"), std::string::npos) << *text;
+  EXPECT_EQ(text->find("t ="), std::string::npos) << *text;
+}
+
+TEST(WaitingNote, CountsSecondsOnATerminal) {
+  const auto text = onATerminal([] {
+    const WaitingNote note("drawing a.png");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1300));
+  });
+  if (!text) GTEST_SKIP() << "WaitingNote: no terminal to be had here";
+  EXPECT_NE(text->find("drawing a.png, 1 s"), std::string::npos) << *text;
+  EXPECT_EQ(text->substr(text->size() - 4), "\r\x1b[K") << "it is wiped";
+  const auto soon = onATerminal([] { const WaitingNote note("drawing a.png"); });
+  EXPECT_EQ(soon.value_or(""), "");
 }
 
 TEST(ProgressBar, IsSilentElsewhere) {

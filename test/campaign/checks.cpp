@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "random.h"
 
@@ -84,7 +87,6 @@ class Examination {
     }
     double first_lower = 1;
     bool touches = truth_.hit && truth_.time <= result_.t_upper;
-    std::set<std::pair<int, int>> seen;
     const auto checked = oracle_.kinematics().pairs();
     for (const CertifiedContact& c : result_.contacts) {
       const int a = answer_.bodyOf(c.body1.object), b = answer_.bodyOf(c.body2.object);
@@ -98,7 +100,6 @@ class Examination {
           c.body2.link != scene_.bodies[static_cast<std::size_t>(b)].link || c.o1 != geometry(a).fclGeometry().get() ||
           c.o2 != geometry(b).fclGeometry().get())
         add(Fault::fields, "contact of bodies %d and %d: link, name or geometry is another's", a, b);
-      seen.insert(std::minmax(a, b));
       bracket(c.t_lower, c.t_upper);
       first_lower = std::min(first_lower, c.t_lower);
       touches = touches || touchesWithin(a, b, result_.t_lower, result_.t_upper);
@@ -108,7 +109,7 @@ class Examination {
       add(Fault::fields, "t_lower %.17g, that of its contacts %.17g", result_.t_lower, first_lower);
     if (result_.certain && !touches)
       add(Fault::unproven, "no contact in [%.17g, %.17g]", result_.t_lower, result_.t_upper);
-    if (scene_.every_pair) everyPair(seen);
+    if (scene_.every_pair) everyPair();
   }
 
   bool touchesWithin(int a, int b, double from, double to) const {
@@ -163,21 +164,23 @@ class Examination {
     }
   }
 
-  /// Contacts of one pair of bodies stand for several pairs of pieces: the earliest of them is the pair's.
-  void everyPair(const std::set<std::pair<int, int>>& seen) {
+  /// Of two bodies of the manager's, links or obstacles, one contact is reported; a link may have several geometries.
+  void everyPair() {
+    using Names = std::pair<std::string, std::string>;
+    std::map<Names, double> lower;
+    for (const CertifiedContact& c : result_.contacts) {
+      if (!lower.emplace(Names(std::minmax(c.body1.name, c.body2.name)), c.t_lower).second)
+        add(Fault::fields, "two contacts of %s and %s", c.body1.name.c_str(), c.body2.name.c_str());
+    }
     for (const PairTruth& p : truth_.pairs) {
       if (!p.hit) continue;
-      if (!seen.count({p.a, p.b})) {
+      const std::string a = scene_.nameOf(p.a), b = scene_.nameOf(p.b);
+      const auto found = lower.find(Names(std::minmax(a, b)));
+      if (found == lower.end())
         add(Fault::missed, "pair %d %d not reported, contact at t = %.17g", p.a, p.b, p.time);
-        continue;
-      }
-      double lower = 1;
-      for (const CertifiedContact& c : result_.contacts)
-        if (std::minmax({answer_.bodyOf(c.body1.object), answer_.bodyOf(c.body2.object)}) == std::pair(p.a, p.b))
-          lower = std::min(lower, c.t_lower);
-      if (lower > p.time)
-        add(Fault::late, "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, lower, p.time,
-            lower - p.time);
+      else if (found->second > p.time)
+        add(Fault::late, "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, found->second,
+            p.time, found->second - p.time);
     }
   }
 

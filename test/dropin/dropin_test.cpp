@@ -417,6 +417,46 @@ TEST(DropIn, TocErrIsTheToleranceOfTime) {
   EXPECT_GT(widest, 1e-12);  // else nothing was tested
 }
 
+// A toc_err of 1 asks whether, not when: any proven contact will do.
+TEST(DropIn, TocErrOfOneAsksForAnyContact) {
+  const auto cube = std::make_shared<fcl::Boxd>(1, 1, 1);
+  const TranslationMotiond rest(at(0, 0), at(0, 0));
+  int early = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double y = -2 + 0.04 * i;  // within 1: it passes through
+    const TranslationMotiond through(at(-3, y), at(3, y));
+    ContinuousCollisionRequestd request;
+    ContinuousCollisionResultd fine, any;
+    fcl_artic::continuousCollide<double>(cube.get(), &through, cube.get(), &rest, request, fine);
+    for (const double toc_err : {1.0, 7.0}) {
+      request.toc_err = toc_err;
+      const double t = fcl_artic::continuousCollide<double>(cube.get(), &through, cube.get(), &rest, request, any);
+      EXPECT_EQ(any.is_collide, fine.is_collide) << y;
+      EXPECT_LE(t, fine.time_of_contact + 1e-12) << y;
+      EXPECT_EQ(t, any.time_of_contact);
+      EXPECT_LT((any.contact_tf1.translation() - at(-3 + 6 * t, y).translation()).norm(), 1e-12);
+      early += t < fine.time_of_contact - 0.01;
+    }
+  }
+  EXPECT_GT(early, 20) << "not when: the first one is not looked for";
+}
+
+// A bracket narrower than asked for answers the question as well; it is what costs least.
+TEST(DropIn, LooserTocErrIsNoDearer) {
+  const auto cube = std::make_shared<fcl::Boxd>(1, 1, 1);
+  const auto ask = [&](double toc_err) {
+    const fcl::ScrewMotion<double> turn(Eigen::Matrix3d::Identity(), Vector3d(3, 0, 0),
+                                        Eigen::AngleAxisd(2, Vector3d::UnitZ()).toRotationMatrix(), Vector3d(0, 1, 0));
+    const TranslationMotiond rest(at(0, 0), at(0, 0));
+    ContinuousCollisionRequestd request;
+    request.toc_err = toc_err;
+    ContinuousCollisionResultd result;
+    return fcl_artic::continuousCollide<double>(cube.get(), &turn, cube.get(), &rest, request, result);
+  };
+  EXPECT_EQ(ask(1e-4), ask(0.1));
+  EXPECT_EQ(ask(1e-4), ask(0.999));
+}
+
 // CCDM_TRANS drops the end's rotation, the others don't: a bar of 4 m beside a ball, that would hit it when it turned.
 TEST(DropIn, MotionTypeChoosesTheWay) {
   const fcl::Boxd bar(4, 0.2, 0.2);

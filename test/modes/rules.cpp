@@ -8,8 +8,8 @@ namespace modes {
 
 using namespace fcl_artic;
 
-const char* const kRuleNames[kNumRules] = {"bracket", "most", "budget",  "ordered", "pairs",
-                                           "ignored", "cut",  "sampled", "proven"};
+const char* const kRuleNames[kNumRules] = {"bracket", "most",    "order", "budget",  "ordered",
+                                           "pairs",   "ignored", "cut",   "sampled", "proven"};
 
 void Tally::add(const Tally& other) {
   for (std::size_t i = 0; i < kNumRules; ++i) {
@@ -93,6 +93,7 @@ class Check {
     for (const Asked& a : asked_) {
       bracket(a);
       most(a);
+      order(a);
       budget(a);
     }
     for (const Asked& a : asked_) {
@@ -142,10 +143,20 @@ class Check {
     if (contacts.size() > 1) ++tally_.telling[kMost];
     bool good = contacts.size() <= a.request.max_contacts;
     if (a.request.max_contacts > 0 && a.result.status == Status::contact) good = good && !contacts.empty();
-    if (a.request.mode == ContactMode::firstOfEveryPair && !world_.isPair()) {
-      for (std::size_t i = 1; i < contacts.size(); ++i) good = good && contacts[i - 1].t_lower <= contacts[i].t_lower;
-    }
+    if (world_.isPair()) good = good && contacts.size() <= 1;
     hold(kMost, good, describe(a));
+  }
+
+  void order(const Asked& a) {
+    const auto& contacts = a.result.contacts;
+    if (contacts.size() > 1) ++tally_.telling[kOrder];
+    bool good = reportedPairs(a.result).size() == contacts.size();
+    for (std::size_t i = 1; i < contacts.size(); ++i) good = good && contacts[i - 1].t_lower <= contacts[i].t_lower;
+    for (const CertifiedContact& contact : contacts) {
+      if (!a.result.certain) break;
+      good = good && contacts.front().certain && (!contact.certain || contacts.front().t_upper <= contact.t_upper);
+    }
+    hold(kOrder, good, describe(a));
   }
 
   void budget(const Asked& a) {
@@ -181,9 +192,8 @@ class Check {
 
   void cut(const Asked& a, const Asked& b) {
     const CertifiedRequest &x = a.request, &y = b.request;
-    if (&a > &b || x.mode != ContactMode::firstOfEveryPair || y.mode != x.mode || x.method != Method::standard ||
-        y.method != x.method || x.work_budget || y.work_budget || x.tolerance_time != y.tolerance_time ||
-        x.tolerance_distance != y.tolerance_distance || std::min(x.max_contacts, y.max_contacts) < 2)
+    if (&a > &b || y.mode != x.mode || x.method != Method::standard || y.method != x.method || x.work_budget ||
+        y.work_budget || x.tolerance_time != y.tolerance_time || x.tolerance_distance != y.tolerance_distance)
       return;
     // (Of a trajectory the pieces after the last contact that is asked for are not looked at; so a budget that is
     // enough for few contacts need not be for many.)

@@ -5,15 +5,15 @@
 //
 //   bracket    0 <= t_lower <= t_upper within the motion; free: at its end; a certain `first` is no wider than the
 //              tolerance of time; a contact's own bracket lies in its motion and begins no earlier than the answer's
-//   most       no more contacts than max_contacts; of every pair, the earliest first, and no pair's second before
-//              another one's first is there
+//   most       no more contacts than max_contacts, none where none is asked for, at least one in contact
+//   order      one contact of each pair, in the order of their t_lower; of a certain answer the one proven first leads
 //   budget     undecided only with a budget
 //   ordered    Question Q asks for all that question P asks for (more pairs, no smaller margins, nothing left out):
 //   what
 //              Q proves free until t_lower, no answer to P proves in contact before; Q = P: all modes, methods, budgets
 //   pairs      a pair with a proven contact is among those of every answer to the same question for every pair
 //   ignored    all answers to one question leave the same pairs out
-//   cut        t_lower and the verdict of every pair do not depend on max_contacts (from 2 on: doc of CertifiedRequest)
+//   cut        t_lower and the verdict do not depend on max_contacts
 //   sampled    FCL's static test at random poses before the latest t_lower finds no contact (of geometry a little
 //   smaller) proven     FCL's distance at a proven contact's t_upper is no more than the margin (and a little)
 //
@@ -47,7 +47,7 @@ struct Asked {
   fcl_artic::CertifiedResult result;
 };
 
-enum Rule { kBracket, kMost, kBudget, kOrdered, kPairs, kIgnored, kCut, kSampled, kProven, kNumRules };
+enum Rule { kBracket, kMost, kOrder, kBudget, kOrdered, kPairs, kIgnored, kCut, kSampled, kProven, kNumRules };
 extern const char* const kRuleNames[kNumRules];
 
 struct Tally {

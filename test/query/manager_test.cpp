@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <thread>
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -170,6 +171,39 @@ TEST(Manager, EveryPairReportsEachPairsFirstContact) {
     EXPECT_GE(c.t_upper, expected - kRounding) << c.body2.name;
   }
   EXPECT_LE(r.t_lower, 0.5 - half_chord + kRounding);
+}
+
+// Free without a pair to check is as proven as any, and yet not what was meant: it is said.
+TEST(Manager, NothingCheckedIsSaid) {
+  const auto said = [](const CertifiedResult& r) {
+    std::ostringstream out;
+    out << r;
+    return out.str();
+  };
+  const std::string nothing = "free: nothing was checked, there is no pair of bodies";
+  CertifiedRequest request;
+  for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
+    for (const Method method : {Method::standard, Method::redon2004}) {
+      request.mode = mode;
+      request.method = method;
+      Cart cart;
+      cart.manager->setup();
+      EXPECT_TRUE(cart.run(0, 1, request).nothingChecked()) << "no obstacle, no other link with geometry";
+      EXPECT_EQ(said(cart.run(0, 1, request)), nothing);
+      const auto far = ball(0.1, {0, 5, 0});
+      cart.manager->registerObject(far.get(), "far");
+      cart.manager->setup();
+      EXPECT_FALSE(cart.run(0, 1, request).nothingChecked());
+      EXPECT_EQ(said(cart.run(0, 1, request)), "free: proven");
+      request.check_scene = false;
+      EXPECT_TRUE(cart.run(0, 1, request).nothingChecked());
+      request.check_scene = true;
+      cart.manager->allow("cart", "far");
+      cart.manager->setup();
+      EXPECT_TRUE(cart.run(0, 1, request).nothingChecked()) << "all pairs are allowed";
+    }
+  }
+  EXPECT_FALSE(CertifiedResult().nothingChecked()) << "undecided";
 }
 
 #if FCL_HAVE_OCTOMAP

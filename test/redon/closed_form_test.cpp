@@ -136,18 +136,15 @@ TEST(ClosedForm, ArmMeetsWallByTheAngleOfItsTip) {
   EXPECT_GT(result.statistics.redon.box_tests, 0u);
 }
 
-TEST(ClosedForm, ParallelEdgesGiveBothEndsOfTheirCommonPart) {
+TEST(ClosedForm, ParallelEdgesMeetAtAnEndOfTheirCommonPart) {
   // Two roofs, ridge on ridge; the common part of the ridges runs from y = 0 to y = 1.
   const auto roof = triangle({0, 0, 0}, {0, 2, 0}, {0.5, 1, -1});
   const auto upside_down = triangle({0, -1, 0}, {0, 1, 0}, {0.3, 0, 1});
   const CertifiedPairResult result = slide(*upside_down, at(0, 0, 0.5), at(0, 0, -0.5), *roof, at(0, 0, 0));
   expectContactAt(result, 0.5);
-  bool from = false, to = false;
-  for (const fcl_artic::CertifiedContact& c : result.contacts) {
-    from = from || (c.point - Vector3d(0, 0, 0)).norm() < 1e-5;
-    to = to || (c.point - Vector3d(0, 1, 0)).norm() < 1e-5;
-  }
-  EXPECT_TRUE(from && to) << result.contacts.size() << " contacts";
+  ASSERT_EQ(result.contacts.size(), 1u);
+  const Vector3d& point = result.contacts[0].point;
+  EXPECT_LT(std::min(point.norm(), (point - Vector3d(0, 1, 0)).norm()), 1e-5) << point.transpose();
 }
 
 TEST(ClosedForm, CoplanarTrianglesMeetInTheirPlane) {
@@ -168,24 +165,16 @@ TEST(ClosedForm, SegmentsAndPointsAsDegenerateTriangles) {
   EXPECT_EQ(slide(*point, at(0, 0.375, 0.01), at(0, -0.625, 0.01), *segment, at(0, 0, 0)).status, Status::free);
 }
 
-TEST(ClosedForm, SimultaneousContactsAreAllReported) {
+TEST(ClosedForm, OfSimultaneousContactsOneIsReported) {
   // Four corners come down on the floor together.
   const auto box = boxMesh(0.5, 0.25, 0.125);
   const auto floor = triangle({-4, -4, 0}, {8, -4, 0}, {-4, 8, 0});
   const CertifiedPairResult result = slide(*box, at(0, 0, 0.625), at(0, 0, -0.375), *floor, at(0, 0, 0));
   expectContactAt(result, 0.5);
   EXPECT_TRUE(result.certain);
-  int corners = 0;
-  for (int c = 0; c < 4; ++c) {
-    const Vector3d corner(c & 1 ? 0.5 : -0.5, c & 2 ? 0.25 : -0.25, 0);
-    for (const fcl_artic::CertifiedContact& contact : result.contacts) {
-      if ((contact.point - corner).norm() < 1e-5) {
-        ++corners;
-        break;
-      }
-    }
-  }
-  EXPECT_EQ(corners, 4) << result.contacts.size() << " contacts";
+  ASSERT_EQ(result.contacts.size(), 1u);
+  const Vector3d& point = result.contacts[0].point;
+  EXPECT_LT((point.cwiseAbs() - Vector3d(0.5, 0.25, 0)).norm(), 1e-5) << "no corner: " << point.transpose();
 }
 
 TEST(ClosedForm, StartInsideASolidIsContactInsideAMeshIsNot) {

@@ -155,20 +155,30 @@ TEST(ContactList, OneGateForAllProofs) {
   EXPECT_EQ(world.horizon.end(), 0.5);
 }
 
-TEST(ContactList, KeepsTheFirstInOrder) {
+TEST(ContactList, KeepsTheFirstOfEachPairInOrder) {
   TwoBalls world;
   world.asPair().query.max_contacts = 2;
   world.begin();
-  const double times[4] = {0.6, 0.2, 0.9, 0.4};
-  for (const double t : times) {
+  const double times[6] = {0.6, 0.2, 0.9, 0.4, 0.3, 0.5};
+  const int pairs[6] = {1, 0, 0, 0, 0, 1};
+  for (int i = 0; i < 6; ++i) {
     LeafContact& contact = world.contacts.grow(0, 0, 0);
-    contact.t_lower = t;
+    contact.pair = pairs[i];
+    contact.t_lower = times[i];
     contact.t_upper = 1;
   }
   world.contacts.order(0, 0.7);
   ASSERT_EQ(world.contacts.size(), 2);
   EXPECT_EQ(world.contacts.data()[0].t_lower, 0.2);
-  EXPECT_EQ(world.contacts.data()[1].t_lower, 0.4);
+  EXPECT_EQ(world.contacts.data()[0].pair, 0);
+  EXPECT_EQ(world.contacts.data()[1].t_lower, 0.5);
+  EXPECT_EQ(world.contacts.data()[1].pair, 1);
+  world.contacts.order(0, 0.7);
+  EXPECT_EQ(world.contacts.size(), 2);
+  world.query.max_contacts = 1;
+  world.contacts.order(0, 0.7);
+  ASSERT_EQ(world.contacts.size(), 1);
+  EXPECT_EQ(world.contacts.data()[0].pair, 0);
 }
 
 TEST(SweptFrames, AreMadeOncePerBatch) {

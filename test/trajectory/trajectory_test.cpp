@@ -494,10 +494,10 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   };
   expectContains(linear({0}, {zero}), "1 waypoints");
   expectContains(linear({0, 1, 2}, {zero, one}), "3 times for 2 waypoints");
-  expectContains(linear({0, 1, 1}, {zero, one, zero}), "time 2, 1, is not later than the one before, 1");
+  expectContains(linear({0, 1, 1}, {zero, one, zero}), "times[2] = 1 is not later than times[1] = 1");
   // Every piece's duration is finite, but not that of the whole.
   expectContains(linear({-1.7e308, 0, 1.7e308}, {zero, one, zero}), "from -1.7e+308 to 1.7e+308 is not finite");
-  expectContains(linear({0, nan}, {zero, one}), "time 1 is not finite");
+  expectContains(linear({0, nan}, {zero, one}), "times[1] is not finite");
   expectContains(linear({0, 1}, {zero, VectorXd::Zero(3)}), "waypoint 1 has 3 entries, robot 'robot' has 2");
   expectContains(linear({0, 1}, {zero, values({0, nan})}), "joint 'slide' is not finite");
   expectContains(linear({0, 1}, {zero, values({0, 2e5})}), "piece 0: q1: the value 2e+05 of joint 'slide'");

@@ -107,6 +107,33 @@ TEST_F(MeshTest, ColladaNodesAndUnitsCountAndUpAxisDoesNot) {
   }
 }
 
+/// Corner k of the triangle, of a file whose up axis counts or does not.
+Eigen::Vector3d corner(const std::string& file, bool up_axis, int k, std::vector<std::string>* notes) {
+  const auto mesh = std::dynamic_pointer_cast<fcl::BVHModel<fcl::OBBRSSd>>(
+      loadMesh(file, Eigen::Vector3d::Ones(), notes, false, up_axis));
+  return mesh->vertices[mesh->tri_indices[0][static_cast<std::size_t>(k)]];
+}
+
+TEST_F(MeshTest, ColladaUpAxisCountsWhereItIsAskedForAndIsNoted) {
+  const struct {
+    const char* up;
+    Eigen::Vector3d turned;  // of (10, 2, 5)
+  } cases[] = {{"Z_UP", {10, 2, 5}}, {"Y_UP", {10, -5, 2}}, {"X_UP", {-2, -5, 10}}};
+  for (const auto& c : cases) {
+    const std::string file = write("a.dae", collada("1", c.up));
+    std::vector<std::string> notes;
+    EXPECT_LT((corner(file, false, 2, &notes) - Eigen::Vector3d(10, 2, 5)).norm(), 1e-6) << c.up;
+    EXPECT_LT((corner(file, true, 2, &notes) - c.turned).norm(), 1e-6)
+        << c.up << ": " << corner(file, true, 2, nullptr).transpose();
+    ASSERT_EQ(notes.size(), c.up[0] == 'Z' ? 0u : 2u);
+    if (notes.empty()) continue;
+    expectContains(notes[0], "taken as it stands");
+    expectContains(notes[1], "turned so that z is");
+    corner(file, false, 2, &notes);
+    EXPECT_EQ(notes.size(), 2u) << "told once";
+  }
+}
+
 TEST_F(MeshTest, DropsTrianglesWithoutAreaWithANote) {
   const std::string file = write("flat.obj",
                                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 0.1 0.3 0.7\nv 0.2 0.6 1.4\nv 0.4 1.2 2.8\n"

@@ -3,7 +3,10 @@
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
+
+#include <limits>
 
 #include "fcl_artic/urdf/urdf.h"
 #include "temp_folder.h"
@@ -271,6 +274,74 @@ TEST_F(SceneTest, FilesCutShortAnywhereAreRefused) {
       expectContains(errorOf(file.name, file.content.substr(0, size)), file.name);
     }
   }
+}
+
+/// The boxes around all obstacles, in the order of the file.
+std::vector<fcl::AABBd> boxesOf(const Scene& scene) {
+  std::vector<fcl::AABBd> boxes;
+  for (const auto& obstacle : scene.obstacles) boxes.push_back(obstacle.object->getAABB());
+  return boxes;
+}
+
+TEST_F(SceneTest, ScaleIsOfAllLengths) {
+  const std::string text = write("s.scene",
+                                 "(s)\n* a\n6\nbox\n1 2 3\n400 0 0\n0 0 0.6 0.8\n0 0 0 0\nsphere\n5\n1 2 3\n0 0 0 1\n"
+                                 "0 0 0 0\ncylinder\n5 7\n1 2 3\n0 0 0 1\n0 0 0 0\ncone\n5 7\n1 2 3\n0 0 0 1\n0 0 0 0\n"
+                                 "plane\n0 0 1 -4\n0 0 0\n0 0 0 1\n0 0 0 0\n"
+                                 "mesh\n3 1\n0 0 0\n1 0 0\n0 2 0\n0 1 2\n1 2 3\n0 0 0 1\n0 0 0 0\n.\n");
+  const std::string mesh = write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  const std::string robot = write("r.urdf", R"(<robot name="r"><link name="a"/><link name="b"><collision>
+    <origin xyz="1 0 0"/><geometry><box size="1 2 3"/></geometry></collision></link>
+    <joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0 5 0"/></joint></robot>)");
+  SceneOptions options;
+  options.scale = 0.001;
+  int compared = 0;
+  for (const std::string& file : {text, mesh, robot}) {
+    const Scene metres = loadScene(file), scaled = loadScene(file, options);
+    const auto big = boxesOf(metres), small = boxesOf(scaled);
+    ASSERT_EQ(big.size(), small.size());
+    for (std::size_t i = 0; i < big.size(); ++i) {
+      const auto* plane = dynamic_cast<const fcl::Planed*>(scaled.obstacles[i].object->collisionGeometry().get());
+      if (plane) {
+        EXPECT_NEAR(plane->d, 0.004, 1e-15);
+        continue;
+      }
+      EXPECT_LT((0.001 * big[i].min_ - small[i].min_).norm(), 1e-9) << file << i;
+      EXPECT_LT((0.001 * big[i].max_ - small[i].max_).norm(), 1e-9) << file << i;
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 7);
+  for (const double none : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    options.scale = none;
+    EXPECT_THROW(loadScene(mesh, options), std::invalid_argument);
+  }
+}
+
+TEST_F(SceneTest, UnitsThatAreNoMetresAreNoted) {
+  // Reaches 1 + 0.5 + sqrt(0.5^2 + 2 0.05^2) m.
+  const Robot robot = loadUrdf(write("arm.urdf", R"(<robot name="arm"><link name="a"/><link name="b"><collision>
+    <origin xyz="0.5 0 0"/><geometry><box size="1 0.1 0.1"/></geometry></collision></link>
+    <joint name="j" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 1 0"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)"));
+  const auto notesOf = [&](const std::string& size, const std::string& at) {
+    return unitNotes(
+        robot, loadScene(write("s.scene", "(s)\n* crate\n1\nbox\n" + size + "\n" + at + "\n0 0 0 1\n0 0 0 0\n.\n")));
+  };
+  EXPECT_TRUE(notesOf("1 1 1", "2.4 0 0").empty());
+  EXPECT_TRUE(notesOf("100 100 0.1", "0 0 0").empty()) << "a floor";
+  auto notes = notesOf("1 1 1", "2.6 0 0");
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "no obstacle can be reached: 'crate', the nearest, is 2.1 m or more");
+  EXPECT_EQ(notes[0].find("scale"), std::string::npos) << notes[0];
+  notes = notesOf("50 50 50", "400 0 0");
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "is 375 m or more from the robot's root, the robot reaches 2.0");
+  expectContains(notes[0], "scale 0.001");
+  notes = notesOf("500 500 500", "400 0 0");
+  ASSERT_EQ(notes.size(), 2u);
+  expectContains(notes[1], "obstacle 'crate' is 500 m long, the robot reaches 2.0");
+  EXPECT_TRUE(unitNotes(robot, Scene()).empty());
 }
 
 TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {

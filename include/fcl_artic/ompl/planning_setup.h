@@ -71,6 +71,19 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(const std::string& urdf, const std:
 FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> manager,
                                              const std::vector<std::string>& joints, const SetupOptions& options = {});
 
+/// Sets up planning for a rigid body that moves freely among obstacles: the manager's tree is one joint, "body", from
+/// the root "world" to the link "body". A state's pose is that of the geometry's own frame in the world, and what is
+/// proven free is the way that StateSpace::interpolate() takes: its origin goes straight while it turns the shorter way
+/// at constant speed (FCL's CCDM_LINEAR about the origin, not CCDM_SCREW).
+/// @param body       any geometry that a manager takes; shared from here on.
+/// @param obstacles  what stands still, as from loadScene(); an obstacle named "world" or "body" gets another name.
+/// @param options    position_lower and position_upper are needed; `fixed` and `urdf` are not used.
+/// @param freedom    JointType::floating for an SE3StateSpace, or JointType::planar, in the plane z = 0, for an
+///   SE2StateSpace.
+/// @throws std::invalid_argument: body null or refused by the manager, a freedom of another type, bounds that are none.
+FCL_ARTIC_EXPORT PlanningSetup setUpRigidBody(std::shared_ptr<fcl::CollisionGeometryd> body, const Scene& obstacles,
+                                              const SetupOptions& options, JointType freedom = JointType::floating);
+
 /// Returns the names of the joints that a group of an SRDF moves, in the tree's order: its chains, joints, links (their
 /// parent joints) and subgroups, without fixed, mimic and passive joints, and those whose limits are one value.
 /// @param srdf   path of the file.

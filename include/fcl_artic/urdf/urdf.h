@@ -49,6 +49,9 @@ struct UrdfOptions {
   /// Whether meshes are solids (SolidMesh), so that what lies within one touches it. A mesh that is not closed and
   /// consistently oriented is an error then. (For some meshes only: apply makeSolid() to the geometries of Robot.)
   bool solid_meshes = false;
+  /// Whether a COLLADA file's up axis counts: what it says is up (y, if it says nothing) becomes z. If not, as in
+  /// RViz and MoveIt, coordinates are taken as they stand, and a file that says that x or y is up is noted.
+  bool collada_up_axis = false;
 };
 
 /// Reads a robot from a URDF file. Meshes may be in any format that assimp reads, with their scale, and are found by
@@ -111,30 +114,41 @@ struct SceneOptions {
   /// OctoMap files: whether unknown cells are obstacles too, within the box around all known cells (octomap's
   /// getMetricMin() to getMetricMax()). If not, unknown space is free.
   bool unknown_cells = false;
-  bool solid_meshes = false;  ///< Whether meshes are solids, as UrdfOptions::solid_meshes.
+  bool solid_meshes = false;     ///< Whether meshes are solids, as UrdfOptions::solid_meshes.
+  bool collada_up_axis = false;  ///< Whether a COLLADA file's up axis counts, as UrdfOptions::collada_up_axis.
+  /// Factor by which all lengths of the scene, positions too, are multiplied: 0.001 for a file in millimetres. Above 0.
+  double scale = 1;
 };
 
 /// Reads a scene. The file's ending decides how: meshes in any format that assimp reads (.obj .stl .ply .dae ...), one
 /// obstacle a file; URDF (.urdf), all links in the neutral configuration as obstacles; MoveIt's scene text (.scene);
 /// OctoMap (.bt .ot), occupied cells as boxes. Names are made unique: further shapes of an object become NAME#2 and so
 /// on.
-/// @throws std::runtime_error naming file and reason.
+/// @throws std::invalid_argument for a scale that is not above 0 and finite; std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Combines several scenes into one, for a robot. An obstacle whose name another one or a link has becomes NAME#2 or
 /// so, with a note. (Allowed pairs and margins go by name.) Objects are shared with the scenes.
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
+/// Compares the extents of a scene with the reach of a robot, and tells what suggests that one of them is in other
+/// units than metres: no obstacle can be reached, or one is a hundred times as large as the reach. The reach is that of
+/// any point of the robot's geometry from its root, whatever the joint values within their limits; nothing is told of a
+/// robot that slides or floats without limits, nor of unbounded obstacles.
+/// @return one line each, naming obstacle, both lengths in m and the cure; none if all is as usual.
+FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene);
+
 /// Reads a triangle mesh by assimp, all parts of the file in one BVHModel<OBBRSSd>.
 /// @param scale  factor for each axis, finite, not 0.
 /// @param notes  what was accepted though unusual is appended, one line each; may be null.
 /// @param solid  whether to return a SolidMesh<OBBRSSd>, triangles without area included. A mesh that is not closed and
 ///   consistently oriented is refused then.
+/// @param collada_up_axis  whether a COLLADA file's up axis counts, as UrdfOptions::collada_up_axis; its unit does.
 /// @throws std::runtime_error naming file and reason: unreadable, no triangle of positive area, a scale of 0 or not
 ///   finite, no solid though it is to be one.
 FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path,
                                                                    const Eigen::Vector3d& scale,
                                                                    std::vector<std::string>* notes = nullptr,
-                                                                   bool solid = false);
+                                                                   bool solid = false, bool collada_up_axis = false);
 
 }  // namespace fcl_artic

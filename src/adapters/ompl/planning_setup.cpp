@@ -195,6 +195,37 @@ PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> m
   return setup;
 }
 
+PlanningSetup setUpRigidBody(std::shared_ptr<fcl::CollisionGeometryd> body, const Scene& obstacles,
+                             const SetupOptions& options, JointType freedom) {
+  if (!body) throw std::invalid_argument("setUpRigidBody: the body is null");
+  if (freedom != JointType::floating && freedom != JointType::planar) {
+    throw std::invalid_argument("setUpRigidBody: the joint is neither floating nor planar");
+  }
+  const auto tree = std::make_shared<KinematicTree>("rigid body");
+  tree->addLink("world");
+  tree->addLink("body");
+  Joint joint;
+  joint.type = freedom;
+  joint.name = "body";
+  joint.parent = "world";
+  joint.child = "body";
+  joint.axis = Eigen::Vector3d::UnitZ();
+  tree->addJoint(joint);
+  Robot robot;
+  robot.tree = tree;
+  robot.geometry.push_back({tree->linkId("body"), Eigen::Isometry3d::Identity(),
+                            std::make_shared<fcl::CollisionObjectd>(std::move(body)), "body"});
+  Scene scene = combineScenes({obstacles}, *tree);
+  std::vector<std::string> notes = scene.notes;
+  const auto world = std::make_shared<const World>(std::move(robot), std::move(scene));
+  SetupOptions own = options;
+  own.fixed.clear();
+  PlanningSetup setup =
+      setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager>(world, &world->manager), {"body"}, own);
+  setup.notes = std::move(notes);
+  return setup;
+}
+
 PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, const std::string& scene,
                             const std::string& group, const SetupOptions& options) {
   Robot robot = loadUrdf(urdf, options.urdf);
@@ -206,8 +237,8 @@ PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, co
   const auto world = std::make_shared<const World>(std::move(robot), std::move(obstacles));
   PlanningSetup setup =
       setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager>(world, &world->manager), joints, options);
-  for (const auto* notes : {&world->robot.notes, &world->scene.notes}) {
-    setup.notes.insert(setup.notes.end(), notes->begin(), notes->end());
+  for (const auto& notes : {world->robot.notes, world->scene.notes, unitNotes(world->robot, world->scene)}) {
+    setup.notes.insert(setup.notes.end(), notes.begin(), notes.end());
   }
   return setup;
 }

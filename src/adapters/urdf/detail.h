@@ -36,6 +36,9 @@ GeometryPtr makeCone(double radius, double length, const std::string& where);
 GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid = false);
 
+/// The geometry, as a loader makes it, with all its lengths multiplied. @throws std::runtime_error naming `where`.
+GeometryPtr scaledGeometry(const GeometryPtr& geometry, double scale, const std::string& where);
+
 /// Refuses an STL, PLY or OFF file that is cut short or broken, and what assimp would leave out or change in silence.
 /// @param ending  of the file's name, in lower case, such as ".stl". @throws std::runtime_error naming `where`.
 void requireWholeMesh(std::string_view content, const std::string& ending, const std::string& where);

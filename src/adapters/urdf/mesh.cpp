@@ -167,6 +167,22 @@ bool requireFaces(const aiScene& scene, const std::string& where) {
   return all;
 }
 
+/// Tells of a COLLADA file that says that x or y is up: of the first such file only, as a robot may have many.
+void noteUpAxis(const std::string& content, const std::string& where, bool turned, std::vector<std::string>& notes) {
+  static const std::string kNotes[] = {
+      "is up: taken as it stands, as RViz and MoveIt do, and so for all such files (option collada_up_axis turns them)",
+      "is up: turned so that z is, and so for all such files (option collada_up_axis)"};
+  const std::string& text = kNotes[turned];
+  const std::size_t tag = content.find("<up_axis>");
+  if (tag == std::string::npos) return;
+  const std::size_t at = content.find_first_not_of(" \t\r\n", tag + 9);
+  if (at == std::string::npos || (content[at] != 'X' && content[at] != 'Y')) return;
+  for (const std::string& note : notes) {
+    if (note.find(text) != std::string::npos) return;
+  }
+  notes.push_back(where + ": says that " + (content[at] == 'X' ? "x " : "y ") + text);
+}
+
 /// A file in memory, as assimp reads.
 class MemoryStream : public Assimp::IOStream {
  public:
@@ -225,7 +241,7 @@ class CheckedFiles : public Assimp::IOSystem {
 }  // namespace
 
 std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const Eigen::Vector3d& scale,
-                                                  std::vector<std::string>* notes, bool solid) {
+                                                  std::vector<std::string>* notes, bool solid, bool collada_up_axis) {
   const std::string where = "mesh '" + path + "'";
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     detail::fail(where, "its scale has an entry that is zero or not finite");
@@ -241,15 +257,19 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   Assimp::Importer importer;
   auto* const read_by = new CheckedFiles(path, content);  // the importer's from now on
   importer.SetIOHandler(read_by);
-  // As in ROS, a COLLADA file's unit counts and its up axis does not.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  // A COLLADA file's unit counts; its up axis if it is asked for: assimp then turns what is up to y.
+  const bool turn = ending == ".dae" && collada_up_axis;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, !turn);
+  if (ending == ".dae" && notes) noteUpAxis(content, where, turn, *notes);
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene && requireFaces(*scene, where)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (!read_by->error().empty()) detail::fail(where, read_by->error());
   if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
 
   TriangleSoup soup;
-  collect(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), soup);
+  Eigen::Matrix4d M_world = Eigen::Matrix4d::Identity();
+  if (turn) M_world.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y is up in assimp's world, z in ours
+  collect(*scene, *scene->mRootNode, M_world, soup);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
   return detail::makeMesh(soup.vertices, soup.triangles, where, notes, solid);
 }

@@ -41,14 +41,20 @@ class UniqueNames {
 class SceneBuilder {
  public:
   explicit SceneBuilder(const SceneOptions& asked) : options(asked) {}
+  /// @param geometry, M_0  in the file's units.
   void add(const std::string& name, const detail::GeometryPtr& geometry, const Eigen::Isometry3d& M_0) {
-    scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(geometry, M_0)});
+    detail::GeometryPtr& scaled = scaled_[geometry];
+    if (!scaled) scaled = detail::scaledGeometry(geometry, options.scale, "obstacle '" + name + "'");
+    Eigen::Isometry3d M_scaled = M_0;
+    M_scaled.translation() *= options.scale;
+    scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(scaled, M_scaled)});
   }
   Scene scene;
   const SceneOptions& options;
 
  private:
   UniqueNames names_;
+  std::map<detail::GeometryPtr, detail::GeometryPtr> scaled_;  ///< those that obstacles share stay shared
 };
 
 // MoveIt's scene text: objects of shapes, each with a pose (position, quaternion xyzw) and a colour.
@@ -346,6 +352,7 @@ void readOctoMap(const std::string& path, bool binary, bool unknown_cells, Scene
 void readRobot(const std::string& path, SceneBuilder& builder) {
   UrdfOptions options;
   options.solid_meshes = builder.options.solid_meshes;
+  options.collada_up_axis = builder.options.collada_up_axis;
   const Robot robot = loadUrdf(path, options);
   std::vector<Eigen::Isometry3d> M_0;
   robot.tree->forwardKinematics(robot.tree->neutralConfiguration(), M_0);
@@ -386,6 +393,9 @@ Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree)
 }
 
 Scene loadScene(const std::string& path, const SceneOptions& options) {
+  if (!(options.scale > 0 && std::isfinite(options.scale))) {
+    throw std::invalid_argument("loadScene: a scale of " + detail::text(options.scale) + " is not above 0 and finite");
+  }
   const std::string ending = detail::endingOf(path);
   SceneBuilder builder(options);
   if (ending == ".urdf") {
@@ -395,9 +405,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
   } else {
-    builder.add(fs::path(path).stem().string(),
-                loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes),
-                Eigen::Isometry3d::Identity());
+    builder.add(
+        fs::path(path).stem().string(),
+        loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes, options.collada_up_axis),
+        Eigen::Isometry3d::Identity());
   }
   return std::move(builder.scene);
 }

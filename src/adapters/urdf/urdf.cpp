@@ -291,8 +291,8 @@ class MeshFinder {
 /// Makes geometries, each mesh file and scale once.
 class GeometryFactory {
  public:
-  GeometryFactory(MeshFinder finder, bool solid_meshes, std::vector<std::string>& notes)
-      : finder_(std::move(finder)), solid_meshes_(solid_meshes), notes_(notes) {}
+  GeometryFactory(MeshFinder finder, const UrdfOptions& options, std::vector<std::string>& notes)
+      : finder_(std::move(finder)), options_(options), notes_(notes) {}
 
   struct Made {
     detail::GeometryPtr geometry;
@@ -322,7 +322,8 @@ class GeometryFactory {
     auto& geometry = meshes_[{path, in.scale.x, in.scale.y, in.scale.z}];
     if (!geometry) {
       try {
-        geometry = loadMesh(path, {in.scale.x, in.scale.y, in.scale.z}, &notes_, solid_meshes_);
+        geometry = loadMesh(path, {in.scale.x, in.scale.y, in.scale.z}, &notes_, options_.solid_meshes,
+                            options_.collada_up_axis);
       } catch (const std::runtime_error& error) {
         fail(where, error.what());
       }
@@ -331,7 +332,7 @@ class GeometryFactory {
   }
 
   MeshFinder finder_;
-  bool solid_meshes_;
+  const UrdfOptions& options_;
   std::vector<std::string>& notes_;
   std::map<std::tuple<std::string, double, double, double>, detail::GeometryPtr> meshes_;
 };
@@ -367,7 +368,7 @@ Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   const urdf::ModelInterfaceSharedPtr model = parse(where, document.xml, robot.notes);
   robot.tree = makeTree(where, *model, document, robot.notes);
 
-  GeometryFactory factory(MeshFinder(path, options), options.solid_meshes, robot.notes);
+  GeometryFactory factory(MeshFinder(path, options), options, robot.notes);
   for (LinkId id = 0; id < robot.tree->numLinks(); ++id) {
     const Document::Link& in_file = document.links[id];  // the tree's links are those of the file, in its order
     const urdf::Link& link = *model->getLink(in_file.name);

@@ -82,21 +82,27 @@ class ContactList : PartOfSolver {
   const Ignored* ignored() const { return ignored_.data(); }
   int numIgnored() const { return ignored_.size(); }
 
-  /// Of those from `begin` on keeps what begins until t, in their order, as many as are asked for.
+  /// Of those from `begin` on that begin until t keeps the first of each pair, in their order, as many as are asked
+  /// for.
   void order(int begin, double t) {
     int kept = begin;
     for (int i = begin; i < contacts_.size(); ++i) {
       if (contacts_[i].t_lower <= t) contacts_[kept++] = contacts_[i];
     }
-    const int end = min(kept, begin + query().max_contacts);
-    for (int i = begin; i < end; ++i) {  // a few: selection sort
-      int best = i;
-      for (int j = i + 1; j < kept; ++j) {
-        if (engine::comesBefore(contacts_[j], contacts_[best])) best = j;
+    int end = begin;
+    while (end < kept && end - begin < query().max_contacts) {  // a few pairs: selection sort
+      int best = end;
+      for (int i = end + 1; i < kept; ++i) {
+        if (engine::comesBefore(contacts_[i], contacts_[best])) best = i;
       }
-      const LeafContact swap = contacts_[i];
-      contacts_[i] = contacts_[best];
-      contacts_[best] = swap;
+      const LeafContact first = contacts_[best];
+      contacts_[best] = contacts_[end];
+      contacts_[end++] = first;
+      int others = end;
+      for (int i = end; i < kept; ++i) {
+        if (contacts_[i].pair != first.pair) contacts_[others++] = contacts_[i];
+      }
+      kept = others;
     }
     contacts_.truncate(end);
   }

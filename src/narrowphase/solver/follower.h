@@ -262,7 +262,7 @@ inline bool Follower::prove(Candidate& f) {
 /// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time.
 /// Where that is proven, f is re-targeted from the hulls to these two pieces.
 inline void Follower::proveBelowHulls(Candidate& f) {
-  if (!f.have_normal || query().max_contacts > 1) return;
+  if (!f.have_normal) return;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
   if (A.outer->radius + B.outer->radius > f.speed * query().tolerance_time) return;
   Candidate below = f;

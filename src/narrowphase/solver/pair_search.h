@@ -341,7 +341,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, doub
     if (!follower_.followToRoot(f, stop, false) && !f.certain) follower_.decide(f, stop);
     if (horizon_.mustEnd()) return Step::done;
     // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
-    const bool enough = f.certain && f.t_lower <= start && i >= max(64, query().max_contacts);
+    const bool enough = f.certain && f.t_lower <= start && i >= 64;
     if (enough || horizon_.isOver()) leaves_.truncate(i + 1);
   }
   const bool narrow = width <= kNarrowestLane;

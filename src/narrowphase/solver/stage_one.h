@@ -215,7 +215,9 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   mover_box_.resize(problem().num_movers);
   mover_lss_.resize(problem().num_scene_movers);
   const bool check_scene = query().check_scene && problem().obstacle_tree;
-  if (check_scene) statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs);
+  if (check_scene) {
+    statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs - problem().num_scene_allowed);
+  }
   if (looksForAny() && query().num_advisors && any_.tryLikely()) return;
   for (int m = 0; m < problem().num_movers && !horizon_.isOver(); ++m) {
     sweepMover(m);

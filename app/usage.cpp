@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "usage.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace fcl_artic::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Letters to change, leave out, add or swap with their neighbour to make one word of the other.
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before, last(b.size() + 1), now(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    now[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = std::min(now[j], before[j - 2] + 1);
+    }
+    before = last;
+    last = now;
+  }
+  return last[b.size()];
+}
+
+std::optional<double> numberOf(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// The verb, or the verb of a verb, that was typed last.
+const CLI::App& verbOf(const CLI::App& program) {
+  const std::vector<CLI::App*> verbs = program.get_subcommands();
+  return verbs.empty() ? program : verbOf(*verbs.front());
+}
+
+}  // namespace
+
+std::string nearestWord(const std::string& typed, const std::vector<std::string>& known) {
+  std::string best;
+  std::size_t least = 1 + std::max<std::size_t>(1, typed.size() / 3);  // a third of the letters may be wrong
+  for (const std::string& word : known) {
+    const std::size_t changes = distance(typed, word);
+    if (changes < least) {
+      least = changes;
+      best = word;
+    }
+  }
+  return best;
+}
+
+std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {
+  const std::string word = nearestWord(typed, known);
+  return word.empty() ? "" : "; did you mean '" + word + "'?";
+}
+
+std::string requireNotNegative(const std::string& text) {
+  const auto value = numberOf(text);
+  return value && *value >= 0 ? "" : "'" + text + "' is not a number of at least 0, without a unit";
+}
+
+std::string requirePositive(const std::string& text) {
+  const auto value = numberOf(text);
+  return value && *value > 0 ? "" : "'" + text + "' is not a number above 0, without a unit";
+}
+
+std::string requireInput(const std::string& path) {
+  std::error_code error;
+  if (fs::exists(path, error)) return {};
+  std::vector<std::string> names;
+  const fs::path folder = fs::path(path).parent_path();
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, error), end; !error && at != end; at.increment(error)) {
+    names.push_back(at->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());  // the same answer whatever their order on the disk
+  const std::string near = nearestWord(fs::path(path).filename().string(), names);
+  return fmt::format("'{}': no such file{}", path,
+                     near.empty() ? "" : fmt::format("; did you mean '{}'?", (folder / near).string()));
+}
+
+std::string requirePng(const std::string& path) {
+  std::string ending = fs::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending.empty() || ending == ".png") return {};
+  return fmt::format("'{}': pictures are written as PNG; call it '{}'", path,
+                     fs::path(path).replace_extension(".png").string());
+}
+
+std::string usageError(const CLI::App& program, const CLI::ParseError& error) {
+  // CLI11 misses a verb or an option first, and doesn't name what it did not know.
+  const CLI::App& verb = verbOf(program);
+  std::vector<std::string> unknown = program.remaining(true);
+  const auto dashed = std::find_if(unknown.begin(), unknown.end(), [](const auto& word) { return word[0] == '-'; });
+  if (unknown.empty()) return error.what();
+  const bool in_verb = verb.get_parent() != nullptr;
+  const std::string word = in_verb && dashed != unknown.end() ? *dashed : unknown.front();
+  std::vector<std::string> known;
+  for (const CLI::App* other : verb.get_subcommands([](const CLI::App*) { return true; })) {
+    known.push_back(other->get_name());
+  }
+  const bool verbs = !known.empty();
+  for (const CLI::Option* option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::string name = word.substr(0, word.find('='));
+  return fmt::format("'{}' is {} of {}{}", name,
+                     word[0] == '-' ? "no option"
+                     : verbs        ? "neither a verb nor an option"
+                                    : "not an argument",
+                     in_verb ? "'" + verb.get_name() + "'" : verb.get_name(), didYouMean(name, known));
+}
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the program says of what was typed: checks of options' values, and what was probably meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace fcl_artic::app {
+
+/// The known word that is nearest to the one typed, by letters changed, left out, added or swapped; empty if none is
+/// near.
+std::string nearestWord(const std::string& typed, const std::vector<std::string>& known);
+/// "; did you mean 'x'?", or nothing.
+std::string didYouMean(const std::string& typed, const std::vector<std::string>& known);
+
+// Checks of an option's value: what is wrong with it, or nothing.
+std::string requireNotNegative(const std::string& text);  ///< a number of at least 0
+std::string requirePositive(const std::string& text);     ///< a number above 0
+std::string requireInput(const std::string& path);        ///< something to read is there
+std::string requirePng(const std::string& path);          ///< a file name that does not promise another format
+
+/// What is wrong with the command line, in one line, and what was probably meant.
+std::string usageError(const CLI::App& program, const CLI::ParseError& error);
+
+}  // namespace fcl_artic::app
