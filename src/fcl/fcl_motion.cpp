@@ -171,7 +171,8 @@ BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axi
 
 template <class S>
 BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const Name& name) {
-  const fcl::TranslationMotion<S> copy(motion);  // all its data are private
+  // All its data are private, and integrate() const moves it.
+  const fcl::TranslationMotion<S> copy(motion);  // NOLINT(performance-unnecessary-copy-initialization)
   copy.integrate(0);
   fcl::Transform3<S> M;
   copy.getCurrentTransform(M);
@@ -205,7 +206,7 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
   const double angle = motion.getAngularVelocity();
   const Vector3d axis = requireRotation<S>(motion.getAngularAxis(), motion.getAngularVelocity(), name);
   requireLength(velocity, name, "velocity");
-  const BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
+  BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
 
   // What it performs must end at its end pose, but for the rounding in it; where velocities were never set, it doesn't.
   const double close = std::is_same<S, float>::value ? 1e-3 : 1e-5;

@@ -34,6 +34,7 @@ ConvexParts::ConvexParts(const engine::TreeView& whole) : view_(whole) {
   std::vector<Eigen::Vector3d> points;
   // The whole's hull comes first, as it does in `whole`.
   const int n = whole.outer->num_vertices;
+  points.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) points.emplace_back(whole.hulls[i], whole.hulls[n + i], whole.hulls[2 * n + i]);
   hulls_.add(points, whole.outer->radius);
   part_of_node_.assign(static_cast<std::size_t>(whole.num_nodes), -1);

@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 using engine::ClosedPart;
 using engine::InnerBalls;
 using engine::Node;
-using engine::Piece;
 using engine::PieceKind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -67,7 +66,7 @@ void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& l
       std::sort(heights.begin(), heights.end());
       for (std::size_t k = 0; k + 1 < heights.size(); k += 2) {
         const double inside = heights[k + 1] - heights[k];
-        const int points = std::max(1, static_cast<int>(inside / step + 0.5));
+        const int points = std::max(1, static_cast<int>(std::lround(inside / step)));
         for (int p = 0; p < points; ++p) {
           Vector3d y = x;
           y[axis] += heights[k] + inside * (p + 0.5) / points;

@@ -201,7 +201,7 @@ class Seen {
     }
     // The place y of a point is as wrong as what it is from where it is seen: R y + c is y's place up to error_, rigid
     // motions keep distances.
-    const Vector3d y = R_.transpose() * (p - c_);
+    Vector3d y = R_.transpose() * (p - c_);
     error = error_ + (R_ * y + c_ - p).norm() * (1 + 1e-9);
     return y;
   }
