@@ -250,7 +250,8 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
     if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
     bool known = false;
     for (int i = 0; i < s.n; ++i) {
-      known |= (s.v[i].w[0] == p.w[0]) & (s.v[i].w[1] == p.w[1]) & (s.v[i].w[2] == p.w[2]);
+      const bool x = s.v[i].w[0] == p.w[0], y = s.v[i].w[1] == p.w[1], z = s.v[i].w[2] == p.w[2];
+      known |= x & y & z;
     }
     if (known) break;
     ++s.n;
