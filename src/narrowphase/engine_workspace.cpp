@@ -73,7 +73,7 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
   const double end = contact.certain ? contact.t_upper : std::min(1.0, contact.t_lower + query.tolerance_time);
   if (!refineTriangleContact(p, q, motion, contact.t_lower, end, refined)) return;
   contact.feature = static_cast<std::int32_t>(refined.feature);
-  contact.t_lower = refined.t_lower;
+  // t_lower stays: before refined.t_lower these two pieces are free, but not all others of their bodies.
   if (refined.certain) {
     contact.certain = true;
     contact.t_upper = refined.t_upper;

@@ -267,6 +267,14 @@ void Run::keepFirst(std::size_t begin, double bracket) {
     return x.pair != y.pair ? x.pair < y.pair : engine::comesBefore(x, y);
   });
   const auto samePair = [](const LeafContact& x, const LeafContact& y) { return x.pair == y.pair; };
+  // It begins with the earliest of its pair: before that none of the pair's pieces touch.
+  for (auto group = first; group != all.end();) {
+    const auto next = std::find_if(group, all.end(), [&](const LeafContact& c) { return c.pair != group->pair; });
+    double t_lower = w_.free_until[static_cast<std::size_t>(group->pair)];
+    for (auto c = group; c != next; ++c) t_lower = std::min(t_lower, c->t_lower);
+    group->t_lower = t_lower;
+    group = next;
+  }
   all.erase(std::unique(first, all.end(), samePair), all.end());
   std::stable_sort(first, all.end(), engine::comesBefore);
   all.resize(std::min(all.size(), begin + static_cast<std::size_t>(query_.max_contacts)));

@@ -83,7 +83,7 @@ class ContactList : PartOfSolver {
   int numIgnored() const { return ignored_.size(); }
 
   /// Of those from `begin` on that begin until t keeps the first of each pair, in their order, as many as are asked
-  /// for.
+  /// for. It begins with the earliest of its pair: before that none of the pair's pieces touch.
   void order(int begin, double t) {
     int kept = begin;
     for (int i = begin; i < contacts_.size(); ++i) {
@@ -95,13 +95,17 @@ class ContactList : PartOfSolver {
       for (int i = end + 1; i < kept; ++i) {
         if (engine::comesBefore(contacts_[i], contacts_[best])) best = i;
       }
-      const LeafContact first = contacts_[best];
+      LeafContact first = contacts_[best];
       contacts_[best] = contacts_[end];
-      contacts_[end++] = first;
-      int others = end;
-      for (int i = end; i < kept; ++i) {
-        if (contacts_[i].pair != first.pair) contacts_[others++] = contacts_[i];
+      int others = end + 1;
+      for (int i = end + 1; i < kept; ++i) {
+        if (contacts_[i].pair != first.pair) {
+          contacts_[others++] = contacts_[i];
+        } else {
+          first.t_lower = min(first.t_lower, contacts_[i].t_lower);
+        }
       }
+      contacts_[end++] = first;
       kept = others;
     }
     contacts_.truncate(end);
