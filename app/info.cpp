@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <set>
@@ -53,14 +54,21 @@ struct Shape {
   Eigen::Vector3d extents;   ///< of the box around it, in its own frame, m
 };
 
-Shape shapeOf(const LinkGeometry& g) {
+/// A file's path from the robot's folder, where it lies in there; else as it is.
+std::string shownPath(const std::string& file, const std::string& robot) {
+  const std::filesystem::path below =
+      std::filesystem::path(file).lexically_relative(std::filesystem::absolute(robot).lexically_normal().parent_path());
+  return below.empty() || *below.begin() == ".." ? file : below.string();
+}
+
+Shape shapeOf(const LinkGeometry& g, const std::string& robot) {
   const fcl::CollisionGeometryd& geometry = *g.object->collisionGeometry();
   Shape shape;
   shape.extents = geometry.aabb_local.max_ - geometry.aabb_local.min_;
   const auto* mesh = dynamic_cast<const fcl::BVHModel<fcl::OBBRSSd>*>(&geometry);
   shape.kind = mesh ? "mesh" : g.source;
   if (!mesh) return shape;
-  shape.source = g.source;
+  shape.source = shownPath(g.source, robot);
   shape.triangles = mesh->num_tris;
   try {
     makeSolid(geometry);
@@ -136,7 +144,7 @@ Info collect(const RobotOptions& options) {
   const UnitsGuess units(robot);
   for (const LinkGeometry& g : robot.geometry) {
     const auto [entry, is_new] = known.try_emplace(g.object->collisionGeometry().get());
-    if (is_new) entry->second = shapeOf(g);
+    if (is_new) entry->second = shapeOf(g, options.robot);
     info.shapes.emplace_back(g.link, entry->second);
     all.push_back(entry->second);
     with_geometry.insert(tree.linkName(g.link));

@@ -38,25 +38,23 @@ bool isDegenerate(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eige
   return !(u.cross(v).norm() > 8 * std::numeric_limits<double>::epsilon() * u.norm() * v.norm());
 }
 
-/// The vertices that triangles use, in their order: FCL takes all of them for the box around a mesh.
-/// @param[in,out] triangles  renumbered.
-std::vector<Eigen::Vector3d> takeUsed(const std::vector<Eigen::Vector3d>& vertices,
-                                      std::vector<fcl::Triangle>& triangles) {
+/// Drops the vertices that no triangle uses, as FCL takes all of them for the box around a mesh.
+void keepUsed(std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Triangle>& triangles) {
   constexpr std::size_t kUnused = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> number(vertices.size(), kUnused);
   for (const fcl::Triangle& triangle : triangles) {
     for (int k = 0; k < 3; ++k) number[triangle[k]] = 0;
   }
-  std::vector<Eigen::Vector3d> used;
+  std::size_t used = 0;
   for (std::size_t v = 0; v < vertices.size(); ++v) {
     if (number[v] == kUnused) continue;
-    number[v] = used.size();
-    used.push_back(vertices[v]);
+    vertices[used] = vertices[v];
+    number[v] = used++;
   }
+  vertices.resize(used);
   for (fcl::Triangle& triangle : triangles) {
     triangle.set(number[triangle[0]], number[triangle[1]], number[triangle[2]]);
   }
-  return used;
 }
 
 }  // namespace
@@ -95,11 +93,13 @@ GeometryPtr makeCone(double radius, double length, const std::string& where) {
   return std::make_shared<fcl::Coned>(radius, length);
 }
 
-GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
+GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid) {
   if (triangles.empty()) fail(where, "has no triangles");
-  std::vector<fcl::Triangle> kept;
-  kept.reserve(triangles.size());
+  const auto hasNoArea = [&](const fcl::Triangle& triangle) {
+    return isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]);
+  };
+  std::size_t flat = 0;
   for (const fcl::Triangle& triangle : triangles) {
     for (int k = 0; k < 3; ++k) {
       if (triangle[k] >= vertices.size()) {
@@ -110,20 +110,26 @@ GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::ve
         fail(where, "vertex " + std::to_string(triangle[k]) + " is not finite");
       }
     }
-    if (!isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]])) kept.push_back(triangle);
+    flat += hasNoArea(triangle);
   }
-  if (kept.empty()) fail(where, "has no triangle with an area");
-  if (solid) kept = triangles;
-  if (notes && kept.size() < triangles.size()) {
-    notes->push_back(where + ": " + std::to_string(triangles.size() - kept.size()) + " of " +
-                     std::to_string(triangles.size()) + " triangles have no area and were left out");
+  if (flat == triangles.size()) fail(where, "has no triangle with an area");
+  if (!solid && flat > 0) {
+    if (notes) {
+      notes->push_back(where + ": " + std::to_string(flat) + " of " + std::to_string(triangles.size()) +
+                       " triangles have no area and were left out");
+    }
+    triangles.erase(std::remove_if(triangles.begin(), triangles.end(), hasNoArea), triangles.end());
   }
-  const std::vector<Eigen::Vector3d> used = takeUsed(vertices, kept);
+  keepUsed(vertices, triangles);
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  if (model->beginModel(static_cast<int>(kept.size()), static_cast<int>(used.size())) != fcl::BVH_OK ||
-      model->addSubModel(used, kept) != fcl::BVH_OK || model->endModel() != fcl::BVH_OK) {
-    fail(where, "FCL cannot build its tree");
-  }
+  bool built =
+      model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) == fcl::BVH_OK &&
+      model->addSubModel(vertices, triangles) == fcl::BVH_OK;
+  // FCL has copies, and needs much memory for its tree.
+  vertices = {};
+  triangles = {};
+  built = built && model->endModel() == fcl::BVH_OK;
+  if (!built) fail(where, "FCL cannot build its tree");
   model->computeLocalAABB();
   if (!solid) return model;
   try {
@@ -277,7 +283,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
 
   detail::TriangleSoup soup = readMesh(path, where, notes);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
-  return detail::makeMesh(soup.vertices, soup.triangles, where, notes, solid);
+  return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);
 }
 
 }  // namespace fcl_artic
