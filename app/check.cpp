@@ -24,6 +24,7 @@
 #include "render/picture.h"
 #include "report.h"
 #include "robot_options.h"
+#include "text/nearest_name.h"
 #include "waypoints.h"
 
 namespace fcl_artic::app {
@@ -179,8 +180,11 @@ int run(const Options& options) {
   makeSolids(
       scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
   if (!solids.empty()) {
-    throw std::invalid_argument(
-        fmt::format("--solid {}: no link or obstacle of that name has a mesh", *solids.begin()));
+    std::vector<std::string> names;
+    for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
+    for (const Scene::Obstacle& o : scene.obstacles) names.push_back(o.name);
+    throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh{}",
+                                            *solids.begin(), text::didYouMean(*solids.begin(), names)));
   }
 
   ArticulatedCollisionManager manager(robot.tree);

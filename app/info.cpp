@@ -80,37 +80,40 @@ Shape shapeOf(const LinkGeometry& g, const std::string& robot) {
   return shape;
 }
 
-/// Meshes far larger or smaller than the robot that they belong to: what a file in other units looks like.
-class UnitsGuess {
- public:
-  explicit UnitsGuess(const Robot& robot) : joints_reach_(reachUpper(*robot.tree)) {}
-
-  /// A line of warning; empty: nothing is wrong as far as sizes show.
-  std::string warning(const std::string& link, const Shape& shape) const {
-    const double size = shape.extents.maxCoeff();
-    // Links of real robots are at most some times as long as all joints' distances in a row: a wide base, a tool.
-    constexpr double kFarLarger = 20;
-    if (shape.kind != "mesh" || !(joints_reach_ > 0) || size <= kFarLarger * joints_reach_) return {};
-    return fmt::format(
-        "link '{}': mesh '{}' is {:.4g} m long, the robot's joints reach {:.4g} m: is it in other units? A file in "
-        "millimetres needs scale=\"0.001 0.001 0.001\" in its <mesh>",
-        link, shape.source, size, joints_reach_);
+/// Warns of sizes that files in other units have; a line each.
+/// @param shapes  with the link of each.
+std::vector<std::string> unitWarnings(const Robot& robot, const std::vector<std::pair<LinkId, Shape>>& shapes) {
+  const double reach = reachUpper(*robot.tree);
+  if (!(reach > 0) || shapes.empty()) return {};
+  // A mesh in millimetres is a thousand times too large, one in inches 39 times. What robots have, a wide base or a
+  // long tool, is a few times as long as all joints' distances in a row at most.
+  constexpr double kFarLarger = 20, kFarSmaller = 0.01;
+  std::vector<std::string> warnings;
+  std::size_t meshes = 0, large = 0;
+  const std::pair<LinkId, Shape>*largest = nullptr, *any = nullptr;
+  const auto size = [](const std::pair<LinkId, Shape>& s) { return s.second.extents.maxCoeff(); };
+  for (const auto& shape : shapes) {
+    if (!any || size(shape) > size(*any)) any = &shape;
+    if (shape.second.kind != "mesh") continue;
+    ++meshes;
+    if (size(shape) <= kFarLarger * reach) continue;
+    ++large;
+    if (!largest || size(shape) > size(*largest)) largest = &shape;
   }
-  /// The same of all shapes together, where they are far smaller than the robot.
-  std::string warning(const std::vector<Shape>& shapes) const {
-    double largest = 0;
-    for (const Shape& shape : shapes) largest = std::max(largest, shape.extents.maxCoeff());
-    constexpr double kFarSmaller = 0.01;
-    if (shapes.empty() || largest >= kFarSmaller * joints_reach_) return {};
-    return fmt::format(
-        "the largest geometry is {:.4g} m long, the robot's joints reach {:.4g} m: is it in other units, or scaled "
-        "twice?",
-        largest, joints_reach_);
+  if (largest) {
+    warnings.push_back(fmt::format(
+        "{} of {} meshes are far larger than the robot: its joints reach {:.4g} m, mesh '{}' of link '{}' is {:.4g} m "
+        "long. Are they in other units? A file in millimetres needs scale=\"0.001 0.001 0.001\" in its <mesh>",
+        large, meshes, reach, largest->second.source, robot.tree->linkName(largest->first), size(*largest)));
   }
-
- private:
-  double joints_reach_;
-};
+  if (size(*any) < kFarSmaller * reach) {
+    warnings.push_back(fmt::format(
+        "the largest geometry is {:.4g} m long, the robot's joints reach {:.4g} m: is it in other units, or "
+        "scaled twice?",
+        size(*any), reach));
+  }
+  return warnings;
+}
 
 /// A pair of links with geometry that is not checked, and why.
 struct Unchecked {
@@ -140,18 +143,13 @@ Info collect(const RobotOptions& options) {
   const KinematicTree& tree = *robot.tree;
   std::map<const fcl::CollisionGeometryd*, Shape> known;  // links may share a mesh
   std::set<std::string> with_geometry;
-  std::vector<Shape> all;
-  const UnitsGuess units(robot);
   for (const LinkGeometry& g : robot.geometry) {
     const auto [entry, is_new] = known.try_emplace(g.object->collisionGeometry().get());
     if (is_new) entry->second = shapeOf(g, options.robot);
     info.shapes.emplace_back(g.link, entry->second);
-    all.push_back(entry->second);
     with_geometry.insert(tree.linkName(g.link));
-    const std::string warning = units.warning(tree.linkName(g.link), entry->second);
-    if (!warning.empty()) info.warnings.push_back(warning);
   }
-  if (const std::string warning = units.warning(all); !warning.empty()) info.warnings.push_back(warning);
+  info.warnings = unitWarnings(robot, info.shapes);
   info.joints_reach = reachUpper(tree);
   info.reach = reachUpper(tree, robot.geometry);
 
@@ -193,8 +191,12 @@ bool hasAxis(JointType type) {
 
 std::string text(const Info& info) {
   const KinematicTree& tree = *info.robot.tree;
-  std::string out = fmt::format("robot '{}': {} links, {} joints, {} values in a configuration\n", tree.name(),
-                                tree.numLinks(), tree.numJoints(), tree.dof());
+  const auto count = [](int number, const char* what) {
+    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+  };
+  std::string out =
+      fmt::format("robot '{}': {}, {}, {} in a configuration\n", tree.name(), count(tree.numLinks(), "link"),
+                  count(tree.numJoints(), "joint"), count(tree.dof(), "value"));
   out += fmt::format("reach: {:.4g} m at most from its root, joints alone {:.4g} m\n", info.reach, info.joints_reach);
 
   out += "\nvalues, in the order of a configuration\n";

@@ -91,7 +91,9 @@ TEST_F(InfoTest, WarnsOfOtherUnits) {
   };
   EXPECT_EQ(warnings("0.2 0.2 0.2"), "[]");
   EXPECT_EQ(warnings("25 25 25"), "[]");
-  EXPECT_NE(warnings("300 300 300").find("link 'b': mesh 'closed.obj' is 300 m long, the robot's joints reach 1.5 m"),
+  EXPECT_NE(warnings("300 300 300")
+                .find("1 of 2 meshes are far larger than the robot: its joints reach 1.5 m, mesh 'closed.obj' of link "
+                      "'b' is 300 m"),
             std::string::npos);
   EXPECT_EQ(warnings("0.0001 0.0001 0.0001"), "[]") << "another link is of the robot's size";
   const std::string tiny = write("tiny.urdf", R"(<robot name='r'><link name='a'/><link name='b'><collision><geometry>

@@ -108,6 +108,16 @@ TEST_F(ProgramTest, ScenesAreFilesAndNoFolders) {
   // What the shell passes on is read.
   const Outcome passed_on = this->run("check --robot /dev/stdin --from 0,0 --to 0.1,0 <" + arm());
   EXPECT_EQ(passed_on.status, 0) << passed_on.err;
+  // Its paths begin where the program runs.
+  const std::string meshed = write("meshed.urdf",
+                                   "<robot name='m'><link name='a'><collision><geometry><mesh filename='m/t.obj'/>"
+                                   "</geometry></collision></link></robot>");
+  write("m/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  const Outcome here = this->run("info /dev/stdin <" + meshed);
+  std::filesystem::current_path(before);
+  EXPECT_EQ(here.status, 0) << here.err;
 }
 
 }  // namespace

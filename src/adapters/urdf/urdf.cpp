@@ -273,6 +273,12 @@ std::vector<fs::path> foldersOf(const char* variable) {
   return folders;
 }
 
+/// Where a URDF's relative paths begin: its own folder; the present one for what a shell passes on, as `<(xacro ...)`.
+fs::path folderOf(const std::string& urdf_path) {
+  const bool passed_on = urdf_path.rfind("/dev/", 0) == 0 || urdf_path.rfind("/proc/", 0) == 0;
+  return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path().lexically_normal();
+}
+
 /// The name that a folder's package.xml gives; empty where it has none that can be read.
 std::string packageName(const fs::path& folder) {
   std::error_code error;
@@ -292,7 +298,7 @@ std::string packageName(const fs::path& folder) {
 class MeshFinder {
  public:
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
-      : folder_(fs::absolute(urdf_path).parent_path().lexically_normal()), packages_(options.packages) {}
+      : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
   std::string find(const std::string& where, const std::string& uri) {
     const auto after = [&](const std::string& scheme) { return uri.substr(scheme.size()); };
