@@ -21,7 +21,8 @@ void addBench(CLI::App& program, int& exit_status) {
   planning->footer(
       "The data is a folder with robots/ROBOT/ROBOT.urdf and .srdf and problems/ROBOT/ENVIRONMENT.json "
       "(MotionBenchMaker's\n"
-      "problems in the format planning-problems/1). Every plan is looked at by FCL in steps 100 times finer than "
+      "problems in the format planning-problems/1); scripts/planning_data makes it of public repositories. Every plan "
+      "is looked at by FCL in steps 100 times finer than "
       "OMPL's\n"
       "default, and its motions are checked with proof.\n"
       "Exit status: 0 no plan made with fcl_artic collides, 1 one does, 2 error.");

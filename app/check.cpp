@@ -17,11 +17,14 @@
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
 #include "fcl_artic/urdf/urdf.h"
+#include "lines.h"
 #include "link_pairs.h"
 #include "progress.h"
 #include "redon_options.h"
 #include "render/picture.h"
 #include "report.h"
+#include "robot_options.h"
+#include "text/nearest_name.h"
 #include "usage.h"
 #include "waypoints.h"
 
@@ -35,15 +38,17 @@ constexpr std::uint64_t kWorkForAllowed = 50000;
 constexpr std::size_t kSamplesForAllowed = 200;
 
 struct Options {
-  std::string robot, srdf, auto_srdf, image, trajectory, interpolation = "linear";
-  std::vector<std::string> scenes, packages, solids, from, to;
+  RobotOptions robot;
+  std::string auto_srdf, image, trajectory, lines, interpolation = "linear";
+  std::vector<std::string> scenes, solids, from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
   std::optional<std::size_t> max_contacts;
   bool every_pair = false, no_self = false, no_scene = false;
   bool shortest = false, json = false, clearance = false;
   ClearanceRequest clearance_request;
-  SceneOptions scene;
+  bool unknown_cells = false;
+  double scale = 1;
 };
 
 /// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
@@ -70,23 +75,6 @@ std::string requireCamera(const std::string& text) {
   const auto angles = numberPair(text, ',');
   const bool good = angles && std::abs((*angles)[0]) <= 360 && std::abs((*angles)[1]) <= 90;
   return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
-}
-
-std::string requirePackage(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const bool good = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
-  return good ? "" : "'" + text + "' is not NAME=DIR";
-}
-
-UrdfOptions urdfOptions(const Options& options) {
-  UrdfOptions out;
-  out.solid_meshes = options.scene.solid_meshes;
-  out.collada_up_axis = options.scene.collada_up_axis;
-  for (const std::string& package : options.packages) {
-    const std::size_t equals = package.find('=');
-    out.packages[package.substr(0, equals)] = package.substr(equals + 1);
-  }
-  return out;
 }
 
 /// The object with its mesh as a solid.
@@ -116,11 +104,10 @@ void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& nam
 
 /// @param[in,out] solids  names of links and obstacles whose meshes are to be solids; links are taken out.
 Robot loadRobot(const Options& options, std::set<std::string>& solids) {
-  Robot robot = loadUrdf(options.robot, urdfOptions(options));
+  Robot robot = readRobot(options.robot);
   makeSolids(
       robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
-  if (!options.srdf.empty()) {
-    robot.allowed = loadSrdf(options.srdf, *robot.tree);
+  if (!options.robot.srdf.empty()) {
     LinkPairOptions search;
     search.only = &robot.allowed;
     search.work = kWorkForAllowed;
@@ -159,11 +146,14 @@ int run(const Options& options) {
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
+  const auto interpolation = options.interpolation == "cubic" ? Interpolation::cubic : Interpolation::linear;
   std::vector<std::string> motion_notes;
   const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
     for (const std::string& note : tree.limitNotes(q)) motion_notes.push_back(where + ": " + note);
   };
-  if (options.trajectory.empty()) {
+  if (!options.lines.empty()) {
+    // Each line is a motion of its own.
+  } else if (options.trajectory.empty()) {
     const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
     const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
     motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
@@ -171,7 +161,6 @@ int run(const Options& options) {
     noteLimits(motion->configuration(1), "--to");
   } else {
     const Waypoints waypoints = readWaypoints(tree, options.trajectory);
-    const auto interpolation = options.interpolation == "cubic" ? Interpolation::cubic : Interpolation::linear;
     trajectory = interpolate(tree, waypoints, interpolation, options.shortest);
     if (!waypoints.unnamed.empty()) {
       motion_notes.push_back(fmt::format("'{}' has no column for {}: at 0 all the time, a quaternion at no rotation",
@@ -186,18 +175,26 @@ int run(const Options& options) {
     }
   }
   std::vector<Scene> scenes;
-  for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, options.scene));
+  const SceneOptions carried_options = sceneOptions(options.robot, options.unknown_cells);
+  SceneOptions scene_options = carried_options;
+  scene_options.scale = options.scale;
+  for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, scene_options));
+  const std::vector<Attachment> attachments = readAttachments(options.robot, tree, carried_options, scenes);
   Scene scene = combineScenes(scenes, tree);
   makeSolids(
       scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
   if (!solids.empty()) {
-    throw std::invalid_argument(
-        fmt::format("--solid {}: no link or obstacle of that name has a mesh", *solids.begin()));
+    std::vector<std::string> names;
+    for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
+    for (const Scene::Obstacle& o : scene.obstacles) names.push_back(o.name);
+    throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh{}",
+                                            *solids.begin(), text::didYouMean(*solids.begin(), names)));
   }
 
   ArticulatedCollisionManager manager(robot.tree);
   robot.addTo(manager);
   scene.addTo(manager);
+  attachLast(attachments, scene, manager);
   manager.setup();
 
   CertifiedRequest request = options.request;
@@ -206,6 +203,7 @@ int run(const Options& options) {
   request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
   request.max_contacts = options.max_contacts.value_or(options.every_pair ? kAllContacts : 1);
   request.measure_times = true;
+  if (!options.lines.empty()) return checkLines(manager, request, {options.lines, interpolation, options.shortest});
   CertifiedResult result;
   {
     ProgressBar bar;
@@ -259,8 +257,10 @@ int run(const Options& options) {
     CertifiedResult drawn = result;  // in the time of a picture
     drawn.t_lower = (result.t_lower - begin) / (end - begin);
     const auto path = [&](double t) { return configuration(begin + t * (end - begin)); };
+    Robot shown = robot;
+    moveToLinks(attachments, scene, shown);
     const WaitingNote note("drawing " + options.image);
-    render::writePicture(options.image, robot, scene.obstacles, path, drawn, picture);
+    render::writePicture(options.image, shown, scene.obstacles, path, drawn, picture);
   }
   if (options.json) {
     fmt::print("{}\n", jsonReport(report).dump(2));
@@ -284,17 +284,13 @@ void addCheck(CLI::App& program, int& exit_status) {
       "named at 0; rad or m, angles also as 90deg.\n"
       "A trajectory is a CSV file: its first line names the columns, 'time' and joints; times in the answer are the "
       "file's.\n"
-      "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget).");
+      "A line of --lines has from and to (or start and goal), each a list of all joint values or an object by name,\n"
+      "or waypoints (a list of these) and, where they are not 0, 1, 2 ..., times; and an id, which its answer "
+      "repeats.\n"
+      "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget); with --lines the worst of all answers:\n"
+      "2 before 1 before 3.");
 
-  check->add_option("--robot", o.robot, "Robot (URDF)")
-      ->required()
-      ->check(requireInput)
-      ->group("Robot and scene")
-      ->type_name("FILE");
-  CLI::Option* srdf = check->add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
-                          ->check(requireInput)
-                          ->group("Robot and scene")
-                          ->type_name("FILE");
+  CLI::Option* srdf = addRobotOptions(*check, o.robot);
   check
       ->add_option("--auto-srdf", o.auto_srdf,
                    "Find the pairs of links that need no check, proven apart or always in "
@@ -306,28 +302,25 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->check(requireInput)
       ->group("Robot and scene")
       ->type_name("FILE...");
-  check->add_option("--scale", o.scene.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
+  check->add_option("--scale", o.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
       ->check(requirePositive)
       ->group("Robot and scene")
       ->type_name("FACTOR")
       ->capture_default_str();
   check
-      ->add_flag("--collada-up-axis", o.scene.collada_up_axis,
+      ->add_flag("--collada-up-axis", o.robot.collada_up_axis,
                  "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
       ->group("Robot and scene");
-  check->add_flag("--unknown-cells", o.scene.unknown_cells, "OctoMap: unknown cells are obstacles too")
+  check->add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
   check
-      ->add_flag("--solid-meshes", o.scene.solid_meshes,
+      ->add_flag("--solid-meshes", o.robot.solid_meshes,
                  "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
   check->add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
       ->group("Robot and scene")
       ->type_name("NAME");
-  check->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
-      ->check(requirePackage)
-      ->group("Robot and scene")
-      ->type_name("NAME=DIR");
+  addAttachOption(*check, o.robot);
 
   CLI::Option* from = check->add_option("--from", o.from, "Configuration at t = 0")->group("Motion")->type_name("Q");
   CLI::Option* to = check->add_option("--to", o.to, "Configuration at t = 1")->group("Motion")->type_name("Q");
@@ -338,13 +331,22 @@ void addCheck(CLI::App& program, int& exit_status) {
           ->excludes(to)
           ->group("Motion")
           ->type_name("FILE");
-  check
-      ->add_option("--interpolation", o.interpolation,
-                   "Between waypoints: linear, or cubic (smooth, from rest to rest)")
-      ->check(CLI::IsMember({"linear", "cubic"}))
-      ->needs(trajectory)
-      ->group("Motion")
-      ->capture_default_str();
+  CLI::Option* lines =
+      check
+          ->add_option("--lines", o.lines,
+                       "Many motions, one a line in JSON, as {\"from\": [..], \"to\": [..]}, and an answer in JSON a "
+                       "line; - reads standard input")
+          ->excludes(from)
+          ->excludes(to)
+          ->excludes(trajectory)
+          ->group("Motion")
+          ->type_name("FILE");
+  CLI::Option* interpolation = check
+                                   ->add_option("--interpolation", o.interpolation,
+                                                "Between waypoints: linear, or cubic (smooth, from rest to rest)")
+                                   ->check(CLI::IsMember({"linear", "cubic"}))
+                                   ->group("Motion")
+                                   ->capture_default_str();
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   const auto number = [&](const std::string& name, double& value, const std::string& help) {
@@ -391,6 +393,7 @@ void addCheck(CLI::App& program, int& exit_status) {
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and first contact as PNG")
                            ->check(requirePng)
+                           ->excludes(lines)
                            ->group("Output")
                            ->type_name("FILE");
   check->add_option("--size", o.size, "Size of the picture in pixels")
@@ -408,9 +411,14 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->group("Output")
       ->type_name("AZ,EL");
 
-  check->callback([options, from, to, trajectory, &exit_status] {
+  clearance->excludes(lines);
+  check->callback([options, from, to, trajectory, lines, interpolation, &exit_status] {
+    const bool waypoints = trajectory->count() > 0 || lines->count() > 0;
     for (const CLI::Option* end : {from, to}) {
-      if (end->count() == 0 && trajectory->count() == 0) throw CLI::RequiredError(end->get_name());
+      if (end->count() == 0 && !waypoints) throw CLI::RequiredError(end->get_name());
+    }
+    if (interpolation->count() > 0 && !waypoints) {
+      throw CLI::RequiresError("--interpolation", "--trajectory or --lines");
     }
     try {
       exit_status = run(*options);

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "text/nearest_name.h"
+
 namespace fcl_artic::app {
 namespace {
 
@@ -73,8 +75,10 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
                                                            option, name, joint.mimic.master)
                                              : fmt::format("{}: joint '{}' is fixed and takes no value", option, name));
   }
-  throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}", option, tree.name(),
-                                          name, variableNames(tree)));
+  std::vector<std::string> names;
+  for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));
+  throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}{}", option, tree.name(),
+                                          name, variableNames(tree), text::didYouMean(name, names)));
 }
 
 Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<std::string>& words,

@@ -144,10 +144,10 @@ int run(const Options& options) {
     if (equals == std::string::npos) throw std::invalid_argument("--package '" + package + "' is not NAME=DIR");
     urdf.packages[package.substr(0, equals)] = package.substr(equals + 1);
   }
-  const Robot robot = loadUrdf(options.robot, urdf);
+  Robot robot = loadUrdf(options.robot, urdf);
   const KinematicTree& tree = *robot.tree;
   std::optional<AllowedCollisionMatrix> disabled;
-  if (!options.check.empty()) disabled = loadSrdf(options.check, tree);
+  if (!options.check.empty()) disabled = loadSrdf(options.check, tree, &robot.notes);
   const LinkPairReport report = classify(robot, options.search);
   LinkPairReport of_file;
   if (disabled) {
@@ -157,7 +157,8 @@ int run(const Options& options) {
   }
   if (!options.write.empty()) writeSrdf(options.write, tree.name(), report);
   if (options.json) {
-    Json out = {{"robot", tree.name()}, {"margin", options.search.margin}, {"pairs", Json::array()}};
+    Json out = {
+        {"robot", tree.name()}, {"margin", options.search.margin}, {"notes", robot.notes}, {"pairs", Json::array()}};
     for (const LinkPairFinding& pair : report.pairs) {
       Json one = jsonOf(tree, pair);
       if (disabled) one["disabled"] = disabled->allowed(pair.link1, pair.link2);
@@ -179,6 +180,9 @@ int run(const Options& options) {
   } else {
     fmt::print("{}: {} pairs of links with geometry:\n", tree.name(), report.pairs.size());
     printPairs(tree, report, true);
+  }
+  if (!options.json) {
+    for (const std::string& note : robot.notes) fmt::print("note: {}\n", note);
   }
   if (!options.write.empty() && !options.json) fmt::print("{} written to {}\n", summaryOf(report), options.write);
   if (!options.images.empty()) drawTouching(robot, disabled ? of_file : report, options.images);
@@ -233,7 +237,7 @@ void addSrdf(CLI::App& program, int& exit_status) {
       "Pairs that never touch are proven apart for all joint values within their limits; pairs that touch are shown\n"
       "with a configuration. The answer depends on no random numbers.\n"
       "Exit status: 0, or with --check: 0 no disabled pair can touch, proven; 1 one can; 3 neither is known; 2 error.");
-  srdf->add_option("--robot", o.robot, "Robot (URDF)")->required()->type_name("FILE");
+  srdf->add_option("ROBOT,--robot", o.robot, "Robot (URDF)")->required()->type_name("FILE");
   srdf->add_option("--check", o.check, "Look at the pairs that this SRDF disables")->type_name("FILE");
   srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");
   srdf->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")

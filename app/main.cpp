@@ -14,6 +14,7 @@
 #include "exit_status.h"
 #include "files/files.h"
 #include "generate.h"
+#include "info.h"
 #include "link_pairs.h"
 #include "usage.h"
 
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
   addCompare(program, exit_status);
   addGenerate(program, exit_status);
   addSrdf(program, exit_status);
+  addInfo(program, exit_status);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

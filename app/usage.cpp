@@ -9,26 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "text/nearest_name.h"
+
 namespace fcl_artic::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Letters to change, leave out, add or swap with their neighbour to make one word of the other.
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> before, last(b.size() + 1), now(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    now[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + (a[i - 1] != b[j - 1])});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) now[j] = std::min(now[j], before[j - 2] + 1);
-    }
-    before = last;
-    last = now;
-  }
-  return last[b.size()];
-}
 
 std::optional<double> numberOf(const std::string& text) {
   double value = 0;
@@ -44,24 +30,6 @@ const CLI::App& verbOf(const CLI::App& program) {
 }
 
 }  // namespace
-
-std::string nearestWord(const std::string& typed, const std::vector<std::string>& known) {
-  std::string best;
-  std::size_t least = 1 + std::max<std::size_t>(1, typed.size() / 3);  // a third of the letters may be wrong
-  for (const std::string& word : known) {
-    const std::size_t changes = distance(typed, word);
-    if (changes < least) {
-      least = changes;
-      best = word;
-    }
-  }
-  return best;
-}
-
-std::string didYouMean(const std::string& typed, const std::vector<std::string>& known) {
-  const std::string word = nearestWord(typed, known);
-  return word.empty() ? "" : "; did you mean '" + word + "'?";
-}
 
 std::string requireNotNegative(const std::string& text) {
   const auto value = numberOf(text);
@@ -82,7 +50,7 @@ std::string requireInput(const std::string& path) {
     names.push_back(at->path().filename().string());
   }
   std::sort(names.begin(), names.end());  // the same answer whatever their order on the disk
-  const std::string near = nearestWord(fs::path(path).filename().string(), names);
+  const std::string near = text::nearestName(fs::path(path).filename().string(), names);
   return fmt::format("'{}': no such file{}", path,
                      near.empty() ? "" : fmt::format("; did you mean '{}'?", (folder / near).string()));
 }
@@ -116,7 +84,7 @@ std::string usageError(const CLI::App& program, const CLI::ParseError& error) {
                      word[0] == '-' ? "no option"
                      : verbs        ? "neither a verb nor an option"
                                     : "not an argument",
-                     in_verb ? "'" + verb.get_name() + "'" : verb.get_name(), didYouMean(name, known));
+                     in_verb ? "'" + verb.get_name() + "'" : verb.get_name(), text::didYouMean(name, known));
 }
 
 }  // namespace fcl_artic::app

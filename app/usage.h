@@ -10,12 +10,6 @@
 
 namespace fcl_artic::app {
 
-/// The known word that is nearest to the one typed, by letters changed, left out, added or swapped; empty if none is
-/// near.
-std::string nearestWord(const std::string& typed, const std::vector<std::string>& known);
-/// "; did you mean 'x'?", or nothing.
-std::string didYouMean(const std::string& typed, const std::vector<std::string>& known);
-
 // Checks of an option's value: what is wrong with it, or nothing.
 std::string requireNotNegative(const std::string& text);  ///< a number of at least 0
 std::string requirePositive(const std::string& text);     ///< a number above 0

@@ -153,7 +153,7 @@ std::vector<std::string> environmentsOf(const std::filesystem::path& data, const
 Robot readRobot(const std::filesystem::path& data, const std::string& name) {
   const std::string base = (data / "robots" / name / name).string();
   Robot robot = loadUrdf(base + ".urdf");
-  robot.allowed = loadSrdf(base + ".srdf", *robot.tree);
+  robot.allowed = loadSrdf(base + ".srdf", *robot.tree, &robot.notes);
   return robot;
 }
 

@@ -213,6 +213,11 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void getObjects(std::vector<const fcl::ContinuousCollisionObjectd*>& objects) const;
   /// Returns all objects that links carry, bound or attached, each with its link.
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> boundObjects() const;
+  /// Returns the pairs of what links carry that queries check against each other (CertifiedRequest::check_self): names
+  /// of two links, of a link and an attached object or of two attached objects, each pair once. All others are
+  /// neighbours, allowed, or stand on the same link.
+  /// @throws std::logic_error if setup() or update() was not called after the last change.
+  std::vector<std::pair<std::string, std::string>> checkedLinkPairs() const;
   /// Returns the pose of a bound or attached geometry's frame in its link's frame.
   /// @throws std::invalid_argument if no link carries the object.
   Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;

@@ -22,6 +22,21 @@ namespace {
   throw std::runtime_error("cannot write " + what + ": " + std::strerror(errno));
 }
 
+/// @throws std::runtime_error saying what it is, unless it is a regular file.
+void requireRegular(const std::string& path, const struct stat& status) {
+  if (S_ISREG(status.st_mode)) return;
+  const char* const kind = S_ISDIR(status.st_mode)    ? "a directory"
+                           : S_ISFIFO(status.st_mode) ? "a pipe"
+                           : S_ISSOCK(status.st_mode) ? "a socket"
+                                                      : "a device";
+  throw std::runtime_error("'" + path + "': is " + kind + ", not a file");
+}
+
+/// Whether the shell opened it for this process: `<(command)`, standard input.
+bool isPassedOn(const std::string& path) {
+  return path.rfind("/dev/fd/", 0) == 0 || path.rfind("/proc/self/fd/", 0) == 0 || path == "/dev/stdin";
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -68,13 +83,16 @@ int createBeside(const std::string& path, std::string& name) {
 }  // namespace
 
 std::string read(const std::string& path) {
-  const Descriptor from(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!from.good()) failToRead(path);
   struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) failToRead(path);
+  const bool passed_on = isPassedOn(path);
+  if (!passed_on) requireRegular(path, status);
+  // Not blocking: the file may have been replaced by a pipe just now.
+  const Descriptor from(::open(path.c_str(), O_RDONLY | O_CLOEXEC | (passed_on ? 0 : O_NONBLOCK)));
+  if (!from.good() || ::fstat(from.number(), &status) != 0) failToRead(path);
+  if (!passed_on || S_ISDIR(status.st_mode)) requireRegular(path, status);
   std::string content;
-  if (::fstat(from.number(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
-    content.reserve(static_cast<std::size_t>(status.st_size));
-  }
+  if (S_ISREG(status.st_mode) && status.st_size > 0) content.reserve(static_cast<std::size_t>(status.st_size));
   char block[1 << 16];
   for (;;) {
     const ssize_t got = ::read(from.number(), block, sizeof block);

@@ -8,7 +8,9 @@
 
 namespace fcl_artic::files {
 
-/// All bytes of a file, a pipe or the like; an empty file is empty.
+/// All bytes of a regular file; an empty file is empty. Of all else only what a shell passes on as /dev/fd/N or
+/// /dev/stdin is read: a device may be endless or do something when it is opened, a pipe of the file system may have
+/// nobody at its other end.
 /// @throws std::runtime_error naming the file and the system's reason, also for an error after the first bytes.
 std::string read(const std::string& path);
 

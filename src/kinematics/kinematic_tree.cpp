@@ -10,6 +10,7 @@
 #include "kinematics/joint_factors.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
+#include "text/nearest_name.h"
 
 namespace fcl_artic {
 namespace {
@@ -261,7 +262,10 @@ void KinematicTree::sortLinks() {
 
 LinkId KinematicTree::linkId(std::string_view name) const {
   const LinkId id = findLink(name);
-  if (id < 0) throw std::out_of_range("robot '" + name_ + "' has no link '" + std::string(name) + "'");
+  if (id < 0) {
+    throw std::out_of_range("robot '" + name_ + "' has no link '" + std::string(name) + "'" +
+                            text::didYouMean(name, link_names_));
+  }
   return id;
 }
 
@@ -269,7 +273,10 @@ JointId KinematicTree::jointId(std::string_view name) const {
   for (JointId j = 0; j < numJoints(); ++j) {
     if (joints_[j].name == name) return j;
   }
-  throw std::out_of_range("robot '" + name_ + "' has no joint '" + std::string(name) + "'");
+  std::vector<std::string> names;
+  for (const Joint& joint : joints_) names.push_back(joint.name);
+  throw std::out_of_range("robot '" + name_ + "' has no joint '" + std::string(name) + "'" +
+                          text::didYouMean(name, names));
 }
 
 double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {

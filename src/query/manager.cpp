@@ -3,6 +3,8 @@
 // The manager as users hold it: changes go to the registry, and the set-up is told what they make out of date.
 #include "fcl_artic/manager.h"
 
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "query/manager_impl.h"
@@ -179,6 +181,17 @@ std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> ArticulatedCollisio
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> bound;
   for (const ManagedBody& b : impl_->registry.links()) bound.emplace_back(b.link, b.object);
   return bound;
+}
+
+std::vector<std::pair<std::string, std::string>> ArticulatedCollisionManager::checkedLinkPairs() const {
+  impl_->requireReady();
+  const engine::Problem problem = impl_->setup.problem();
+  std::set<std::pair<std::string, std::string>> pairs;  // a link may carry several bodies
+  for (std::int32_t i = 0; i < impl_->setup.numSelfPairs(); ++i) {
+    const engine::LinkPair& pair = problem.link_pairs[i];
+    pairs.insert(std::minmax(impl_->registry.body(pair.a).name, impl_->registry.body(pair.b).name));
+  }
+  return {pairs.begin(), pairs.end()};
 }
 
 Eigen::Isometry3d ArticulatedCollisionManager::boundOffset(const fcl::CollisionObjectd* object) const {

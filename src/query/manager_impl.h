@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 
 #include "fcl_artic/manager.h"
 #include "setup/registry.h"
@@ -32,6 +33,13 @@ struct ArticulatedCollisionManager::Impl {
     if (changes.links) setup.robotChanged();
     if (changes.obstacles) setup.obstaclesChanged();
     if (!setup.ready() || !setup.isOf(*registry.tree())) setup.build(registry);
+  }
+
+  /// @throws std::logic_error where what queries read is not up to date.
+  void requireReady() const {
+    if (setup.ready() && setup.isOf(*registry.tree())) return;
+    throw std::logic_error(
+        "ArticulatedCollisionManager: call setup() after changing objects, links, margins, allowed pairs or the tree");
   }
 
   Registry registry;

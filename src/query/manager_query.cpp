@@ -167,10 +167,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const Registry& registry = impl_->registry;
   const Setup& setup = impl_->setup;
   const KinematicTree& robot = *registry.tree();
-  if (!setup.ready() || !setup.isOf(robot)) {
-    throw std::logic_error(
-        "ArticulatedCollisionManager: call setup() after changing objects, links, margins, allowed pairs or the tree");
-  }
+  impl_->requireReady();
   motion.requireOf(robot);
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;

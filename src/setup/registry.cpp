@@ -6,6 +6,7 @@
 
 #include "fcl/fcl_geometry.h"
 #include "numerics/assertion.h"
+#include "text/nearest_name.h"
 
 namespace fcl_artic {
 namespace {
@@ -30,6 +31,12 @@ std::vector<ManagedBody>::iterator require(std::vector<ManagedBody>& bodies,
                                            const fcl::ContinuousCollisionObjectd* object, const char* missing) {
   return requireIf(
       bodies, [&](const ManagedBody& b) { return object && b.moving == object; }, missing);
+}
+
+std::vector<std::string> linkNames(const KinematicTree& tree) {
+  std::vector<std::string> names;
+  for (LinkId link = 0; link < tree.numLinks(); ++link) names.push_back(tree.linkName(link));
+  return names;
 }
 
 }  // namespace
@@ -66,7 +73,8 @@ void Registry::requireLink(LinkId link, const std::string& what) const {
 
 LinkId Registry::requireLink(const std::string& name, const std::string& what) const {
   if (tree_->hasLink(name)) return tree_->linkId(name);
-  throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link '" + name + "'");
+  throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link '" + name + "'" +
+                              text::didYouMean(name, linkNames(*tree_)));
 }
 
 void Registry::requireLinks() const {
@@ -81,7 +89,11 @@ void Registry::requireLinks() const {
 
 void Registry::requireBody(const std::string& name, const std::string& what) const {
   if (tree_->hasLink(name) || obstacle_names_.count(name)) return;
-  throw std::invalid_argument(what + ": '" + name + "' is no link of robot '" + tree_->name() + "' and no obstacle");
+  std::vector<std::string> names = linkNames(*tree_);
+  names.insert(names.end(), obstacle_names_.begin(), obstacle_names_.end());
+  std::sort(names.begin(), names.end());  // the same hint in each run
+  throw std::invalid_argument(what + ": '" + name + "' is no link of robot '" + tree_->name() + "' and no obstacle" +
+                              text::didYouMean(name, names));
 }
 
 /// The name as given or chosen. (Allowed pairs and margins go by name: a link's would excuse the obstacle too.)

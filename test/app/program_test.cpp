@@ -299,7 +299,7 @@ TEST_F(ProgramTest, ErrorsAreTwoAndNameTheThing) {
   const std::string robot = "--robot " + arm(), motion = " --from 0,0 --to 1,0";
   const std::string broken = write("broken.urdf", "<robot name=\"x\"><link");
   const std::string srdf =
-      write("bad.srdf", R"(<robot name="arm"><disable_collisions link1="arm" link2="leg"/></robot>)");
+      write("bad.srdf", R"(<robot name="arm"><disable_collisions link1="foot" link2="leg"/></robot>)");
   const std::string empty = write("empty.obj", "v 0 0 0\n");
   const struct {
     std::string arguments, named;

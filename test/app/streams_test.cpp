@@ -236,7 +236,7 @@ TEST_F(StreamsTest, FilesAreReplacedAsAWhole) {
   expectContains(messageOf([&] { files::write(path("no/where"), ""); }),
                  "cannot write '" + path("no/where") + "': No such file");
   expectContains(messageOf([&] { files::read(path("none")); }), "none': cannot be read: No such file");
-  expectContains(messageOf([&] { files::read(folder_.string()); }), "cannot be read: Is a directory");
+  expectContains(messageOf([&] { files::read(folder_.string()); }), "is a directory, not a file");
   expectContains(messageOf([&] { files::read("/proc/self/mem"); }), "cannot be read: Input/output error");
 }
 
@@ -254,7 +254,7 @@ TEST_F(StreamsTest, ProblemsThatAreCutShortNameTheirFile) {
   }
   const std::string wrong = write("p.json", R"({"joints": "none"})");
   expectContains(messageOf([&] { planning_data::readEnvironment(wrong, tree); }), wrong);
-  expectContains(messageOf([&] { planning_data::readEnvironment(folder_, tree); }), "Is a directory");
+  expectContains(messageOf([&] { planning_data::readEnvironment(folder_, tree); }), "is a directory");
 }
 #endif
 

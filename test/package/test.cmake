@@ -124,6 +124,18 @@ elseif(CASE STREQUAL "pkg_config")
         "${stage}/share/fcl_artic")
   endforeach()
 
+elseif(CASE STREQUAL "subproject")
+  # The parent says nothing, static, or shared and its own build type.
+  set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+    "-DFCL_ARTIC_SOURCE=${SOURCE}" -S "${SOURCE}/test/subproject")
+  set(ENV{CMAKE_BUILD_TYPE} "")
+  run(COMMAND ${configure} -B "${WORK}/silent")
+  expect_output("fcl_artic is a SHARED_LIBRARY")
+  run(COMMAND ${configure} -B "${WORK}/static" -DBUILD_SHARED_LIBS=OFF -DCMAKE_BUILD_TYPE=Debug)
+  expect_output("fcl_artic is a STATIC_LIBRARY")
+  run(COMMAND ${configure} -B "${WORK}/shared" -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo)
+  expect_output("fcl_artic is a SHARED_LIBRARY")
+
 elseif(CASE STREQUAL "fast_math")
   foreach(flag IN ITEMS -ffast-math -Ofast -funsafe-math-optimizations)
     run(EXPECT_FAILURE COMMAND ${configure} "-DCMAKE_CXX_FLAGS=-g ${flag}" -S "${SOURCE}" -B "${WORK}/build")

@@ -176,6 +176,7 @@ TEST(KinematicTree, LinkErrorsNameTheLink) {
   expectContains(messageOf<std::invalid_argument>([&] { tree.addLink(""); }), "robot 'arm'");
   expectContains(messageOf<std::out_of_range>([&] { tree.linkId("hand"); }), "robot 'arm' has no link 'hand'");
   expectContains(messageOf<std::out_of_range>([&] { tree.jointId("wrist"); }), "robot 'arm' has no joint 'wrist'");
+  expectContains(messageOf<std::out_of_range>([&] { tree.linkId("bas"); }), "has no link 'bas'; did you mean 'base'?");
   EXPECT_TRUE(tree.hasLink("base"));
   EXPECT_FALSE(tree.hasLink("hand"));
   EXPECT_EQ(tree.numLinks(), 1);

@@ -10,6 +10,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <list>
 #include <random>
 #include <set>
 
@@ -151,7 +152,7 @@ std::set<std::pair<std::string, std::string>> neverAsMoveItSays(const Robot& rob
                                                                 long samples, std::uint64_t seed) {
   const KinematicTree& tree = *robot.tree;
   pairs::Random random(seed);
-  std::vector<std::pair<Judge, const LinkPairFinding*>> open;
+  std::list<std::pair<Judge, const LinkPairFinding*>> open;
   for (const LinkPairFinding& pair : report.pairs) {
     if (pair.kind != LinkPairKind::neighbours) open.emplace_back(Judge(robot, pair.link1, pair.link2), &pair);
   }
@@ -162,7 +163,7 @@ std::set<std::pair<std::string, std::string>> neverAsMoveItSays(const Robot& rob
       const auto [lower, upper] = rangeOf(tree, v);
       q[v] = random.uniform(lower, upper);
     }
-    open.erase(std::remove_if(open.begin(), open.end(), [&](auto& pair) { return pair.first.touch(q); }), open.end());
+    open.remove_if([&](auto& pair) { return pair.first.touch(q); });
   }
   std::set<std::pair<std::string, std::string>> never;
   for (const auto& pair : open) never.emplace(pair.second->link1, pair.second->link2);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcl/geometry/bvh/BVH_model.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fcl_artic/solid_mesh.h"
@@ -68,6 +69,129 @@ TEST_F(MeshTest, OffFacesAreReadOrRefused) {
   }
   expectContains(errorOf(write("a.off", polygon(12, "3 0 1 2\n"))), "face 0 has 12 corners");
   expectContains(errorOf(write("a.off", polygon(3, "0 1 0\n"))), "face 1 has 0 corners");
+}
+
+// assimp's own cutting of polygons ends the process over this one.
+TEST_F(MeshTest, APolygonOfOneCornerNineTimesHasNoArea) {
+  const std::string nine = "OFF\n1 1 0\n0 0 0\n9 0 0 0 0 0 0 0 0 0\n";
+  expectContains(errorOf(write("nine.off", nine)), "has no triangle with an area");
+}
+
+/// Area of all triangles.
+double areaOf(const Model& model) {
+  double area = 0;
+  for (int t = 0; t < model.num_tris; ++t) {
+    const fcl::Triangle& tri = model.tri_indices[t];
+    const auto& x = model.vertices;
+    area += (x[tri[1]] - x[tri[0]]).cross(x[tri[2]] - x[tri[0]]).norm() / 2;
+  }
+  return area;
+}
+
+// Corners that bend inward: a fan from the first corner would cover what is outside. In three planes, both ways round.
+TEST_F(MeshTest, PolygonsThatAreNotConvexAreCoveredOnce) {
+  // A comb with seven teeth: base 15 x 1, teeth 1 x 3. And an arrow whose first corner is across its dent.
+  std::vector<std::vector<std::pair<int, int>>> shapes(2);
+  shapes[0] = {{0, 0}, {15, 0}, {15, 1}};
+  for (int x = 14; x > 0; x -= 2) {
+    shapes[0].insert(shapes[0].end(), {{x, 1}, {x, 4}, {x - 1, 4}, {x - 1, 1}});
+  }
+  shapes[0].push_back({0, 1});
+  shapes[1] = {{0, 0}, {4, 4}, {0, 3}, {-4, 4}};
+  const double areas[] = {15 + 7 * 3, 12};
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    for (int plane = 0; plane < 3; ++plane) {
+      for (const bool reversed : {false, true}) {
+        for (std::size_t first = 0; first < shapes[s].size(); ++first) {
+          auto corners = shapes[s];
+          std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
+          if (reversed) std::reverse(corners.begin(), corners.end());
+          std::string file, face = "f";
+          for (const auto& [u, v] : corners) {
+            const std::string x = std::to_string(u), y = std::to_string(v);
+            file += "v " + (plane == 0 ? x + " " + y + " 7" : plane == 1 ? "7 " + x + " " + y : y + " 7 " + x) + "\n";
+          }
+          for (std::size_t k = 1; k <= corners.size(); ++k) face += " " + std::to_string(k);
+          const auto model = load(write("shape.obj", file + face + "\n"));
+          EXPECT_LE(model->num_tris, static_cast<int>(corners.size()) - 2);
+          EXPECT_NEAR(areaOf(*model), areas[s], 1e-9) << s << " " << plane << " " << reversed << " " << first;
+        }
+      }
+    }
+  }
+}
+
+// A prism over a polygon that is not convex, and over one that crosses itself: each edge of a face is one of a
+// triangle's, so that the solid is closed.
+TEST_F(MeshTest, CutPolygonsKeepSolidsClosed) {
+  const std::vector<std::vector<std::pair<double, double>>> outlines = {{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},
+                                                                        {{0, 0}, {2, 2}, {2, 0}, {0, 2}},
+                                                                        {{0, 0}, {1, 0}, {2, 0}, {1, 0}, {1, 5}}};
+  for (const auto& outline : outlines) {
+    const std::size_t n = outline.size();
+    std::string file, bottom = "f", top = "f", sides;
+    for (const int z : {0, 1}) {
+      for (const auto& [x, y] : outline) {
+        file += "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+      }
+    }
+    for (std::size_t k = 1; k <= n; ++k) {
+      const std::size_t next = k % n + 1;
+      top += " " + std::to_string(n + k);
+      bottom += " " + std::to_string(n + 1 - k);
+      sides += "f " + std::to_string(k) + " " + std::to_string(next) + " " + std::to_string(n + next) + " " +
+               std::to_string(n + k) + "\n";
+    }
+    EXPECT_NO_THROW(loadMesh(write("prism.obj", file + bottom + "\n" + top + "\n" + sides), {1, 1, 1}, nullptr, true));
+  }
+}
+
+TEST_F(MeshTest, NumbersWithoutALeadingDigit) {
+  const auto model = load(write("dot.obj", "v .5 -.25 +.125\nv 1. 0 0\nv 0 1.e1 -.5E-1\nf 1 2 3\n"));
+  EXPECT_EQ(model->aabb_local.min_, fcl::Vector3d(0, -0.25, -0.05));
+  EXPECT_EQ(model->aabb_local.max_, fcl::Vector3d(1, 10, 0.125));
+}
+
+// One triangle (0,0,0) (1,0,0) (0,2,0), written in all the ways that OBJ has.
+TEST_F(MeshTest, ObjIsReadAsItsSpecificationSays) {
+  const auto isTheTriangle = [&](const std::string& content) {
+    notes_.clear();
+    const auto model = load(write("t.obj", content));
+    return model->num_tris == 1 && model->aabb_local.min_ == fcl::Vector3d(0, 0, 0) &&
+           model->aabb_local.max_ == fcl::Vector3d(1, 2, 0) && notes_.empty();
+  };
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 2 0\n";
+  EXPECT_TRUE(isTheTriangle(corners + "f 1 2 3\n"));
+  EXPECT_TRUE(isTheTriangle(corners + "vn 0 0 1\nvt 0 0\ng a b\ns off\nusemtl m\nf 1//1 2//1 3//1\n"));
+  EXPECT_TRUE(isTheTriangle(corners + "f 1/1 2/2/2 3/ # a comment\n"));
+  EXPECT_TRUE(isTheTriangle(corners + "f -3 -2 -1\nv 9 9 9\n")) << "back from where the face is";
+  EXPECT_TRUE(isTheTriangle("f 1 2 3\n" + corners)) << "vertices that come later";
+  EXPECT_TRUE(isTheTriangle(corners + "f 1 \\\n 2 \\ \n3\n"));
+  EXPECT_TRUE(isTheTriangle("# C:\\meshes\\\n" + corners + "f 1 2 3\n")) << "a comment doesn't go on";
+  EXPECT_TRUE(isTheTriangle("v 0 0 0 .5\n\tv\t2 0 0  2\nv 0 1 0 0.5\nf 1 2 3\n")) << "weights";
+  EXPECT_TRUE(isTheTriangle("v 0 0 0 .5 .5 .5\nv 1 0 0 1 0 0\nv 0 2 0 0 0 1\nf 1 2 3\n")) << "colours";
+  std::string mac = corners + "f 1 2 3\n", dos;
+  for (char& c : mac) {
+    if (c == '\n') dos += '\r', c = '\r';
+    dos += c == '\r' ? '\n' : c;
+  }
+  EXPECT_TRUE(isTheTriangle(dos));
+  EXPECT_EQ(load(write("mac.obj", mac))->num_tris, 1);
+
+  const auto error = [&](const std::string& content) { return errorOf(write("t.obj", corners + content)); };
+  expectContains(error("f 1 2 4\n"), "t.obj': line 4: has a face with vertex 4 of 3");
+  expectContains(error("f 1 2 0\n"), "has a face with vertex 0 of 3");
+  expectContains(error("f -4 2 1\nv 1 1 1\n"), "has a face with vertex -4 of 3");
+  expectContains(error("f 1 2 99999999999999999999\n"), "'99999999999999999999' names no vertex");
+  expectContains(error("f\n"), "line 4: has a face without a corner");
+  expectContains(error("f 1 2 x\n"), "'x' names no vertex");
+  expectContains(error("v 1 2\n"), "line 4: '' is not a finite number");
+  expectContains(error("v 1 2 0x3\n"), "'0x3' is not a finite number");
+  expectContains(error("v 1 2 1e999\n"), "'1e999' is not a finite number");
+  expectContains(error("v 1 2 3 0\n"), "a vertex of weight 0");
+  expectContains(error("curv 0 1 1 2\n"), "free-form curve");
+  load(write("t.obj", corners + "f 1 2 3\nfoo 1\n"));
+  expectContains(notes_.back(), "t.obj': 1 line is none that OBJ files have");
 }
 
 // Of a strip assimp reads the first triangle, a fan it takes for a polygon.
@@ -209,7 +333,7 @@ TEST_F(MeshTest, RobotsAndScenesOfSolids) {
 
 TEST_F(MeshTest, ErrorsNameTheFile) {
   expectContains(errorOf(path("missing.stl")), "missing.stl': no such file");
-  expectContains(errorOf(folder_.string()), "no such file");
+  expectContains(errorOf(folder_.string()), "': is a directory, not a file");
   expectContains(errorOf(write("empty.stl", "")), "empty.stl");
   expectContains(errorOf(write("none.stl", "solid none\nendsolid none\n")), "none.stl");
   expectContains(errorOf(write("points.obj", "v 0 0 0\nv 1 0 0\np 1 2\n")), "points.obj");

@@ -11,8 +11,10 @@ class SrdfTest : public TempFolderTest {
     for (const char* link : {"a", "b", "c", "d"}) tree_.addLink(link);
   }
   AllowedCollisionMatrix load(const std::string& body) {
-    return loadSrdf(write("r.srdf", "<robot name='r'>" + body + "</robot>"), tree_);
+    notes_.clear();
+    return loadSrdf(write("r.srdf", "<robot name='r'>" + body + "</robot>"), tree_, &notes_);
   }
+  std::vector<std::string> notes_;
   KinematicTree tree_{"r"};
 };
 
@@ -36,12 +38,66 @@ TEST_F(SrdfTest, DefaultsYieldToNamedPairs) {
   EXPECT_FALSE(matrix.allowed("b", "c"));
 }
 
+// A maker's SRDF names links that not all of its URDFs have. Passed over, such entries leave no pair unchecked.
+TEST_F(SrdfTest, EntriesWithLinksThatTheRobotLacksAreNoted) {
+  const auto matrix = load(
+      "<disable_collisions link1='b' link2='a'/><disable_collisions link1='a' link2='gripper_left'/>"
+      "<disable_collisions link1='x1' link2='x2'/><disable_collisions link1='x3' link2='x1'/>"
+      "<disable_default_collisions link='x4'/><enable_collisions link1='c' link2='x1'/>");
+  EXPECT_EQ(matrix.pairs().size(), 1u);
+  EXPECT_TRUE(matrix.allowed("a", "b"));
+  ASSERT_EQ(notes_.size(), 1u);
+  expectContains(notes_[0], "r.srdf': 5 of 6 entries name links that robot 'r' does not have, ");
+  expectContains(notes_[0], "'x4', 'x1', 'gripper_left' and 2 more; they are passed over");
+  EXPECT_EQ(notes_[0].find("did you mean"), std::string::npos) << notes_[0];
+  load("<disable_collisions link1='b' link2='a'/>");
+  EXPECT_TRUE(notes_.empty());
+  loadSrdf(write("r.srdf", "<robot name='r'><disable_collisions link1='b' link2='x'/></robot>"), tree_);  // no notes
+}
+
+TEST_F(SrdfTest, ASlipIsHintedAt) {
+  tree_.addLink("forearm_link");
+  tree_.addLink("wrist_left");
+  load("<disable_collisions link1='a' link2='forearm_lnk'/>");
+  ASSERT_EQ(notes_.size(), 1u);
+  expectContains(notes_[0], "; did you mean 'forearm_link' by 'forearm_lnk'?");
+  // What the file names elsewhere is not what is meant.
+  load("<disable_collisions link1='a' link2='wrist_left'/><disable_collisions link1='a' link2='wrist_lef2'/>");
+  ASSERT_EQ(notes_.size(), 1u);
+  EXPECT_EQ(notes_[0].find("did you mean"), std::string::npos) << notes_[0];
+}
+
+TEST_F(SrdfTest, AnotherRobotsIsRefused) {
+  const std::string message =
+      messageOf([&] { load("<disable_collisions link1='w' link2='x'/><disable_collisions link1='y' link2='z'/>"); });
+  expectContains(message, "is of another robot: of the 4 links that it names, 'w', 'x', 'y' and 1 more, robot 'r' has");
+  EXPECT_NO_THROW(load("")) << "a file without pairs is of no other robot";
+}
+
+// An exception from a default with a slip in it would leave the pair that is meant unchecked.
+TEST_F(SrdfTest, AnEnabledPairWithAnUnknownLinkIsRefusedWhereItCounts) {
+  for (const char* entry : {"<enable_collisions link1='a' link2='bb'/>", "<enable_collisions link1='bb' link2='a'/>"}) {
+    const std::string message = messageOf([&] { load(std::string("<disable_default_collisions link='a'/>") + entry); });
+    expectContains(message, "<enable_collisions> names link 'bb', which robot 'r' does not have, and 'a', which is");
+    expectContains(message, "did you mean 'b'?");
+  }
+  EXPECT_NO_THROW(load("<disable_default_collisions link='a'/><enable_collisions link1='c' link2='bb'/>"));
+}
+
+TEST_F(SrdfTest, PairsComeWithTheirReasons) {
+  const std::string file = write("r.srdf",
+                                 "<robot name='r'><disable_default_collisions link='d'/>"
+                                 "<disable_collisions link1='b' link2='a' reason='Never'/>"
+                                 "<disable_collisions link1='d' link2='c'/></robot>");
+  std::string all;
+  for (const SrdfPair& p : readSrdf(file, tree_)) all += p.link1 + p.link2 + "=" + p.reason + " ";
+  EXPECT_EQ(all, "ab=Never ad=disable_default_collisions bd=disable_default_collisions cd= ");
+}
+
 TEST_F(SrdfTest, ErrorsNameFileAndReason) {
   const auto error = [&](const std::string& body) { return messageOf([&] { load(body); }); };
-  expectContains(error("<disable_collisions link1='a' link2='zz'/>"), "names link 'zz', which robot 'r'");
   expectContains(error("<disable_collisions link1='a'/>"), "no attribute 'link2'");
-  expectContains(error("<disable_default_collisions link='zz'/>"), "'zz'");
-  expectContains(error("<enable_collisions link1='a' link2='zz'/>"), "r.srdf', line 1: ");
+  expectContains(error("<disable_default_collisions/>"), "r.srdf', line 1: ");
   expectContains(error("<oops"), "r.srdf': ");
   expectContains(messageOf([&] { loadSrdf(path("none.srdf"), tree_); }), "none.srdf': cannot be read");
   expectContains(messageOf([&] { loadSrdf(write("x.srdf", "<sdf/>"), tree_); }), "x.srdf': is not an SRDF");

@@ -5,6 +5,12 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 
+#include <sys/stat.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
 #include "temp_folder.h"
 
 /// Readers leak on broken files: urdfdom where joints close a loop, assimp where it gives up. Not ours to mend.
@@ -163,10 +169,126 @@ TEST_F(UrdfTest, FindsMeshesByEveryKindOfPath) {
 
   const auto error = [&](const std::string& uri) { return messageOf([&] { loadWith(uri); }); };
   expectContains(error("../meshes/none.obj"), "none.obj': no such file");
-  expectContains(error("package://my_robot/none.obj"), "none.obj': no such file");
-  expectContains(error("package://not_here/t.obj"), "package 'not_here'");
+  expectContains(error("package://my_robot/none.obj"), "none.obj': no such file in '" + path("ws/my_robot") + "'");
+  expectContains(error("package://not_here/t.obj"), "there is no package 'not_here': ");
+  expectContains(error("package:///"), "names no file");
+  expectContains(error("package://my_robot/"), "names no file");
+  expectContains(error("../meshes"), "meshes': is a directory, not a file");
   expectContains(error("https://example.org/t.obj"), "only file:// and package:// are read");
   expectContains(error("../meshes/none.obj"), "r.urdf': link 'a'");
+}
+
+/// Sets a variable of the environment while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+TEST_F(UrdfTest, FindsPackagesAsRosDoes) {
+  const auto sourceOf = [&](const std::string& uri) {
+    return loadUrdf(write("ws/src/arm/urdf/r.urdf", robot(linkWith(collision("<mesh filename='" + uri + "'/>")))))
+        .geometry.at(0)
+        .source;
+  };
+  const auto manifest = [](const std::string& name) { return "<package><name>\n " + name + " </name></package>"; };
+  const Variable no_ros("ROS_PACKAGE_PATH", ""), no_ament("AMENT_PREFIX_PATH", "");
+  // Above the file, by the name in package.xml: the folder has another one.
+  write("ws/src/arm/package.xml", manifest("arm_description"));
+  EXPECT_EQ(sourceOf("package:///arm_description/t.obj"), write("ws/src/arm/t.obj", kTriangle));
+  EXPECT_EQ(sourceOf("package://arm_description/t.obj"), path("ws/src/arm/t.obj"));
+
+  const std::string nowhere = messageOf([&] { sourceOf("package://hand/t.obj"); });
+  expectContains(nowhere,
+                 "there is no package 'hand': searched for 'hand' by folder name and by package.xml at and above '" +
+                     path("ws/src/arm/urdf") + "'");
+  expectContains(nowhere, "below ROS_PACKAGE_PATH (which is not set)");
+  expectContains(nowhere, "in share/ of AMENT_PREFIX_PATH (which is not set)");
+  expectContains(nowhere, "--package hand=DIR");
+
+  const std::string in_ament = write("opt/share/hand/t.obj", kTriangle);
+  const Variable ament("AMENT_PREFIX_PATH", path("none") + ":" + path("opt"));
+  EXPECT_EQ(sourceOf("package://hand/t.obj"), in_ament);
+
+  // Below a folder of the path, by package.xml, but not within packages or where a file says that there are none.
+  const std::string in_ros = write("catkin/group/right_hand/t.obj", kTriangle);
+  write("catkin/group/right_hand/package.xml", manifest("hand"));
+  write("catkin/a/package.xml", manifest("a"));
+  write("catkin/a/hand/t.obj", kTriangle);
+  write("catkin/b/CATKIN_IGNORE", "");
+  write("catkin/b/hand/t.obj", kTriangle);
+  std::filesystem::create_directory_symlink(path("catkin"), path("catkin/z"));  // a circle
+  const Variable ros("ROS_PACKAGE_PATH", path("none") + "::" + path("catkin"));
+  EXPECT_EQ(sourceOf("package://hand/t.obj"), in_ros);
+  // The first folder that has the file is taken; an error names all of them.
+  EXPECT_EQ(sourceOf("package://hand/u.obj"), write("opt/share/hand/u.obj", kTriangle));
+  const std::string missing = messageOf([&] { sourceOf("package://hand/none.obj"); });
+  expectContains(missing, "no such file in '" + path("catkin/group/right_hand") + "'");
+  expectContains(missing, ", '" + path("opt/share/hand") + "'; also searched for 'hand'");
+  expectContains(missing, "below ROS_PACKAGE_PATH '" + path("none") + "::" + path("catkin") + "'");
+  // What the caller names is not looked for.
+  UrdfOptions named;
+  named.packages["hand"] = path("ws");
+  const std::string refused = messageOf([&] { loadUrdf(path("ws/src/arm/urdf/r.urdf"), named); });
+  expectContains(refused, "no such file in '" + path("ws") + "'");
+}
+
+TEST_F(UrdfTest, StandsWhereItsBaseIs) {
+  const std::string file = write(
+      "r.urdf",
+      robot("<link name='world'/><link name='a'/>" +
+            joint("j", "revolute", "world", "a",
+                  "<origin xyz='1 0 0'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/>")));
+  UrdfOptions options;
+  EXPECT_EQ(loadUrdf(file, options).tree->numLinks(), 2) << "no link is added where none is needed";
+  options.base = Eigen::Translation3d(0, 0, 5) * Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ());
+  const auto placed = loadUrdf(file, options).tree;
+  EXPECT_EQ(placed->numLinks(), 3);
+  EXPECT_EQ(placed->linkName(2), "world_") << "the robot has a 'world' of its own";
+  EXPECT_EQ(placed->dof(), 1);
+  const Eigen::VectorXd q = Eigen::VectorXd::Zero(1);
+  EXPECT_LT((placed->linkPose(placed->linkId("a"), q).translation() - Eigen::Vector3d(0, 1, 5)).norm(), 1e-12);
+
+  options.floating_base = true;
+  const auto floating = loadUrdf(file, options).tree;
+  ASSERT_EQ(floating->dof(), 8);
+  EXPECT_EQ(floating->variableName(0), "floating_base/trans_x");
+  EXPECT_EQ(floating->variableName(7), "j");
+  Eigen::VectorXd away = floating->neutralConfiguration();
+  EXPECT_LT((floating->linkPose(1, away).translation() - Eigen::Vector3d(0, 1, 5)).norm(), 1e-12);
+  away[0] = 2;  // along the base's x
+  EXPECT_LT((floating->linkPose(1, away).translation() - Eigen::Vector3d(0, 3, 5)).norm(), 1e-12);
+
+  options.base.linear() *= 2;
+  expectContains(messageOf([&] { loadUrdf(file, options); }),
+                 "r.urdf': robot 'r': joint 'floating_base' has an origin");
+}
+
+// Three links of 1 m, a slide of 0.5 m on the second; a ball of 0.1 m at the end, and a base far away.
+TEST_F(UrdfTest, ReachIsTheLengthOfTheLinks) {
+  const std::string up = "<origin xyz='0 0 1'/>", axis = "<axis xyz='1 0 0'/>";
+  const std::string file =
+      write("r.urdf",
+            robot("<link name='a'/><link name='b'/><link name='c'/><link name='d'>" +
+                  collision("<sphere radius='0.1'/>", up) + "</link>" + joint("ab", "continuous", "a", "b", up + axis) +
+                  joint("bc", "prismatic", "b", "c",
+                        up + axis + "<limit lower='-0.5' upper='0.25' effort='1' velocity='1'/>") +
+                  joint("cd", "continuous", "c", "d", up + axis)));
+  UrdfOptions options;
+  for (const bool floating : {false, true}) {
+    options.floating_base = floating;
+    const Robot r = loadUrdf(file, options);
+    EXPECT_DOUBLE_EQ(reachUpper(*r.tree), 3.5);
+    EXPECT_NEAR(reachUpper(*r.tree, r.geometry), 4.6, 1e-12);
+    options.base = Eigen::Translation3d(100, 0, 0);
+  }
 }
 
 TEST_F(UrdfTest, LoadsAMeshOnceForAllItsLinks) {
@@ -374,7 +496,19 @@ TEST_F(LoadedQueryTest, ContactAtTheTimeWorkedOutByHand) {
 TEST_F(UrdfTest, FilesThatAreNoUrdf) {
   const auto error = [&](const std::string& file) { return messageOf([&] { loadUrdf(file); }); };
   expectContains(error(path("none.urdf")), "none.urdf': cannot be read");
-  expectContains(error(folder_.string()), "cannot be read");
+  expectContains(error(folder_.string()), "': is a directory, not a file");
+  // Refused at once: an endless file, and a pipe that nobody writes to.
+  expectContains(error("/dev/zero"), "'/dev/zero': is a device, not a file");
+  ASSERT_EQ(mkfifo(path("pipe.urdf").c_str(), 0600), 0);
+  expectContains(error(path("pipe.urdf")), "pipe.urdf': is a pipe, not a file");
+  for (const char* ending : {".obj", ".scene", ".bt"}) {
+    const std::string pipe = path(std::string("pipe") + ending);
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    expectContains(messageOf([&] { loadScene(pipe); }), "is a pipe, not a file");
+  }
+  std::filesystem::create_symlink("/dev/zero", path("zero.stl"));
+  expectContains(messageOf([&] { loadScene(path("zero.stl")); }), "is a device, not a file");
+  expectContains(messageOf([&] { loadScene(folder_.string()); }), "is a directory, not a file");
   expectContains(error(write("empty.urdf", "")), "empty.urdf': ");
   expectContains(error(write("cut.urdf", "<robot name='r'><link name='a'>")), "cut.urdf': ");
   expectContains(error(write("text.urdf", "hello")), "text.urdf': ");

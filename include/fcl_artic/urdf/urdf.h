@@ -43,8 +43,10 @@ struct Robot {
 
 /// Options of loadUrdf().
 struct UrdfOptions {
-  /// Folders that stand for "package://NAME/": from name to folder. A package that isn't named here is looked for in
-  /// the URDF's folder and its parents, by folder name.
+  /// Folders that stand for "package://NAME/" (or "package:///NAME/"): from name to folder. A package that isn't named
+  /// here is looked for in the URDF's folder and its parents, by folder name and by the <name> in a package.xml; then,
+  /// as ROS does, in and below the folders of the environment's ROS_PACKAGE_PATH; then at share/NAME in those of
+  /// AMENT_PREFIX_PATH. The first folder that has the file is taken.
   std::map<std::string, std::string> packages;
   /// Whether meshes are solids (SolidMesh), so that what lies within one touches it. A mesh that is not closed and
   /// consistently oriented is an error then. (For some meshes only: apply makeSolid() to the geometries of Robot.)
@@ -52,13 +54,20 @@ struct UrdfOptions {
   /// Whether a COLLADA file's up axis counts: what it says is up (y, if it says nothing) becomes z. If not, as in
   /// RViz and MoveIt, coordinates are taken as they stand, and a file that says that x or y is up is noted.
   bool collada_up_axis = false;
+  /// Pose of the robot's root link in the world. If it is not the identity, the tree has one more link, "world" (or, if
+  /// the robot has a link of that name, "world_"), its last, and one more joint, "base_mount", its first.
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+  /// Whether the robot's root link moves freely in the world: the tree has one more link, as for `base`, and a floating
+  /// joint "floating_base", whose origin is `base`. Its 7 variables come before the robot's own.
+  bool floating_base = false;
 };
 
 /// Reads a robot from a URDF file. Meshes may be in any format that assimp reads, with their scale, and are found by
 /// absolute path, path relative to the URDF's folder, file:// or package://. Triangles without area are left out, with
 /// a note. Xacro files must be expanded before.
 /// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
-///   empty mesh, mesh without a triangle of positive area, mesh that is to be a solid and can't be one.
+///   empty mesh, with all places that were searched, mesh without a triangle of positive area, mesh that is to be a
+///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
 /// One part of combineRobots().
@@ -77,10 +86,40 @@ struct PlacedRobot {
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
 
+/// An upper bound on how far from the robot's root a point of its geometry gets in any configuration, m, as rounded:
+/// the lengths of the links in a row, each with what it carries. (Compared with a mesh's extent, it shows a file that
+/// is in other units.) Where the robot stands does not count: of a root without geometry that one fixed, planar or
+/// floating joint leaves, such as "world", the child is the root here. Joints that slide count by their limits; without
+/// limits they count as standing still at 0, as planar and floating ones do, and the bound holds for such
+/// configurations only.
+/// @param geometry  what the links carry; none: the bound is on the frames of joints and links.
+FCL_ARTIC_EXPORT double reachUpper(const KinematicTree& tree, const std::vector<LinkGeometry>& geometry = {});
+
+/// A pair of links that needs no check, as readSrdf() reads it.
+struct SrdfPair {
+  /// Names of the two links.
+  std::string link1, link2;
+  std::string reason;  ///< What the file gives, such as "Adjacent", "Always", "Default" or "Never".
+};
+
 /// Reads the pairs of links that need no check from an SRDF file, as MoveIt does: `disable_collisions`, and
 /// `disable_default_collisions` with its exceptions, `enable_collisions`.
-/// @throws std::runtime_error naming file and reason: unreadable, not an SRDF, an unknown link.
-FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree);
+///
+/// Entries with a link that the robot lacks are passed over, which leaves no pair unchecked: the SRDFs of many makers
+/// name links that not all of their URDFs have.
+/// @param notes  what was passed over is appended, one line; may be null.
+/// @throws std::runtime_error naming file and reason: unreadable; not an SRDF; none of its links is one of the robot's;
+///   an `enable_collisions` with a link that the robot lacks, whose other link is disabled by default: were it a slip,
+///   the pair that was meant would go unchecked.
+FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree,
+                                                 std::vector<std::string>* notes = nullptr);
+
+/// Reads the same pairs as loadSrdf(), each with the reason that the file gives, in the order of their names.
+/// @return each pair once, the alphabetically smaller name first; the reason is empty where the file has none, and
+///   "disable_default_collisions" where that is what allows the pair.
+/// @throws std::runtime_error as loadSrdf().
+FCL_ARTIC_EXPORT std::vector<SrdfPair> readSrdf(const std::string& path, const KinematicTree& tree,
+                                                std::vector<std::string>* notes = nullptr);
 
 /// Finds the pairs of a robot's links that need no check: the manager's classifyLinkPairs(), which says what of its
 /// answer is proven. (`never` is. MoveIt's assistant samples.) To use what it finds:
@@ -118,6 +157,7 @@ struct SceneOptions {
   bool collada_up_axis = false;  ///< Whether a COLLADA file's up axis counts, as UrdfOptions::collada_up_axis.
   /// Factor by which all lengths of the scene, positions too, are multiplied: 0.001 for a file in millimetres. Above 0.
   double scale = 1;
+  std::map<std::string, std::string> packages;  ///< For URDF files, as UrdfOptions::packages.
 };
 
 /// Reads a scene. The file's ending decides how: meshes in any format that assimp reads (.obj .stl .ply .dae ...), one

@@ -12,17 +12,26 @@
 #include <ompl/base/spaces/SO2StateSpace.h>
 #include <ompl/base/spaces/SO3StateSpace.h>
 
+#include "text/nearest_name.h"
+
 namespace fcl_artic::planning {
 namespace {
 
 namespace ob = ::ompl::base;
+
+std::vector<std::string> variableNames(const KinematicTree& tree) {
+  std::vector<std::string> names;
+  for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));
+  return names;
+}
 
 int requireVariable(const KinematicTree& tree, const std::string& name, const std::string& what) {
   for (int v = 0; v < tree.dof(); ++v) {
     if (tree.variableName(v) == name) return v;
   }
   throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no joint '" + name +
-                              "' with a value of its own (it is unknown, fixed or a mimic)");
+                              "' with a value of its own (it is unknown, fixed or a mimic)" +
+                              text::didYouMean(name, variableNames(tree)));
 }
 
 /// Queries take values up to this, rad or m (JointMotion::linear()): planners must not draw others.
@@ -42,7 +51,8 @@ const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
     if (joint.name == name && !joint.mimics && joint.type != JointType::fixed) return joint;
   }
   throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint '" + name +
-                              "' that can be planned for (it is unknown, fixed or a mimic)");
+                              "' that can be planned for (it is unknown, fixed or a mimic)" +
+                              text::didYouMean(name, variableNames(tree)));
 }
 
 /// The space of a joint that is no number within limits.
@@ -229,7 +239,7 @@ PlanningSetup setUpRigidBody(std::shared_ptr<fcl::CollisionGeometryd> body, cons
 PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, const std::string& scene,
                             const std::string& group, const SetupOptions& options) {
   Robot robot = loadUrdf(urdf, options.urdf);
-  robot.allowed = loadSrdf(srdf, *robot.tree);
+  robot.allowed = loadSrdf(srdf, *robot.tree, &robot.notes);
   const std::vector<std::string> joints = groupJoints(srdf, *robot.tree, group);
   std::vector<Scene> scenes;
   if (!scene.empty()) scenes.push_back(loadScene(scene, options.scene));

@@ -33,7 +33,7 @@ GeometryPtr makeCone(double radius, double length, const std::string& where);
 /// @param solid  a SolidMesh of all triangles: those without area may be what closes it.
 /// @throws std::runtime_error naming `where` for an index out of range, a vertex that is not finite or no triangle
 /// left; for a mesh that is to be a solid and can't be one.
-GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
+GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid = false);
 
 /// The geometry, as a loader makes it, with all its lengths multiplied. @throws std::runtime_error naming `where`.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
@@ -23,6 +22,7 @@
 #include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
+#include "triangle_soup.h"
 
 namespace fcl_artic {
 namespace detail {
@@ -36,6 +36,25 @@ void requireLength(double value, const std::string& what, const std::string& whe
 bool isDegenerate(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d u = b - a, v = c - a;
   return !(u.cross(v).norm() > 8 * std::numeric_limits<double>::epsilon() * u.norm() * v.norm());
+}
+
+/// Drops the vertices that no triangle uses, as FCL takes all of them for the box around a mesh.
+void keepUsed(std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Triangle>& triangles) {
+  constexpr std::size_t kUnused = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> number(vertices.size(), kUnused);
+  for (const fcl::Triangle& triangle : triangles) {
+    for (int k = 0; k < 3; ++k) number[triangle[k]] = 0;
+  }
+  std::size_t used = 0;
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    if (number[v] == kUnused) continue;
+    vertices[used] = vertices[v];
+    number[v] = used++;
+  }
+  vertices.resize(used);
+  for (fcl::Triangle& triangle : triangles) {
+    triangle.set(number[triangle[0]], number[triangle[1]], number[triangle[2]]);
+  }
 }
 
 }  // namespace
@@ -74,11 +93,13 @@ GeometryPtr makeCone(double radius, double length, const std::string& where) {
   return std::make_shared<fcl::Coned>(radius, length);
 }
 
-GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::vector<fcl::Triangle>& triangles,
+GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid) {
   if (triangles.empty()) fail(where, "has no triangles");
-  std::vector<fcl::Triangle> kept;
-  kept.reserve(triangles.size());
+  const auto hasNoArea = [&](const fcl::Triangle& triangle) {
+    return isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]);
+  };
+  std::size_t flat = 0;
   for (const fcl::Triangle& triangle : triangles) {
     for (int k = 0; k < 3; ++k) {
       if (triangle[k] >= vertices.size()) {
@@ -89,19 +110,26 @@ GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::ve
         fail(where, "vertex " + std::to_string(triangle[k]) + " is not finite");
       }
     }
-    if (!isDegenerate(vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]])) kept.push_back(triangle);
+    flat += hasNoArea(triangle);
   }
-  if (kept.empty()) fail(where, "has no triangle with an area");
-  if (solid) kept = triangles;
-  if (notes && kept.size() < triangles.size()) {
-    notes->push_back(where + ": " + std::to_string(triangles.size() - kept.size()) + " of " +
-                     std::to_string(triangles.size()) + " triangles have no area and were left out");
+  if (flat == triangles.size()) fail(where, "has no triangle with an area");
+  if (!solid && flat > 0) {
+    if (notes) {
+      notes->push_back(where + ": " + std::to_string(flat) + " of " + std::to_string(triangles.size()) +
+                       " triangles have no area and were left out");
+    }
+    triangles.erase(std::remove_if(triangles.begin(), triangles.end(), hasNoArea), triangles.end());
   }
+  keepUsed(vertices, triangles);
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  if (model->beginModel(static_cast<int>(kept.size()), static_cast<int>(vertices.size())) != fcl::BVH_OK ||
-      model->addSubModel(vertices, kept) != fcl::BVH_OK || model->endModel() != fcl::BVH_OK) {
-    fail(where, "FCL cannot build its tree");
-  }
+  bool built =
+      model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) == fcl::BVH_OK &&
+      model->addSubModel(vertices, triangles) == fcl::BVH_OK;
+  // FCL has copies, and needs much memory for its tree.
+  vertices = {};
+  triangles = {};
+  built = built && model->endModel() == fcl::BVH_OK;
+  if (!built) fail(where, "FCL cannot build its tree");
   model->computeLocalAABB();
   if (!solid) return model;
   try {
@@ -115,13 +143,9 @@ GeometryPtr makeMesh(const std::vector<Eigen::Vector3d>& vertices, const std::ve
 
 namespace {
 
-struct TriangleSoup {
-  std::vector<Eigen::Vector3d> vertices;
-  std::vector<fcl::Triangle> triangles;
-};
-
 /// assimp keeps the parts of a file in the frames of its nodes.
-void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_parent, TriangleSoup& soup) {
+void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_parent, const std::string& where,
+             detail::TriangleSoup& soup) {
   const Eigen::Matrix4d M =
       M_parent *
       Eigen::Map<const Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1).cast<double>();
@@ -132,39 +156,31 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
       const Eigen::Vector4d x(part.mVertices[v].x, part.mVertices[v].y, part.mVertices[v].z, 1);
       soup.vertices.push_back((M * x).head<3>());
     }
+    // assimp's own step that cuts polygons ends the process for some of them, as of nine times one corner.
+    std::vector<std::size_t> corners;
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines
-      soup.triangles.emplace_back(first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]);
+      corners.clear();
+      for (unsigned k = 0; k < part.mFaces[f].mNumIndices; ++k) corners.push_back(first + part.mFaces[f].mIndices[k]);
+      soup.addFace(corners.data(), corners.size(), where);
     }
   }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], M, soup);
+  for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], M, where, soup);
 }
 
-/// assimp's step that cuts polygons into triangles reads vertices that aren't there, and ends the process for a mesh
-/// that it takes for one of polygons though it has none: a face without a corner is enough.
-/// @return whether there is a polygon of more than three corners. @throws std::runtime_error naming `where`.
-bool requireFaces(const aiScene& scene, const std::string& where) {
-  bool all = false;
+/// Refuses faces that name vertices that aren't there, or none. @throws std::runtime_error naming `where`.
+void requireFaces(const aiScene& scene, const std::string& where) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     const aiMesh& mesh = *scene.mMeshes[m];
-    bool polygons = false;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices == 0) detail::fail(where, "has a face without a corner");
-      polygons = polygons || face.mNumIndices > 3;
       for (unsigned k = 0; k < face.mNumIndices; ++k) {
         if (face.mIndices[k] < mesh.mNumVertices) continue;
         detail::fail(where, "has a face with vertex " + std::to_string(face.mIndices[k]) + " of " +
                                 std::to_string(mesh.mNumVertices));
       }
     }
-    if (!polygons && (mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON)) {
-      detail::fail(where, "says that it has polygons, and has none");
-    }
-    all = all || polygons;
   }
-  return all;
 }
 
 /// Tells of a COLLADA file that says that x or y is up: of the first such file only, as a robot may have many.
@@ -186,7 +202,9 @@ void noteUpAxis(const std::string& content, const std::string& where, bool turne
 /// A file in memory, as assimp reads.
 class MemoryStream : public Assimp::IOStream {
  public:
-  explicit MemoryStream(std::string content) : content_(std::move(content)) {}
+  explicit MemoryStream(std::string content) : owned_(std::move(content)), content_(owned_) {}
+  /// @param content  must outlive the stream.
+  explicit MemoryStream(std::string_view content) : content_(content) {}
   std::size_t Read(void* to, std::size_t size, std::size_t count) override {
     if (size == 0) return 0;
     const std::size_t whole = std::min(count, (content_.size() - at_) / size);
@@ -207,7 +225,8 @@ class MemoryStream : public Assimp::IOStream {
   void Flush() override {}
 
  private:
-  std::string content_;
+  const std::string owned_;
+  const std::string_view content_;
   std::size_t at_ = 0;
 };
 
@@ -224,7 +243,8 @@ class CheckedFiles : public Assimp::IOSystem {
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (std::strchr(mode, 'r') == nullptr || !Exists(path)) return nullptr;
     try {
-      return new MemoryStream(path == path_ ? content_ : files::read(path));
+      if (path == path_) return new MemoryStream(std::string_view(content_));
+      return new MemoryStream(files::read(path));
     } catch (const std::runtime_error& error) {
       if (error_.empty()) error_ = error.what();
       return nullptr;
@@ -238,6 +258,41 @@ class CheckedFiles : public Assimp::IOSystem {
   std::string error_;
 };
 
+/// @param turn  turns what a COLLADA file says is up to z.
+detail::TriangleSoup readByAssimp(const std::string& path, const std::string& content, const std::string& where,
+                                  bool turn) {
+  Assimp::Importer importer;
+  auto* const read_by = new CheckedFiles(path, content);  // the importer's from now on
+  importer.SetIOHandler(read_by);
+  // A COLLADA file's unit counts; its up axis if it is asked for: assimp then turns what is up to y.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, !turn);
+  const aiScene* scene = importer.ReadFile(path, 0);
+  if (!read_by->error().empty()) detail::fail(where, read_by->error());
+  if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
+  requireFaces(*scene, where);
+
+  detail::TriangleSoup soup;
+  Eigen::Matrix4d M_world = Eigen::Matrix4d::Identity();
+  if (turn) M_world.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y is up in assimp's world, z in ours
+  collect(*scene, *scene->mRootNode, M_world, where, soup);
+  return soup;
+}
+
+/// @param notes  may be null. @throws std::runtime_error naming `where`.
+detail::TriangleSoup readMesh(const std::string& path, const std::string& where, bool collada_up_axis,
+                              std::vector<std::string>* notes) {
+  const std::string ending = detail::endingOf(path), content = files::read(path);
+  detail::requireWholeMesh(content, ending, where);
+  if (notes && ending == ".obj" && !content.empty() && content.back() != '\n') {
+    notes->push_back(where + ": its last line has no line end: the file may be cut short");
+  }
+
+  if (ending == ".obj") return detail::readObj(content, where, notes);
+  if (ending == ".stl" && detail::isBinaryStl(content)) return detail::readBinaryStl(content);
+  if (ending == ".dae" && notes) noteUpAxis(content, where, collada_up_axis, *notes);
+  return readByAssimp(path, content, where, ending == ".dae" && collada_up_axis);
+}
+
 }  // namespace
 
 std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const Eigen::Vector3d& scale,
@@ -246,32 +301,11 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     detail::fail(where, "its scale has an entry that is zero or not finite");
   }
-  if (std::error_code error; !std::filesystem::is_regular_file(path, error)) detail::fail(where, "no such file");
+  if (std::error_code error; !std::filesystem::exists(path, error)) detail::fail(where, "no such file");
 
-  const std::string ending = detail::endingOf(path), content = files::read(path);
-  detail::requireWholeMesh(content, ending, where);
-  if (notes && ending == ".obj" && !content.empty() && content.back() != '\n') {
-    notes->push_back(where + ": its last line has no line end: the file may be cut short");
-  }
-
-  Assimp::Importer importer;
-  auto* const read_by = new CheckedFiles(path, content);  // the importer's from now on
-  importer.SetIOHandler(read_by);
-  // A COLLADA file's unit counts; its up axis if it is asked for: assimp then turns what is up to y.
-  const bool turn = ending == ".dae" && collada_up_axis;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, !turn);
-  if (ending == ".dae" && notes) noteUpAxis(content, where, turn, *notes);
-  const aiScene* scene = importer.ReadFile(path, 0);
-  if (scene && requireFaces(*scene, where)) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  if (!read_by->error().empty()) detail::fail(where, read_by->error());
-  if (!scene || !scene->mRootNode) detail::fail(where, importer.GetErrorString());
-
-  TriangleSoup soup;
-  Eigen::Matrix4d M_world = Eigen::Matrix4d::Identity();
-  if (turn) M_world.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y is up in assimp's world, z in ours
-  collect(*scene, *scene->mRootNode, M_world, soup);
+  detail::TriangleSoup soup = readMesh(path, where, collada_up_axis, notes);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
-  return detail::makeMesh(soup.vertices, soup.triangles, where, notes, solid);
+  return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);
 }
 
 }  // namespace fcl_artic

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "detail.h"
+#include "triangle_soup.h"
 
 namespace fcl_artic::detail {
 namespace {
@@ -57,7 +58,7 @@ void checkStl(std::string_view content, const std::string& where) {
     std::uint32_t triangles = 0;
     std::memcpy(&triangles, content.data() + 80, sizeof triangles);
     const std::uint64_t wanted = kHead + kTriangle * std::uint64_t{triangles};
-    if (wanted == content.size()) return;
+    if (isBinaryStl(content)) return;
     if (!startsWith(content, "solid")) {
       fail(where, "is cut short or no STL: its head says " + std::to_string(triangles) + " triangles, which are " +
                       std::to_string(wanted) + " bytes, it has " + std::to_string(content.size()));

@@ -148,7 +148,8 @@ class MoveItSceneReader {
         const auto a = count(part, "triangle"), b = count(part, "triangle"), c = count(part, "triangle");
         triangles.emplace_back(a, b, c);
       }
-      return detail::makeMesh(vertices, triangles, part, &builder_.scene.notes, builder_.options.solid_meshes);
+      return detail::makeMesh(std::move(vertices), std::move(triangles), part, &builder_.scene.notes,
+                              builder_.options.solid_meshes);
     }
     fail(part, "has a shape '" + kind + "'; box, sphere, cylinder, cone, plane and mesh are read");
   }

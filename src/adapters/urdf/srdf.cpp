@@ -1,57 +1,150 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <tinyxml2.h>
 
+#include <algorithm>
+#include <map>
+#include <set>
+
 #include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
+#include "text/nearest_name.h"
 
 namespace fcl_artic {
 namespace {
 
 using detail::fail;
 
-/// A link's name from an attribute. @throws std::runtime_error when it is missing or unknown.
-std::string linkName(const std::string& where, const tinyxml2::XMLElement& element, const char* attribute,
-                     const KinematicTree& tree) {
-  const std::string line = where + ", line " + std::to_string(element.GetLineNum());
-  const char* name = element.Attribute(attribute);
-  if (!name) fail(line, std::string("<") + element.Name() + "> has no attribute '" + attribute + "'");
-  if (!tree.hasLink(name)) {
-    fail(line, std::string("<") + element.Name() + "> names link '" + name + "', which robot '" + tree.name() +
-                   "' does not have");
+/// The entries of an SRDF about pairs of links, and what of them the robot has no links for.
+class SrdfReader {
+ public:
+  SrdfReader(const std::string& path, const KinematicTree& tree) : where_("'" + path + "'"), tree_(tree) {
+    const std::string xml = files::read(path);
+    if (document_.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where_, document_.ErrorStr());
+    const tinyxml2::XMLElement* robot = document_.RootElement();
+    if (!robot || std::string(robot->Name()) != "robot") {
+      fail(where_, "is not an SRDF: the root element is not <robot>");
+    }
+    // In MoveIt's order of precedence: a pair that is named wins over a link's default, and disabled wins over enabled.
+    forEach(*robot, "disable_default_collisions", [&](const tinyxml2::XMLElement& e) {
+      const std::string link = attribute(e, "link");
+      if (!count(link)) return;
+      by_default_.insert(link);
+      for (LinkId other = 0; other < tree_.numLinks(); ++other) {
+        if (tree_.linkName(other) != link) reasons_[key(link, tree_.linkName(other))] = e.Name();
+      }
+    });
+    forEach(*robot, "enable_collisions", [&](const tinyxml2::XMLElement& e) {
+      const std::string a = attribute(e, "link1"), b = attribute(e, "link2");
+      if (count(a, b)) {
+        reasons_.erase(key(a, b));
+      } else if (by_default_.count(a) || by_default_.count(b)) {
+        refuseEnabled(e, by_default_.count(a) ? b : a, by_default_.count(a) ? a : b);
+      }
+    });
+    forEach(*robot, "disable_collisions", [&](const tinyxml2::XMLElement& e) {
+      const std::string a = attribute(e, "link1"), b = attribute(e, "link2");
+      const char* reason = e.Attribute("reason");
+      if (count(a, b)) reasons_[key(a, b)] = reason ? reason : "";
+    });
+    if (known_.empty() && !unknown_.empty()) {
+      fail(where_, "is of another robot: of the " + std::to_string(unknown_.size()) + " links that it names, " +
+                       firstOf(unknown_) + ", robot '" + tree_.name() + "' has none");
+    }
   }
-  return name;
-}
+
+  /// Pairs that need no check, each with its reason.
+  const std::map<std::pair<std::string, std::string>, std::string>& reasons() const { return reasons_; }
+
+  /// What was passed over, in one line; empty: nothing.
+  std::string note() const {
+    if (passed_over_ == 0) return {};
+    std::string note = where_ + ": " + std::to_string(passed_over_) + " of " + std::to_string(entries_) +
+                       " entries name links that robot '" + tree_.name() + "' does not have, " + firstOf(unknown_) +
+                       "; they are passed over";
+    // A link that the file names elsewhere is not what a slip stands for.
+    std::vector<std::string> unnamed;
+    for (LinkId link = 0; link < tree_.numLinks(); ++link) {
+      if (!known_.count(tree_.linkName(link))) unnamed.push_back(tree_.linkName(link));
+    }
+    for (const std::string& name : unknown_) {
+      const std::string nearest = text::nearestName(name, unnamed);
+      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + name + "'?";
+    }
+    return note;
+  }
+
+ private:
+  template <typename F>
+  static void forEach(const tinyxml2::XMLElement& robot, const char* name, F&& visit) {
+    for (auto* e = robot.FirstChildElement(name); e; e = e->NextSiblingElement(name)) visit(*e);
+  }
+  static std::pair<std::string, std::string> key(const std::string& a, const std::string& b) {
+    return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
+  }
+  /// "'a', 'b', 'c' and 9 more".
+  static std::string firstOf(const std::vector<std::string>& names) {
+    constexpr std::size_t kShown = 3;
+    std::string shown;
+    for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) shown += (i ? ", '" : "'") + names[i] + "'";
+    return names.size() <= kShown ? shown : shown + " and " + std::to_string(names.size() - kShown) + " more";
+  }
+
+  std::string lineOf(const tinyxml2::XMLElement& e) const {
+    return where_ + ", line " + std::to_string(e.GetLineNum());
+  }
+  std::string attribute(const tinyxml2::XMLElement& e, const char* name) const {
+    const char* value = e.Attribute(name);
+    if (!value) fail(lineOf(e), std::string("<") + e.Name() + "> has no attribute '" + name + "'");
+    return value;
+  }
+
+  bool hasLink(const std::string& name) {
+    if (tree_.hasLink(name)) return known_.insert(name), true;
+    if (std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
+    return false;
+  }
+  /// Whether the robot has what an entry names; every entry is counted once.
+  template <typename... Names>
+  bool count(const Names&... names) {
+    const int missing = (0 + ... + !hasLink(names));
+    ++entries_;
+    passed_over_ += missing > 0;
+    return missing == 0;
+  }
+
+  [[noreturn]] void refuseEnabled(const tinyxml2::XMLElement& e, const std::string& missing,
+                                  const std::string& disabled) const {
+    std::vector<std::string> names;
+    for (LinkId link = 0; link < tree_.numLinks(); ++link) names.push_back(tree_.linkName(link));
+    fail(lineOf(e), std::string("<") + e.Name() + "> names link '" + missing + "', which robot '" + tree_.name() +
+                        "' does not have, and '" + disabled +
+                        "', which is disabled by default: the pair that is meant would go unchecked" +
+                        text::didYouMean(missing, names));
+  }
+
+  const std::string where_;
+  const KinematicTree& tree_;
+  tinyxml2::XMLDocument document_;
+  std::map<std::pair<std::string, std::string>, std::string> reasons_;
+  std::set<std::string> by_default_, known_;
+  std::vector<std::string> unknown_;  ///< in the order of the file, each once
+  std::size_t entries_ = 0, passed_over_ = 0;
+};
 
 }  // namespace
 
-AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree) {
-  const std::string where = "'" + path + "'";
-  const std::string xml = files::read(path);
-  tinyxml2::XMLDocument document;
-  if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
-  const tinyxml2::XMLElement* robot = document.RootElement();
-  if (!robot || std::string(robot->Name()) != "robot") {
-    fail(where, "is not an SRDF: the root element is not <robot>");
-  }
-  const auto forEach = [&](const char* name, auto&& visit) {
-    for (auto* e = robot->FirstChildElement(name); e; e = e->NextSiblingElement(name)) visit(*e);
-  };
+std::vector<SrdfPair> readSrdf(const std::string& path, const KinematicTree& tree, std::vector<std::string>* notes) {
+  const SrdfReader reader(path, tree);
+  std::vector<SrdfPair> pairs;
+  for (const auto& [names, reason] : reader.reasons()) pairs.push_back({names.first, names.second, reason});
+  if (const std::string note = reader.note(); notes && !note.empty()) notes->push_back(note);
+  return pairs;
+}
 
-  // In MoveIt's order of precedence: a pair that is named wins over a link's default, and disabled wins over enabled.
+AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree, std::vector<std::string>* notes) {
   AllowedCollisionMatrix matrix;
-  forEach("disable_default_collisions", [&](const tinyxml2::XMLElement& e) {
-    const std::string link = linkName(where, e, "link", tree);
-    for (LinkId other = 0; other < tree.numLinks(); ++other) {
-      if (tree.linkName(other) != link) matrix.allow(link, tree.linkName(other));
-    }
-  });
-  forEach("enable_collisions", [&](const tinyxml2::XMLElement& e) {
-    matrix.disallow(linkName(where, e, "link1", tree), linkName(where, e, "link2", tree));
-  });
-  forEach("disable_collisions", [&](const tinyxml2::XMLElement& e) {
-    matrix.allow(linkName(where, e, "link1", tree), linkName(where, e, "link2", tree));
-  });
+  for (const SrdfPair& pair : readSrdf(path, tree, notes)) matrix.allow(pair.link1, pair.link2);
   return matrix;
 }
 

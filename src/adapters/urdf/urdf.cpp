@@ -8,9 +8,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <set>
+#include <sstream>
 #include <tuple>
 
 #include "detail.h"
@@ -203,11 +205,27 @@ std::vector<Joint> mastersFirst(const std::vector<Joint>& mimics) {
   return sorted;
 }
 
+/// Joins the root link to one that stands for the world, where the options ask for that.
+void placeBase(KinematicTree& tree, const std::string& root, const UrdfOptions& options) {
+  if (!options.floating_base && options.base.matrix() == Eigen::Matrix4d::Identity()) return;
+  std::string world = "world";
+  while (tree.hasLink(world)) world += "_";
+  tree.addLink(world);
+  Joint joint = Joint::fixed("base_mount", world, root, options.base);
+  if (options.floating_base) {
+    joint.name = "floating_base";
+    joint.type = JointType::floating;
+  }
+  tree.addJoint(joint);
+}
+
 std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const urdf::ModelInterface& model,
-                                              const Document& document, std::vector<std::string>& notes) {
+                                              const Document& document, const UrdfOptions& options,
+                                              std::vector<std::string>& notes) {
   auto tree = std::make_shared<KinematicTree>(model.getName());
   try {
     for (const Document::Link& link : document.links) tree->addLink(link.name);
+    placeBase(*tree, model.getRoot()->name, options);
     std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
@@ -244,48 +262,146 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
   return tree;
 }
 
+/// Folders that an environment variable lists, separated by colons.
+std::vector<fs::path> foldersOf(const char* variable) {
+  const char* value = std::getenv(variable);
+  std::istringstream list(value ? value : "");
+  std::vector<fs::path> folders;
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.push_back(folder);
+  }
+  return folders;
+}
+
+/// Where a URDF's relative paths begin: its own folder; the present one for what a shell passes on, as `<(xacro ...)`.
+fs::path folderOf(const std::string& urdf_path) {
+  const bool passed_on = urdf_path.rfind("/dev/", 0) == 0 || urdf_path.rfind("/proc/", 0) == 0;
+  return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path().lexically_normal();
+}
+
+/// The name that a folder's package.xml gives; empty where it has none that can be read.
+std::string packageName(const fs::path& folder) {
+  std::error_code error;
+  const fs::path file = folder / "package.xml";
+  if (!fs::is_regular_file(file, error)) return {};
+  tinyxml2::XMLDocument xml;
+  if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || !xml.RootElement()) return {};
+  const tinyxml2::XMLElement* name = xml.RootElement()->FirstChildElement("name");
+  const char* text = name ? name->GetText() : nullptr;
+  std::istringstream word(text ? text : "");  // without blanks around it
+  std::string out;
+  word >> out;
+  return out;
+}
+
 /// Turns the paths of a URDF into paths of files.
 class MeshFinder {
  public:
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
-      : folder_(fs::absolute(urdf_path).parent_path()), packages_(options.packages) {}
+      : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
-  std::string find(const std::string& where, const std::string& uri) const {
+  std::string find(const std::string& where, const std::string& uri) {
     const auto after = [&](const std::string& scheme) { return uri.substr(scheme.size()); };
     const auto starts = [&](const std::string& scheme) { return uri.rfind(scheme, 0) == 0; };
-    if (starts("package://")) return inPackage(where, after("package://"));
+    if (starts("package://")) return inPackage(where, uri, after("package://"));
     if (starts("file://")) return existing(where, after("file://"));
     if (uri.find("://") != std::string::npos) fail(where, "mesh '" + uri + "': only file:// and package:// are read");
     return existing(where, folder_ / uri);  // an absolute path stays as it is
   }
 
  private:
+  static bool isThere(const fs::path& path) {
+    std::error_code error;
+    return fs::exists(path, error);
+  }
   static std::string existing(const std::string& where, const fs::path& path) {
-    if (std::error_code error; !fs::is_regular_file(path, error)) {
-      fail(where, "mesh '" + path.string() + "': no such file");
-    }
+    if (!isThere(path)) fail(where, "mesh '" + path.string() + "': no such file");
     return path.lexically_normal().string();
   }
 
-  std::string inPackage(const std::string& where, const std::string& path) const {
-    const auto slash = path.find('/');
-    if (slash == std::string::npos) fail(where, "mesh 'package://" + path + "': names no file");
-    const std::string name = path.substr(0, slash), rest = path.substr(slash + 1);
-    if (const auto it = packages_.find(name); it != packages_.end())
-      return existing(where, fs::path(it->second) / rest);
-    for (fs::path dir = folder_;; dir = dir.parent_path()) {
-      std::error_code error;
-      if (dir.filename() == name) return existing(where, dir / rest);
-      if (fs::is_directory(dir / name, error)) return existing(where, dir / name / rest);
-      if (dir == dir.parent_path()) break;
+  std::string inPackage(const std::string& where, const std::string& uri, const std::string& path) {
+    const auto begin = std::min(path.find_first_not_of('/'), path.size()), slash = path.find('/', begin);
+    if (slash == std::string::npos || slash + 1 == path.size()) fail(where, "mesh '" + uri + "': names no file");
+    const std::string name = path.substr(begin, slash - begin), rest = path.substr(slash + 1);
+    const std::vector<fs::path>& folders = foldersOfPackage(name);
+    for (const fs::path& folder : folders) {
+      if (isThere(folder / rest)) return (folder / rest).lexically_normal().string();
     }
-    fail(where, "mesh 'package://" + path + "': package '" + name +
-                    "' is not named in the options, nor is a folder of " + "that name at or above '" +
-                    folder_.string() + "'");
+    std::string reason = "mesh '" + uri + "': ";
+    if (packages_.count(name)) fail(where, reason + "no such file in '" + folders.front().string() + "'");
+    if (folders.empty()) {
+      reason += "there is no package '" + name + "': ";
+    } else {
+      reason += "no such file in";
+      for (const fs::path& folder : folders)
+        reason += (&folder == &folders.front() ? " '" : ", '") + folder.string() + "'";
+      reason += "; also ";
+    }
+    fail(where, reason + "searched for '" + name + "' by folder name and by package.xml at and above '" +
+                    folder_.string() + "', below " + listed("ROS_PACKAGE_PATH") + ", in share/ of " +
+                    listed("AMENT_PREFIX_PATH") + ". Say where it is: UrdfOptions::packages, or --package " + name +
+                    "=DIR");
+  }
+  static std::string listed(const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::string(variable) + (value && *value ? " '" + std::string(value) + "'" : " (which is not set)");
   }
 
+  /// All folders that may be the package, the likeliest first.
+  const std::vector<fs::path>& foldersOfPackage(const std::string& name) {
+    const auto [entry, is_new] = found_.try_emplace(name);
+    std::vector<fs::path>& folders = entry->second;
+    if (!is_new) return folders;
+    if (const auto it = packages_.find(name); it != packages_.end()) {
+      folders.push_back(it->second);
+      return folders;
+    }
+    const auto add = [&](const fs::path& folder) {
+      std::error_code error;
+      if (fs::is_directory(folder, error) && std::find(folders.begin(), folders.end(), folder) == folders.end()) {
+        folders.push_back(folder);
+      }
+    };
+    for (fs::path dir = folder_;; dir = dir.parent_path()) {
+      if (dir.filename() == name || packageName(dir) == name) add(dir);
+      add(dir / name);
+      if (dir == dir.parent_path()) break;
+    }
+    for (const fs::path& folder : foldersOf("ROS_PACKAGE_PATH")) {
+      int left = kMostFolders;
+      searchBelow(folder, name, kDeepest, left, add);
+    }
+    for (const fs::path& prefix : foldersOf("AMENT_PREFIX_PATH")) add(prefix / "share" / name);
+    return folders;
+  }
+
+  /// Looks for a package in a folder and those below it, as rospack does: not within packages, nor where a file says
+  /// that there are none.
+  /// @param[in,out] left  folders that may yet be looked at: a path may lead to all of a disk.
+  template <typename Add>
+  static void searchBelow(const fs::path& folder, const std::string& name, int depth, int& left, const Add& add) {
+    if (--left < 0) return;
+    const std::string package = packageName(folder);
+    if (package == name || (package.empty() && folder.filename() == name)) add(folder);
+    if (!package.empty() || depth == 0) return;
+    for (const char* stop : {"CATKIN_IGNORE", "COLCON_IGNORE", "AMENT_IGNORE", "rospack_nosubdirs"}) {
+      if (isThere(folder / stop)) return;
+    }
+    std::error_code error;
+    std::vector<fs::path> below;
+    for (fs::directory_iterator it(folder, fs::directory_options::skip_permission_denied, error), end;
+         !error && it != end; it.increment(error)) {
+      std::error_code ignored;
+      if (it->path().filename().string()[0] != '.' && it->is_directory(ignored)) below.push_back(it->path());
+    }
+    std::sort(below.begin(), below.end());  // a folder lists its files in any order
+    for (const fs::path& next : below) searchBelow(next, name, depth - 1, left, add);
+  }
+
+  static constexpr int kDeepest = 12, kMostFolders = 100000;  // a link may lead in a circle
   fs::path folder_;
   std::map<std::string, std::string> packages_;
+  std::map<std::string, std::vector<fs::path>> found_;
 };
 
 /// Makes geometries, each mesh file and scale once.
@@ -366,11 +482,12 @@ Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   const Document document = readDocument(where, files::read(path));
   Robot robot;
   const urdf::ModelInterfaceSharedPtr model = parse(where, document.xml, robot.notes);
-  robot.tree = makeTree(where, *model, document, robot.notes);
+  robot.tree = makeTree(where, *model, document, options, robot.notes);
 
   GeometryFactory factory(MeshFinder(path, options), options, robot.notes);
-  for (LinkId id = 0; id < robot.tree->numLinks(); ++id) {
-    const Document::Link& in_file = document.links[id];  // the tree's links are those of the file, in its order
+  for (std::size_t i = 0; i < document.links.size(); ++i) {
+    const LinkId id = static_cast<LinkId>(i);  // the tree's links are those of the file, in its order
+    const Document::Link& in_file = document.links[i];
     const urdf::Link& link = *model->getLink(in_file.name);
     const std::string part = where + ": link '" + link.name + "'";
     if (link.collision_array.size() != in_file.collisions) fail(part, "has a collision element that cannot be read");

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace fcl_artic::app {
+
+/// Adds the verb `info`, which shows what the files of a robot hold.
+void addInfo(CLI::App& program, int& exit_status);
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lines.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "configuration.h"
+#include "exit_status.h"
+#include "files/files.h"
+#include "report.h"
+
+namespace fcl_artic::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A question: a straight motion, or waypoints.
+struct Question {
+  Json id;
+  std::optional<JointMotion> motion;
+  std::optional<JointTrajectory> trajectory;
+  std::vector<std::string> notes;
+};
+
+/// A number with all of its digits, or a text such as "90deg".
+std::string wordOf(const Json& value, const std::string& what) {
+  if (value.is_number()) return fmt::format("{:.17g}", value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  throw std::invalid_argument(
+      fmt::format("{}: {} is neither a number nor a text such as \"90deg\"", what, value.dump()));
+}
+
+/// @param value  a list of all joint values, or an object from names to values.
+Eigen::VectorXd toConfiguration(const KinematicTree& tree, const Json& value, const std::string& what) {
+  std::vector<std::string> words;
+  if (value.is_array()) {
+    for (const Json& one : value) words.push_back(wordOf(one, what));
+  } else if (value.is_object()) {
+    for (const auto& [name, one] : value.items()) words.push_back(name + "=" + wordOf(one, what));
+    if (words.empty()) return tree.neutralConfiguration();
+  } else {
+    throw std::invalid_argument(
+        fmt::format("{}: {} is neither a list of joint values nor an object of them by name", what, value.dump()));
+  }
+  return parseConfiguration(tree, words, what);
+}
+
+/// The value of one of two keys, of which one must be there.
+const Json& oneOf(const Json& line, const char* key, const char* other) {
+  if (line.contains(key) && line.contains(other)) {
+    throw std::invalid_argument(fmt::format("has both '{}' and '{}'", key, other));
+  }
+  if (line.contains(key)) return line.at(key);
+  if (line.contains(other)) return line.at(other);
+  throw std::invalid_argument(fmt::format("has neither '{}' nor '{}'", key, other));
+}
+
+void requireKeys(const Json& line) {
+  static constexpr const char* kKeys[] = {"id", "from", "to", "start", "goal", "waypoints", "times"};
+  for (const auto& [key, value] : line.items()) {
+    if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
+    throw std::invalid_argument(
+        fmt::format("has '{}', which is not read; it may have id, from and to (or start and "
+                    "goal), or waypoints and times",
+                    key));
+  }
+  for (const char* key : {"from", "to", "start", "goal"}) {
+    if (line.contains("waypoints") && line.contains(key)) {
+      throw std::invalid_argument(fmt::format("has both 'waypoints' and '{}'", key));
+    }
+  }
+  if (line.contains("times") && !line.contains("waypoints")) throw std::invalid_argument("has times, but no waypoints");
+}
+
+JointTrajectory toTrajectory(const KinematicTree& tree, const Json& line, const LinesOptions& options) {
+  Waypoints waypoints;
+  const Json& given = line.at("waypoints");
+  if (!given.is_array() || given.size() < 2) throw std::invalid_argument("waypoints: a list of two or more is needed");
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    waypoints.configurations.push_back(toConfiguration(tree, given[k], fmt::format("waypoint {}", k + 1)));
+    waypoints.times.push_back(static_cast<double>(k));
+  }
+  if (line.contains("times")) {
+    const Json& times = line.at("times");
+    const bool numbers =
+        times.is_array() && std::all_of(times.begin(), times.end(), [](const Json& t) { return t.is_number(); });
+    if (!numbers || times.size() != given.size()) {
+      throw std::invalid_argument(fmt::format("times: {} numbers are needed, one for each waypoint", given.size()));
+    }
+    waypoints.times = times.get<std::vector<double>>();
+  }
+  return interpolate(tree, waypoints, options.interpolation, options.shortest);
+}
+
+/// @param[out] out  its id is there even if this throws, where the line has one.
+void read(const KinematicTree& tree, const std::string& text, const LinesOptions& options, Question& out) {
+  Json line;
+  try {
+    line = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw std::invalid_argument(fmt::format("is no JSON: {}", error.what()));
+  }
+  if (!line.is_object()) throw std::invalid_argument("is no JSON object, as {\"from\": [...], \"to\": [...]}");
+  if (line.contains("id")) out.id = line.at("id");
+  requireKeys(line);
+  const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
+    for (const std::string& note : tree.limitNotes(q)) out.notes.push_back(where + ": " + note);
+  };
+  if (line.contains("waypoints")) {
+    out.trajectory = toTrajectory(tree, line, options);
+    return;
+  }
+  const Eigen::VectorXd q0 = toConfiguration(tree, oneOf(line, "from", "start"), "from"),
+                        q1 = toConfiguration(tree, oneOf(line, "to", "goal"), "to");
+  out.motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+  noteLimits(q0, "from");
+  noteLimits(q1, "to");
+}
+
+class Answers {
+ public:
+  Answers(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, const LinesOptions& options)
+      : manager_(manager), request_(request), options_(options) {}
+
+  void answer(std::size_t number, const std::string& text) {
+    if (text.find_first_not_of(" \t\r") == std::string::npos) return;
+    ++asked_;
+    Question question;
+    Json out = {{"line", number}};
+    try {
+      read(manager_.tree(), text, options_, question);
+      if (!question.id.is_null()) out["id"] = question.id;
+      out.update(solve(question));
+    } catch (const std::exception& error) {
+      if (!question.id.is_null()) out["id"] = question.id;
+      out.update({{"status", "error"}, {"error", fmt::format("line {}: {}", number, error.what())}});
+      errors_ = true;
+    }
+    // Not the reader's fault if a text is cut within a character.
+    fmt::print("{}\n", out.dump(-1, ' ', false, Json::error_handler_t::replace));
+    std::fflush(stdout);
+  }
+
+  std::size_t asked() const { return asked_; }
+  int exitStatus() const {
+    return errors_ ? kExitError : contacts_ ? kExitContact : undecided_ ? kExitUndecided : kExitFree;
+  }
+
+ private:
+  Json solve(const Question& question) {
+    if (question.trajectory) {
+      manager_.continuousCollide(*question.trajectory, request_, result_);
+    } else {
+      manager_.continuousCollide(*question.motion, request_, result_);
+    }
+    contacts_ = contacts_ || result_.status == Status::contact;
+    undecided_ = undecided_ || result_.status == Status::undecided;
+    const double begin = question.trajectory ? question.trajectory->beginTime() : 0,
+                 end = question.trajectory ? question.trajectory->endTime() : 1;
+    const auto configuration = [&](double t) {
+      return question.trajectory ? question.trajectory->configuration(t) : question.motion->configuration(t);
+    };
+    const Json all =
+        jsonReport({manager_.tree(), request_, result_, question.notes, configuration, begin, end, nullptr});
+    Json out;
+    for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts"}) out[key] = all.at(key);
+    if (result_.status != Status::free) out["q_at_t_lower"] = all.at("q_at_t_lower");
+    if (!question.notes.empty()) out["notes"] = question.notes;
+    return out;
+  }
+
+  const ArticulatedCollisionManager& manager_;
+  const CertifiedRequest& request_;
+  const LinesOptions& options_;
+  CertifiedResult result_;
+  std::size_t asked_ = 0;
+  bool errors_ = false, contacts_ = false, undecided_ = false;
+};
+
+}  // namespace
+
+int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
+               const LinesOptions& options) {
+  Answers answers(manager, request, options);
+  const bool standard_input = options.path == "-";
+  std::istringstream file(standard_input ? std::string() : files::read(options.path));
+  std::istream& in = standard_input ? std::cin : file;
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number) answers.answer(number, line);
+  const std::string name = standard_input ? "standard input" : "'" + options.path + "'";
+  if (in.bad()) throw std::runtime_error(name + ": cannot be read to its end");
+  if (answers.asked() == 0) throw std::invalid_argument("--lines: " + name + " has no line to answer");
+  return answers.exitStatus();
+}
+
+}  // namespace fcl_artic::app

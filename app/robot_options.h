@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What verbs say about a robot: its files, where it stands, what it carries.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+
+#include "fcl_artic/manager.h"
+#include "fcl_artic/urdf/urdf.h"
+
+namespace fcl_artic::app {
+
+struct RobotOptions {
+  std::string robot, srdf;            ///< files; no SRDF: empty
+  std::vector<std::string> packages;  ///< NAME=DIR
+  std::string base;                   ///< a pose, as parsePose() reads it; empty: the identity
+  std::vector<std::string> attached;  ///< as parseAttachment() reads them
+  bool floating_base = false, solid_meshes = false, collada_up_axis = false;
+};
+
+/// Adds ROBOT (or --robot), --srdf, --package, --base and --floating-base, in the group "Robot and scene".
+/// @return --srdf, for what excludes it.
+CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options);
+/// Adds --attach.
+void addAttachOption(CLI::App& verb, RobotOptions& options);
+
+UrdfOptions urdfOptions(const RobotOptions& options);
+/// For scenes and what is carried, whose URDF files look for the same packages.
+SceneOptions sceneOptions(const RobotOptions& options, bool unknown_cells);
+
+/// The robot, its allowed pairs and its notes. @throws as loadUrdf() and loadSrdf().
+Robot readRobot(const RobotOptions& options);
+
+/// Reads a pose as it is typed: "x,y,z" or "x,y,z,roll,pitch,yaw", m and rad or, with the ending deg, degrees. The
+/// angles turn about the fixed axes x, y and z, one after the other, as in URDF.
+/// @throws std::invalid_argument beginning with `option`.
+Eigen::Isometry3d parsePose(const std::string& text, const std::string& option);
+
+/// An object that a link carries.
+struct Attachment {
+  std::string link;
+  std::vector<std::string> touch_links;  ///< further links that it may touch
+  std::string file;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the file's frame in the link's
+};
+
+/// Reads "LINK=FILE", "LINK=FILE@POSE" or, with links that the object may touch, "LINK+LINK2+LINK3=FILE@POSE".
+/// @throws std::invalid_argument naming the text and the reason, also for a link that the robot does not have.
+Attachment parseAttachment(const KinematicTree& tree, const std::string& text);
+
+/// Reads what links carry: appends a scene for each --attach.
+/// @return one for each obstacle of these scenes, in their order.
+std::vector<Attachment> readAttachments(const RobotOptions& options, const KinematicTree& tree,
+                                        const SceneOptions& scene_options, std::vector<Scene>& scenes);
+/// Has links carry the last obstacles of a scene that the manager has all obstacles of. Needs setup() afterwards.
+void attachLast(const std::vector<Attachment>& attachments, const Scene& scene, ArticulatedCollisionManager& manager);
+/// For a picture: the last obstacles are made geometry of the links that carry them.
+void moveToLinks(const std::vector<Attachment>& attachments, Scene& scene, Robot& robot);
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Polygons of mesh files, cut into triangles.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace fcl_artic::detail {
+
+/// Corners of a polygon that cutPolygon() takes at most, where it is not convex: the time grows with their square.
+constexpr std::size_t kMostCorners = 20000;
+
+/// Cuts a polygon into n - 2 triangles between its corners, all of its own turning sense, so that each of its edges is
+/// an edge of one triangle: closed meshes stay closed, also where a polygon is broken.
+///
+/// A convex polygon is cut into a fan from its first corner; another one corner by corner, where the triangle holds no
+/// other corner. The surface of a polygon that is not flat is not defined by its corners: it is taken to be these
+/// triangles. A polygon that crosses or touches itself is cut so that all of its corners are covered.
+/// @param corners  at least 3, finite.
+/// @return triples of numbers of corners.
+std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vector3d>& corners);
+
+/// Whether the polygon is convex as seen along its normal, within rounding: a fan covers it.
+bool isConvexPolygon(const std::vector<Eigen::Vector3d>& corners);
+
+}  // namespace fcl_artic::detail

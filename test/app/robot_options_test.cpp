@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the robot stands and what it carries, as options say it.
+#include "robot_options.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace fcl_artic::app {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST(PoseTest, AnglesTurnAboutFixedAxes) {
+  const Eigen::Isometry3d M = parsePose("1, -2,+3, 90deg,0,90deg", "--base");
+  EXPECT_EQ(M.translation(), Eigen::Vector3d(1, -2, 3));
+  // About x first: y to z; then about z: z stays, x to y.
+  EXPECT_LT((M.linear() * Eigen::Vector3d::UnitY() - Eigen::Vector3d::UnitZ()).norm(), 1e-15);
+  EXPECT_LT((M.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(parsePose("1,2,3", "--base").linear(), Eigen::Matrix3d::Identity());
+  for (const char* bad :
+       {"", "1", "1,2", "1,2,3,4", "1,2,3,4,5,6,7", "1,2,x", "1,2,3deg", "1,2,nan", "1,,3", "1,2,3,0,0,inf"}) {
+    const std::string message = messageOf<std::invalid_argument>([&] { parsePose(bad, "--base"); });
+    expectContains(message, "--base: '" + std::string(bad) + "' is no pose x,y,z or x,y,z,roll,pitch,yaw");
+  }
+}
+
+TEST(AttachmentTest, NamesLinksFileAndPose) {
+  KinematicTree tree("r");
+  for (const char* name : {"hand", "left", "right"}) tree.addLink(name);
+  Attachment a = parseAttachment(tree, "hand=cup.stl");
+  EXPECT_EQ(a.link, "hand");
+  EXPECT_EQ(a.file, "cup.stl");
+  EXPECT_TRUE(a.touch_links.empty());
+  EXPECT_EQ(a.pose.matrix(), Eigen::Matrix4d::Identity());
+  a = parseAttachment(tree, "hand+left+right=a@b/cup@2.stl@0,0,0.1,0,0,90deg");
+  EXPECT_EQ(a.touch_links, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(a.file, "a@b/cup@2.stl");
+  EXPECT_EQ(a.pose.translation(), Eigen::Vector3d(0, 0, 0.1));
+  EXPECT_EQ(parseAttachment(tree, "hand=a@b.stl").file, "a@b.stl");
+  const auto error = [&](const char* text) {
+    return messageOf<std::invalid_argument>([&] { parseAttachment(tree, text); });
+  };
+  expectContains(error("cup.stl"), "--attach cup.stl: is not LINK=FILE");
+  expectContains(error("=cup.stl"), "is not LINK=FILE");
+  expectContains(error("hand="), "is not LINK=FILE");
+  expectContains(error("hnad=cup.stl"), "has no link 'hnad'; did you mean 'hand'?");
+  expectContains(error("hand+lefft=cup.stl"), "did you mean 'left'?");
+  expectContains(error("hand=cup.stl@0,0"), "'0,0' is no pose");
+}
+
+// The arm's ball is met earlier when the base is turned towards it, and not at all when it is far away.
+TEST_F(ProgramTest, BaseMovesTheRobot) {
+  const std::string check = "check --json " + armAndBall();
+  const auto timeOf = [&](const std::string& options) {
+    const Outcome run = this->run(check + options);
+    EXPECT_EQ(run.status, 1) << run.err;
+    return run.status == 1 ? Json::parse(run.out).at("t_lower").get<double>() : -1;
+  };
+  const double contact = M_PI / 3 - std::asin(0.15 / 0.6);
+  EXPECT_NEAR(timeOf(" --from 0,0 --to 1,0"), contact, 1e-5);
+  EXPECT_NEAR(timeOf(" --from 0,0 --to 1,0 --base 0,0,0,0,0,0.25"), contact - 0.25, 1e-5);
+  EXPECT_EQ(this->run(check + " --from 0,0 --to 1,0 --base -5,0,0").status, 0);
+  // The same turn by the base itself, from no rotation to 2 atan(1) = 90 degrees, along the shorter way.
+  const std::string floating = " --floating-base --from floating_base/rot_w=1 --to ";
+  const Outcome turned =
+      this->run(check + floating + "floating_base/rot_z=0.70710678118654757,floating_base/rot_w=0.70710678118654757");
+  ASSERT_EQ(turned.status, 1) << turned.err << turned.out;
+  EXPECT_NEAR(Json::parse(turned.out).at("t_lower").get<double>(), contact / (M_PI / 2), 1e-5);
+  const Outcome bad = this->run(check + " --from 0,0 --to 1,0 --base 1,2");
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_NE(bad.err.find("--base: '1,2' is no pose"), std::string::npos) << bad.err;
+}
+
+// A rod of 1 m that the arm holds out beyond the ball's distance, turned up or along the arm.
+TEST_F(ProgramTest, LinksCarryObjects) {
+  const std::string block =
+      write("block.obj", "v 0 0 0\nv 0.2 0 0\nv 0 0.2 0\nv 0 0 0.2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const std::string far = write("far.urdf", R"(<robot name="far"><link name="far"><collision>
+    <origin xyz="0 1.15 0"/><geometry><sphere radius="0.05"/></geometry></collision></link></robot>)");
+  const std::string check = "check --json --robot " + arm() + " --scene " + far + " --from 0,0 --to 90deg,0";
+  EXPECT_EQ(this->run(check).status, 0);
+  const Outcome held = this->run(check + " --attach arm=" + block + "@1.05,-0.05,0");
+  ASSERT_EQ(held.status, 1) << held.err << held.out;
+  const Json contact = Json::parse(held.out).at("contacts").at(0);
+  EXPECT_EQ(contact.at("body1").at("name").get<std::string>() + contact.at("body2").at("name").get<std::string>(),
+            "blockfar");
+  EXPECT_EQ(this->run(check + " --attach arm=" + block + "@1.05,0,3").status, 0);
+  EXPECT_EQ(this->run(check + " --no-scene --attach arm=" + block + "@1.05,-0.05,0").status, 0);
+  // At the other link's place it touches that, which may be allowed.
+  const Outcome touching = this->run(check + " --attach arm=" + block + "@0,0,2");
+  EXPECT_EQ(touching.status, 1) << touching.err;
+  EXPECT_EQ(this->run(check + " --attach arm+slide=" + block + "@0,0,2").status, 0);
+  const Outcome unknown = this->run(check + " --attach amr=" + block);
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("did you mean 'arm'?"), std::string::npos) << unknown.err;
+  const Outcome missing = this->run(check + " --attach arm=/nowhere/x.stl");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("/nowhere/x.stl"), std::string::npos) << missing.err;
+}
+
+TEST_F(ProgramTest, ScenesAreFilesAndNoFolders) {
+  const Outcome folder = this->run("check --robot " + arm() + " --from 0,0 --to 1,0 --scene " + folder_.string());
+  EXPECT_EQ(folder.status, 2);
+  EXPECT_NE(folder.err.find("is a directory, not a file"), std::string::npos) << folder.err;
+  // What the shell passes on is read.
+  const Outcome passed_on = this->run("check --robot /dev/stdin --from 0,0 --to 0.1,0 <" + arm());
+  EXPECT_EQ(passed_on.status, 0) << passed_on.err;
+  // Its paths begin where the program runs.
+  const std::string meshed = write("meshed.urdf",
+                                   "<robot name='m'><link name='a'><collision><geometry><mesh filename='m/t.obj'/>"
+                                   "</geometry></collision></link></robot>");
+  write("m/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  const Outcome here = this->run("info /dev/stdin <" + meshed);
+  std::filesystem::current_path(before);
+  EXPECT_EQ(here.status, 0) << here.err;
+}
+
+}  // namespace
+}  // namespace fcl_artic::app
