@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -33,9 +34,8 @@ namespace {
 
 constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
-// A check looks at an SRDF's pairs in passing; the verb srdf takes its time.
-constexpr std::uint64_t kWorkForAllowed = 50000;
-constexpr std::size_t kSamplesForAllowed = 200;
+// A check looks at an SRDF's pairs in passing, a second or two for all of them; the verb srdf takes its time.
+constexpr std::uint64_t kWorkForAllowed = 10000000, kLeastWorkForPair = 20000;
 
 struct Options {
   RobotOptions robot;
@@ -110,8 +110,8 @@ Robot loadRobot(const Options& options, std::set<std::string>& solids) {
   if (!options.robot.srdf.empty()) {
     LinkPairOptions search;
     search.only = &robot.allowed;
-    search.work = kWorkForAllowed;
-    search.samples = kSamplesForAllowed;
+    search.work = std::clamp<std::uint64_t>(kWorkForAllowed / std::max<std::size_t>(robot.allowed.pairs().size(), 1),
+                                            kLeastWorkForPair, search.work);
     const LinkPairReport report = classify(robot, search);
     robot.proofs = report.proofs;
     for (const std::string& doubt : doubtsOf(report)) robot.notes.push_back(doubt);

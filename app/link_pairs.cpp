@@ -225,6 +225,7 @@ std::vector<std::string> doubtsOf(const LinkPairReport& disabled) {
   if (const auto [count, text] = names(LinkPairKind::unproven); count > 0) {
     lines.push_back(fmt::format("{} allowed pair{} not proven apart: {}", count, count == 1 ? " is" : "s are", text));
   }
+  if (!lines.empty()) lines.back() += " (fcl_artic srdf --check tells more)";
   return lines;
 }
 

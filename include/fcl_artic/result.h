@@ -147,8 +147,8 @@ FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, Status status);
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, FeatureKind kind);
 /// Prints verdict and bracket on one line, without a line end: "contact within [0.25, 0.2500001], proven".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const Bracket& bracket);
-/// Prints verdict and bracket on one line, without a line end, and what a verdict of `free` leaves out: "free: proven, but
-/// for 3 allowed pairs not proven apart", "free: nothing was checked, there is no pair of bodies".
+/// Prints verdict and bracket on one line, without a line end, and what a verdict of `free` leaves out: "free: proven,
+/// but for 3 allowed pairs not proven apart", "free: nothing was checked, there is no pair of bodies".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedResult& result);
 /// Prints on one line, without a line end, which bodies touch, with which features, when and where.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact);

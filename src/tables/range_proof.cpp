@@ -149,8 +149,7 @@ RangeProof::Outline RangeProof::outlineOf(const engine::Body& body) {
 /// Upper bound of a body's distance from the z axis of the frame that its outline is given in, without rounding.
 double RangeProof::farthestFromAxis(const Outline& outline) {
   const auto squared = outline.points.topRows<2>().colwise().squaredNorm().eval();
-  return std::sqrt(
-      std::min(squared.head<8>().maxCoeff(), std::pow(std::sqrt(squared.tail<2>().maxCoeff()) + outline.radius, 2)));
+  return std::min(std::sqrt(squared.head<8>().maxCoeff()), std::sqrt(squared.tail<2>().maxCoeff()) + outline.radius);
 }
 
 void RangeProof::Joint::set(const engine::SweepStep& step, double variable) {

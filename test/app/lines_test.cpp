@@ -110,7 +110,9 @@ TEST_F(LinesTest, NothingAskedIsAnError) {
   const Answers none = ask("\n \n");
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.err.find("has no line to answer"), std::string::npos) << none.err;
-  for (const char* other : {"--from 0,0", "--image x.png", "--clearance", "--trajectory x.csv"}) {
+  const std::string trajectory = "--trajectory " + write("x.csv", "time,hinge\n0,0\n1,1\n");
+  for (const std::string& other :
+       {std::string("--from 0,0"), std::string("--image x.png"), std::string("--clearance"), trajectory}) {
     const Answers both = ask("{}", other);
     EXPECT_EQ(both.status, 2);
     EXPECT_NE(both.err.find("--lines"), std::string::npos) << both.err;

@@ -278,7 +278,7 @@ TEST_F(ProgramTest, ErrorsHaveOneStyleAndTellWhatWasMeant) {
       {"check --rboot " + robot + motion, "'--rboot' is no option of 'check'; did you mean '--robot'?"},
       {query + " --every-pairs=1", "'--every-pairs' is no option of 'check'; did you mean '--every-pair'?"},
       {query + " --zzzzzz", "'--zzzzzz' is no option of 'check'\n"},
-      {"check more " + armAndBall() + motion, "'more' is not an argument of 'check'\n"},
+      {"check more " + armAndBall() + motion, "--robot: 'more': no such file\n"},
       {"check --robot " + robot.substr(0, robot.size() - 5) + ".udrf" + motion, "did you mean '" + robot + "'?"},
       {query + " --margin 5cm", "--margin: '5cm' is not a number of at least 0, without a unit\n"},
       {query + " --scale 0", "--scale: '0' is not a number above 0, without a unit\n"},

@@ -8,6 +8,7 @@ set(others
   fcl/fcl_motion          # makes motions from FCL's
   fcl/fcl_link_motion     # gives FCL poses
   tables/contact_grid               # guesses, proven afterwards
+  query/link_pairs                  # configurations to try
   geometry/outer_hull geometry/line_swept_sphere geometry/inner_balls  # directions and sizes to try
   visibility/adversary)            # where to look
 set(inexact "a?(sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(2|10|1p)?|pow|cbrt|erfc?|[tl]gamma")
