@@ -157,7 +157,7 @@ class Classifier {
       return true;
     };
     nearer(best);
-    for (int round = 0; round < 40; ++round) {
+    for (int round = 0; round < 16; ++round) {
       bool moved = false;
       for (std::size_t i = 0; i < best.size(); ++i) {
         const ValueRange range = rangeToTry(tree_, variables()[i]);

@@ -18,7 +18,7 @@ constexpr double kBeyondLimits = 1e-3;
 /// Variables, factors and offsets beyond, rad or m, are left alone: the pads below are for these.
 constexpr double kMostValue = 100;
 /// Counts as so many tests: a look at witnesses.
-constexpr std::uint64_t kGlanceWork = 5;
+constexpr std::uint64_t kGlanceWork = 15;
 /// Tests of nodes and leaves for one box; what needs more is cut in two. Measured on the Panda: 120 take 1.5 times as
 /// long, 3000 as long.
 constexpr std::uint64_t kWorkOfBox = 600;
@@ -373,8 +373,9 @@ RangeProof::Finding RangeProof::prove(std::uint64_t work) {
       proven += next.share;
       continue;
     }
-    // A sixteenth of the work shows whether all of it can do.
-    const bool hopeless = work_ > work || (work_ > work / 16 &&
+    // A 64th of the work shows whether all of it can do. (Measured on 5 robots: a 16th proves 1 % more pairs in twice
+    // the time, a 256th 4 % fewer in as much.)
+    const bool hopeless = work_ > work || (work_ > work / 64 &&
                                            proven * kMostHope * static_cast<double>(work) < static_cast<double>(work_));
     const ValueRange range = tried.give_up ? ValueRange() : next.box[tried.split];
     const double middle = range.middle();

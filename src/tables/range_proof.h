@@ -63,7 +63,7 @@ class RangeProof {
   Finding prove(std::uint64_t work);
 
   /// Counts as so many tests: what a query costs before its first one.
-  static constexpr std::uint64_t kQueryWork = 20;
+  static constexpr std::uint64_t kQueryWork = 40;
 
  private:
   /// Points about a body and, of the last two, a radius: the body lies in the hull of the first eight, and in the hull
