@@ -87,6 +87,7 @@ class Classifier {
     if (finding.touching == 0 && !rigid) comeNearer(finding);
     if (finding.touching == 0 && finding.configuration.size() == 0) return;
     if (finding.touching == 0) return set(finding, LinkPairKind::unproven, false);
+    finding.nearest = options_.margin;
     const bool always = finding.touching == finding.tried;
     set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || rigid);
   }
@@ -139,14 +140,16 @@ class Classifier {
   /// they touch.
   void comeNearer(LinkPairFinding& finding) {
     if (failed_at_.size() != variables().size()) return;
-    std::vector<double> best = failed_at_;
-    double distance = 0.1;  // an upper bound of the links' distance there
-    while (distance < 100 && at(best, options_.margin + distance) != RangeProof::Contact::touch) distance *= 2;
-    std::vector<double> step(best.size());
+    std::vector<double> best = failed_at_, step(best.size());
     for (std::size_t i = 0; i < step.size(); ++i) {
       const ValueRange range = rangeToTry(tree_, variables()[i]);
       best[i] = std::clamp(best[i], range.lower, range.upper);
       step[i] = 0.05 * (range.upper - range.lower);
+    }
+    constexpr double kFarthest = 1e9;  // beyond all coordinates
+    double distance = 0.1;             // an upper bound of the links' distance there
+    while (at(best, options_.margin + distance) != RangeProof::Contact::touch) {
+      if ((distance *= 2) > kFarthest) return;
     }
     const auto nearer = [&](const std::vector<double>& values) {
       if (at(values, options_.margin + 0.9 * distance) != RangeProof::Contact::touch) return false;
@@ -179,7 +182,7 @@ class Classifier {
       for (double& way : step) way *= 0.4;
     }
     finding.configuration = configuration(best);
-    finding.nearest = finding.touching > 0 ? 0 : options_.margin + distance;
+    finding.nearest = options_.margin + (finding.touching > 0 ? 0 : distance);
   }
 
   Eigen::VectorXd configuration(const std::vector<double>& values) const {

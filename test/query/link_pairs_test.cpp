@@ -109,6 +109,7 @@ TEST(LinkPairs, SometimesShowsWhere) {
   EXPECT_NEAR(static_cast<double>(finding.touching) / 1000, std::acos(0.76) / kPi, 0.02);
   ASSERT_EQ(finding.configuration.size(), 2);
   EXPECT_LE(1.25 + std::cos(finding.configuration[1]), 0.49);
+  EXPECT_EQ(finding.nearest, 0);
   EXPECT_FALSE(report.needNoCheck().allowed("hand", "base"));
   std::ostringstream out;
   out << finding;

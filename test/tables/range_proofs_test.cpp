@@ -202,6 +202,10 @@ void run(const Links& links, pairs::Random& random, Counts& counts) {
     const bool proven = finding.kind == LinkPairKind::never;
     (proven ? counts.proven : counts.unproven) += 1;
     counts.near += proven && less > 0.8;
+    // What is said of how near they come is an upper bound, reached in the configuration.
+    if (std::isfinite(finding.nearest) && finding.configuration.size() > 0) {
+      EXPECT_LE(links.distance(finding.configuration), finding.nearest + kFclError);
+    }
     // What is found in contact is so: the configuration lies within the limits, and FCL agrees.
     if (finding.kind == LinkPairKind::always || finding.kind == LinkPairKind::sometimes) {
       ASSERT_EQ(finding.configuration.size(), links.tree->dof());
