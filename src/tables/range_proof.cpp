@@ -19,8 +19,8 @@ constexpr double kBeyondLimits = 1e-3;
 constexpr double kMostValue = 100;
 /// Counts as so many tests: a look at witnesses.
 constexpr std::uint64_t kGlanceWork = 15;
-/// Tests of nodes and leaves for one box; what needs more is cut in two. Measured on the Panda: 120 take 1.5 times as
-/// long, 3000 as long.
+/// Tests of nodes and leaves for one box; what needs more is cut in two, each of which may take twice as many. Measured
+/// on the Panda: 120 take 1.5 times as long, 3000 as long.
 constexpr std::uint64_t kWorkOfBox = 600;
 /// What the margin pays for a box that is not cut any further, m: links that come as near are not proven apart.
 constexpr double kFinest = 2e-5;
@@ -233,7 +233,7 @@ void RangeProof::addWitness() {
   for (const engine::SweepStep& step : path_) {
     const auto v = static_cast<std::size_t>(step.variable);
     Joint joint;
-    joint.set(step, coefficients_[v] + contact.t_nearest * coefficients_[variables_.size() + v]);
+    joint.set(step, valueAt(v, contact.t_nearest));
     witness.b = RowMajor(step.C).transpose() * (witness.b - Eigen::Vector3d::Map(step.p));
     joint.inverse().apply(witness.b);
   }
@@ -285,7 +285,7 @@ bool RangeProof::mustFail(const Box& box, std::size_t moved, double margin) cons
 
 /// Lemma 8: the engine moves one step over its whole range while the others stand in the middle of theirs; the margin
 /// pays for A's ways by the steps before it and for B's by the steps after it.
-RangeProof::Tried RangeProof::tryBox(const Box& box) {
+RangeProof::Tried RangeProof::tryBox(const Box& box, std::uint64_t work) {
   measureWays(box);
   const std::size_t n = path_.size();
   double after = 0;
@@ -330,14 +330,17 @@ RangeProof::Tried RangeProof::tryBox(const Box& box) {
   }
   const double whole_margin = margin_ + margin * (1 + 1e-9);
   Tried tried;
-  bool out_of_work = false;
   if (path_.empty() || !mustFail(box, moved, whole_margin)) {
     query_.margins = engine::Margins(whole_margin);
-    query_.work_budget = kWorkOfBox;
+    query_.work_budget = work;
     solve();
     tried.apart = answer_.isFree();
-    if (!tried.apart) addWitness();
-    out_of_work = answer_.status == Status::undecided;
+    if (!tried.apart) {
+      addWitness();
+      const double t = answer_.num_contacts > 0 ? answer_.contacts[0].t : answer_.t_lower;
+      for (std::size_t v = 0; v < box.size(); ++v) tried.where.push_back(valueAt(v, t));
+    }
+    tried.out_of_work = answer_.status == Status::undecided;
   } else {
     work_ += kGlanceWork;
   }
@@ -348,7 +351,7 @@ RangeProof::Tried RangeProof::tryBox(const Box& box) {
   tried.split = static_cast<std::size_t>(std::max_element(paid.begin(), paid.end()) - paid.begin());
   if (margin < kFinest) {
     // A finer margin would not help. Less of a motion might, where it is work that ran out.
-    tried.give_up = moved == n || !out_of_work;
+    tried.give_up = moved == n || !tried.out_of_work;
     if (!tried.give_up) tried.split = static_cast<std::size_t>(path_[moved].variable);
   }
   return tried;
@@ -361,6 +364,7 @@ RangeProof::Finding RangeProof::prove(std::uint64_t work) {
   struct Open {
     Box box;
     double share;  ///< of all values
+    std::uint64_t work = kWorkOfBox;
   };
   std::vector<Open> open;
   open.push_back({whole_, 1});
@@ -368,7 +372,7 @@ RangeProof::Finding RangeProof::prove(std::uint64_t work) {
   while (!open.empty()) {
     Open next = std::move(open.back());
     open.pop_back();
-    const Tried tried = tryBox(next.box);
+    const Tried tried = tryBox(next.box, next.work);
     if (tried.apart) {
       proven += next.share;
       continue;
@@ -380,11 +384,16 @@ RangeProof::Finding RangeProof::prove(std::uint64_t work) {
     const ValueRange range = tried.give_up ? ValueRange() : next.box[tried.split];
     const double middle = range.middle();
     if (tried.give_up || hopeless || !(range.lower < middle && middle < range.upper)) {
-      for (const ValueRange& r : next.box) finding.values.push_back(r.middle());
+      finding.values = tried.where;
+      if (tried.where.empty()) {
+        for (const ValueRange& r : next.box) finding.values.push_back(r.middle());
+      }
       finding.work = work_;
       return finding;
     }
-    Open other{next.box, next.share *= 0.5};
+    // Surfaces that are near each other all along take many tests, however short the way.
+    if (tried.out_of_work) next.work *= 2;
+    Open other{next.box, next.share *= 0.5, next.work};
     other.box[tried.split].lower = next.box[tried.split].upper = middle;
     open.push_back(std::move(other));
     open.push_back(std::move(next));

@@ -76,8 +76,9 @@ class RangeProof {
   using Box = std::vector<ValueRange>;
   /// What became of a box.
   struct Tried {
-    bool apart = false, give_up = false;
-    std::size_t split = 0;  ///< else: the variable to halve
+    bool apart = false, give_up = false, out_of_work = false;
+    std::size_t split = 0;      ///< else: the variable to halve
+    std::vector<double> where;  ///< not apart: where on the engine's way, if it was asked
   };
 
   /// A step's own motion, along and about z: of points after it, as seen from before it.
@@ -93,8 +94,12 @@ class RangeProof {
   static Outline outlineOf(const engine::Body& body);
   static double farthestFromAxis(const Outline& outline);
   void measureWays(const Box& box);
-  Tried tryBox(const Box& box);
+  Tried tryBox(const Box& box, std::uint64_t work);
   void solve();
+  /// Of a variable in the motion asked last.
+  double valueAt(std::size_t variable, double t) const {
+    return coefficients_[variable] + t * coefficients_[variables_.size() + variable];
+  }
   void addWitness();
   bool mustFail(const Box& box, std::size_t moved, double margin) const;
 
