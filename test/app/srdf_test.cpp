@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The verb srdf, and what check says of allowed pairs.
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// Two arms on hinges about z, 0.8 m apart: they touch only where both turn to each other.
+class SrdfVerbTest : public ProgramTest {
+ protected:
+  std::string twoArms() const {
+    const auto arm = [](const std::string& name, const std::string& x) {
+      return "<link name='" + name +
+             R"('><collision><origin xyz='0.25 0 0'/><geometry><box size='0.5 0.1 0.1'/></geometry>
+</collision></link><joint name=')" +
+             name + "_hinge' type='revolute'><parent link='base'/><child link='" + name + "'/><origin xyz='" + x +
+             R"( 0 0'/><axis xyz='0 0 1'/><limit lower='-3.1' upper='3.1' effort='1' velocity='1'/></joint>)";
+    };
+    return write("arms.urdf",
+                 "<robot name='arms'><link name='base'/>" + arm("left", "0") + arm("right", "0.8") +
+                     R"(<link name='lamp'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>
+<joint name='pole' type='prismatic'><parent link='base'/><child link='lamp'/><origin xyz='0 0 2'/><axis xyz='0 0 1'/>
+<limit lower='0' upper='1' effort='1' velocity='1'/></joint></robot>)");
+  }
+  std::string srdf(const std::string& name, const std::string& a, const std::string& b) const {
+    return write(name, "<robot name='arms'><disable_collisions link1='" + a + "' link2='" + b + "'/></robot>");
+  }
+};
+
+TEST_F(SrdfVerbTest, TellsWhatPairsDo) {
+  const Outcome run = this->run("srdf --json " + twoArms());
+  ASSERT_EQ(run.status, 0) << run.err;
+  std::map<std::string, Json> pairs;
+  const Json answer = Json::parse(run.out);
+  for (const Json& pair : answer.at("pairs")) {
+    pairs[pair.at("link1").get<std::string>() + " " + pair.at("link2").get<std::string>()] = pair;
+  }
+  ASSERT_EQ(pairs.size(), 3u);
+  EXPECT_EQ(pairs.at("left lamp").at("kind"), "never");
+  EXPECT_EQ(pairs.at("left lamp").at("proven"), true);
+  const Json& arms = pairs.at("left right");
+  EXPECT_EQ(arms.at("kind"), "sometimes");
+  EXPECT_GT(arms.at("touching"), 0);
+  EXPECT_LT(arms.at("touching"), arms.at("tried"));
+  // They reach each other across 0.8 m only where each points at the other, about.
+  EXPECT_LT(std::abs(arms.at("configuration").at("left_hinge").get<double>()), 1.1);
+  EXPECT_GT(std::abs(arms.at("configuration").at("right_hinge").get<double>()), 2);
+}
+
+TEST_F(SrdfVerbTest, ChecksAnSrdf) {
+  const std::string robot = twoArms();
+  const Outcome right = run("srdf " + robot + " --check " + srdf("right.srdf", "left", "lamp"));
+  EXPECT_EQ(right.status, 0) << right.err << right.out;
+  EXPECT_NE(right.out.find("1 never"), std::string::npos) << right.out;
+  const Outcome wrong = run("srdf " + robot + " --check " + srdf("wrong.srdf", "left", "right"));
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.out.find("left and right: in "), std::string::npos) << wrong.out;
+  // What a planar joint carries has no limits.
+  const std::string cart = write("cart.urdf", R"(<robot name='cart'><link name='base'/>
+<link name='left'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>
+<link name='lamp'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>
+<joint name='stand' type='fixed'><parent link='base'/><child link='left'/></joint>
+<joint name='drive' type='planar'><parent link='base'/><child link='lamp'/><origin xyz='0 0 1'/><axis xyz='0 0 1'/></joint>
+</robot>)");
+  const Outcome unknown = run("srdf " + cart + " --check " + srdf("w.srdf", "left", "lamp"));
+  EXPECT_EQ(unknown.status, 3) << unknown.out;
+  EXPECT_NE(unknown.out.find("a joint between them has no bounds"), std::string::npos) << unknown.out;
+}
+
+TEST_F(SrdfVerbTest, WhatItWritesIsRight) {
+  const std::string robot = twoArms(), file = path("made.srdf");
+  ASSERT_EQ(run("srdf " + robot + " --write " + file).status, 0);
+  EXPECT_NE(read(file).find("reason=\"Never\""), std::string::npos) << read(file);
+  EXPECT_EQ(read(file).find("link2=\"right\" reason"), std::string::npos) << "left and right touch: " << read(file);
+  EXPECT_EQ(run("srdf " + robot + " --check " + file).status, 0);
+}
+
+TEST_F(SrdfVerbTest, AnswersSayWhatTheyRestOn) {
+  const std::string motion = " --from 0,0,0 --to 0,0.5,0";
+  const std::string right = srdf("right.srdf", "left", "lamp"), wrong = srdf("wrong.srdf", "left", "right");
+  const Outcome proven = run("check " + twoArms() + " --srdf " + right + motion);
+  EXPECT_EQ(proven.out.rfind("FREE: proven", 0), 0u) << proven.out;
+  const Outcome excused = run("check " + twoArms() + " --srdf " + wrong + " --from 0,3,0 --to 0,3.05,0");
+  EXPECT_EQ(excused.status, 0);
+  EXPECT_EQ(excused.out.rfind("FREE but for 1 allowed pair not proven apart: proven", 0), 0u) << excused.out;
+  EXPECT_NE(excused.out.find("1 allowed pair can touch, and is not checked: left and right"), std::string::npos)
+      << excused.out;
+  const Outcome json = run("check --json " + twoArms() + " --srdf " + wrong + motion);
+  EXPECT_EQ(Json::parse(json.out).at("unproven_allowed_pairs"), 1);
+  // Found by itself: the pair that touches stays checked.
+  const Outcome found = run("check " + twoArms() + " --auto-srdf " + path("auto.srdf") + " --from 0,3,0 --to 0,3.05,0");
+  EXPECT_EQ(found.status, 1) << found.out;
+}
+
+#ifdef FCL_ARTIC_HAS_PICTURES
+TEST_F(SrdfVerbTest, DrawsWhatTouches) {
+  const Outcome drawn = run("srdf " + twoArms() + " --images " + path("pictures"));
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_EQ(read(path("pictures") + "/left-right.png").rfind("\x89PNG", 0), 0u);
+  EXPECT_TRUE(read(path("pictures") + "/left-lamp.png").empty()) << "never touch";
+}
+#endif
+
+}  // namespace
