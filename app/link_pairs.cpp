@@ -111,7 +111,9 @@ void drawTouching(const Robot& robot, const LinkPairReport& report, const std::s
     manager.setup();
     render::PictureOptions options;
     options.title = fmt::format("{} and {}", pair.link1, pair.link2);
-    const std::string path = folder + "/" + pair.link1 + "-" + pair.link2 + ".png";
+    std::string name = pair.link1 + "-" + pair.link2 + ".png";
+    std::replace(name.begin(), name.end(), '/', '_');  // a link's name is no path
+    const std::string path = folder + "/" + name;
     render::writePicture(
         path, robot, {}, [&](double) { return pair.configuration; }, manager.collide(pair.configuration), options);
     fmt::print("picture {}\n", path);
@@ -237,7 +239,8 @@ void addSrdf(CLI::App& program, int& exit_status) {
   srdf->footer(
       "Pairs that never touch are proven apart for all joint values within their limits; pairs that touch are shown\n"
       "with a configuration. The answer depends on no random numbers.\n"
-      "Exit status: 0, or with --check: 0 no disabled pair can touch, proven; 1 one can; 3 neither is known; 2 error.");
+      "Exit status: 0, or with --check: 0 every disabled pair never touches, proven, or always does; 1 one touches\n"
+      "sometimes; 3 neither is known of one; 2 error.");
   srdf->add_option("ROBOT,--robot", o.robot, "Robot (URDF)")->required()->type_name("FILE");
   srdf->add_option("--check", o.check, "Look at the pairs that this SRDF disables")->type_name("FILE");
   srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");

@@ -35,7 +35,7 @@ struct Pair {
 ValueRange rangeToTry(const KinematicTree& tree, int variable) {
   constexpr double kPi = 3.141592653589793;
   const Joint& joint = tree.joint(tree.variableJoint(variable));
-  if (hasLimits(joint)) return {joint.lower, joint.upper};
+  if (hasLimits(joint) && std::isfinite(joint.upper - joint.lower)) return {joint.lower, joint.upper};
   return tree.isAngle(variable) ? ValueRange{-kPi, kPi} : ValueRange{0, 0};
 }
 
@@ -67,6 +67,8 @@ class Classifier {
     for (const std::size_t number : pair.numbers) {
       proofs_.emplace_back(tree, problem, problem.link_pairs[number], options.margin, workspace.engine);
     }
+    variables_ = proofs_.front().variables();
+    std::sort(variables_.begin(), variables_.end());
   }
 
   /// @param[out] finding  all but the names.
@@ -88,12 +90,18 @@ class Classifier {
     if (finding.touching == 0 && finding.configuration.size() == 0) return;
     if (finding.touching == 0) return set(finding, LinkPairKind::unproven, false);
     finding.nearest = options_.margin;
-    const bool always = finding.touching == finding.tried;
+    const bool always = apart_ == 0;
     set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || rigid);
   }
 
  private:
-  const std::vector<int>& variables() const { return proofs_.front().variables(); }
+  /// The variables between the links, in ascending order. (A proof has them in the order of its own path, which begins
+  /// at the one link or at the other.)
+  const std::vector<int>& variables() const { return variables_; }
+  std::size_t placeOf(int variable) const {
+    return static_cast<std::size_t>(std::lower_bound(variables_.begin(), variables_.end(), variable) -
+                                    variables_.begin());
+  }
 
   static void set(LinkPairFinding& finding, LinkPairKind kind, bool proven) {
     finding.kind = kind;
@@ -104,7 +112,8 @@ class Classifier {
     for (RangeProof& proof : proofs_) {
       const RangeProof::Finding found = proof.prove(work);
       if (found.apart) continue;
-      failed_at_ = found.values;
+      failed_at_.resize(found.values.size());
+      for (std::size_t i = 0; i < found.values.size(); ++i) failed_at_[placeOf(proof.variables()[i])] = found.values[i];
       return false;
     }
     return true;
@@ -112,8 +121,10 @@ class Classifier {
 
   RangeProof::Contact at(const std::vector<double>& values, double margin) {
     RangeProof::Contact most = RangeProof::Contact::none;
+    std::vector<double> own(values.size());
     for (RangeProof& proof : proofs_) {
-      const RangeProof::Contact contact = proof.at(values, margin);
+      for (std::size_t i = 0; i < own.size(); ++i) own[i] = values[placeOf(proof.variables()[i])];
+      const RangeProof::Contact contact = proof.at(own, margin);
       if (contact == RangeProof::Contact::touch) return contact;
       if (contact == RangeProof::Contact::unknown) most = contact;
     }
@@ -128,10 +139,13 @@ class Classifier {
       for (std::size_t i = 0; i < values.size(); ++i) {
         const ValueRange range = rangeToTry(tree_, variables()[i]);
         // The first one is the robot at rest: all joints at 0, or as near as their limits let them.
-        values[i] = finding.tried == 0 ? std::clamp(0.0, range.lower, range.upper)
-                                       : range.lower + spread(finding.tried, i) * (range.upper - range.lower);
+        const double value =
+            finding.tried == 0 ? 0 : range.lower + spread(finding.tried, i) * (range.upper - range.lower);
+        values[i] = std::clamp(value, range.lower, range.upper);
       }
-      if (at(values, options_.margin) != RangeProof::Contact::touch) continue;
+      const RangeProof::Contact contact = at(values, options_.margin);
+      apart_ += contact == RangeProof::Contact::none;
+      if (contact != RangeProof::Contact::touch) continue;
       if (finding.touching++ == 0) finding.configuration = configuration(values);
     }
   }
@@ -198,7 +212,9 @@ class Classifier {
   const KinematicTree& tree_;
   const LinkPairOptions& options_;
   std::deque<RangeProof> proofs_;  ///< of the links' geometries, each with each
+  std::vector<int> variables_;
   std::vector<double> failed_at_;  ///< where the last proof that failed did
+  std::size_t apart_ = 0;          ///< configurations tried in which they certainly are
 };
 
 /// Pairs of links with geometry, neighbours without numbers.

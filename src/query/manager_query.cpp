@@ -214,8 +214,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
       if (answer.ignored[i].watch_from > 1) aspects.never_apart->push_back(answer.ignored[i].pair);
     }
   }
+  const JointMotion* const motions[] = {&motion};
   result.unproven_allowed_pairs =
-      setup.proven().unprovenAllowed(motion, query.margins, request.check_self, request.check_scene);
+      setup.proven().unprovenAllowed(motions, 1, query.margins, request.check_self, request.check_scene);
   result.statistics = workOf(solved);
   if (request.measure_times) {
     result.statistics.report_us = since(end);

@@ -24,6 +24,7 @@
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
+#include "query/manager_impl.h"
 
 namespace fcl_artic {
 namespace {
@@ -97,7 +98,6 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.never_apart = &still_in_contact;
     collideMotion(trajectory.piece(k), own, aspects, part);
     add(sum.statistics, part.statistics);
-    sum.unproven_allowed_pairs = std::max(sum.unproven_allowed_pairs, part.unproven_allowed_pairs);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
     in_contact = std::move(still_in_contact);
 
@@ -133,6 +133,13 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
   }
   if (sum.contacts.size() > request.max_contacts) sum.contacts.resize(request.max_contacts);
+  // A pair counts once, whichever of the pieces leaves its proof.
+  std::vector<const JointMotion*> pieces;
+  for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
+  engine::Margins margins = marginsOf(request);
+  if (own_margins) impl_->setup.margins().putInto(margins);
+  sum.unproven_allowed_pairs = impl_->setup.proven().unprovenAllowed(pieces.data(), pieces.size(), margins,
+                                                                     request.check_self, request.check_scene);
   result = std::move(sum);
 }
 

@@ -118,8 +118,8 @@ void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion
   }
 }
 
-std::size_t ProvenPairs::unprovenAllowed(const JointMotion& motion, const engine::Margins& margins, bool self,
-                                         bool scene) const {
+std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
+                                         const engine::Margins& margins, bool self, bool scene) const {
   std::size_t unproven = scene ? allowed_scene_ : 0;
   if (!self || allowed_self_ == 0) return unproven;
   unproven += allowed_self_;
@@ -128,7 +128,9 @@ std::size_t ProvenPairs::unprovenAllowed(const JointMotion& motion, const engine
     const std::size_t number = allowed_[i].number;
     bool all = true;
     for (; i < allowed_.size() && allowed_[i].number == number; ++i) {
-      all = all && margins.largest() <= allowed_[i].margin && within(allowed_[i], motion);
+      all = all && margins.largest() <= allowed_[i].margin &&
+            std::all_of(motions, motions + num_motions,
+                        [&](const JointMotion* motion) { return within(allowed_[i], *motion); });
     }
     unproven -= all;
   }

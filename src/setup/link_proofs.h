@@ -55,9 +55,10 @@ class ProvenPairs {
   void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
                     std::vector<std::uint8_t>& parts) const;
 
-  /// Number of allowed pairs of names, of two links or of link and obstacle, which nothing proves apart for this
-  /// motion.
-  std::size_t unprovenAllowed(const JointMotion& motion, const engine::Margins& margins, bool self, bool scene) const;
+  /// Number of allowed pairs of names, of two links or of link and obstacle, which nothing proves apart for all of
+  /// these motions.
+  std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
+                              const engine::Margins& margins, bool self, bool scene) const;
 
  private:
   struct Pair {

@@ -233,7 +233,7 @@ TEST(LinkPairs, AnswersCountAllowedPairsThatNothingProvesApart) {
   out << manager.continuousCollide(Vector2d(0, 0), Vector2d(0, 2));
   EXPECT_EQ(out.str(), "free: proven, but for 1 allowed pair not proven apart");
 
-  // A trajectory has as many as the piece that has most.
+  // A trajectory has those that any of its pieces has.
   const auto& tree = manager.tree();
   const JointTrajectory trajectory =
       JointTrajectory::linear(tree, {0, 1, 2}, {Vector2d(0, 0), Vector2d(0, 2), Vector2d(0, 3.2)});
@@ -290,6 +290,68 @@ TEST(LinkPairs, SeveralGeometriesOfALinkAreOnePair) {
   manager.allow("base", "hand");
   manager.setup();
   EXPECT_EQ(manager.continuousCollide(Vector2d(0, 0), Vector2d(0, 1)).unproven_allowed_pairs, 1u);
+}
+
+/// Two carts on rails from one root; pieces that leave the limits of the one, then of the other.
+std::shared_ptr<KinematicTree> twoCarts() {
+  auto tree = std::make_shared<KinematicTree>("carts");
+  for (const char* link : {"root", "a0", "a", "b0", "b"}) tree->addLink(link);
+  const auto rail = [&](const char* name, const char* parent, const char* child, double lower, double upper) {
+    tree->addJoint(Joint::prismatic(name, parent, child, Vector3d::UnitX(), Isometry3d::Identity(), lower, upper));
+  };
+  rail("ja0", "root", "a0", 2, 3);
+  rail("ja", "a0", "a", 2, 3);
+  rail("jb0", "root", "b0", -3, -2);
+  rail("jb", "b0", "b", -3, -2);
+  return tree;
+}
+
+std::shared_ptr<fcl::CollisionObjectd> ball(double radius) {
+  return std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radius));
+}
+
+TEST(LinkPairs, ATrajectoryCountsEachPairThatAnyPieceLeavesUnproven) {
+  ArticulatedCollisionManager manager(twoCarts());
+  for (const char* link : {"root", "a0", "a", "b0", "b"}) manager.bind(link, ball(0.1));
+  manager.setLinkPairProofs(manager.classifyLinkPairs().proofs);
+  manager.allow("root", "a");
+  manager.allow("root", "b");
+  manager.setup();
+  const VectorXd in = Eigen::Vector4d(2.5, 2.5, -2.5, -2.5), a_out = Eigen::Vector4d(2.5, 3.5, -2.5, -2.5),
+                 b_out = Eigen::Vector4d(2.5, 2.5, -2.5, -3.5);
+  const auto unproven = [&](const std::vector<VectorXd>& way) {
+    std::vector<double> times;
+    for (std::size_t i = 0; i < way.size(); ++i) times.push_back(static_cast<double>(i));
+    return manager.continuousCollide(JointTrajectory::linear(manager.tree(), times, way)).unproven_allowed_pairs;
+  };
+  EXPECT_EQ(unproven({in, in}), 0u);
+  EXPECT_EQ(unproven({in, a_out, in}), 1u);
+  EXPECT_EQ(unproven({in, a_out, in, b_out, in}), 2u);
+}
+
+TEST(LinkPairs, GeometriesBoundInAnyOrderTakeTheirOwnValues) {
+  // Of the one pair some paths begin at a and some at b.
+  auto tree = std::make_shared<KinematicTree>("t");
+  for (const char* link : {"root", "a", "b"}) tree->addLink(link);
+  tree->addJoint(Joint::prismatic("ja", "root", "a", Vector3d::UnitX(), Isometry3d::Identity(), 5, 6));
+  tree->addJoint(Joint::prismatic("jb", "root", "b", Vector3d::UnitX(), Isometry3d::Identity(), 0, 1));
+  ArticulatedCollisionManager manager(tree);
+  const auto bind = [&](const char* link, double radius, const Vector3d& at) {
+    manager.bind(link, ball(radius), Isometry3d(Eigen::Translation3d(at)));
+  };
+  bind("a", 0.2, {0, 50, 0});
+  bind("b", 0.1, {0, 0, 0});
+  bind("a", 0.1, {1, 0, 0});
+  LinkPairOptions options;
+  options.samples = 200;
+  const auto kindAt = [&](double margin) {
+    options.margin = margin;
+    return manager.classifyLinkPairs(options).pairs.at(0).kind;
+  };
+  // Their distance is from 5 + 1 - 1 - 0.2 to 6 + 1 - 0 - 0.2 m.
+  EXPECT_EQ(kindAt(4.7), LinkPairKind::never);
+  EXPECT_EQ(kindAt(4.9), LinkPairKind::sometimes);
+  EXPECT_EQ(kindAt(6.9), LinkPairKind::always);
 }
 
 TEST(LinkPairs, OnlyTheseAndProgress) {
