@@ -107,7 +107,7 @@ Robot loadRobot(const Options& options, std::set<std::string>& solids) {
   Robot robot = readRobot(options.robot);
   makeSolids(
       robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
-  if (!options.robot.srdf.empty()) {
+  if (!options.robot.srdf.empty() && !options.no_self) {
     LinkPairOptions search;
     search.only = &robot.allowed;
     search.work = std::clamp<std::uint64_t>(kWorkForAllowed / std::max<std::size_t>(robot.allowed.pairs().size(), 1),

@@ -15,6 +15,7 @@
 #include "exit_status.h"
 #include "progress.h"
 #include "render/picture.h"
+#include "robot_options.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -25,10 +26,10 @@ constexpr LinkPairKind kKinds[] = {LinkPairKind::neighbours, LinkPairKind::never
                                    LinkPairKind::sometimes, LinkPairKind::unproven};
 
 struct Options {
-  std::string robot, check, write, images;
-  std::vector<std::string> packages;
+  RobotOptions robot;
+  std::string check, write, images;
   LinkPairOptions search;
-  bool json = false, solid_meshes = false;
+  bool json = false;
 };
 
 const char* meaningOf(LinkPairKind kind) {
@@ -139,14 +140,7 @@ void printPairs(const KinematicTree& tree, const LinkPairReport& report, bool al
 }
 
 int run(const Options& options) {
-  UrdfOptions urdf;
-  urdf.solid_meshes = options.solid_meshes;
-  for (const std::string& package : options.packages) {
-    const std::size_t equals = package.find('=');
-    if (equals == std::string::npos) throw std::invalid_argument("--package '" + package + "' is not NAME=DIR");
-    urdf.packages[package.substr(0, equals)] = package.substr(equals + 1);
-  }
-  Robot robot = loadUrdf(options.robot, urdf);
+  Robot robot = loadUrdf(options.robot.robot, urdfOptions(options.robot));
   const KinematicTree& tree = *robot.tree;
   std::optional<AllowedCollisionMatrix> disabled;
   if (!options.check.empty()) disabled = loadSrdf(options.check, tree, &robot.notes);
@@ -241,12 +235,10 @@ void addSrdf(CLI::App& program, int& exit_status) {
       "with a configuration. The answer depends on no random numbers.\n"
       "Exit status: 0, or with --check: 0 every disabled pair never touches, proven, or always does; 1 one touches\n"
       "sometimes; 3 neither is known of one; 2 error.");
-  srdf->add_option("ROBOT,--robot", o.robot, "Robot (URDF)")->required()->type_name("FILE");
+  addRobotFile(*srdf, o.robot);
   srdf->add_option("--check", o.check, "Look at the pairs that this SRDF disables")->type_name("FILE");
   srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");
-  srdf->add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
-      ->type_name("NAME=DIR");
-  srdf->add_flag("--solid-meshes", o.solid_meshes, "Meshes are solids: what lies within one touches it");
+  srdf->add_flag("--solid-meshes", o.robot.solid_meshes, "Meshes are solids: what lies within one touches it");
   srdf->add_option("--margin", o.search.margin, "Links must keep this distance to count as apart, in m")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

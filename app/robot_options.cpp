@@ -14,6 +14,7 @@
 namespace fcl_artic::app {
 namespace {
 
+constexpr const char* kGroup = "Robot and scene";
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 
 std::string requirePackage(const std::string& text) {
@@ -73,28 +74,31 @@ std::optional<Eigen::Isometry3d> poseOf(const std::string& text) {
 
 }  // namespace
 
-CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o) {
-  const std::string group = "Robot and scene";
+void addRobotFile(CLI::App& verb, RobotOptions& o) {
   verb.add_option("ROBOT,--robot", o.robot, "Robot (URDF)")
       ->required()
       ->check(requireInput)
-      ->group(group)
+      ->group(kGroup)
       ->type_name("FILE");
-  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
-                          ->check(requireInput)
-                          ->group(group)
-                          ->type_name("FILE");
   verb.add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)
-      ->group(group)
+      ->group(kGroup)
       ->type_name("NAME=DIR");
+}
+
+CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o) {
+  addRobotFile(verb, o);
+  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
+                          ->check(requireInput)
+                          ->group(kGroup)
+                          ->type_name("FILE");
   verb.add_option("--base", o.base,
                   "Where the robot's root stands in the world: x,y,z or x,y,z,roll,pitch,yaw (m, rad or 90deg)")
-      ->group(group)
+      ->group(kGroup)
       ->type_name("POSE");
   verb.add_flag("--floating-base", o.floating_base,
                 "The robot's root moves freely: seven values more, floating_base/trans_x to floating_base/rot_w, first")
-      ->group(group);
+      ->group(kGroup);
   return srdf;
 }
 
@@ -103,7 +107,7 @@ void addAttachOption(CLI::App& verb, RobotOptions& o) {
           "--attach", o.attached,
           "Object that a link carries, a scene file at a pose in the link's frame; LINK+LINK2=FILE: it may touch "
           "LINK2 too; may be repeated")
-      ->group("Robot and scene")
+      ->group(kGroup)
       ->type_name("LINK=FILE[@POSE]");
 }
 

@@ -22,7 +22,9 @@ struct RobotOptions {
   bool floating_base = false, solid_meshes = false, collada_up_axis = false;
 };
 
-/// Adds ROBOT (or --robot), --srdf, --package, --base and --floating-base, in the group "Robot and scene".
+/// Adds ROBOT (or --robot) and --package, in the group "Robot and scene".
+void addRobotFile(CLI::App& verb, RobotOptions& options);
+/// Adds these, --srdf, --base and --floating-base.
 /// @return --srdf, for what excludes it.
 CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options);
 /// Adds --attach.

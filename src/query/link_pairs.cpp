@@ -69,7 +69,12 @@ class Classifier {
     }
     variables_ = proofs_.front().variables();
     std::sort(variables_.begin(), variables_.end());
+    for (const int v : variables_) ranges_.push_back(rangeToTry(tree, v));
   }
+
+  /// The variables between the links, in ascending order. (A proof has them in the order of its own path, which begins
+  /// at the one link or at the other.)
+  const std::vector<int>& variables() const { return variables_; }
 
   /// @param[out] finding  all but the names.
   void run(LinkPairFinding& finding) {
@@ -95,9 +100,6 @@ class Classifier {
   }
 
  private:
-  /// The variables between the links, in ascending order. (A proof has them in the order of its own path, which begins
-  /// at the one link or at the other.)
-  const std::vector<int>& variables() const { return variables_; }
   std::size_t placeOf(int variable) const {
     return static_cast<std::size_t>(std::lower_bound(variables_.begin(), variables_.end(), variable) -
                                     variables_.begin());
@@ -137,7 +139,7 @@ class Classifier {
     std::vector<double> values(variables().size());
     for (; finding.tried < samples; ++finding.tried) {
       for (std::size_t i = 0; i < values.size(); ++i) {
-        const ValueRange range = rangeToTry(tree_, variables()[i]);
+        const ValueRange& range = ranges_[i];
         // The first one is the robot at rest: all joints at 0, or as near as their limits let them.
         const double value =
             finding.tried == 0 ? 0 : range.lower + spread(finding.tried, i) * (range.upper - range.lower);
@@ -156,7 +158,7 @@ class Classifier {
     if (failed_at_.size() != variables().size()) return;
     std::vector<double> best = failed_at_, step(best.size());
     for (std::size_t i = 0; i < step.size(); ++i) {
-      const ValueRange range = rangeToTry(tree_, variables()[i]);
+      const ValueRange& range = ranges_[i];
       best[i] = std::clamp(best[i], range.lower, range.upper);
       step[i] = 0.05 * (range.upper - range.lower);
     }
@@ -177,7 +179,7 @@ class Classifier {
     for (int round = 0; round < 16; ++round) {
       bool moved = false;
       for (std::size_t i = 0; i < best.size(); ++i) {
-        const ValueRange range = rangeToTry(tree_, variables()[i]);
+        const ValueRange& range = ranges_[i];
         for (const double way : {step[i], -step[i]}) {
           std::vector<double> values = best;
           values[i] = std::clamp(values[i] + way, range.lower, range.upper);
@@ -213,8 +215,9 @@ class Classifier {
   const LinkPairOptions& options_;
   std::deque<RangeProof> proofs_;  ///< of the links' geometries, each with each
   std::vector<int> variables_;
-  std::vector<double> failed_at_;  ///< where the last proof that failed did
-  std::size_t apart_ = 0;          ///< configurations tried in which they certainly are
+  std::vector<ValueRange> ranges_;  ///< to try
+  std::vector<double> failed_at_;   ///< where the last proof that failed did
+  std::size_t apart_ = 0;           ///< configurations tried in which they certainly are
 };
 
 /// Pairs of links with geometry, neighbours without numbers.
@@ -278,7 +281,9 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
       finding.proven = true;
     } else {
       const WorkspaceLoan workspace;
-      Classifier(tree, problem, pairs[i], options, *workspace).run(finding);
+      Classifier classifier(tree, problem, pairs[i], options, *workspace);
+      classifier.run(finding);
+      variables[i] = classifier.variables();
     }
     if (!options.progress) return;
     const std::lock_guard<std::mutex> lock(mutex);
@@ -292,10 +297,7 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
       const engine::LinkPair& pair = problem.link_pairs[number];
       const ManagedBody *a = &registry.body(pair.a), *b = &registry.body(pair.b);
       if (a->link > b->link) std::swap(a, b);
-      std::vector<int> between;
-      const engine::SweepView& sweep = problem.sweeps[pair.sweep];
-      for (int s = pair.step_b; s >= 0; s = sweep.steps[s].parent) between.push_back(sweep.steps[s].variable);
-      proofs->add({PairMaking(tree, *a, *b), options.margin, std::move(between)});
+      proofs->add({PairMaking(tree, *a, *b), options.margin, variables[i]});
     }
   }
   report.proofs = proofs;

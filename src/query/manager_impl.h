@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "fcl_artic/manager.h"
+#include "query/engine_query.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
 #include "visibility/choice.h"
@@ -40,6 +41,14 @@ struct ArticulatedCollisionManager::Impl {
     if (setup.ready() && setup.isOf(*registry.tree())) return;
     throw std::logic_error(
         "ArticulatedCollisionManager: call setup() after changing objects, links, margins, allowed pairs or the tree");
+  }
+
+  /// Allowed pairs that nothing proves apart for all of these motions (CertifiedResult::unproven_allowed_pairs).
+  std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
+                              const CertifiedRequest& request, bool own_margins = true) const {
+    engine::Margins margins = marginsOf(request);
+    if (own_margins) setup.margins().putInto(margins);
+    return setup.proven().unprovenAllowed(motions, num_motions, margins, request.check_self, request.check_scene);
   }
 
   Registry registry;

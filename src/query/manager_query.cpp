@@ -159,6 +159,8 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
                                                 CertifiedResult& result) const {
   collideMotion(motion, request, Aspects(), result);
+  const JointMotion* const motions[] = {&motion};
+  result.unproven_allowed_pairs = impl_->unprovenAllowed(motions, 1, request);
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
 }
 
@@ -214,9 +216,6 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
       if (answer.ignored[i].watch_from > 1) aspects.never_apart->push_back(answer.ignored[i].pair);
     }
   }
-  const JointMotion* const motions[] = {&motion};
-  result.unproven_allowed_pairs =
-      setup.proven().unprovenAllowed(motions, 1, query.margins, request.check_self, request.check_scene);
   result.statistics = workOf(solved);
   if (request.measure_times) {
     result.statistics.report_us = since(end);

@@ -136,10 +136,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   // A pair counts once, whichever of the pieces leaves its proof.
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
-  engine::Margins margins = marginsOf(request);
-  if (own_margins) impl_->setup.margins().putInto(margins);
-  sum.unproven_allowed_pairs = impl_->setup.proven().unprovenAllowed(pieces.data(), pieces.size(), margins,
-                                                                     request.check_self, request.check_scene);
+  sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, own_margins);
   result = std::move(sum);
 }
 

@@ -63,19 +63,15 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   }
 
   // Allowed pairs count by their names: a link may have several geometries.
-  std::set<LinkId> with_geometry;
-  for (const ManagedBody& link : registry.links()) {
-    if (!link.attached) with_geometry.insert(link.link);
-  }
+  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   std::map<std::pair<std::string, std::string>, std::vector<const LinkPairProofs::Proof*>> excused;
   const std::vector<ManagedBody>& links = registry.links();
   for (std::size_t i = 0; i < links.size(); ++i) {
     for (std::size_t j = i + 1; j < links.size(); ++j) {
       const ManagedBody &a = links[i], &b = links[j];
       if (a.link == b.link || a.empty() || b.empty()) continue;
-      const bool neighbours = !a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link);
-      const bool touch_links = a.mayTouchLink(b) || b.mayTouchLink(a);
-      if (neighbours || (registry.mayTouch(a, b) && !touch_links)) continue;
+      if (registry.mayTouch(a, b) && !a.mayTouchLink(b) && !b.mayTouchLink(a)) continue;
+      if (!a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link)) continue;
       excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
     }
   }
@@ -89,6 +85,11 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     }
     ++allowed_self_;
   }
+  std::set<int> used;
+  for (const auto* pairs : {&checked_, &allowed_}) {
+    for (const Pair& pair : *pairs) used.insert(pair.variables.begin(), pair.variables.end());
+  }
+  used_.assign(used.begin(), used.end());
 }
 
 void ProvenPairs::buildScene(const Registry& registry) {
@@ -104,17 +105,18 @@ void ProvenPairs::buildScene(const Registry& registry) {
   }));
 }
 
-bool ProvenPairs::within(const Pair& pair, const JointMotion& motion) const {
-  return std::all_of(pair.variables.begin(), pair.variables.end(),
+bool ProvenPairs::within(const std::vector<int>& variables, const JointMotion& motion) const {
+  return std::all_of(variables.begin(), variables.end(),
                      [&](int v) { return keepsWithin(motion.variables(), v, ranges_[static_cast<std::size_t>(v)]); });
 }
 
 void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion& motion,
                                const engine::Margins& margins, std::vector<std::uint8_t>& parts) const {
   constexpr std::uint8_t kAll = 0xff;
+  const bool all_within = within(used_, motion);  // so it mostly is, and no pair has to be looked at by itself
   for (const Pair& pair : checked_) {
     if (margins.of(problem.linkPair(static_cast<std::int32_t>(pair.number))) > pair.margin) continue;
-    if (within(pair, motion)) parts[pair.number] = kAll;
+    if (all_within || within(pair.variables, motion)) parts[pair.number] = kAll;
   }
 }
 
@@ -123,14 +125,17 @@ std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std:
   std::size_t unproven = scene ? allowed_scene_ : 0;
   if (!self || allowed_self_ == 0) return unproven;
   unproven += allowed_self_;
+  const auto allWithin = [&](const std::vector<int>& variables) {
+    return std::all_of(motions, motions + num_motions,
+                       [&](const JointMotion* motion) { return within(variables, *motion); });
+  };
+  const bool all_within = !allowed_.empty() && allWithin(used_);
   for (std::size_t i = 0; i < allowed_.size();) {
     // Entries of one pair of names lie together.
     const std::size_t number = allowed_[i].number;
     bool all = true;
     for (; i < allowed_.size() && allowed_[i].number == number; ++i) {
-      all = all && margins.largest() <= allowed_[i].margin &&
-            std::all_of(motions, motions + num_motions,
-                        [&](const JointMotion* motion) { return within(allowed_[i], *motion); });
+      all = all && margins.largest() <= allowed_[i].margin && (all_within || allWithin(allowed_[i].variables));
     }
     unproven -= all;
   }

@@ -66,10 +66,11 @@ class ProvenPairs {
     double margin;
     std::vector<int> variables;
   };
-  bool within(const Pair& pair, const JointMotion& motion) const;
+  bool within(const std::vector<int>& variables, const JointMotion& motion) const;
 
   std::vector<Pair> checked_, allowed_;
   std::vector<bool> is_proven_;
+  std::vector<int> used_;                             ///< variables of all of these proofs
   std::vector<ValueRange> ranges_;                    ///< by variable
   std::size_t allowed_self_ = 0, allowed_scene_ = 0;  ///< pairs of names
 };

@@ -45,6 +45,14 @@ Registry::Registry(std::shared_ptr<const KinematicTree> tree) : tree_(std::move(
   if (!tree_) throw std::invalid_argument("ArticulatedCollisionManager: the kinematic tree is null");
 }
 
+std::set<LinkId> Registry::linksWithGeometry() const {
+  std::set<LinkId> with_geometry;
+  for (const ManagedBody& link : links_) {
+    if (!link.attached) with_geometry.insert(link.link);
+  }
+  return with_geometry;
+}
+
 const ManagedBody& Registry::body(std::int32_t number) const {
   FCL_ARTIC_ASSERT(number >= 0 &&
                    static_cast<std::size_t>(number) < links_.size() + moving_.size() + obstacles_.size());

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <set>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -26,6 +27,8 @@ class Registry {
   const std::vector<ManagedBody>& moving() const { return moving_; }
   const std::vector<ManagedBody>& obstacles() const { return obstacles_; }
   const ManagedBody& body(std::int32_t number) const;
+  /// Links that have geometry of their own, not only attached.
+  std::set<LinkId> linksWithGeometry() const;
   bool hasObstacle(const std::string& name) const { return obstacle_names_.count(name) != 0; }
 
   /// Whether the two can and must not touch.

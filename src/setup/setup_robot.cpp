@@ -12,22 +12,9 @@
 
 namespace fcl_artic {
 
-namespace {
-
-/// Links that have geometry of their own, not only attached.
-std::set<LinkId> linksWithGeometry(const Registry& registry) {
-  std::set<LinkId> links;
-  for (const ManagedBody& link : registry.links()) {
-    if (!link.attached) links.insert(link.link);
-  }
-  return links;
-}
-
-}  // namespace
-
 void Setup::buildEveryPair(const Registry& registry) {
   const KinematicTree& tree = *registry.tree();
-  const std::set<LinkId> with_geometry = linksWithGeometry(registry);
+  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   buildSelfPairs(registry, buildLinks(registry), [&](const ManagedBody& a, const ManagedBody& b) {
     return !a.empty() && !b.empty() && !a.attached && !b.attached &&
            !areNeighbours(tree, with_geometry, a.link, b.link);
@@ -40,7 +27,7 @@ void Setup::buildEveryPair(const Registry& registry) {
 void Setup::buildRobot(const Registry& registry) {
   const std::vector<Carrier> carriers = buildLinks(registry);
   const KinematicTree& tree = *registry.tree();
-  const std::set<LinkId> with_geometry = linksWithGeometry(registry);
+  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   buildSelfPairs(registry, carriers, [&](const ManagedBody& a, const ManagedBody& b) {
     if (!registry.mayTouch(a, b) || a.mayTouchLink(b) || b.mayTouchLink(a)) return false;
     return a.attached || b.attached || !areNeighbours(tree, with_geometry, a.link, b.link);

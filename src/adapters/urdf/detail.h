@@ -11,6 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "fcl_artic/kinematic_tree.h"
+
 namespace fcl_artic::detail {
 
 using GeometryPtr = std::shared_ptr<fcl::CollisionGeometryd>;
@@ -45,5 +47,10 @@ void requireWholeMesh(std::string_view content, const std::string& ending, const
 
 /// The ending of a file's name, in lower case, such as ".stl".
 std::string endingOf(const std::string& path);
+
+/// The farthest that the joint carries its child's frame from where its own frame stands, in m, within its limits (a
+/// mimic joint: within those of the joint that it follows): 0 of joints that only turn, infinite of a slide without
+/// limits and of planar and floating joints.
+double slideUpper(const KinematicTree& tree, JointId j);
 
 }  // namespace fcl_artic::detail

@@ -1,19 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace detail {
+
+double slideUpper(const KinematicTree& tree, JointId j) {
+  const Joint& joint = tree.joint(j);
+  switch (joint.type) {
+    case JointType::fixed:
+    case JointType::revolute:
+    case JointType::continuous:
+    case JointType::spherical:
+      return 0;
+    case JointType::planar:
+    case JointType::floating:
+      return std::numeric_limits<double>::infinity();
+    case JointType::prismatic:
+      break;
+  }
+  const Joint& driver = tree.joint(tree.variableJoint(tree.jointVariable(j)));
+  if (!hasLimits(driver)) return std::numeric_limits<double>::infinity();
+  const double most = std::max(std::abs(driver.lower), std::abs(driver.upper));
+  return joint.mimics ? std::abs(joint.mimic.multiplier) * most + std::abs(joint.mimic.offset) : most;
+}
+
+}  // namespace detail
+
 namespace {
 
-/// How far a joint moves its child's origin from its own, m.
-double slide(const Joint& joint, const KinematicTree& tree) {
-  if (joint.type != JointType::prismatic) return 0;
-  if (!joint.mimics) return hasLimits(joint) ? std::max(std::abs(joint.lower), std::abs(joint.upper)) : 0;
-  const Joint& master = tree.joint(joint.mimic.master);
-  const double most = hasLimits(master) ? std::max(std::abs(master.lower), std::abs(master.upper)) : 0;
-  return std::abs(joint.mimic.multiplier) * most + std::abs(joint.mimic.offset);
+/// The same where joints without limits stand still at 0, as planar and floating ones do.
+double limitedSlide(const KinematicTree& tree, JointId j) {
+  const double slide = detail::slideUpper(tree, j);
+  return std::isfinite(slide) ? slide : 0;
 }
 
 /// Whether the joint says where in the world the robot stands, if its parent is a root that carries nothing else.
@@ -39,8 +62,7 @@ double reachUpper(const KinematicTree& tree, const std::vector<LinkGeometry>& ge
     if (j < 0) continue;
     const LinkId parent = tree.parentLink(*link);
     children[static_cast<std::size_t>(parent)].push_back(*link);
-    of(parent) =
-        std::max(of(parent), tree.joint(j).origin.translation().norm() + slide(tree.joint(j), tree) + of(*link));
+    of(parent) = std::max(of(parent), tree.joint(j).origin.translation().norm() + limitedSlide(tree, j) + of(*link));
   }
   double all = 0;
   for (const LinkId root : order) {

@@ -49,27 +49,6 @@ namespace {
 
 constexpr double kUnbounded = 1e30;  // FCL's boxes around planes end near the largest double
 
-/// How far a joint can carry its child's frame from where its own frame is, m.
-double slide(const KinematicTree& tree, JointId j) {
-  const Joint& joint = tree.joint(j);
-  switch (joint.type) {
-    case JointType::fixed:
-    case JointType::revolute:
-    case JointType::continuous:
-    case JointType::spherical:
-      return 0;
-    case JointType::planar:
-    case JointType::floating:
-      return std::numeric_limits<double>::infinity();
-    case JointType::prismatic:
-      break;
-  }
-  const Joint& driver = tree.joint(tree.variableJoint(tree.jointVariable(j)));
-  if (!hasLimits(driver)) return std::numeric_limits<double>::infinity();
-  const double most = std::max(std::abs(driver.lower), std::abs(driver.upper));
-  return joint.mimics ? std::abs(joint.mimic.multiplier) * most + std::abs(joint.mimic.offset) : most;
-}
-
 /// No point of the robot's geometry is ever farther from its root: each joint's frame stands at a fixed distance from
 /// the link that carries it, whichever way the joints turn.
 double reachOf(const Robot& robot) {
@@ -79,7 +58,7 @@ double reachOf(const Robot& robot) {
     const JointId j = tree.parentJoint(link);
     if (j < 0) continue;
     frames[static_cast<std::size_t>(link)] = frames[static_cast<std::size_t>(tree.parentLink(link))] +
-                                             tree.joint(j).origin.translation().norm() + slide(tree, j);
+                                             tree.joint(j).origin.translation().norm() + detail::slideUpper(tree, j);
   }
   double reach = 0;
   for (const LinkGeometry& g : robot.geometry) {
