@@ -5,6 +5,7 @@
 #pragma once
 
 #include "fcl_artic/bounded_motion.h"
+#include "fcl_artic/certificate.h"
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/continuous_manager.h"

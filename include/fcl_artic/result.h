@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "fcl_artic/bracket.h"
+#include "fcl_artic/certificate.h"
 #include "fcl_artic/export.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/statistics.h"
@@ -122,6 +124,9 @@ struct CertifiedResult : Bracket {
   /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of
   /// them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours do not count.
   std::size_t unproven_allowed_pairs = 0;
+  /// The proof that the motion is free, or free until t_lower; null if the request did not ask for it
+  /// (CertifiedRequest::certificate).
+  std::shared_ptr<const Certificate> certificate;
   /// Work of the query.
   QueryStatistics statistics;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fcl_artic/manager.h"
+#include "model/answer.h"
 #include "motion/part_of_motion.h"
 
 namespace fcl_artic {
@@ -16,6 +17,7 @@ struct ArticulatedCollisionManager::Aspects {
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<std::int32_t>* may_ignore = nullptr;
   std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
+  std::vector<engine::Ignored>* ignored = nullptr;   ///< out: all ignored pairs
 };
 
 }  // namespace fcl_artic

@@ -18,6 +18,7 @@ inline void withdrawClaims(CertifiedResult& result, double begin, double end) {
   result.M_0_at_lower.clear();
   result.ignored_initial_contacts.clear();
   result.unproven_allowed_pairs = 0;
+  result.certificate.reset();
 }
 
 /// The same, and no work has been done.

@@ -5,9 +5,13 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <stdexcept>
+#include <vector>
 
+#include "certificate/certificate.h"
 #include "fcl_artic/manager.h"
+#include "model/answer.h"
 #include "query/engine_query.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
@@ -33,8 +37,23 @@ struct ArticulatedCollisionManager::Impl {
   void use(const Registry::Changes& changes) {
     if (changes.links) setup.robotChanged();
     if (changes.obstacles) setup.obstaclesChanged();
-    if (!setup.ready() || !setup.isOf(*registry.tree())) setup.build(registry);
+    if (setup.ready() && setup.isOf(*registry.tree())) return;
+    setup.build(registry);
+    world_.reset();
   }
+
+  /// What certificates are about; made when first asked for. Safe from several threads.
+  std::shared_ptr<const certificate::World> world() const {
+    const std::lock_guard<std::mutex> lock(world_mutex_);
+    if (!world_) world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry));
+    return world_;
+  }
+  /// The proof of an answer that claims of motions, one after the other, what the request asks.
+  /// @param ignored  in the first of them.
+  /// @param duration  of all of them, in the user's unit of time.
+  std::shared_ptr<const Certificate> certificateOf(const CertifiedRequest& request,
+                                                   const std::vector<engine::Ignored>& ignored, double duration,
+                                                   std::vector<certificate::Motion> motions) const;
 
   /// @throws std::logic_error where what queries read is not up to date.
   void requireReady() const {
@@ -53,6 +72,8 @@ struct ArticulatedCollisionManager::Impl {
 
   Registry registry;
   Setup setup;
+  mutable std::mutex world_mutex_;
+  mutable std::shared_ptr<const certificate::World> world_;
   std::unique_ptr<Stage2> stage2 = std::make_unique<Stage2>(std::make_shared<VisibilityCuller>());
 };
 

@@ -4,6 +4,7 @@
 // users see it.
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <stdexcept>
 
 #include "model/add_fields.h"
@@ -151,6 +152,31 @@ QueryStatistics workOf(const Solved& solved) {
 
 }  // namespace
 
+std::shared_ptr<const Certificate> ArticulatedCollisionManager::Impl::certificateOf(
+    const CertifiedRequest& request, const std::vector<engine::Ignored>& ignored, double duration,
+    std::vector<certificate::Motion> motions) const {
+  constexpr std::uint64_t kWork = 200000;  // nodes: some seconds at most
+  const std::shared_ptr<const certificate::World> about = world();
+  std::map<std::int32_t, int> body_of;  // of the world's, by the registry's number
+  for (std::size_t i = 0; i < about->bodies.size(); ++i) body_of[about->bodies[i].number] = static_cast<int>(i);
+  for (certificate::Motion& motion : motions) {
+    motion.margin = request.margin;
+    motion.added = request.added_margin;
+    motion.self = request.check_self;
+    motion.scene = request.check_scene;
+  }
+  for (const engine::Ignored& pair : ignored) {
+    const auto [a, b] = std::minmax(body_of.at(pair.body_a), body_of.at(pair.body_b));
+    motions.front().ignored.push_back({a, b, pair.watch_from > 1 ? 1 : pair.watch_from});
+  }
+  if (motions.back().until > 0) {
+    return std::make_shared<const Certificate>(certificate::makeCertificate(*about, {std::move(motions), duration}, kWork));
+  }
+  Certificate none;
+  none.missing = "nothing is claimed: the bodies may touch from the beginning on";
+  return std::make_shared<const Certificate>(std::move(none));
+}
+
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
   answerOrClaimNothing(result, 0, 1, [&] { collideMotion(motion, request, result); });
@@ -158,9 +184,18 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
                                                 CertifiedResult& result) const {
-  collideMotion(motion, request, Aspects(), result);
+  Aspects aspects;
+  std::vector<engine::Ignored> ignored;
+  if (request.certificate) aspects.ignored = &ignored;
+  collideMotion(motion, request, aspects, result);
   const JointMotion* const motions[] = {&motion};
   result.unproven_allowed_pairs = impl_->unprovenAllowed(motions, 1, request);
+  result.certificate.reset();
+  if (request.certificate) {
+    certificate::Motion stated = certificate::motionOf(*impl_->world(), motion, TimePart());
+    stated.until = result.isFree() ? 1 : result.t_lower;
+    result.certificate = impl_->certificateOf(request, ignored, 1, {std::move(stated)});
+  }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
 }
 
@@ -210,6 +245,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
                                                  registry.body(answer.ignored[i].body_b).reference());
   }
+  if (aspects.ignored) aspects.ignored->assign(answer.ignored, answer.ignored + answer.num_ignored);
   if (aspects.never_apart) {
     aspects.never_apart->clear();
     for (std::int32_t i = 0; i < answer.num_ignored; ++i) {

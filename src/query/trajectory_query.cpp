@@ -68,6 +68,8 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();
+  std::vector<certificate::Motion> stated;  // for the certificate
+  std::vector<engine::Ignored> ignored;
   std::vector<std::int32_t> in_contact;  // pairs of which the initial contact has not ended yet
   bool contact_found = false;
   CertifiedResult part;
@@ -96,7 +98,12 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
+    if (k == 0) aspects.ignored = &ignored;
     collideMotion(trajectory.piece(k), own, aspects, part);
+    if (request.certificate && !contact_found) {
+      stated.push_back(certificate::motionOf(*impl_->world(), trajectory.piece(k), aspects.time));
+      stated.back().until = part.isFree() ? 1 : part.t_lower;
+    }
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
     in_contact = std::move(still_in_contact);
@@ -137,6 +144,10 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
   sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, own_margins);
+  if (request.certificate && !stated.empty()) {
+    const double duration = trajectory.endTime() - trajectory.beginTime();
+    sum.certificate = impl_->certificateOf(request, ignored, duration, std::move(stated));
+  }
   result = std::move(sum);
 }
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Certificates of answers: what is claimed, as text, and its proof.
+#pragma once
+
+#include <vector>
+
+#include "certificate/moving_world.h"
+#include "fcl_artic/certificate.h"
+#include "fcl_artic/joint_motion.h"
+#include "motion/part_of_motion.h"
+
+namespace fcl_artic::certificate {
+
+/// What is claimed: motions one after the other, each over [0, 1], the last one up to its own `until`. What they share
+/// is the first one's.
+struct Claim {
+  std::vector<Motion> pieces;
+  double duration = 1;  ///< of all of them, for people
+};
+
+/// A motion of the world's robot, beside the moving obstacles' own.
+/// @param time  the part of the obstacles' time that it takes.
+Motion motionOf(const World& world, const JointMotion& motion, const TimePart& time);
+
+/// @param work  most nodes that are tried.
+Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work);
+
+}  // namespace fcl_artic::certificate

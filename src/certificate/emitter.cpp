@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certificate/emitter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "numerics/baseline_isa.h"
+
+#include "convex/gjk.h"
+
+namespace fcl_artic::certificate {
+namespace {
+
+using baseline::Vec3;
+using Eigen::Vector3d;
+
+// First bytes of nodes.
+constexpr int kSep = 0x00, kSepFine = 0x03, kWall = 0x09, kWallOther = 0x0a, kTime = 0x10, kPartners = 0x11,
+              kOwn = 0x12, kOther = 0x13, kSolid = 0x14;
+/// In which frame a direction is constant, as a number to be added to kSep and kSepFine.
+enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
+
+constexpr int kMostTimeCuts = 40;   ///< of one root: 1e-12 of the motion
+constexpr int kMostSearchSteps = 40;
+
+Vec3 fromEigen(const Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+Vector3d toEigen(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// What a node is about: A's pieces below `node`, partners [first, last) of its list, of a single one the pieces below
+/// `partner_node`, and times [begin, end].
+struct Task {
+  int body;
+  std::int32_t node = 0;
+  std::size_t first, last;
+  std::int32_t partner_node = 0;
+  double begin, end;
+  int cuts = 0;         ///< of time, so far
+  bool solid = false;   ///< a SOLID node is above
+  std::size_t size() const { return last - first; }
+  double middle() const { return 0.5 * (begin + end); }
+};
+
+class Emitter {
+ public:
+  Emitter(const World& world, const Motion& motion, std::uint64_t work, std::string& proof)
+      : moving_(world, motion), work_(work), out_(proof) {}
+
+  std::string run() {
+    const World& world = moving_.world();
+    for (std::size_t i = 0; i < world.bodies.size() && missing_.empty(); ++i) {
+      partners_.clear();
+      for (const int j : world.bodies[i].partners) {
+        if (isAsked(static_cast<int>(i), j)) partners_.push_back(j);
+      }
+      if (partners_.empty()) continue;
+      Task root;
+      root.body = static_cast<int>(i);
+      root.first = 0;
+      root.last = partners_.size();
+      root.begin = 0;
+      root.end = moving_.motion().until;
+      solve(root);
+    }
+    return missing_;
+  }
+
+ private:
+  bool isAsked(int a, int b) const {
+    const auto isObstacle = [&](int i) { return moving_.body(i).role == Body::Role::obstacle; };
+    return isObstacle(a) || isObstacle(b) ? moving_.motion().scene : moving_.motion().self;
+  }
+
+  // ---- writing
+
+  void putByte(int byte) { out_ += static_cast<char>(byte); }
+  void putNumber(std::size_t n) {
+    for (; n >= 128; n >>= 7) putByte(static_cast<int>(n & 127) | 128);
+    putByte(static_cast<int>(n));
+  }
+  void putSigned(long x, int bytes) {
+    for (int i = 0; i < bytes; ++i) putByte(static_cast<int>(static_cast<unsigned long>(x) >> (8 * i) & 255));
+  }
+
+  // ---- what a task's sets are, seen from a frame
+
+  /// Partners that are checked somewhere in the task's time: of a pair that touched at the beginning nothing is claimed
+  /// before its time.
+  bool counts(const Task& task, int partner) const {
+    for (const Motion::Ignored& pair : moving_.motion().ignored) {
+      if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
+        return task.end > pair.until;
+      }
+    }
+    return true;
+  }
+  int frameOf(const Task& task, Seen seen) const {
+    if (seen == Seen::inWorld) return 0;
+    return moving_.body(seen == Seen::byBody ? task.body : partners_[task.first]).frame;
+  }
+  std::int32_t nodeOf(const Task& task, std::size_t) const { return task.size() == 1 ? task.partner_node : 0; }
+
+  static Vector3d farthestAt(const Geometry& geometry, std::int32_t node, const Pose& pose, const Vector3d& u,
+                             bool exact) {
+    return pose.R * farthest(geometry, node, pose.R.transpose() * u, exact) + pose.c;
+  }
+
+  /// least n.x over A - greatest n.y over the partners - margins, at one time.
+  double gap(const Task& task, int frame, const Vector3d& n, double t) {
+    const Geometry& own = moving_.geometry(task.body);
+    const double least = n.dot(farthestAt(own, task.node, moving_.pose(task.body, frame, t), -n, true));
+    double most = -std::numeric_limits<double>::infinity();
+    const double length = n.norm();
+    for (std::size_t p = task.first; p < task.last; ++p) {
+      const int partner = partners_[p];
+      if (!counts(task, partner)) continue;
+      const Vector3d far =
+          farthestAt(moving_.geometry(partner), nodeOf(task, p), moving_.pose(partner, frame, t), n, true);
+      most = std::max(most, n.dot(far) + moving_.margin(task.body, partner) * length);
+    }
+    return least - most;
+  }
+
+  /// Whether the gap stays open between times a and b, by its ends and a bound on how far it bends in between. A part
+  /// of it is kept for the verifier's rounding.
+  bool staysOpen(const Task& task, int frame, const Vector3d& n, double a, double gap_a, double b, double gap_b,
+                 double bend, int depth, double& worst) {
+    const double h = b - a;
+    if (std::min(gap_a, gap_b) > bend * h * h / 8 + 1e-13) return true;
+    const double middle = 0.5 * (a + b), gap_middle = gap(task, frame, n, middle);
+    if (!(gap_middle > 1e-13) || depth == 0) {
+      worst = middle;
+      return false;
+    }
+    return staysOpen(task, frame, n, a, gap_a, middle, gap_middle, bend, depth - 1, worst) &&
+           staysOpen(task, frame, n, middle, gap_middle, b, gap_b, bend, depth - 1, worst);
+  }
+  bool separates(const Task& task, int frame, const Vector3d& n, double& worst) {
+    const double gap_a = gap(task, frame, n, task.begin);
+    worst = task.begin;
+    if (!(gap_a > 1e-13)) return false;
+    const double gap_b = gap(task, frame, n, task.end);
+    worst = task.end;
+    if (!(gap_b > 1e-13)) return false;
+    double bend = moving_.acceleration(task.body, frame, task.middle());
+    double other = 0;
+    for (std::size_t p = task.first; p < task.last; ++p) {
+      other = std::max(other, moving_.acceleration(partners_[p], frame, task.middle()));
+    }
+    bend = (bend + other) * n.norm();
+    return staysOpen(task, frame, n, task.begin, gap_a, task.end, gap_b, bend, 6, worst);
+  }
+
+  /// The union of partners - A over some times, as a convex body for GJK.
+  struct Sweep {
+    Emitter& emitter;
+    const Task& task;
+    int frame;
+    std::vector<double>& times;
+    bool exact;
+
+    void support(const Vec3& n, baseline::DifferencePoint& p) const {
+      const Vector3d along = toEigen(n);
+      double least = std::numeric_limits<double>::infinity();
+      MovingWorld& moving = emitter.moving_;
+      const double length = along.norm();
+      for (const double t : times) {
+        const Vector3d own =
+            farthestAt(moving.geometry(task.body), task.node, moving.pose(task.body, frame, t), along, exact);
+        for (std::size_t i = task.first; i < task.last; ++i) {
+          const int partner = emitter.partners_[i];
+          if (!emitter.counts(task, partner)) continue;
+          const Vector3d other = farthestAt(moving.geometry(partner), emitter.nodeOf(task, i),
+                                            moving.pose(partner, frame, t), -along, exact);
+          const double margin = moving.margin(task.body, partner);
+          const Vector3d w = other - own - along * (margin / length);
+          const double value = along.dot(w);
+          if (value < least) {
+            least = value;
+            p.w = fromEigen(w);
+          }
+        }
+      }
+      p.a = p.b = p.w;
+    }
+    void subtract(baseline::DifferencePoint&) const {}
+  };
+
+  /// A direction along which the sets are apart at all of these times: A before, the partners after it.
+  bool findDirection(const Task& task, int frame, std::vector<double>& times, bool exact, Vector3d& n) {
+    const Sweep sweep{*this, task, frame, times, exact};
+    Vector3d guess = moving_.pose(partners_[task.first], frame, task.middle()).c -
+                     moving_.pose(task.body, frame, task.middle()).c;
+    if (!(guess.norm() > 1e-9)) guess = Vector3d::UnitX();
+    baseline::GjkResult found;
+    baseline::searchNearest(sweep, fromEigen(guess), 0.2, 0.0, baseline::kInfinite, kMostSearchSteps, found);
+    n = -toEigen(found.n);
+    return found.lower > 0;
+  }
+
+  // ---- hints
+
+  /// Writes the direction with as few bits as do.
+  bool put(const Task& task, Seen seen, const Vector3d& n, double& worst) {
+    const int frame = frameOf(task, seen);
+    for (const bool fine : {false, true}) {
+      const double most = fine ? 2147483647.0 : 32767.0;
+      const double scale = most / n.cwiseAbs().maxCoeff();
+      Vector3d rounded;
+      for (int k = 0; k < 3; ++k) rounded[k] = std::round(n[k] * scale);
+      if (!separates(task, frame, rounded / most, worst)) continue;
+      putByte((fine ? kSepFine : kSep) + static_cast<int>(seen));
+      for (int k = 0; k < 3; ++k) putSigned(static_cast<long>(rounded[k]), fine ? 4 : 2);
+      return true;
+    }
+    return false;
+  }
+
+  bool separate(const Task& task) {
+    for (const Seen seen : {Seen::inWorld, Seen::byPartner, Seen::byBody}) {
+      // Frames in which nothing else moves: of obstacles the world's, of one link that link's.
+      const bool scene = moving_.body(partners_[task.first]).frame == 0;
+      if (seen == (scene ? Seen::byPartner : Seen::inWorld)) continue;
+      const int frame = frameOf(task, seen);
+      std::vector<double> times = {task.begin, task.middle(), task.end};
+      for (const bool exact : {false, true}) {
+        for (int round = 0; round < 4; ++round) {
+          Vector3d n;
+          if (!findDirection(task, frame, times, exact, n)) break;
+          double worst;
+          if (put(task, seen, n, worst)) return true;
+          if (std::find(times.begin(), times.end(), worst) != times.end()) break;
+          times.push_back(worst);
+        }
+      }
+    }
+    return false;
+  }
+
+  bool separateWall(const Task& task) {
+    const bool own = moving_.geometry(task.body).unbounded;
+    const int wall = own ? task.body : partners_[task.first];
+    const engine::Piece& piece = moving_.geometry(wall).shape->view().pieces[0];
+    const int frame = moving_.body(wall).frame;
+    for (const bool other : {false, true}) {
+      if (other && piece.kind != engine::PieceKind::plane) break;
+      const Vector3d n = Vector3d::Map(piece.size) * (other ? -1 : 1);
+      if (!wallSeparates(task, wall, own, frame, n, other ? -piece.center[0] : piece.center[0])) continue;
+      putByte(other ? kWallOther : kWall);
+      return true;
+    }
+    return false;
+  }
+  bool wallSeparates(const Task& task, int wall, bool own, int frame, const Vector3d& normal, double offset) {
+    const int body = own ? partners_[task.first] : task.body;
+    const std::int32_t node = own ? task.partner_node : task.node;
+    const double margin = moving_.margin(task.body, partners_[task.first]);
+    const auto gapAt = [&](double t) {
+      const Pose at = moving_.pose(wall, frame, t);
+      const Vector3d n = at.R * normal;
+      return n.dot(farthestAt(moving_.geometry(body), node, moving_.pose(body, frame, t), -n, true)) -
+             (offset + n.dot(at.c)) - margin;
+    };
+    const double bend = moving_.acceleration(body, frame, task.middle());
+    const std::function<bool(double, double, double, double, int)> open = [&](double a, double gap_a, double b,
+                                                                              double gap_b, int depth) {
+      if (!(std::min(gap_a, gap_b) > 1e-13)) return false;
+      if (std::min(gap_a, gap_b) > bend * (b - a) * (b - a) / 8 + 1e-13) return true;
+      if (depth == 0) return false;
+      const double m = 0.5 * (a + b), gap_m = gapAt(m);
+      return open(a, gap_a, m, gap_m, depth - 1) && open(m, gap_m, b, gap_b, depth - 1);
+    };
+    return open(task.begin, gapAt(task.begin), task.end, gapAt(task.end), 6);
+  }
+
+  // ---- the tree
+
+  void solve(const Task& task) {
+    if (!missing_.empty()) return;
+    if (++nodes_ > work_) {
+      missing_ = "more than " + std::to_string(work_) + " nodes would be needed";
+      return;
+    }
+    const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded ||
+                      moving_.geometry(partners_[task.last - 1]).unbounded;
+    if (wall && task.size() == 1) {
+      if (separateWall(task)) return;
+      return cutTimeOrPieces(task);
+    }
+    if (!wall && !isMixed(task) && separate(task)) return;
+    if (task.size() > 1) return cutPartners(task);
+    cutTimeOrPieces(task);
+  }
+
+  /// Still obstacles, moving ones, and links are not tried together.
+  int groupOf(int body) const {
+    if (moving_.geometry(body).unbounded) return 0;
+    if (moving_.body(body).role != Body::Role::obstacle) return 3;
+    return moving_.body(body).frame == 0 ? 1 : 2;
+  }
+  bool isMixed(const Task& task) const {
+    return groupOf(partners_[task.first]) != groupOf(partners_[task.last - 1]);
+  }
+
+  void cutPartners(const Task& task) {
+    std::size_t half = task.size() / 2;
+    if (isMixed(task)) {
+      half = 1;
+      while (groupOf(partners_[task.first]) == groupOf(partners_[task.first + half])) ++half;
+    }
+    putByte(kPartners);
+    putNumber(half);
+    Task left = task, right = task;
+    left.last = right.first = task.first + half;
+    solve(left);
+    solve(right);
+  }
+
+  /// Whether a direction is found for these two at one time.
+  bool apartAt(const Task& task, double t) {
+    std::vector<double> times = {t};
+    Vector3d n;
+    return findDirection(task, frameOf(task, Seen::byPartner), times, true, n);
+  }
+  double sizeOf(int body, std::int32_t node) const {
+    const Geometry& geometry = moving_.geometry(body);
+    const engine::Node& n = geometry.shape->view().nodes[node];
+    return geometry.unbounded || n.isLeaf() ? 0 : static_cast<double>(n.radius);
+  }
+
+  void cutTimeOrPieces(Task task) {
+    const int partner = partners_[task.first];
+    const double own = sizeOf(task.body, task.node), other = sizeOf(partner, task.partner_node);
+    const bool leaves = own == 0 && other == 0;
+    const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partner).unbounded;
+    const bool time_left = task.cuts < kMostTimeCuts;
+    if (leaves && !time_left) return fail(task);
+    const bool apart =
+        !wall && apartAt(task, task.middle()) && apartAt(task, task.begin) && apartAt(task, task.end);
+    if (time_left && (leaves || apart)) {
+      putByte(kTime);
+      ++task.cuts;
+      Task before = task, after = task;
+      before.end = after.begin = task.middle();
+      solve(before);
+      solve(after);
+      return;
+    }
+    if (leaves) return fail(task);
+    if (!task.solid && (isSolid(task.body) || isSolid(partner))) {
+      putByte(kSolid);
+      task.solid = true;
+    }
+    const bool cut_own = own >= other;
+    putByte(cut_own ? kOwn : kOther);
+    const Geometry& geometry = moving_.geometry(cut_own ? task.body : partner);
+    std::int32_t& node = cut_own ? task.node : task.partner_node;
+    const engine::Node& n = geometry.shape->view().nodes[node];
+    const Geometry::Interval left = geometry.below[static_cast<std::size_t>(n.left())];
+    putNumber(static_cast<std::size_t>(left.end - left.begin));
+    node = n.left();
+    Task second = task;
+    (cut_own ? second.node : second.partner_node) = n.right();
+    solve(task);
+    solve(second);
+  }
+  bool isSolid(int body) const { return moving_.geometry(body).shape->space() != nullptr; }
+
+  void fail(const Task& task) {
+    missing_ = "no hint was found that keeps '" + moving_.body(task.body).name + "' and '" +
+               moving_.body(partners_[task.first]).name + "' apart around t = " + std::to_string(task.middle());
+  }
+
+  MovingWorld moving_;
+  std::uint64_t work_, nodes_ = 0;
+  std::string& out_;
+  std::string missing_;
+  std::vector<int> partners_;  ///< of the body at hand
+};
+
+}  // namespace
+
+std::string findProof(const World& world, const Motion& motion, std::uint64_t work, std::string& proof) {
+  proof.clear();
+  return Emitter(world, motion, work, proof).run();
+}
+
+}  // namespace fcl_artic::certificate

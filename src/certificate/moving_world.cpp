@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certificate/moving_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/baseline_isa.h"
+
+#include "convex/piece_kinds.h"
+
+namespace fcl_artic::certificate {
+namespace {
+
+using baseline::Vec3;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Pose poseOf(const Eigen::Isometry3d& M) {
+  return {M.linear(), M.translation()};
+}
+
+Matrix3d rotationBy(const Vector3d& w) {
+  const double angle = w.norm();
+  if (angle < 1e-300) return Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+}
+
+/// The core's farthest point, and the rounding radius beyond it.
+Vec3 farthestOfPiece(const engine::TreeView& tree, const engine::Piece& piece, const Vec3& u, double length) {
+  const Vec3 p = baseline::supportPoint(tree, piece, u);
+  return piece.radius > 0 ? p + u * (piece.radius / length) : p;
+}
+
+}  // namespace
+
+MovingWorld::MovingWorld(const World& world, const Motion& motion) : world_(world), motion_(motion) {
+  for (const Body& body : world.bodies) in_frame_.push_back(poseOf(body.pose));
+  for (const Frame& frame : world.frames) origins_.push_back(poseOf(frame.origin));
+  const Eigen::MatrixXd& c = motion.coefficients;
+  for (Eigen::Index v = 0; v < c.rows(); ++v) {
+    double first = 0, second = 0;
+    for (Eigen::Index k = 1; k < c.cols(); ++k) {
+      first += static_cast<double>(k) * std::abs(c(v, k));
+      second += static_cast<double>(k * (k - 1)) * std::abs(c(v, k));
+    }
+    rate_.push_back(first);
+    acceleration_.push_back(second);
+  }
+}
+
+double MovingWorld::value(int variable, double t) const {
+  const Eigen::MatrixXd& c = motion_.coefficients;
+  double value = 0;
+  for (Eigen::Index k = c.cols() - 1; k >= 0; --k) value = value * t + c(variable, k);
+  return value;
+}
+
+Pose MovingWorld::pose(const Element& element, double t) const {
+  if (element.kind == Element::Kind::rotate) {
+    Pose pose;
+    pose.R = rotationBy({value(element.variable, t), value(element.variable + 1, t), value(element.variable + 2, t)});
+    const auto& list = world_.orientations;
+    const auto given = std::find(list.begin(), list.end(), element.variable);
+    if (given != list.end()) pose.R *= motion_.orientations[static_cast<std::size_t>(given - list.begin())];
+    return pose;
+  }
+  const double q = element.multiplier * value(element.variable, t) + element.offset;
+  if (element.kind == Element::Kind::slide) return {Matrix3d::Identity(), q * element.axis};
+  return {Eigen::AngleAxisd(q, element.axis).toRotationMatrix(), Vector3d::Zero()};
+}
+
+const std::vector<Pose>& MovingWorld::at(double t) {
+  const auto [it, is_new] = poses_.try_emplace(t);
+  std::vector<Pose>& poses = it->second;
+  if (!is_new) return poses;
+  poses.resize(world_.frames.size());
+  for (std::size_t f = 1; f < poses.size(); ++f) {
+    const Frame& frame = world_.frames[f];
+    poses[f] = poses[static_cast<std::size_t>(frame.parent)] * origins_[f];
+    for (const Element& element : frame.elements) poses[f] = poses[f] * pose(element, t);
+  }
+  return poses;
+}
+
+Pose MovingWorld::pose(int body, int frame, double t) {
+  const auto i = static_cast<std::size_t>(body);
+  const int own = world_.bodies[i].frame;
+  if (own == frame) return in_frame_[i];
+  const std::vector<Pose>& poses = at(t);
+  const Pose in_world = poses[static_cast<std::size_t>(own)] * in_frame_[i];
+  return frame == 0 ? in_world : poses[static_cast<std::size_t>(frame)].inverse() * in_world;
+}
+
+/// Over the joints between the two: x turns about each joint at a rate w, r away from it, so that
+/// |x''| <= (sum w)^2 max r + ..., which is at most 2 (sum w)(sum w r + sum of slides' rates) + sum |q''| r.
+double MovingWorld::acceleration(int body, int frame, double t) {
+  const std::vector<Pose>& poses = at(t);
+  const auto i = static_cast<std::size_t>(body);
+  const Vector3d centre = (poses[static_cast<std::size_t>(world_.bodies[i].frame)] * in_frame_[i]).c;
+  const double radius = geometry(body).radius;
+  double turning = 0, speed = 0, own = 0;
+  int a = world_.bodies[i].frame, b = frame;
+  while (a != b) {
+    int& deeper = a > b ? a : b;  // parents have lower numbers
+    const Frame& f = world_.frames[static_cast<std::size_t>(deeper)];
+    for (const Element& element : f.elements) {
+      const bool rotate = element.kind == Element::Kind::rotate;
+      double rate = 0, second = 0;
+      for (int k = 0; k < (rotate ? 3 : 1); ++k) {
+        rate += rate_[static_cast<std::size_t>(element.variable + k)];
+        second += acceleration_[static_cast<std::size_t>(element.variable + k)];
+      }
+      rate *= std::abs(element.multiplier);
+      second *= std::abs(element.multiplier);
+      if (element.kind == Element::Kind::slide) {
+        speed += rate;
+        own += second;
+        continue;
+      }
+      const double lever = (poses[static_cast<std::size_t>(deeper)].c - centre).norm() + radius;
+      turning += rate;
+      speed += rate * lever;
+      own += (second + (rotate ? rate * rate : 0)) * lever;
+    }
+    deeper = f.parent;
+  }
+  return 2 * turning * speed + own;
+}
+
+Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u, bool exact) {
+  const engine::TreeView& tree = geometry.shape->view();
+  const Vec3 d(u[0], u[1], u[2]);
+  const double length = u.norm();
+  if (node == 0 && !exact && tree.outer) {
+    const Vec3 p = farthestOfPiece(tree, *tree.outer, d, length);
+    return {p[0], p[1], p[2]};
+  }
+  Vec3 best(0, 0, 0);
+  double most = -baseline::kInfinite;
+  const auto upper = [&](const engine::Node& n) {
+    double value = 0;
+    for (int k = 0; k < 3; ++k) value += d[k] < 0 ? d[k] * static_cast<double>(n.lo[k]) : d[k] * static_cast<double>(n.hi[k]);
+    return value;
+  };
+  struct Open {
+    std::int32_t node;
+    double upper;
+  };
+  Open stack[64];  // the tree is balanced
+  int open = 0;
+  stack[open++] = {node, baseline::kInfinite};
+  while (open > 0) {
+    const Open next = stack[--open];
+    if (next.upper <= most) continue;
+    const engine::Node& n = tree.nodes[next.node];
+    if (n.isLeaf()) {
+      const Vec3 p = farthestOfPiece(tree, tree.pieces[n.piece()], d, length);
+      const double value = dot(d, p);
+      if (value > most) {
+        most = value;
+        best = p;
+      }
+      continue;
+    }
+    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
+    if (left.upper > right.upper) std::swap(left, right);
+    stack[open++] = left;
+    stack[open++] = right;
+  }
+  return {best[0], best[1], best[2]};
+}
+
+}  // namespace fcl_artic::certificate

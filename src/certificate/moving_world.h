@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A world in motion, in doubles: where its frames are, how far its bodies reach along a direction, how fast they can
+// turn away. Nothing here is proven: it tells the emitter which hints are worth writing down.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "certificate/world.h"
+
+namespace fcl_artic::certificate {
+
+/// One motion over t in [0, 1], as a certificate states it.
+struct Motion {
+  Eigen::MatrixXd coefficients;                ///< of the world's variables, column k for t^k
+  std::vector<Eigen::Matrix3d> orientations;   ///< R0, as World::orientations lists them
+  double margin = 0, added = 0;                ///< m
+  bool self = true, scene = true;              ///< what is checked
+  struct Ignored {
+    int a, b;      ///< bodies, a < b
+    double until;  ///< not checked before that time
+  };
+  std::vector<Ignored> ignored;
+  double until = 1;  ///< the claim is on [0, until]
+};
+
+struct Pose {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d c = Eigen::Vector3d::Zero();
+  Pose operator*(const Pose& next) const { return {R * next.R, R * next.c + c}; }
+  Pose inverse() const { return {R.transpose(), -(R.transpose() * c)}; }
+};
+
+class MovingWorld {
+ public:
+  MovingWorld(const World& world, const Motion& motion);
+
+  const World& world() const { return world_; }
+  const Motion& motion() const { return motion_; }
+  const Body& body(int i) const { return world_.bodies[static_cast<std::size_t>(i)]; }
+  const Geometry& geometry(int body) const {
+    return world_.geometries[static_cast<std::size_t>(this->body(body).geometry)];
+  }
+  /// Pose of the body's geometry at time t, in the frame.
+  Pose pose(int body, int frame, double t);
+  /// Bound, by rule of thumb, on |x''| for the body's points x seen from the frame, around time t.
+  double acceleration(int body, int frame, double t);
+  double margin(int a, int b) const { return world_.marginOf(body(a), body(b), motion_.margin, motion_.added); }
+
+ private:
+  const std::vector<Pose>& at(double t);
+  double value(int variable, double t) const;
+  Pose pose(const Element& element, double t) const;
+  const World& world_;
+  const Motion& motion_;
+  std::vector<Pose> in_frame_;                 ///< of bodies
+  std::vector<Pose> origins_;                  ///< of frames
+  std::vector<double> rate_, acceleration_;    ///< of variables: bounds on |q'|, |q''|
+  std::map<double, std::vector<Pose>> poses_;  ///< of frames in the world, by time
+};
+
+/// A point of the pieces below a node that is farthest along u, not far from it where `exact` is false.
+/// @param u  in the geometry's frame, any length but 0.
+Eigen::Vector3d farthest(const Geometry& geometry, std::int32_t node, const Eigen::Vector3d& u, bool exact);
+
+}  // namespace fcl_artic::certificate

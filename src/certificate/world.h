@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The world of a certificate (doc/CERTIFICATES.md): what stands and moves and what is checked, as plain data and as the
+// text that proofs are about. It is made of what callers told the manager, not of what the engine made of it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geometry/shape_tree.h"
+#include "setup/registry.h"
+
+namespace fcl_artic::certificate {
+
+/// A factor of a frame's pose. Its parameter is multiplier * q(t) + offset for the variable's q.
+struct Element {
+  enum class Kind {
+    turn,   ///< about `axis`, rad
+    slide,  ///< along `axis`, m
+    rotate  ///< exp([w]) R0, w of three variables
+  };
+  Kind kind;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  int variable = 0;  ///< its first one
+  double multiplier = 1, offset = 0;
+};
+
+/// pose = pose of the parent * origin * elements. Frame 0 is the world; parents come before their children.
+struct Frame {
+  std::string name;
+  int parent = 0;
+  Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
+  std::vector<Element> elements;
+};
+
+/// A geometry's pieces in the order of its tree, so that what is below a node is an interval of them.
+struct Geometry {
+  std::shared_ptr<const ShapeTree> shape;
+  struct Interval {
+    std::int32_t begin, end;
+  };
+  std::vector<Interval> below;      ///< by node of the tree
+  std::vector<std::int32_t> order;  ///< the tree's piece at each place
+  bool unbounded = false;
+  double radius = 0;  ///< of a ball about the geometry's frame that holds it, m; of bounded ones
+
+  explicit Geometry(std::shared_ptr<const ShapeTree> shape);
+};
+
+struct Body {
+  enum class Role { link, carried, obstacle };
+  Role role;
+  std::string name;
+  int frame, geometry;
+  Eigen::Isometry3d pose;    ///< in the frame
+  std::int32_t number;       ///< as the registry counts bodies
+  double own_margin = -1;    ///< of its name, m; -1: none
+  std::vector<int> partners; ///< bodies of lower number that make a checked pair with it, ascending
+};
+
+struct World {
+  std::vector<std::string> variables;  ///< the robot's, then those of moving obstacles
+  std::vector<Frame> frames;
+  std::vector<Geometry> geometries;
+  std::vector<Body> bodies;  ///< obstacles that stand still first, unbounded ones before the others; then those that
+                             ///< move; then what links carry
+  NamedMargins margins;
+  /// Polynomials of moving obstacles' variables over t in [0, 1], column k for t^k: rows for variables from
+  /// `first_moving` on.
+  Eigen::MatrixXd moving;
+  int first_moving = 0;
+  std::vector<int> orientations;  ///< first variable of each `rotate` whose R0 the motion gives, in its order
+  std::string text;               ///< what a verifier reads
+  std::string hash;               ///< its SHA-256, in hexadecimal digits
+  std::string missing;            ///< why no certificate can be made in this world; empty: one can
+
+  /// Margin of a pair that a motion with these margins asks for, m.
+  double marginOf(const Body& a, const Body& b, double margin, double added) const;
+};
+
+/// @param registry  what is set up.
+World makeWorld(const Registry& registry);
+
+/// A number as statements have it: C's hexadecimal floating-point constant.
+std::string numberText(double x);
+/// The nine numbers of a rotation by rows, words separated by spaces.
+std::string rotationText(const Eigen::Matrix3d& R);
+
+}  // namespace fcl_artic::certificate
