@@ -105,88 +105,133 @@ class Emitter {
     if (seen == Seen::inWorld) return 0;
     return moving_.body(seen == Seen::byBody ? task.body : partners_[task.first]).frame;
   }
-  std::int32_t nodeOf(const Task& task, std::size_t) const { return task.size() == 1 ? task.partner_node : 0; }
 
   static Vector3d farthestAt(const Geometry& geometry, std::int32_t node, const Pose& pose, const Vector3d& u,
                              bool exact) {
     return pose.R * farthest(geometry, node, pose.R.transpose() * u, exact) + pose.c;
   }
 
-  /// least n.x over A - greatest n.y over the partners - margins, at one time.
-  double gap(const Task& task, int frame, const Vector3d& n, double t) {
-    const Geometry& own = moving_.geometry(task.body);
-    const double least = n.dot(farthestAt(own, task.node, moving_.pose(task.body, frame, t), -n, true));
-    double most = -std::numeric_limits<double>::infinity();
-    const double length = n.norm();
+  /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all times.
+  struct Sets {
+    const Task& task;
+    int frame;
+    bool exact;  ///< false: hulls around whole bodies will do
+    std::vector<int> still, moving;
+  };
+  Sets setsOf(const Task& task, int frame, bool exact) {
+    Sets sets{task, frame, exact, {}, {}};
     for (std::size_t p = task.first; p < task.last; ++p) {
-      const int partner = partners_[p];
-      if (!counts(task, partner)) continue;
-      const Vector3d far =
-          farthestAt(moving_.geometry(partner), nodeOf(task, p), moving_.pose(partner, frame, t), n, true);
-      most = std::max(most, n.dot(far) + moving_.margin(task.body, partner) * length);
+      if (!counts(task, partners_[p])) continue;
+      (moving_.body(partners_[p]).frame == frame ? sets.still : sets.moving).push_back(partners_[p]);
     }
-    return least - most;
+    return sets;
+  }
+  /// The greatest n.y + margin |n| over some partners at time t.
+  double mostOf(const Sets& sets, const std::vector<int>& partners, const Vector3d& n, double t) {
+    double most = -std::numeric_limits<double>::infinity();
+    const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
+    for (const int partner : partners) {
+      const Pose& pose = moving_.pose(partner, sets.frame, t);
+      const Vector3d far = farthestAt(moving_.geometry(partner), node, pose, n, sets.exact);
+      most = std::max(most, n.dot(far) + moving_.margin(sets.task.body, partner) * n.norm());
+    }
+    return most;
   }
 
-  /// Whether the gap stays open between times a and b, by its ends and a bound on how far it bends in between. A part
-  /// of it is kept for the verifier's rounding.
-  bool staysOpen(const Task& task, int frame, const Vector3d& n, double a, double gap_a, double b, double gap_b,
-                 double bend, int depth, double& worst) {
-    const double h = b - a;
-    if (std::min(gap_a, gap_b) > bend * h * h / 8 + 1e-13) return true;
-    const double middle = 0.5 * (a + b), gap_middle = gap(task, frame, n, middle);
-    if (!(gap_middle > 1e-13) || depth == 0) {
-      worst = middle;
+  /// How a direction keeps a task's sets apart over time.
+  class Separation {
+   public:
+    Separation(Emitter& emitter, const Sets& sets, const Vector3d& n)
+        : emitter_(emitter), sets_(sets), n_(n), still_(emitter.mostOf(sets, sets.still, n, 0)) {}
+
+    /// Whether the gap stays open, by its values at some times and a bound on how far it bends in between. A part of it
+    /// is kept for the verifier's rounding.
+    bool holds() {
+      const Task& task = sets_.task;
+      if (!isOpen(task.begin) || !isOpen(task.end) || !isOpen(task.middle())) return false;
+      double bend = emitter_.moving_.acceleration(task.body, sets_.frame, task.middle());
+      double other = 0;
+      for (const int partner : sets_.moving) {
+        other = std::max(other, emitter_.moving_.acceleration(partner, sets_.frame, task.middle()));
+      }
+      bend_ = (bend + other) * n_.norm() / 8;
+      const double gap = last_;
+      return staysOpen(task.begin, gapAt(task.begin), task.middle(), gap, 5) &&
+             staysOpen(task.middle(), gap, task.end, gapAt(task.end), 5);
+    }
+    /// Where it was found closed.
+    double closedAt() const { return closed_at_; }
+
+   private:
+    double gapAt(double t) {
+      const Task& task = sets_.task;
+      const Pose& pose = emitter_.moving_.pose(task.body, sets_.frame, t);
+      const Vector3d near = farthestAt(emitter_.moving_.geometry(task.body), task.node, pose, -n_, sets_.exact);
+      return n_.dot(near) - std::max(still_, emitter_.mostOf(sets_, sets_.moving, n_, t));
+    }
+    bool isOpen(double t) {
+      last_ = gapAt(t);
+      if (last_ > kSlack) return true;
+      closed_at_ = t;
       return false;
     }
-    return staysOpen(task, frame, n, a, gap_a, middle, gap_middle, bend, depth - 1, worst) &&
-           staysOpen(task, frame, n, middle, gap_middle, b, gap_b, bend, depth - 1, worst);
-  }
-  bool separates(const Task& task, int frame, const Vector3d& n, double& worst) {
-    const double gap_a = gap(task, frame, n, task.begin);
-    worst = task.begin;
-    if (!(gap_a > 1e-13)) return false;
-    const double gap_b = gap(task, frame, n, task.end);
-    worst = task.end;
-    if (!(gap_b > 1e-13)) return false;
-    double bend = moving_.acceleration(task.body, frame, task.middle());
-    double other = 0;
-    for (std::size_t p = task.first; p < task.last; ++p) {
-      other = std::max(other, moving_.acceleration(partners_[p], frame, task.middle()));
+    bool staysOpen(double a, double gap_a, double b, double gap_b, int depth) {
+      const double h = b - a;
+      if (std::min(gap_a, gap_b) > bend_ * h * h + kSlack) return true;
+      const double middle = 0.5 * (a + b);
+      if (!isOpen(middle)) return false;
+      if (depth == 0) {
+        closed_at_ = middle;
+        return false;
+      }
+      const double gap = last_;
+      return staysOpen(a, gap_a, middle, gap, depth - 1) && staysOpen(middle, gap, b, gap_b, depth - 1);
     }
-    bend = (bend + other) * n.norm();
-    return staysOpen(task, frame, n, task.begin, gap_a, task.end, gap_b, bend, 6, worst);
-  }
+    static constexpr double kSlack = 1e-13;
+    Emitter& emitter_;
+    const Sets& sets_;
+    const Vector3d n_;
+    const double still_;
+    double bend_ = 0, last_ = 0, closed_at_ = 0;
+  };
 
   /// The union of partners - A over some times, as a convex body for GJK.
   struct Sweep {
     Emitter& emitter;
-    const Task& task;
-    int frame;
-    std::vector<double>& times;
-    bool exact;
+    const Sets& sets;
+    const std::vector<double>& times;
 
+    /// The partners' point least along n, margins included.
+    void takeLeast(const std::vector<int>& partners, const Vector3d& n, double t, double& least, Vector3d& point) const {
+      const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
+      for (const int partner : partners) {
+        const Pose& pose = emitter.moving_.pose(partner, sets.frame, t);
+        const double margin = emitter.moving_.margin(sets.task.body, partner);
+        const Vector3d x = farthestAt(emitter.moving_.geometry(partner), node, pose, -n, sets.exact) -
+                           n * (margin / n.norm());
+        const double value = n.dot(x);
+        if (value >= least) continue;
+        least = value;
+        point = x;
+      }
+    }
     void support(const Vec3& n, baseline::DifferencePoint& p) const {
       const Vector3d along = toEigen(n);
-      double least = std::numeric_limits<double>::infinity();
-      MovingWorld& moving = emitter.moving_;
-      const double length = along.norm();
+      double still = std::numeric_limits<double>::infinity(), least = still;
+      Vector3d still_point = Vector3d::Zero();
+      takeLeast(sets.still, along, 0, still, still_point);
       for (const double t : times) {
+        const Task& task = sets.task;
+        const Pose& pose = emitter.moving_.pose(task.body, sets.frame, t);
         const Vector3d own =
-            farthestAt(moving.geometry(task.body), task.node, moving.pose(task.body, frame, t), along, exact);
-        for (std::size_t i = task.first; i < task.last; ++i) {
-          const int partner = emitter.partners_[i];
-          if (!emitter.counts(task, partner)) continue;
-          const Vector3d other = farthestAt(moving.geometry(partner), emitter.nodeOf(task, i),
-                                            moving.pose(partner, frame, t), -along, exact);
-          const double margin = moving.margin(task.body, partner);
-          const Vector3d w = other - own - along * (margin / length);
-          const double value = along.dot(w);
-          if (value < least) {
-            least = value;
-            p.w = fromEigen(w);
-          }
-        }
+            farthestAt(emitter.moving_.geometry(task.body), task.node, pose, along, sets.exact);
+        double other = still;
+        Vector3d other_point = still_point;
+        takeLeast(sets.moving, along, t, other, other_point);
+        const double value = other - along.dot(own);
+        if (value >= least) continue;
+        least = value;
+        p.w = fromEigen(other_point - own);
       }
       p.a = p.b = p.w;
     }
@@ -194,13 +239,14 @@ class Emitter {
   };
 
   /// A direction along which the sets are apart at all of these times: A before, the partners after it.
-  bool findDirection(const Task& task, int frame, std::vector<double>& times, bool exact, Vector3d& n) {
-    const Sweep sweep{*this, task, frame, times, exact};
-    Vector3d guess = moving_.pose(partners_[task.first], frame, task.middle()).c -
-                     moving_.pose(task.body, frame, task.middle()).c;
+  bool findDirection(const Sets& sets, const std::vector<double>& times, Vector3d& n) {
+    const int partner = sets.still.empty() ? sets.moving.front() : sets.still.front();
+    const double middle = sets.task.middle();
+    Vector3d guess = moving_.pose(partner, sets.frame, middle).c - moving_.pose(sets.task.body, sets.frame, middle).c;
     if (!(guess.norm() > 1e-9)) guess = Vector3d::UnitX();
     baseline::GjkResult found;
-    baseline::searchNearest(sweep, fromEigen(guess), 0.2, 0.0, baseline::kInfinite, kMostSearchSteps, found);
+    baseline::searchNearest(Sweep{*this, sets, times}, fromEigen(guess), 0.2, 0.0, baseline::kInfinite,
+                            kMostSearchSteps, found);
     n = -toEigen(found.n);
     return found.lower > 0;
   }
@@ -208,14 +254,17 @@ class Emitter {
   // ---- hints
 
   /// Writes the direction with as few bits as do.
-  bool put(const Task& task, Seen seen, const Vector3d& n, double& worst) {
-    const int frame = frameOf(task, seen);
+  bool put(const Sets& sets, Seen seen, const Vector3d& n, double& closed_at) {
     for (const bool fine : {false, true}) {
       const double most = fine ? 2147483647.0 : 32767.0;
       const double scale = most / n.cwiseAbs().maxCoeff();
       Vector3d rounded;
       for (int k = 0; k < 3; ++k) rounded[k] = std::round(n[k] * scale);
-      if (!separates(task, frame, rounded / most, worst)) continue;
+      Separation separation(*this, sets, rounded / most);
+      if (!separation.holds()) {
+        closed_at = separation.closedAt();
+        continue;
+      }
       putByte((fine ? kSepFine : kSep) + static_cast<int>(seen));
       for (int k = 0; k < 3; ++k) putSigned(static_cast<long>(rounded[k]), fine ? 4 : 2);
       return true;
@@ -228,20 +277,31 @@ class Emitter {
       // Frames in which nothing else moves: of obstacles the world's, of one link that link's.
       const bool scene = moving_.body(partners_[task.first]).frame == 0;
       if (seen == (scene ? Seen::byPartner : Seen::inWorld)) continue;
-      const int frame = frameOf(task, seen);
-      std::vector<double> times = {task.begin, task.middle(), task.end};
       for (const bool exact : {false, true}) {
+        const Sets sets = setsOf(task, frameOf(task, seen), exact);
+        std::vector<double> times = {task.begin, task.middle(), task.end};
         for (int round = 0; round < 4; ++round) {
           Vector3d n;
-          if (!findDirection(task, frame, times, exact, n)) break;
-          double worst;
-          if (put(task, seen, n, worst)) return true;
-          if (std::find(times.begin(), times.end(), worst) != times.end()) break;
-          times.push_back(worst);
+          if (!findDirection(sets, times, n)) break;
+          double closed_at;
+          if (put(sets, seen, n, closed_at)) return true;
+          if (std::find(times.begin(), times.end(), closed_at) != times.end()) break;
+          times.push_back(closed_at);
         }
       }
     }
     return false;
+  }
+  /// Nobody asks for any of its pairs at these times: any direction does.
+  bool isEmpty(const Task& task) const {
+    for (std::size_t p = task.first; p < task.last; ++p) {
+      if (counts(task, partners_[p])) return false;
+    }
+    return true;
+  }
+  void putEmpty() {
+    putByte(kSep);
+    for (const int x : {1, 0, 0}) putSigned(x, 2);
   }
 
   bool separateWall(const Task& task) {
@@ -288,6 +348,7 @@ class Emitter {
       missing_ = "more than " + std::to_string(work_) + " nodes would be needed";
       return;
     }
+    if (isEmpty(task)) return putEmpty();
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded ||
                       moving_.geometry(partners_[task.last - 1]).unbounded;
     if (wall && task.size() == 1) {
@@ -325,9 +386,8 @@ class Emitter {
 
   /// Whether a direction is found for these two at one time.
   bool apartAt(const Task& task, double t) {
-    std::vector<double> times = {t};
     Vector3d n;
-    return findDirection(task, frameOf(task, Seen::byPartner), times, true, n);
+    return findDirection(setsOf(task, frameOf(task, Seen::byPartner), true), {t}, n);
   }
   double sizeOf(int body, std::int32_t node) const {
     const Geometry& geometry = moving_.geometry(body);
@@ -339,20 +399,14 @@ class Emitter {
     const int partner = partners_[task.first];
     const double own = sizeOf(task.body, task.node), other = sizeOf(partner, task.partner_node);
     const bool leaves = own == 0 && other == 0;
+    if (isEmpty(task)) return putEmpty();
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partner).unbounded;
     const bool time_left = task.cuts < kMostTimeCuts;
     if (leaves && !time_left) return fail(task);
+    if (time_left && beginsWithin(task, partner)) return cutTime(task);
     const bool apart =
         !wall && apartAt(task, task.middle()) && apartAt(task, task.begin) && apartAt(task, task.end);
-    if (time_left && (leaves || apart)) {
-      putByte(kTime);
-      ++task.cuts;
-      Task before = task, after = task;
-      before.end = after.begin = task.middle();
-      solve(before);
-      solve(after);
-      return;
-    }
+    if (time_left && (leaves || apart)) return cutTime(task);
     if (leaves) return fail(task);
     if (!task.solid && (isSolid(task.body) || isSolid(partner))) {
       putByte(kSolid);
@@ -370,6 +424,24 @@ class Emitter {
     (cut_own ? second.node : second.partner_node) = n.right();
     solve(task);
     solve(second);
+  }
+  void cutTime(const Task& task) {
+    putByte(kTime);
+    Task before = task, after = task;
+    before.end = after.begin = task.middle();
+    ++before.cuts;
+    ++after.cuts;
+    solve(before);
+    solve(after);
+  }
+  /// Whether the pair is ignored in a part of the task's time.
+  bool beginsWithin(const Task& task, int partner) const {
+    for (const Motion::Ignored& pair : moving_.motion().ignored) {
+      if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
+        return task.begin < pair.until && pair.until < task.end;
+      }
+    }
+    return false;
   }
   bool isSolid(int body) const { return moving_.geometry(body).shape->space() != nullptr; }
 

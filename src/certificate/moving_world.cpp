@@ -69,32 +69,35 @@ Pose MovingWorld::pose(const Element& element, double t) const {
   return {Eigen::AngleAxisd(q, element.axis).toRotationMatrix(), Vector3d::Zero()};
 }
 
-const std::vector<Pose>& MovingWorld::at(double t) {
-  const auto [it, is_new] = poses_.try_emplace(t);
-  std::vector<Pose>& poses = it->second;
-  if (!is_new) return poses;
+MovingWorld::Moment& MovingWorld::moment(double t) {
+  const auto [it, is_new] = moments_.try_emplace(t);
+  Moment& moment = it->second;
+  if (!is_new) return moment;
+  std::vector<Pose>& poses = moment.frames;
   poses.resize(world_.frames.size());
   for (std::size_t f = 1; f < poses.size(); ++f) {
     const Frame& frame = world_.frames[f];
     poses[f] = poses[static_cast<std::size_t>(frame.parent)] * origins_[f];
     for (const Element& element : frame.elements) poses[f] = poses[f] * pose(element, t);
   }
-  return poses;
+  return moment;
 }
 
-Pose MovingWorld::pose(int body, int frame, double t) {
+const Pose& MovingWorld::pose(int body, int frame, double t) {
   const auto i = static_cast<std::size_t>(body);
   const int own = world_.bodies[i].frame;
   if (own == frame) return in_frame_[i];
-  const std::vector<Pose>& poses = at(t);
-  const Pose in_world = poses[static_cast<std::size_t>(own)] * in_frame_[i];
-  return frame == 0 ? in_world : poses[static_cast<std::size_t>(frame)].inverse() * in_world;
+  Moment& at = moment(t);
+  const auto [it, is_new] = at.bodies.try_emplace({body, frame});
+  if (!is_new) return it->second;
+  const Pose in_world = at.frames[static_cast<std::size_t>(own)] * in_frame_[i];
+  return it->second = frame == 0 ? in_world : at.frames[static_cast<std::size_t>(frame)].inverse() * in_world;
 }
 
 /// Over the joints between the two: x turns about each joint at a rate w, r away from it, so that
 /// |x''| <= (sum w)^2 max r + ..., which is at most 2 (sum w)(sum w r + sum of slides' rates) + sum |q''| r.
 double MovingWorld::acceleration(int body, int frame, double t) {
-  const std::vector<Pose>& poses = at(t);
+  const std::vector<Pose>& poses = moment(t).frames;
   const auto i = static_cast<std::size_t>(body);
   const Vector3d centre = (poses[static_cast<std::size_t>(world_.bodies[i].frame)] * in_frame_[i]).c;
   const double radius = geometry(body).radius;

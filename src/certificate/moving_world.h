@@ -45,13 +45,12 @@ class MovingWorld {
     return world_.geometries[static_cast<std::size_t>(this->body(body).geometry)];
   }
   /// Pose of the body's geometry at time t, in the frame.
-  Pose pose(int body, int frame, double t);
+  const Pose& pose(int body, int frame, double t);
   /// Bound, by rule of thumb, on |x''| for the body's points x seen from the frame, around time t.
   double acceleration(int body, int frame, double t);
   double margin(int a, int b) const { return world_.marginOf(body(a), body(b), motion_.margin, motion_.added); }
 
  private:
-  const std::vector<Pose>& at(double t);
   double value(int variable, double t) const;
   Pose pose(const Element& element, double t) const;
   const World& world_;
@@ -59,7 +58,12 @@ class MovingWorld {
   std::vector<Pose> in_frame_;                 ///< of bodies
   std::vector<Pose> origins_;                  ///< of frames
   std::vector<double> rate_, acceleration_;    ///< of variables: bounds on |q'|, |q''|
-  std::map<double, std::vector<Pose>> poses_;  ///< of frames in the world, by time
+  struct Moment {
+    std::vector<Pose> frames;              ///< in the world
+    std::map<std::pair<int, int>, Pose> bodies;  ///< seen from frames
+  };
+  Moment& moment(double t);
+  std::map<double, Moment> moments_;
 };
 
 /// A point of the pieces below a node that is farthest along u, not far from it where `exact` is false.

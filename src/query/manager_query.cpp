@@ -193,7 +193,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.certificate.reset();
   if (request.certificate) {
     certificate::Motion stated = certificate::motionOf(*impl_->world(), motion, TimePart());
-    stated.until = result.isFree() ? 1 : result.t_lower;
+    stated.until = result.isFree() ? 1 : std::max(0.0, result.t_lower - request.tolerance_time);
     result.certificate = impl_->certificateOf(request, ignored, 1, {std::move(stated)});
   }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
