@@ -174,12 +174,6 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Forgets all margins of bodies and pairs. Needs setup().
   void resetMargins();
 
-  /// Returns the world that certificates of this manager's answers are about (CertifiedRequest::certificate), as text:
-  /// robot, geometries, obstacles, and the pairs that are not checked, each with its reason. doc/CERTIFICATES.md has its
-  /// format. It is the same until the next setup().
-  /// @throws std::logic_error if setup() is needed.
-  std::string certificateWorld() const;
-
   /// Selects who does stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, the default.
   /// Effective at once. What VisibilityMode::automatic has measured is forgotten.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -20,6 +21,9 @@ struct CertifiedPairResult : Bracket {
   Eigen::Isometry3d tf1_at_upper = Eigen::Isometry3d::Identity(), tf2_at_upper = Eigen::Isometry3d::Identity();
   /// Whether the objects touch at t = 0 and that was ignored (CertifiedPairRequest::ignore_initial_contact).
   bool ignored_initial_contact = false;
+  /// The proof that the motion is free, or free until shortly before t_lower; null if the request did not ask for it
+  /// (CertifiedPairRequest::certificate).
+  std::shared_ptr<const Certificate> certificate;
   /// Work of the query. The counts of stage 2 are 0, report_us and total_us too.
   QueryStatistics statistics;
 

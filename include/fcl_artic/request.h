@@ -117,14 +117,14 @@ struct CertifiedPairRequest : Tolerances, Effort {
   /// `undecided`: for a planner's clock, or a stop button. Queries of many motions, and those of a
   /// ContinuousCollisionManager, do not call it.
   std::function<bool(double t_lower)> progress;
+  /// Whether the result carries its proof (Certificate). It takes about a millisecond for an arm in a small scene;
+  /// queries that don't ask take no longer. A ContinuousCollisionManager has none to give and refuses.
+  bool certificate = false;
 };
 
 /// Request of a certified continuous query of an ArticulatedCollisionManager: what a query of two bodies has, which
 /// pairs are checked, and whether stage 2 takes part. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest : CertifiedPairRequest, Scope {
-  /// Whether the result carries its proof (CertifiedResult::certificate). It takes about a millisecond for an arm in a
-  /// small scene; queries that don't ask take no longer.
-  bool certificate = false;
   /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects who does
   /// it.
   VisibilityMode visibility = VisibilityMode::off;

@@ -124,8 +124,8 @@ struct CertifiedResult : Bracket {
   /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of
   /// them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours do not count.
   std::size_t unproven_allowed_pairs = 0;
-  /// The proof that the motion is free, or free until t_lower; null if the request did not ask for it
-  /// (CertifiedRequest::certificate).
+  /// The proof that the motion is free, or free until shortly before t_lower; null if the request did not ask for it
+  /// (CertifiedPairRequest::certificate).
   std::shared_ptr<const Certificate> certificate;
   /// Work of the query.
   QueryStatistics statistics;

@@ -74,6 +74,11 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
   Certificate certificate;
   certificate.missing = world.missing;
   if (!certificate.missing.empty()) return certificate;
+  if (!(claim.pieces.back().until > 0)) {
+    certificate.missing = "nothing is claimed: the bodies may touch from the beginning on";
+    return certificate;
+  }
+  certificate.world = world.text;
   certificate.motion = motionText(world, claim);
   const auto hash = sha256(certificate.motion);
   certificate.proof.assign(reinterpret_cast<const char*>(hash.data()), hash.size());

@@ -3,9 +3,11 @@
 // Certificates of answers: what is claimed, as text, and its proof.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "certificate/moving_world.h"
+#include "fcl_artic/bracket.h"
 #include "fcl_artic/certificate.h"
 #include "fcl_artic/joint_motion.h"
 #include "motion/part_of_motion.h"
@@ -23,7 +25,14 @@ struct Claim {
 /// @param time  the part of the obstacles' time that it takes.
 Motion motionOf(const World& world, const JointMotion& motion, const TimePart& time);
 
-/// @param work  most nodes that are tried.
-Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work);
+/// Most nodes that are tried before it is said that no proof was found: some seconds.
+constexpr std::uint64_t kMostNodes = 200000;
+
+Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work = kMostNodes);
+
+/// Until when a proof is sought: to the end of a free motion, else a tolerance before t_lower, where the gap may be 0.
+inline double claimedUntil(const Bracket& answer, double tolerance_time) {
+  return answer.isFree() ? 1 : std::max(0.0, answer.t_lower - tolerance_time);
+}
 
 }  // namespace fcl_artic::certificate

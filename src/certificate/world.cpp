@@ -91,18 +91,18 @@ Frame frameOf(const KinematicTree& tree, LinkId link, const std::vector<int>& fr
   return frame;
 }
 
-/// Adds the frames of a moving obstacle, and their variables with what these do.
+/// Adds the frames of a body with a motion of its own, and their variables with what these do.
 /// @return the last one.
-int addFrames(const ManagedBody& body, World& world) {
+int addFrames(const std::string& name, const BodyMotion& motion, World& world) {
   int parent = 0;
   int count = 0;
-  for (const MotionElement& step : body.motion.elements) {
+  for (const MotionElement& step : motion.elements) {
     if (step.kind == MotionElement::Kind::bounded) {
-      world.missing = "obstacle '" + body.name + "' moves as its BoundedMotion says, and only that knows how";
+      world.missing = "'" + name + "' moves as its BoundedMotion says, and only that knows how";
       return 0;
     }
     Frame frame;
-    frame.name = body.name + "/" + std::to_string(count++);
+    frame.name = name + "/" + std::to_string(count++);
     frame.parent = parent;
     frame.origin = step.before;
     const bool vector = step.kind == MotionElement::Kind::slide || step.kind == MotionElement::Kind::turn;
@@ -263,16 +263,75 @@ std::vector<std::size_t> inSpace(const std::vector<ManagedBody>& obstacles, cons
   return order;
 }
 
-class Writer {
+/// Puts a world together; its text comes last.
+class Builder {
  public:
-  explicit Writer(const Registry& registry) : registry_(registry), tree_(*registry.tree()) {}
+  void addBody(Body::Role role, const std::string& name, std::shared_ptr<const ShapeTree> shape, int frame,
+               const Eigen::Isometry3d& pose, std::size_t number) {
+    const auto [it, is_new] = geometry_of_.try_emplace(shape.get(), static_cast<int>(world.geometries.size()));
+    if (is_new) world.geometries.emplace_back(std::move(shape));
+    world.bodies.push_back({role, name, frame, it->second, pose, static_cast<std::int32_t>(number),
+                            world.margins.ofBody(name), {}});
+  }
+  void exclude(const char* reason, const std::string& a, const std::string& b) {
+    unchecked_.insert({reason, std::min(a, b), std::max(a, b)});
+  }
+  void write();
+
+  World world;
+
+ private:
+  std::map<const ShapeTree*, int> geometry_of_;
+  std::set<std::array<std::string, 3>> unchecked_;
+};
+
+std::string elementText(const Element& element) {
+  if (element.kind == Element::Kind::rotate) return "rotate " + std::to_string(element.variable) + "\n";
+  return std::string(element.kind == Element::Kind::turn ? "turn " : "slide ") + vectorText(element.axis) + " " +
+         std::to_string(element.variable) + " " + numberText(element.multiplier) + " " + numberText(element.offset) +
+         "\n";
+}
+
+void Builder::write() {
+  std::string text = "fcl_artic world 1\n";
+  for (const std::string& variable : world.variables) text += "variable " + word(variable) + "\n";
+  for (std::size_t f = 1; f < world.frames.size(); ++f) {
+    const Frame& frame = world.frames[f];
+    text += "frame " + word(frame.name) + " " + std::to_string(frame.parent) + " " + poseText(frame.origin) + "\n";
+    for (const Element& element : frame.elements) text += elementText(element);
+  }
+  for (const Geometry& geometry : world.geometries) text += "geometry " + geometryText(geometry);
+  std::set<std::string> names;
+  for (const Body& body : world.bodies) {
+    text += std::string("body ") + toText(body.role) + " " + word(body.name) + " " + std::to_string(body.frame) + " " +
+            std::to_string(body.geometry) + " " + poseText(body.pose) + "\n";
+    names.insert(body.name);
+  }
+  for (const std::string& name : names) {
+    const double margin = world.margins.ofBody(name);
+    if (margin >= 0) text += "margin " + word(name) + " " + numberText(margin) + "\n";
+  }
+  for (const auto& [pair, margin] : world.margins.ofPairs()) {
+    if (!names.count(pair.first) || !names.count(pair.second)) continue;
+    text += "margin " + word(pair.first) + " " + word(pair.second) + " " + numberText(margin) + "\n";
+  }
+  for (const auto& [reason, a, b] : unchecked_) text += "unchecked " + reason + " " + word(a) + " " + word(b) + "\n";
+  world.hash = sha256Text(text);
+  world.text = std::make_shared<const std::string>(std::move(text));
+}
+
+/// The world of a manager.
+class ManagedWorld {
+ public:
+  explicit ManagedWorld(const Registry& registry) : registry_(registry), tree_(*registry.tree()) {}
 
   World run() {
+    world_.margins = registry_.margins();
     addRobotFrames();
     addObstacles();
     addLinks();
     addPairs();
-    write();
+    builder_.write();
     return std::move(world_);
   }
 
@@ -293,13 +352,10 @@ class Writer {
 
   void addBody(const ManagedBody& body, std::size_t number, int frame, const Eigen::Isometry3d& pose) {
     if (body.empty()) return;
-    const auto [it, is_new] = geometry_of_.try_emplace(body.shape.get(), static_cast<int>(world_.geometries.size()));
-    if (is_new) world_.geometries.emplace_back(body.shape);
     const Body::Role role = body.link < 0   ? Body::Role::obstacle
                             : body.attached ? Body::Role::carried
                                             : Body::Role::link;
-    world_.bodies.push_back({role, body.name, frame, it->second, pose, static_cast<std::int32_t>(number),
-                             registry_.margins().ofBody(body.name), {}});
+    builder_.addBody(role, body.name, body.shape, frame, pose, number);
     managed_.push_back(&body);
   }
 
@@ -314,7 +370,7 @@ class Writer {
     for (const std::size_t i : inSpace(obstacles, bounded)) addBody(obstacles[i], first + i, 0, obstacles[i].offset);
     const std::vector<ManagedBody>& moving = registry_.moving();
     for (std::size_t i = 0; i < moving.size(); ++i) {
-      addBody(moving[i], registry_.links().size() + i, addFrames(moving[i], world_), moving[i].motion.after);
+      addBody(moving[i], registry_.links().size() + i, addFrames(moving[i].name, moving[i].motion, world_), moving[i].motion.after);
     }
   }
 
@@ -347,57 +403,19 @@ class Writer {
         if (!reason) {
           world_.bodies[i].partners.push_back(static_cast<int>(j));
         } else if (*reason != '\0') {
-          unchecked_.insert({reason, std::min(managed_[i]->name, managed_[j]->name),
-                             std::max(managed_[i]->name, managed_[j]->name)});
+          builder_.exclude(reason, managed_[i]->name, managed_[j]->name);
         }
       }
     }
   }
 
-  void write() {
-    world_.margins = registry_.margins();
-    std::string& text = world_.text;
-    text = "fcl_artic world 1\n";
-    for (const std::string& variable : world_.variables) text += "variable " + word(variable) + "\n";
-    for (std::size_t f = 1; f < world_.frames.size(); ++f) {
-      const Frame& frame = world_.frames[f];
-      text += "frame " + word(frame.name) + " " + std::to_string(frame.parent) + " " + poseText(frame.origin) + "\n";
-      for (const Element& element : frame.elements) text += elementText(element);
-    }
-    for (const Geometry& geometry : world_.geometries) text += "geometry " + geometryText(geometry);
-    std::set<std::string> names;
-    for (const Body& body : world_.bodies) {
-      text += std::string("body ") + toText(body.role) + " " + word(body.name) + " " + std::to_string(body.frame) +
-              " " + std::to_string(body.geometry) + " " + poseText(body.pose) + "\n";
-      names.insert(body.name);
-    }
-    for (const std::string& name : names) {
-      const double margin = world_.margins.ofBody(name);
-      if (margin >= 0) text += "margin " + word(name) + " " + numberText(margin) + "\n";
-    }
-    for (const auto& [pair, margin] : world_.margins.ofPairs()) {
-      if (!names.count(pair.first) || !names.count(pair.second)) continue;
-      text += "margin " + word(pair.first) + " " + word(pair.second) + " " + numberText(margin) + "\n";
-    }
-    for (const auto& [reason, a, b] : unchecked_) text += "unchecked " + reason + " " + word(a) + " " + word(b) + "\n";
-    world_.hash = sha256Text(text);
-  }
-
-  static std::string elementText(const Element& element) {
-    if (element.kind == Element::Kind::rotate) return "rotate " + std::to_string(element.variable) + "\n";
-    return std::string(element.kind == Element::Kind::turn ? "turn " : "slide ") + vectorText(element.axis) + " " +
-           std::to_string(element.variable) + " " + numberText(element.multiplier) + " " + numberText(element.offset) +
-           "\n";
-  }
-
   const Registry& registry_;
   const KinematicTree& tree_;
-  World world_;
+  Builder builder_;
+  World& world_ = builder_.world;
   std::vector<int> frame_of_link_;
-  std::map<const ShapeTree*, int> geometry_of_;
   std::vector<const ManagedBody*> managed_;  ///< of each body
   std::set<LinkId> with_geometry_;
-  std::set<std::array<std::string, 3>> unchecked_;
 };
 
 }  // namespace
@@ -420,7 +438,23 @@ double World::marginOf(const Body& a, const Body& b, double margin, double added
 }
 
 World makeWorld(const Registry& registry) {
-  return Writer(registry).run();
+  return ManagedWorld(registry).run();
+}
+
+World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2,
+                const BodyMotion& motion2) {
+  Builder builder;
+  World& world = builder.world;
+  world.frames.emplace_back();
+  const auto add = [&](const char* name, const ShapeTree& shape, const BodyMotion& motion, std::size_t number) {
+    const int frame = addFrames(name, motion, world);
+    builder.addBody(Body::Role::carried, name, {std::shared_ptr<void>(), &shape}, frame, motion.after, number);
+  };
+  add("body1", shape1, motion1, 0);
+  add("body2", shape2, motion2, 1);
+  world.bodies[1].partners = {0};
+  builder.write();
+  return std::move(world);
 }
 
 std::string numberText(double x) {

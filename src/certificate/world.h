@@ -75,7 +75,7 @@ struct World {
   Eigen::MatrixXd moving;
   int first_moving = 0;
   std::vector<int> orientations;  ///< first variable of each `rotate` whose R0 the motion gives, in its order
-  std::string text;               ///< what a verifier reads
+  std::shared_ptr<const std::string> text;  ///< what a verifier reads
   std::string hash;               ///< its SHA-256, in hexadecimal digits
   std::string missing;            ///< why no certificate can be made in this world; empty: one can
 
@@ -85,6 +85,9 @@ struct World {
 
 /// @param registry  what is set up.
 World makeWorld(const Registry& registry);
+/// Two bodies, each with a motion of its own. The shapes must outlive the world.
+World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2,
+                const BodyMotion& motion2);
 
 /// A number as statements have it: C's hexadecimal floating-point constant.
 std::string numberText(double x);

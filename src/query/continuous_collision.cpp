@@ -90,15 +90,16 @@ bool standsStill(const BodyMotion& motion) {
 
 /// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
 /// body can come to, as most of a map is far from any one motion.
+/// @param all  all cells: a certificate is about the whole map.
 template <class S>
-void readCells(Body<S>& tree, const Body<S>& other, double margin) {
+void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
 #if FCL_HAVE_OCTOMAP
   const auto& octree = static_cast<const fcl::OcTree<S>&>(*tree.geometry);
   Eigen::Vector3d lower, upper;
   lower.setConstant(-INFINITY);
   upper.setConstant(INFINITY);
   const bool bounded = other.shape && other.shape->view().nodes[0].radius < engine::kUnbounded;
-  if (standsStill(tree.motion) && bounded) {
+  if (standsStill(tree.motion) && bounded && !all) {
     const Eigen::Isometry3d M_0t = tree.motion.pose(0);
     BodyMotion seen = other.motion;  // from the tree's frame
     Eigen::Isometry3d& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
@@ -113,16 +114,17 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin) {
   }
   tree.shape = readOcTree(octree, lower, upper);
 #else
-  (void)tree, (void)other, (void)margin;
+  (void)tree, (void)other, (void)margin, (void)all;
 #endif
 }
 
 template <class S>
 void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
   const double margin = marginsOf(request).largest();
-  if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin);
-  if (!body1.shape) readCells(body1, body2, margin);
-  if (!body2.shape) readCells(body2, body1, margin);
+  const bool all = request.certificate;
+  if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin, all);
+  if (!body1.shape) readCells(body1, body2, margin, all);
+  if (!body2.shape) readCells(body2, body1, margin, all);
   solvePair({*body1.shape, body1.motion, reported(body1.geometry)},
             {*body2.shape, body2.motion, reported(body2.geometry)}, request, result);
 }

@@ -114,6 +114,10 @@ class Earliest {
   /// @throws std::invalid_argument for a request that solvePair() refuses.
   Earliest(const CertifiedPairRequest& request, CertifiedPairsResult& result) : request_(request), result_(result) {
     makeQuery(request);
+    if (request.certificate) {
+      throw std::invalid_argument(
+          "ContinuousCollisionManager: there are no certificates of many pairs; ask collide() of each two objects");
+    }
     if (request.measure_times) begin_ = Clock::now();
     request_.progress = nullptr;
   }

@@ -133,11 +133,6 @@ void ArticulatedCollisionManager::setMargin(const std::string& a, const std::str
   impl_->setup.marginsChanged();
 }
 
-std::string ArticulatedCollisionManager::certificateWorld() const {
-  impl_->requireReady();
-  return impl_->world()->text;
-}
-
 void ArticulatedCollisionManager::resetMargins() {
   impl_->registry.resetMargins();
   impl_->setup.marginsChanged();

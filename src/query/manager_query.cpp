@@ -155,7 +155,6 @@ QueryStatistics workOf(const Solved& solved) {
 std::shared_ptr<const Certificate> ArticulatedCollisionManager::Impl::certificateOf(
     const CertifiedRequest& request, const std::vector<engine::Ignored>& ignored, double duration,
     std::vector<certificate::Motion> motions) const {
-  constexpr std::uint64_t kWork = 200000;  // nodes: some seconds at most
   const std::shared_ptr<const certificate::World> about = world();
   std::map<std::int32_t, int> body_of;  // of the world's, by the registry's number
   for (std::size_t i = 0; i < about->bodies.size(); ++i) body_of[about->bodies[i].number] = static_cast<int>(i);
@@ -169,12 +168,8 @@ std::shared_ptr<const Certificate> ArticulatedCollisionManager::Impl::certificat
     const auto [a, b] = std::minmax(body_of.at(pair.body_a), body_of.at(pair.body_b));
     motions.front().ignored.push_back({a, b, pair.watch_from > 1 ? 1 : pair.watch_from});
   }
-  if (motions.back().until > 0) {
-    return std::make_shared<const Certificate>(certificate::makeCertificate(*about, {std::move(motions), duration}, kWork));
-  }
-  Certificate none;
-  none.missing = "nothing is claimed: the bodies may touch from the beginning on";
-  return std::make_shared<const Certificate>(std::move(none));
+  certificate::Claim claim{std::move(motions), duration};
+  return std::make_shared<const Certificate>(certificate::makeCertificate(*about, claim));
 }
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
@@ -193,7 +188,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.certificate.reset();
   if (request.certificate) {
     certificate::Motion stated = certificate::motionOf(*impl_->world(), motion, TimePart());
-    stated.until = result.isFree() ? 1 : std::max(0.0, result.t_lower - request.tolerance_time);
+    stated.until = certificate::claimedUntil(result, request.tolerance_time);
     result.certificate = impl_->certificateOf(request, ignored, 1, {std::move(stated)});
   }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);

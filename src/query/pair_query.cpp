@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "certificate/certificate.h"
 #include "geometry/solid_space.h"
 #include "motion/frame_sweep.h"
 #include "motion/variables.h"
@@ -65,6 +66,12 @@ const Piece* unboundedPiece(const ShapeTree& shape) {
   return shape.view().num_pieces == 1 && baseline::unbounded(piece) ? &piece : nullptr;
 }
 
+std::shared_ptr<const Certificate> withoutProof(const char* reason) {
+  Certificate none;
+  none.missing = reason;
+  return std::make_shared<const Certificate>(std::move(none));
+}
+
 /// Poses at t_lower and t_upper.
 void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPairResult& result) {
   result.tf1_at_lower = motion1.pose(result.t_lower);
@@ -105,6 +112,7 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
                       : solveBounded(pointwise, stays, request, result);
   }
   result = CertifiedPairResult();
+  if (request.certificate) result.certificate = withoutProof("both bodies are unbounded, and no hint fits two of them");
   result.status = Status::contact;
   // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
   // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then
@@ -134,6 +142,18 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   contact.t_upper = result.t_upper;
   contact.certain = result.certain;
   result.contacts.push_back(contact);
+}
+
+std::shared_ptr<const Certificate> certificateOf(const MovingShape& body1, const MovingShape& body2,
+                                                 const CertifiedPairRequest& request, const engine::Answer& answer) {
+  const certificate::World world = certificate::makeWorld(body1.shape, body1.motion, body2.shape, body2.motion);
+  certificate::Motion motion;
+  motion.coefficients = world.moving;
+  motion.margin = request.margin;
+  motion.added = request.added_margin;
+  motion.until = certificate::claimedUntil(answer, request.tolerance_time);
+  if (answer.num_ignored > 0) motion.ignored.push_back({0, 1, std::min(1.0, answer.ignored[0].watch_from)});
+  return std::make_shared<const Certificate>(certificate::makeCertificate(world, {{motion}, 1}));
 }
 
 /// At least one of the bodies is bounded.
@@ -184,6 +204,8 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
     result.contacts.push_back(reportContact(leaf, a, b, body1.motion.pose(leaf.t), body1.motion.pose(leaf.t_nearest)));
   }
   setPoses(body1.motion, body2.motion, result);
+  result.certificate.reset();
+  if (request.certificate) result.certificate = certificateOf(body1, body2, request, answer);
 }
 
 }  // namespace
@@ -193,6 +215,7 @@ void solvePair(const MovingShape& body1, const MovingShape& body2, const Certifi
   if (!body1.shape.view().num_pieces || !body2.shape.view().num_pieces) {  // an OcTree without an occupied cell
     makeQuery(request);
     result = CertifiedPairResult();
+    if (request.certificate) result.certificate = withoutProof("a body is empty: there is nothing to prove");
     result.status = Status::free;
     result.t_lower = 1;
     result.tf1_at_lower = result.tf1_at_upper = body1.motion.pose(1);

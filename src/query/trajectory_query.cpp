@@ -102,7 +102,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     collideMotion(trajectory.piece(k), own, aspects, part);
     if (request.certificate && !contact_found) {
       stated.push_back(certificate::motionOf(*impl_->world(), trajectory.piece(k), aspects.time));
-      stated.back().until = part.isFree() ? 1 : std::max(0.0, part.t_lower - own.tolerance_time);
+      stated.back().until = certificate::claimedUntil(part, own.tolerance_time);
     }
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;

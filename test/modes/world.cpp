@@ -349,6 +349,7 @@ void World::ask(const CertifiedRequest& request, CertifiedResult& result) const 
     result.t_upper = pair.t_upper;
     result.certain = pair.certain;
     result.contacts = pair.contacts;
+    result.certificate = pair.certificate;
     for (CertifiedContact& contact : result.contacts) {
       contact.body1.name = "a";
       contact.body2.name = "b";
