@@ -33,6 +33,9 @@ std::string pieceText(const World& world, const Motion& motion) {
     for (Eigen::Index k = 0; k <= degree; ++k) text += " " + numberText(c(v, k));
     text += "\n";
   }
+  for (const Motion::Ignored& pair : motion.ignored) {
+    text += "ignored " + std::to_string(pair.a) + " " + std::to_string(pair.b) + " " + numberText(pair.until) + "\n";
+  }
   for (std::size_t i = 0; i < world.orientations.size(); ++i) {
     text += "orientation " + std::to_string(world.orientations[i]) + " " + rotationText(motion.orientations[i]) + "\n";
   }
@@ -46,9 +49,6 @@ std::string motionText(const World& world, const Claim& claim) {
   if (first.self) text += " self";
   if (first.scene) text += " scene";
   text += "\n";
-  for (const Motion::Ignored& pair : first.ignored) {
-    text += "ignored " + std::to_string(pair.a) + " " + std::to_string(pair.b) + " " + numberText(pair.until) + "\n";
-  }
   text += "duration " + numberText(claim.duration) + "\nuntil " + numberText(claim.pieces.back().until) + "\n";
   for (const Motion& piece : claim.pieces) text += pieceText(world, piece);
   return text;

@@ -278,6 +278,7 @@ class Emitter {
       const bool scene = moving_.body(partners_[task.first]).frame == 0;
       if (seen == (scene ? Seen::byPartner : Seen::inWorld)) continue;
       for (const bool exact : {false, true}) {
+        if (exact && task.size() > 1) break;  // the partners one by one then
         const Sets sets = setsOf(task, frameOf(task, seen), exact);
         std::vector<double> times = {task.begin, task.middle(), task.end};
         for (int round = 0; round < 4; ++round) {

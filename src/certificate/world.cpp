@@ -428,6 +428,12 @@ Geometry::Geometry(std::shared_ptr<const ShapeTree> shape_in) : shape(std::move(
   radius = unbounded ? 0 : tree.extent;
 }
 
+int World::bodyOf(std::int32_t number) const {
+  const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.number == number; });
+  FCL_ARTIC_ASSERT(body != bodies.end());
+  return static_cast<int>(body - bodies.begin());
+}
+
 double World::marginOf(const Body& a, const Body& b, double margin, double added) const {
   if (!margins.ofPairs().empty()) {
     const auto pair = margins.ofPairs().find(std::minmax(a.name, b.name));

@@ -79,6 +79,8 @@ struct World {
   std::string hash;               ///< its SHA-256, in hexadecimal digits
   std::string missing;            ///< why no certificate can be made in this world; empty: one can
 
+  /// The body that the registry counts as `number`.
+  int bodyOf(std::int32_t number) const;
   /// Margin of a pair that a motion with these margins asks for, m.
   double marginOf(const Body& a, const Body& b, double margin, double added) const;
 };

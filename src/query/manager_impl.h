@@ -48,12 +48,10 @@ struct ArticulatedCollisionManager::Impl {
     if (!world_) world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry));
     return world_;
   }
-  /// The proof of an answer that claims of motions, one after the other, what the request asks.
-  /// @param ignored  in the first of them.
-  /// @param duration  of all of them, in the user's unit of time.
-  std::shared_ptr<const Certificate> certificateOf(const CertifiedRequest& request,
-                                                   const std::vector<engine::Ignored>& ignored, double duration,
-                                                   std::vector<certificate::Motion> motions) const;
+  /// What a certificate claims of a motion that was answered.
+  /// @param time  the part of the obstacles' time that it takes.
+  certificate::Motion stated(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request,
+                             const Bracket& answer, const std::vector<engine::Ignored>& ignored) const;
 
   /// @throws std::logic_error where what queries read is not up to date.
   void requireReady() const {

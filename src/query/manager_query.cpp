@@ -4,7 +4,6 @@
 // users see it.
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <stdexcept>
 
 #include "model/add_fields.h"
@@ -152,24 +151,21 @@ QueryStatistics workOf(const Solved& solved) {
 
 }  // namespace
 
-std::shared_ptr<const Certificate> ArticulatedCollisionManager::Impl::certificateOf(
-    const CertifiedRequest& request, const std::vector<engine::Ignored>& ignored, double duration,
-    std::vector<certificate::Motion> motions) const {
+certificate::Motion ArticulatedCollisionManager::Impl::stated(const JointMotion& motion, const TimePart& time,
+                                                              const CertifiedRequest& request, const Bracket& answer,
+                                                              const std::vector<engine::Ignored>& ignored) const {
   const std::shared_ptr<const certificate::World> about = world();
-  std::map<std::int32_t, int> body_of;  // of the world's, by the registry's number
-  for (std::size_t i = 0; i < about->bodies.size(); ++i) body_of[about->bodies[i].number] = static_cast<int>(i);
-  for (certificate::Motion& motion : motions) {
-    motion.margin = request.margin;
-    motion.added = request.added_margin;
-    motion.self = request.check_self;
-    motion.scene = request.check_scene;
-  }
+  certificate::Motion stated = certificate::motionOf(*about, motion, time);
+  stated.margin = request.margin;
+  stated.added = request.added_margin;
+  stated.self = request.check_self;
+  stated.scene = request.check_scene;
+  stated.until = certificate::claimedUntil(answer, request.tolerance_time);
   for (const engine::Ignored& pair : ignored) {
-    const auto [a, b] = std::minmax(body_of.at(pair.body_a), body_of.at(pair.body_b));
-    motions.front().ignored.push_back({a, b, pair.watch_from > 1 ? 1 : pair.watch_from});
+    const auto [a, b] = std::minmax(about->bodyOf(pair.body_a), about->bodyOf(pair.body_b));
+    stated.ignored.push_back({a, b, std::min(1.0, pair.watch_from)});
   }
-  certificate::Claim claim{std::move(motions), duration};
-  return std::make_shared<const Certificate>(certificate::makeCertificate(*about, claim));
+  return stated;
 }
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
@@ -187,9 +183,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.unproven_allowed_pairs = impl_->unprovenAllowed(motions, 1, request);
   result.certificate.reset();
   if (request.certificate) {
-    certificate::Motion stated = certificate::motionOf(*impl_->world(), motion, TimePart());
-    stated.until = certificate::claimedUntil(result, request.tolerance_time);
-    result.certificate = impl_->certificateOf(request, ignored, 1, {std::move(stated)});
+    const certificate::Claim claim{{impl_->stated(motion, TimePart(), request, result, ignored)}, 1};
+    result.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));
   }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
 }

@@ -68,8 +68,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();
-  std::vector<certificate::Motion> stated;  // for the certificate
-  std::vector<engine::Ignored> ignored;
+  certificate::Claim claim;
   std::vector<std::int32_t> in_contact;  // pairs of which the initial contact has not ended yet
   bool contact_found = false;
   CertifiedResult part;
@@ -98,11 +97,11 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
-    if (k == 0) aspects.ignored = &ignored;
+    std::vector<engine::Ignored> ignored;
+    aspects.ignored = &ignored;
     collideMotion(trajectory.piece(k), own, aspects, part);
     if (request.certificate && !contact_found) {
-      stated.push_back(certificate::motionOf(*impl_->world(), trajectory.piece(k), aspects.time));
-      stated.back().until = certificate::claimedUntil(part, own.tolerance_time);
+      claim.pieces.push_back(impl_->stated(trajectory.piece(k), aspects.time, own, part, ignored));
     }
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
@@ -144,9 +143,9 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
   sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, own_margins);
-  if (request.certificate && !stated.empty()) {
-    const double duration = trajectory.endTime() - trajectory.beginTime();
-    sum.certificate = impl_->certificateOf(request, ignored, duration, std::move(stated));
+  if (request.certificate && !claim.pieces.empty()) {
+    claim.duration = trajectory.endTime() - trajectory.beginTime();
+    sum.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));
   }
   result = std::move(sum);
 }
