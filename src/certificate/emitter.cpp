@@ -187,7 +187,7 @@ class Emitter {
       const double gap = last_;
       return staysOpen(a, gap_a, middle, gap, depth - 1) && staysOpen(middle, gap, b, gap_b, depth - 1);
     }
-    static constexpr double kSlack = 1e-13;
+    static constexpr double kSlack = 2e-12;
     Emitter& emitter_;
     const Sets& sets_;
     const Vector3d n_;

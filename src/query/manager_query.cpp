@@ -162,8 +162,8 @@ certificate::Motion ArticulatedCollisionManager::Impl::stated(const JointMotion&
   stated.scene = request.check_scene;
   stated.until = certificate::claimedUntil(answer, request.tolerance_time);
   for (const engine::Ignored& pair : ignored) {
-    const auto [a, b] = std::minmax(about->bodyOf(pair.body_a), about->bodyOf(pair.body_b));
-    stated.ignored.push_back({a, b, std::min(1.0, pair.watch_from)});
+    const int a = about->bodyOf(pair.body_a), b = about->bodyOf(pair.body_b);
+    stated.ignored.push_back({std::min(a, b), std::max(a, b), std::min(1.0, pair.watch_from)});
   }
   return stated;
 }
