@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "certificate_file.h"
 #include "configuration.h"
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
@@ -39,7 +40,7 @@ constexpr std::uint64_t kWorkForAllowed = 10000000, kLeastWorkForPair = 20000;
 
 struct Options {
   RobotOptions robot;
-  std::string auto_srdf, image, trajectory, lines, interpolation = "linear";
+  std::string auto_srdf, certificate, image, trajectory, lines, interpolation = "linear";
   std::vector<std::string> scenes, solids, from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
@@ -203,7 +204,11 @@ int run(const Options& options) {
   request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
   request.max_contacts = options.max_contacts.value_or(options.every_pair ? kAllContacts : 1);
   request.measure_times = true;
-  if (!options.lines.empty()) return checkLines(manager, request, {options.lines, interpolation, options.shortest});
+  CertificateFile certificates(options.certificate);
+  request.certificate = certificates.wanted();
+  if (!options.lines.empty()) {
+    return checkLines(manager, request, {options.lines, interpolation, options.shortest}, certificates);
+  }
   CertifiedResult result;
   {
     ProgressBar bar;
@@ -244,6 +249,10 @@ int run(const Options& options) {
     notes.push_back(
         "nothing is known of what comes after that contact; pairs that may touch at the start, as a base and "
         "its floor, are left out until they part with --ignore-initial-contact");
+  }
+  if (result.certificate) {
+    notes.push_back(certificates.add(*result.certificate));
+    certificates.write();
   }
   const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
 
@@ -391,6 +400,11 @@ void addCheck(CLI::App& program, int& exit_status) {
   addRedonOptions(*check, request.redon);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
+  check
+      ->add_option("--certificate", o.certificate,
+                   "Write the answer's proof, and what it is about to FILE.world: fcl_artic_verify proves it again")
+      ->group("Output")
+      ->type_name("FILE");
   CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and first contact as PNG")
                            ->check(requirePng)
                            ->excludes(lines)

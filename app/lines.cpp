@@ -127,8 +127,9 @@ void read(const KinematicTree& tree, const std::string& text, const LinesOptions
 
 class Answers {
  public:
-  Answers(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, const LinesOptions& options)
-      : manager_(manager), request_(request), options_(options) {}
+  Answers(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, const LinesOptions& options,
+          CertificateFile& certificates)
+      : manager_(manager), request_(request), options_(options), certificates_(certificates) {}
 
   void answer(std::size_t number, const std::string& text) {
     if (text.find_first_not_of(" \t\r") == std::string::npos) return;
@@ -173,13 +174,16 @@ class Answers {
     Json out;
     for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts"}) out[key] = all.at(key);
     if (result_.status != Status::free) out["q_at_t_lower"] = all.at("q_at_t_lower");
+    if (all.contains("certificate")) out["certificate"] = all.at("certificate");
     if (!question.notes.empty()) out["notes"] = question.notes;
+    if (result_.certificate) certificates_.add(*result_.certificate);
     return out;
   }
 
   const ArticulatedCollisionManager& manager_;
   const CertifiedRequest& request_;
   const LinesOptions& options_;
+  CertificateFile& certificates_;
   CertifiedResult result_;
   std::size_t asked_ = 0;
   bool errors_ = false, contacts_ = false, undecided_ = false;
@@ -188,8 +192,8 @@ class Answers {
 }  // namespace
 
 int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
-               const LinesOptions& options) {
-  Answers answers(manager, request, options);
+               const LinesOptions& options, CertificateFile& certificates) {
+  Answers answers(manager, request, options, certificates);
   const bool standard_input = options.path == "-";
   std::istringstream file(standard_input ? std::string() : files::read(options.path));
   std::istream& in = standard_input ? std::cin : file;
@@ -198,6 +202,7 @@ int checkLines(const ArticulatedCollisionManager& manager, const CertifiedReques
   const std::string name = standard_input ? "standard input" : "'" + options.path + "'";
   if (in.bad()) throw std::runtime_error(name + ": cannot be read to its end");
   if (answers.asked() == 0) throw std::invalid_argument("--lines: " + name + " has no line to answer");
+  certificates.write();
   return answers.exitStatus();
 }
 

@@ -141,6 +141,11 @@ void addFields(const Statistics& s, Json& out) {
 }
 
 /// Work of the query; of the paper's own method null where another one was asked for.
+Json certificateJson(const Certificate& certificate) {
+  if (!certificate) return {{"missing", certificate.missing}};
+  return {{"proof_bytes", certificate.proof.size()}};
+}
+
 Json statisticsJson(const Report& r) {
   const QueryStatistics& s = r.result.statistics;
   Json out = {{"pairs", s.pairs}, {"pairs_after_culling", s.pairs_after_culling}};
@@ -262,6 +267,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"clearance", r.clearance ? clearanceJson(*r.clearance) : Json()},
           {"ignored_initial_contacts", ignored},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
+          {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},
           {"request",
            {{"tolerance_time", r.request.tolerance_time},
             {"tolerance_distance", r.request.tolerance_distance},

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Certificates of answers in files: FILE, a record for each answer that has a proof, and FILE.world, what they are about.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "fcl_artic/certificate.h"
+
+namespace fcl_artic::app {
+
+class CertificateFile {
+ public:
+  /// @param path  FILE; empty: nobody wants one.
+  explicit CertificateFile(std::string path) : path_(std::move(path)) {}
+  bool wanted() const { return !path_.empty(); }
+  std::string worldPath() const { return path_ + ".world"; }
+
+  /// Adds an answer's certificate, if it has a proof.
+  /// @return what to tell the user of it, one line.
+  std::string add(const Certificate& certificate);
+  /// Writes both files, if anything was added: without a proof no file is left that could be taken for one.
+  /// @throws std::runtime_error naming the file.
+  void write() const;
+
+ private:
+  std::string path_, records_;
+  std::shared_ptr<const std::string> world_;
+};
+
+}  // namespace fcl_artic::app
