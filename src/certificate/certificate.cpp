@@ -91,6 +91,10 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
     }
     certificate.proof += nodes;
   }
+  if (claim.meeting && certificate) {
+    MovingWorld moving(world, claim.pieces.back());
+    certificate.proof += findWitness(moving, *claim.meeting);
+  }
   return certificate;
 }
 

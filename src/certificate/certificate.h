@@ -4,9 +4,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "certificate/moving_world.h"
+#include "certificate/witness.h"
 #include "fcl_artic/bracket.h"
 #include "fcl_artic/certificate.h"
 #include "fcl_artic/joint_motion.h"
@@ -19,6 +21,7 @@ namespace fcl_artic::certificate {
 struct Claim {
   std::vector<Motion> pieces;
   double duration = 1;  ///< of all of them, for people
+  std::optional<Meeting> meeting;  ///< in the last one, after its `until`
 };
 
 /// A motion of the world's robot, beside the moving obstacles' own.

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "certificate/proof_bytes.h"
+
 #include "numerics/baseline_isa.h"
 
 #include "convex/gjk.h"
@@ -76,17 +78,6 @@ class Emitter {
   bool isAsked(int a, int b) const {
     const auto isObstacle = [&](int i) { return moving_.body(i).role == Body::Role::obstacle; };
     return isObstacle(a) || isObstacle(b) ? moving_.motion().scene : moving_.motion().self;
-  }
-
-  // ---- writing
-
-  void putByte(int byte) { out_ += static_cast<char>(byte); }
-  void putNumber(std::size_t n) {
-    for (; n >= 128; n >>= 7) putByte(static_cast<int>(n & 127) | 128);
-    putByte(static_cast<int>(n));
-  }
-  void putSigned(long x, int bytes) {
-    for (int i = 0; i < bytes; ++i) putByte(static_cast<int>(static_cast<unsigned long>(x) >> (8 * i) & 255));
   }
 
   // ---- what a task's sets are, seen from a frame
@@ -265,8 +256,8 @@ class Emitter {
         closed_at = separation.closedAt();
         continue;
       }
-      putByte((fine ? kSepFine : kSep) + static_cast<int>(seen));
-      for (int k = 0; k < 3; ++k) putSigned(static_cast<long>(rounded[k]), fine ? 4 : 2);
+      out_.byte((fine ? kSepFine : kSep) + static_cast<int>(seen));
+      for (int k = 0; k < 3; ++k) out_.fixed(static_cast<std::int64_t>(rounded[k]), fine ? 4 : 2);
       return true;
     }
     return false;
@@ -301,8 +292,8 @@ class Emitter {
     return true;
   }
   void putEmpty() {
-    putByte(kSep);
-    for (const int x : {1, 0, 0}) putSigned(x, 2);
+    out_.byte(kSep);
+    for (const int x : {1, 0, 0}) out_.fixed(x, 2);
   }
 
   bool separateWall(const Task& task) {
@@ -314,7 +305,7 @@ class Emitter {
       if (other && piece.kind != engine::PieceKind::plane) break;
       const Vector3d n = Vector3d::Map(piece.size) * (other ? -1 : 1);
       if (!wallSeparates(task, wall, own, frame, n, other ? -piece.center[0] : piece.center[0])) continue;
-      putByte(other ? kWallOther : kWall);
+      out_.byte(other ? kWallOther : kWall);
       return true;
     }
     return false;
@@ -377,8 +368,8 @@ class Emitter {
       half = 1;
       while (groupOf(partners_[task.first]) == groupOf(partners_[task.first + half])) ++half;
     }
-    putByte(kPartners);
-    putNumber(half);
+    out_.byte(kPartners);
+    out_.number(half);
     Task left = task, right = task;
     left.last = right.first = task.first + half;
     solve(left);
@@ -410,16 +401,16 @@ class Emitter {
     if (time_left && (leaves || apart)) return cutTime(task);
     if (leaves) return fail(task);
     if (!task.solid && (isSolid(task.body) || isSolid(partner))) {
-      putByte(kSolid);
+      out_.byte(kSolid);
       task.solid = true;
     }
     const bool cut_own = own >= other;
-    putByte(cut_own ? kOwn : kOther);
+    out_.byte(cut_own ? kOwn : kOther);
     const Geometry& geometry = moving_.geometry(cut_own ? task.body : partner);
     std::int32_t& node = cut_own ? task.node : task.partner_node;
     const engine::Node& n = geometry.shape->view().nodes[node];
     const Geometry::Interval left = geometry.below[static_cast<std::size_t>(n.left())];
-    putNumber(static_cast<std::size_t>(left.end - left.begin));
+    out_.number(static_cast<std::size_t>(left.end - left.begin));
     node = n.left();
     Task second = task;
     (cut_own ? second.node : second.partner_node) = n.right();
@@ -427,7 +418,7 @@ class Emitter {
     solve(second);
   }
   void cutTime(const Task& task) {
-    putByte(kTime);
+    out_.byte(kTime);
     Task before = task, after = task;
     before.end = after.begin = task.middle();
     ++before.cuts;
@@ -453,7 +444,7 @@ class Emitter {
 
   MovingWorld moving_;
   std::uint64_t work_, nodes_ = 0;
-  std::string& out_;
+  ProofBytes out_;
   std::string missing_;
   std::vector<int> partners_;  ///< of the body at hand
 };

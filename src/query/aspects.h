@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fcl_artic/manager.h"
@@ -17,7 +18,12 @@ struct ArticulatedCollisionManager::Aspects {
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<std::int32_t>* may_ignore = nullptr;
   std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
-  std::vector<engine::Ignored>* ignored = nullptr;   ///< out: all ignored pairs
+  /// What a certificate says beyond the public answer.
+  struct Details {
+    std::vector<engine::Ignored> ignored;        ///< all ignored pairs
+    std::optional<engine::LeafContact> contact;  ///< proven, the first one
+  };
+  Details* details = nullptr;  ///< out
 };
 
 }  // namespace fcl_artic

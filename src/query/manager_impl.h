@@ -11,7 +11,7 @@
 
 #include "certificate/certificate.h"
 #include "fcl_artic/manager.h"
-#include "model/answer.h"
+#include "query/aspects.h"
 #include "query/engine_query.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
@@ -48,10 +48,10 @@ struct ArticulatedCollisionManager::Impl {
     if (!world_) world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry));
     return world_;
   }
-  /// What a certificate claims of a motion that was answered.
+  /// Adds a motion that was answered to what a certificate claims.
   /// @param time  the part of the obstacles' time that it takes.
-  certificate::Motion stated(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request,
-                             const Bracket& answer, const std::vector<engine::Ignored>& ignored) const;
+  void add(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request, const Bracket& answer,
+           const Aspects::Details& details, certificate::Claim& claim) const;
 
   /// @throws std::logic_error where what queries read is not up to date.
   void requireReady() const {

@@ -151,9 +151,9 @@ QueryStatistics workOf(const Solved& solved) {
 
 }  // namespace
 
-certificate::Motion ArticulatedCollisionManager::Impl::stated(const JointMotion& motion, const TimePart& time,
-                                                              const CertifiedRequest& request, const Bracket& answer,
-                                                              const std::vector<engine::Ignored>& ignored) const {
+void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const TimePart& time,
+                                            const CertifiedRequest& request, const Bracket& answer,
+                                            const Aspects::Details& details, certificate::Claim& claim) const {
   const std::shared_ptr<const certificate::World> about = world();
   certificate::Motion stated = certificate::motionOf(*about, motion, time);
   stated.margin = request.margin;
@@ -161,11 +161,18 @@ certificate::Motion ArticulatedCollisionManager::Impl::stated(const JointMotion&
   stated.self = request.check_self;
   stated.scene = request.check_scene;
   stated.until = certificate::claimedUntil(answer, request.tolerance_time);
-  for (const engine::Ignored& pair : ignored) {
+  for (const engine::Ignored& pair : details.ignored) {
     const int a = about->bodyOf(pair.body_a), b = about->bodyOf(pair.body_b);
     stated.ignored.push_back({std::min(a, b), std::max(a, b), std::min(1.0, pair.watch_from)});
   }
-  return stated;
+  if (details.contact) {
+    const engine::LeafContact& leaf = *details.contact;
+    claim.meeting = certificate::Meeting{static_cast<int>(claim.pieces.size()), about->bodyOf(leaf.body_a),
+                                         about->bodyOf(leaf.body_b),            leaf.piece_a,
+                                         leaf.piece_b,                          leaf.t_upper,
+                                         request.tolerance_time};
+  }
+  claim.pieces.push_back(std::move(stated));
 }
 
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
@@ -176,14 +183,15 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
                                                 CertifiedResult& result) const {
   Aspects aspects;
-  std::vector<engine::Ignored> ignored;
-  if (request.certificate) aspects.ignored = &ignored;
+  Aspects::Details details;
+  if (request.certificate) aspects.details = &details;
   collideMotion(motion, request, aspects, result);
   const JointMotion* const motions[] = {&motion};
   result.unproven_allowed_pairs = impl_->unprovenAllowed(motions, 1, request);
   result.certificate.reset();
   if (request.certificate) {
-    const certificate::Claim claim{{impl_->stated(motion, TimePart(), request, result, ignored)}, 1};
+    certificate::Claim claim;
+    impl_->add(motion, TimePart(), request, result, details, claim);
     result.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));
   }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
@@ -235,7 +243,11 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
                                                  registry.body(answer.ignored[i].body_b).reference());
   }
-  if (aspects.ignored) aspects.ignored->assign(answer.ignored, answer.ignored + answer.num_ignored);
+  if (aspects.details) {
+    aspects.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
+    aspects.details->contact.reset();
+    if (answer.num_contacts > 0 && answer.contacts[0].certain) aspects.details->contact = answer.contacts[0];
+  }
   if (aspects.never_apart) {
     aspects.never_apart->clear();
     for (std::int32_t i = 0; i < answer.num_ignored; ++i) {

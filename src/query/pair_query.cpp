@@ -153,7 +153,13 @@ std::shared_ptr<const Certificate> certificateOf(const MovingShape& body1, const
   motion.added = request.added_margin;
   motion.until = certificate::claimedUntil(answer, request.tolerance_time);
   if (answer.num_ignored > 0) motion.ignored.push_back({0, 1, std::min(1.0, answer.ignored[0].watch_from)});
-  return std::make_shared<const Certificate>(certificate::makeCertificate(world, {{motion}, 1}));
+  certificate::Claim claim{{motion}, 1, std::nullopt};
+  if (answer.num_contacts > 0 && answer.contacts[0].certain) {
+    const engine::LeafContact& leaf = answer.contacts[0];
+    claim.meeting = certificate::Meeting{0, leaf.body_a, leaf.body_b, leaf.piece_a, leaf.piece_b, leaf.t_upper,
+                                         request.tolerance_time};
+  }
+  return std::make_shared<const Certificate>(certificate::makeCertificate(world, claim));
 }
 
 /// At least one of the bodies is bounded.

@@ -97,11 +97,11 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
-    std::vector<engine::Ignored> ignored;
-    aspects.ignored = &ignored;
+    Aspects::Details details;
+    if (request.certificate) aspects.details = &details;
     collideMotion(trajectory.piece(k), own, aspects, part);
     if (request.certificate && !contact_found) {
-      claim.pieces.push_back(impl_->stated(trajectory.piece(k), aspects.time, own, part, ignored));
+      impl_->add(trajectory.piece(k), aspects.time, own, part, details, claim);
     }
     add(sum.statistics, part.statistics);
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
