@@ -36,6 +36,14 @@ std::string readFile(const char* path) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
+void printJson(const verify::World& world, const verify::Record& record) {
+  try {
+    std::printf("%s\n", verify::proofAsJson(world, record).c_str());
+  } catch (const verify::BadInput& error) {  // the verdict says why, too
+    std::printf("null\n");
+  }
+}
+
 void print(const verify::Verdict& v) {
   std::printf("VERIFIED %llu pairs", static_cast<unsigned long long>(v.checked));
   if (v.pieces > 1) std::printf(", %zu pieces", v.pieces);
@@ -95,7 +103,7 @@ int main(int argc, char** argv) {
         ++all;
         verified += verdict.verified;
         bad = bad || verdict.bad_input;
-        if (json) std::printf("%s\n", verify::proofAsJson(world, record).c_str());
+        if (json) printJson(world, record);
         if (!verdict.verified || !quiet) std::printf("%s:%zu: ", files[f], number);
         if (!verdict.verified) std::printf("NOT VERIFIED: %s\n", verdict.reason.c_str());
         if (verdict.verified && !quiet) print(verdict);
