@@ -135,6 +135,16 @@ void checkOutside(const World& world, Poses& poses, int a, int b, const Span& sp
 
 /// A point of a body as a witness names it.
 Vec readPoint(const Geometry& g, Bytes& bytes);
+/// Whether x is certainly in the tetrahedron of four vertices of a hull: with each of them replaced by x, its volume
+/// keeps its sign.
+bool insideTetrahedron(const Vec corners[4], const Vec& x) {
+  const auto volume = [](const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
+    return sign(determinant(b - a, c - a, d - a));
+  };
+  const Vec &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
+  const int s = volume(a, b, c, d);
+  return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s && volume(a, b, c, x) == s;
+}
 /// Whether x, in g's coordinates, is certainly in that piece.
 bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
   const std::vector<double>& n = g.numbers;
@@ -241,7 +251,7 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     return o.body == static_cast<int>(std::min(first, second));
   });
   if (first == second || pair == list.end()) throw NotProven("the contact is between bodies that are not checked");
-  if (at.x < pair->from) throw NotProven("the contact is at a time at which its pair is ignored");
+  if (at.x <= pair->from + ulps(2)) throw NotProven("the contact is at a time at which its pair is ignored");
 
   const Span span{at.x, at.x + at.error};
   Poses poses(world, motion.pieces[piece], budget);
@@ -272,7 +282,17 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     const Vec x = toB(readPoint(A, bytes));
     const std::uint32_t container = bytes.varint();
     if (container >= B.pieces()) throw BadInput("a witness names a piece that is not there");
-    shown = inside(B, container, x);
+    if (B.kind == Geometry::hull) {
+      Vec corners[4];
+      for (Vec& c : corners) {
+        const std::uint32_t vertex = bytes.varint();
+        if (vertex >= B.vertices.size() / 3) throw BadInput("a witness names a vertex that is not there");
+        c = corner(B, vertex);
+      }
+      shown = insideTetrahedron(corners, x);
+    } else {
+      shown = inside(B, container, x);
+    }
   } else {
     const Vec x = toB(readPoint(A, bytes)), y = readPoint(B, bytes), d = x - y;
     const Tm margin = constant(encloseDown(world.margin(a, b, motion.margin)) + encloseDown(motion.added));

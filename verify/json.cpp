@@ -112,7 +112,15 @@ std::string contact(const World& world, Bytes& bytes) {
            ", \"other\": " + std::to_string(crossed) + "}}";
   }
   const std::string first = point(world, kind == 3 ? b : a, bytes);
-  if (kind <= 3) return s + "\"inside\": " + first + ", \"other\": " + std::to_string(bytes.varint()) + "}";
+  if (kind <= 3) {
+    s += "\"inside\": " + first + ", \"other\": " + std::to_string(bytes.varint());
+    if (world.geometries[world.bodies[kind == 3 ? a : b].geometry].kind == Geometry::hull) {
+      s += ", \"vertices\": [";
+      for (int k = 0; k < 4; ++k) s += (k ? ", " : "") + std::to_string(bytes.varint());
+      s += "]";
+    }
+    return s + "}";
+  }
   return s + "\"near\": [" + first + ", " + point(world, b, bytes) + "]}";
 }
 

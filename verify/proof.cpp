@@ -59,15 +59,17 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
   for (const Partner& partner : world.partners[body]) {
     if (!(partner.self ? motion.self : motion.scene)) continue;
     const double own = world.margin(body, partner.body, motion.margin);
-    list.push_back({partner.body, Fix{0}, encloseUp(own) + encloseUp(motion.added)});
+    list.push_back({partner.body, Fix{-kOne}, encloseUp(own) + encloseUp(motion.added)});
   }
-  if (piece == 0) {  // partners are in ascending order: as they are in world.partners
-    for (const Ignored& ignored : motion.ignored) {
-      if (ignored.b != body) continue;
-      const auto at = std::lower_bound(list.begin(), list.end(), ignored.a,
-                                       [](const Opponent& o, int b) { return o.body < b; });
-      if (at != list.end() && at->body == ignored.a) at->from = most(at->from, encloseDown(ignored.until));
-    }
+  // An ignored pair is left out at and before its time, of which the lower end is taken; whether that is to the end of
+  // the piece is decided in doubles. The list is in ascending order, as world.partners is.
+  const double end = piece + 1 == motion.pieces.size() ? motion.until : 1;
+  for (const Ignored& ignored : motion.pieces[piece].ignored) {
+    if (ignored.b != body) continue;
+    const auto at =
+        std::lower_bound(list.begin(), list.end(), ignored.a, [](const Opponent& o, int b) { return o.body < b; });
+    if (at == list.end() || at->body != ignored.a) continue;
+    at->from = most(at->from, ignored.until >= end ? integer(2) : encloseDown(ignored.until));
   }
   return list;
 }
@@ -202,7 +204,7 @@ class Walk {
     if (task.q - task.p != 1 || !wholeOwn(task) || !wholeOther(task)) fail(task, "SOLID is about two whole bodies");
     const Opponent& other = partners_[task.p];
     const Fix at = most(task.span.a, other.from);
-    if (at <= task.span.b) {  // else the pair is ignored for all of the task's time
+    if (other.from < task.span.b) {  // else the pair is ignored for all of the task's time
       try {
         checkSolid(world_, poses_, a_, other.body, at, budget_);
       } catch (const NotProven& error) {
@@ -236,7 +238,7 @@ class Walk {
     std::vector<std::uint32_t> all;
     for (std::uint32_t k = task.p; k < task.q; ++k) {
       const Fix from = partners_[k].from;
-      if (from > task.span.b) continue;  // ignored all the time
+      if (from >= task.span.b) continue;  // ignored all the time
       if (from <= task.span.a) {
         all.push_back(k);
       } else {  // from then on; the direction of a TURN moves along
@@ -330,7 +332,7 @@ class Walk {
     }
     f.d = constant(enclose(std::ldexp(sign * g.numbers[3], -exponent)));
     const Span span{most(task.span.a, opponent.from), task.span.b};
-    if (span.a > span.b) return;
+    if (opponent.from >= task.span.b) return;
     const Fix length = lengthUp(high);
     walled(task, wall, other, toParent(f, world_.bodies[wall].pose), length, mulUp(opponent.margin, length), span, 0);
   }
@@ -372,7 +374,7 @@ void countUnchecked(const World& world, const Motion& motion, Verdict& verdict) 
   for (std::size_t a = 0; a < world.bodies.size(); ++a)
     for (const Partner& partner : world.partners[a])
       if (!(partner.self ? motion.self : motion.scene)) ++verdict.not_checked[static_cast<int>(Reason::scope)];
-  verdict.not_checked[static_cast<int>(Reason::ignored)] = motion.ignored.size();
+  for (const Piece& piece : motion.pieces) verdict.not_checked[static_cast<int>(Reason::ignored)] += piece.ignored.size();
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ constexpr int kMostTimeDepth = 60;
 /// Who is checked against body A in a piece of the motion, and from which time on.
 struct Opponent {
   int body;
-  Fix from;    // the pair is ignored before
+  Fix from;    // the pair is ignored up to this time or one less than 2 ulp above it; -1: not ignored
   Fix margin;  // an upper bound
 };
 std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body);

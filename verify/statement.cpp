@@ -477,20 +477,22 @@ Motion readMotion(std::string_view text, const World& world) {
       once(5);
       motion.until = lines.number();
       if (!(motion.until >= 0 && motion.until <= 1)) lines.fail("'until' is in [0, 1]");
-    } else if (kind == "ignored") {
-      if (!motion.pieces.empty()) lines.fail("the item comes before the first piece");
-      Ignored ignored{};
-      ignored.a = static_cast<int>(lines.integer(world.bodies.size()));
-      ignored.b = static_cast<int>(lines.integer(world.bodies.size()));
-      ignored.until = lines.number();
-      if (ignored.a >= ignored.b) lines.fail("of an ignored pair the lower number comes first");
-      if (!(ignored.until >= 0 && ignored.until <= 1)) lines.fail("the time is in [0, 1]");
-      motion.ignored.push_back(ignored);
     } else if (kind == "piece") {
       motion.pieces.emplace_back();
-    } else if (kind == "q" || kind == "orientation") {
+    } else if (kind == "q" || kind == "orientation" || kind == "ignored") {
       if (motion.pieces.empty()) lines.fail("a 'piece' comes first");
       Piece& piece = motion.pieces.back();
+      if (kind == "ignored") {
+        Ignored ignored{};
+        ignored.a = static_cast<int>(lines.integer(world.bodies.size()));
+        ignored.b = static_cast<int>(lines.integer(world.bodies.size()));
+        ignored.until = lines.number();
+        lines.end();
+        if (ignored.a >= ignored.b) lines.fail("of an ignored pair the lower number comes first");
+        if (!(ignored.until >= 0 && ignored.until <= 1)) lines.fail("the time is in [0, 1]");
+        piece.ignored.push_back(ignored);
+        continue;
+      }
       const int variable = static_cast<int>(lines.integer(world.variables.size()));
       if (kind == "q") {
         Polynomial q{variable, {}};

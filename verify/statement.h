@@ -81,20 +81,20 @@ struct Orientation {
   int variable;
   double numbers[9];
 };
-struct Piece {
-  std::vector<Polynomial> polynomials;    // by variable
-  std::vector<Orientation> orientations;  // by variable
-};
 struct Ignored {
   int a, b;
   double until;
+};
+struct Piece {
+  std::vector<Polynomial> polynomials;    // by variable
+  std::vector<Orientation> orientations;  // by variable
+  std::vector<Ignored> ignored;
 };
 struct Motion {
   Hash hash;
   std::string world;
   double margin = 0, added = 0, duration = 0, until = 1;
   bool self = false, scene = false;
-  std::vector<Ignored> ignored;
   std::vector<Piece> pieces;
 };
 

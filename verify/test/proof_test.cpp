@@ -90,6 +90,18 @@ TEST(VerifyProof, UntilAndIgnored) {
   EXPECT_EQ(v.not_checked[static_cast<int>(Reason::ignored)], 1u);
   expectVerified(judge(world, m.write(world), node(kTime, sep({-1, 0, 0}), sep({-1, 0, 0}))));
   expectVerified(judge(world, m.write(world), turnNode({1, 0, 0}, {-1.1, 0, 0})));
+  // At and before the time: a touch at t = 0 exactly, and one all along.
+  m = moving({1.4, -1.4});
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m.ignored = "ignored 0 1 " + hex(0) + "\n";
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m = moving({2, 1e-3});
+  m.until = 1e-3;  // no number of 2^-64
+  for (const double t : {1e-3, 1.0, 0.999e-3}) {
+    m.ignored = "ignored 0 1 " + hex(t) + "\n";
+    EXPECT_EQ(judge(world, m.write(world), sep({-1, 0, 0})).verified, t >= m.until);
+  }
+  m = moving({2.8, -2.8});
   m.ignored = "ignored 0 1 " + hex(0.4999) + "\n";
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
   m.ignored = "";
@@ -371,7 +383,7 @@ TEST(VerifyStatement, IsReadStrictly) {
   for (const std::string& text : {with("margin", "margins"), with("scope self scene", "scope self self"), with("scope self scene", "scope"),
                                   with("until 0x1p+0", "until 0x1p+1"), with("until 0x1p+0\n", ""), with("piece\n", ""),
                                   with("q 0", "q 1"), good + "q 0 0x1p+0\n", good + "q 0\n", good + "margin 0x0p+0\n",
-                                  with("piece\n", "ignored 1 0 0x0p+0\npiece\n"), with("piece\n", "ignored 0 2 0x0p+0\npiece\n"),
+                                  good + "ignored 1 0 0x0p+0\n", good + "ignored 0 2 0x0p+0\n", with("piece\n", "ignored 0 1 0x0p+0\npiece\n"),
                                   good + "q 0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0\n"})
     EXPECT_THROW(readMotion(text, world), BadInput) << text;
   const World named = readWorld(kHead + box + "body link a%20b%25%c3 0 0 " + hex(kHere) + "\n");

@@ -98,12 +98,12 @@ inline const std::string kHead = "fcl_artic world 1\n";
 struct MotionText {
   double margin = 0, added = 0, until = 1;
   std::string scope = "self scene";
-  std::string ignored;              // lines
+  std::string ignored;              // lines, of the first piece
   std::vector<std::string> pieces;  // each: lines "q ..." and "orientation ..."
   std::string write(const World& world) const {
     std::string s = "fcl_artic motion 1\nworld " + hexOf(world.hash) + "\nmargin " + hex(margin) + "\nadded " + hex(added) +
-                    "\nscope " + scope + "\n" + ignored + "duration " + hex(1) + "\nuntil " + hex(until) + "\n";
-    for (const std::string& piece : pieces) s += "piece\n" + piece;
+                    "\nscope " + scope + "\nduration " + hex(1) + "\nuntil " + hex(until) + "\n";
+    for (std::size_t k = 0; k < pieces.size(); ++k) s += "piece\n" + (k == 0 ? ignored : "") + pieces[k];
     return s;
   }
 };
