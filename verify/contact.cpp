@@ -251,7 +251,9 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     return o.body == static_cast<int>(std::min(first, second));
   });
   if (first == second || pair == list.end()) throw NotProven("the contact is between bodies that are not checked");
-  if (at.x <= pair->from + ulps(2)) throw NotProven("the contact is at a time at which its pair is ignored");
+  for (const Ignored& ignored : motion.pieces[piece].ignored)
+    if (ignored.a == pair->body && ignored.b == static_cast<int>(std::max(first, second)) && t <= ignored.until)
+      throw NotProven("the contact is at a time at which its pair is ignored");
 
   const Span span{at.x, at.x + at.error};
   Poses poses(world, motion.pieces[piece], budget);
