@@ -2,16 +2,14 @@
 // fcl_artic_verify: proves the claims of certificates again. See doc/CERTIFICATES.md.
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
 #include "proof.h"
+#include "readers.h"
 
 namespace {
 
 constexpr const char* kHelp =
-    R"(fcl_artic_verify [options] WORLD CERTIFICATES...
+    R"(fcl_artic_verify [options] WORLD [CERTIFICATES...]
 
 Proves again what certificates claim: that along a motion no two bodies that are checked come nearer than their margin.
 Uses integers, GMP and MPFR; shares nothing with the library that wrote the certificates. doc/CERTIFICATES.md says what
@@ -20,6 +18,9 @@ is claimed, and how it is proven.
   WORLD            the world's text
   CERTIFICATES     files of records
 
+  --urdf FILE      compare the world with a URDF: frames, joints, collision geometry (shapes, STL, OBJ)
+  --package N=DIR  the folder of "package://N/" in the URDF
+  --srdf FILE      compare pairs that the world allows to touch with an SRDF
   --json           print each record's motion and proof as JSON, and the verdict
   --quiet          print no line for what is verified
   --work N         limit of work per record, in steps of roughly 20 ns (default 2000000000)
@@ -27,13 +28,14 @@ is claimed, and how it is proven.
 
 Prints a line per record: VERIFIED, with the number of pairs that were checked and of those that were not, by reason; or
 NOT VERIFIED, with what could not be proven: bodies and interval of time.
-Exit: 0 all verified, 1 something is not, 2 bad input.
+Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input.
 )";
 
-std::string readFile(const char* path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw verify::BadInput(std::string("can't open '") + path + "'");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+/// @return whether the world is what the file says.
+bool report(const char* path, const verify::Comparison& comparison) {
+  for (const std::string& note : comparison.notes) std::printf("%s: %s\n", path, note.c_str());
+  for (const std::string& what : comparison.differences) std::printf("%s: DIFFERENT: %s\n", path, what.c_str());
+  return comparison.differences.empty();
 }
 
 void printJson(const verify::World& world, const verify::Record& record) {
@@ -64,7 +66,8 @@ void print(const verify::Verdict& v) {
 int main(int argc, char** argv) {
   bool json = false, quiet = false;
   verify::Options options;
-  std::vector<const char*> files;
+  std::vector<const char*> files, urdf, srdf;
+  std::map<std::string, std::string> packages;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     if (word == "--help") {
@@ -77,6 +80,18 @@ int main(int argc, char** argv) {
       json = true;
     } else if (word == "--quiet") {
       quiet = true;
+    } else if (word == "--urdf" && k + 1 < argc) {
+      urdf.push_back(argv[++k]);
+    } else if (word == "--srdf" && k + 1 < argc) {
+      srdf.push_back(argv[++k]);
+    } else if (word == "--package" && k + 1 < argc) {
+      const std::string both = argv[++k];
+      const std::size_t equals = both.find('=');
+      if (equals == std::string::npos) {
+        std::fprintf(stderr, "fcl_artic_verify: --package takes NAME=FOLDER\n");
+        return 2;
+      }
+      packages[both.substr(0, equals)] = both.substr(equals + 1);
     } else if (word == "--work" && k + 1 < argc) {
       options.work = std::strtoull(argv[++k], nullptr, 10);
     } else if (word.size() > 1 && word[0] == '-') {
@@ -86,17 +101,19 @@ int main(int argc, char** argv) {
       files.push_back(argv[k]);
     }
   }
-  if (files.size() < 2) {
+  if (files.empty() || (files.size() == 1 && urdf.empty() && srdf.empty())) {
     std::fprintf(stderr, "fcl_artic_verify: a world and certificates are needed (see --help)\n");
     return 2;
   }
   std::size_t verified = 0, all = 0;
-  bool bad = false;
+  bool bad = false, same = true;
   try {
-    const std::string world_text = readFile(files[0]);
+    const std::string world_text = verify::readFile(files[0]);
     const verify::World world = verify::readWorld(world_text);
+    for (const char* path : urdf) same = report(path, verify::compareWithUrdf(world, path, packages)) && same;
+    for (const char* path : srdf) same = report(path, verify::compareWithSrdf(world, path)) && same;
     for (std::size_t f = 1; f < files.size(); ++f) {
-      const std::string bytes = readFile(files[f]);
+      const std::string bytes = verify::readFile(files[f]);
       std::size_t number = 0;
       for (const verify::Record& record : verify::splitRecords(bytes)) {
         const verify::Verdict verdict = verify::verifyRecord(world, record, options);
@@ -115,5 +132,5 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::printf("%zu of %zu records verified\n", verified, all);
-  return bad ? 2 : verified == all ? 0 : 1;
+  return bad ? 2 : verified == all && same ? 0 : 1;
 }
