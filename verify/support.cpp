@@ -271,17 +271,22 @@ Geometry::Reach Geometry::reach(std::uint32_t i, std::uint32_t j, const Vec& v, 
       f = f + constant(mulUp(encloseUp(round.axes[0]), length));
     } else if (round.axes[0] != 0 || round.axes[1] != 0 || round.axes[2] != 0) {
       Tm Q;
+      Fix simple;  // E <= sum |a_k v_k|: better where v is as good as along an axis without reach
       for (int k = 0; k < 3; ++k) {
         const Tm a = constant(enclose(round.axes[k])) * v[k];
         Q = Q + a * a;
+        simple += bound(a);
       }
-      const Fix floor_of_width = Fix{kOne >> 20};
+      // g near 1/sqrt(Q), so that 1/g is near sqrt(Q); where Q varies much, nearer to its most.
       Fix width = sqrtUp(most(abs(Q.c0), shifted(bound(Q), 2)));
       at_centre = sqrtUp(most(Q.c0, Fix{0}));
-      width = most(width, floor_of_width);
-      const Fix g = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(width.v)));
-      const Fix inverse = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(g.v)) + 1);  // >= 1/g
-      const Tm mean = divided(Q * constant(g) + constant(inverse), 2);
+      Tm mean = constant(simple);
+      if (simple > width) {
+        width = most(width, Fix{kOne >> 31});
+        const Fix g = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(width.v)));
+        const Fix inverse = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(g.v)) + 1);  // >= 1/g
+        mean = divided(Q * constant(g) + constant(inverse), 2);
+      }
       at_centre = at_centre - mean.c0;
       f = f + mean;
     }
