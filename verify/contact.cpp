@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is shown at one time: that bodies meet (witnesses), and that no surface lies in the other body (SOLID).
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <map>
+
+#include "proof.h"
+
+namespace verify {
+namespace {
+
+Fix up(const Tm& a) { return a.c0 + abs(a.c1) + abs(a.c2) + a.r; }
+Fix down(const Tm& a) { return a.c0 - abs(a.c1) - abs(a.c2) - a.r; }
+/// 1 or -1 where certain, else 0.
+int sign(const Tm& a) { return down(a) > Fix{0} ? 1 : up(a) < Fix{0} ? -1 : 0; }
+bool atMost(const Tm& a, const Tm& b) { return up(a) <= down(b); }
+Tm square(const Tm& a) { return a * a; }
+Tm exactly(double x) { return constant(enclose(x)); }
+Vec pointOf(const double* x) { return {exactly(x[0]), exactly(x[1]), exactly(x[2])}; }
+
+/// det(a, b, c)
+Tm determinant(const Vec& a, const Vec& b, const Vec& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+/// Takes points of body A to coordinates of body B's geometry: row k is the functional "coordinate k there" in A's.
+class Relative {
+ public:
+  Relative(const World& world, Poses& poses, const Span& span, int a, int b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Functional::Value f;
+      f.v[k] = constant(integer(1));
+      const Functional::Value in_frame = toParent(f, world.bodies[b].pose);
+      rows_[k] = Functional(world, poses, span, world.bodies[b].frame, in_frame.v, in_frame.d).inBody(a);
+    }
+  }
+  Vec operator()(const Vec& x) const {
+    Vec y;
+    for (std::size_t k = 0; k < 3; ++k) y[k] = dot(rows_[k].v, x) + rows_[k].d;
+    return y;
+  }
+
+ private:
+  Functional::Value rows_[3];
+};
+
+const Geometry& geometryOf(const World& world, int body) { return world.geometries[world.bodies[body].geometry]; }
+
+Vec corner(const Geometry& g, std::uint32_t vertex) { return pointOf(&g.vertices[3 * static_cast<std::size_t>(vertex)]); }
+
+/// The winding number of a closed mesh around x: its crossings with the half-line from x along coordinate axis k, each
+/// counted by the side that it is crossed from. In the plane of the two other coordinates, relative to x, a triangle
+/// (a, b, c) is crossed where the areas [a b], [b c], [c a] have one sign, at the height
+/// ([b c] a_k + [c a] b_k + [a b] c_k) / ([a b] + [b c] + [c a]). @return false where a sign is not certain.
+bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backwards, Budget& budget, std::int64_t& number) {
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  Fix low[3], high[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    low[c] = down(x[c]) - ulps(2);
+    high[c] = up(x[c]) + ulps(2);
+  }
+  number = 0;
+  budget.spend(mesh.triangles.size());
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    const Fix* const p[3] = {mesh.points[mesh.triangles[t]].x, mesh.points[mesh.triangles[t + 1]].x,
+                             mesh.points[mesh.triangles[t + 2]].x};
+    const auto beside = [&](std::size_t c) {  // certainly apart from x's line in coordinate c
+      return (p[0][c] > high[c] && p[1][c] > high[c] && p[2][c] > high[c]) ||
+             (p[0][c] < low[c] && p[1][c] < low[c] && p[2][c] < low[c]);
+    };
+    if (beside(i) || beside(j)) continue;
+    budget.spend(50);
+    Vec q[3];
+    for (std::size_t c = 0; c < 3; ++c) q[c] = corner(mesh, mesh.triangles[t + c]) - x;
+    Tm area[3];
+    int plus = 0, minus = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec &a = q[c], &b = q[(c + 1) % 3];
+      area[c] = a[i] * b[j] - a[j] * b[i];
+      plus += sign(area[c]) > 0;
+      minus += sign(area[c]) < 0;
+    }
+    if (plus > 0 && minus > 0) continue;
+    if (plus < 3 && minus < 3) return false;
+    const int height = sign(area[1] * q[0][k] + area[2] * q[1][k] + area[0] * q[2][k]) * (plus == 3 ? 1 : -1);
+    if (height == 0) return false;
+    if ((height > 0) != backwards) number += plus == 3 ? 1 : -1;
+  }
+  return true;
+}
+
+/// Whether each part of A's surface, or each piece of another geometry, has a point outside of the solid B.
+void checkOutside(const World& world, Poses& poses, int a, int b, const Span& span, Budget& budget) {
+  const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
+  if (!B.solid || A.unbounded()) return;  // what is without bounds is not inside of what has them
+  if (!B.closed) throw NotProven("SOLID needs a closed surface, and that of " + world.describe(b) + " is not closed");
+  const Relative toB(world, poses, span, a, b);
+  // A point is tried along six half-lines; of a mesh several points are, for corners and edges may be met exactly.
+  const auto outside = [&](const Vec& p) {
+    const Vec x = toB(p);
+    std::int64_t number = 0;
+    for (std::size_t k = 0; k < 6; ++k) {
+      if (!windingNumber(B, x, k % 3, k > 2, budget, number)) continue;
+      if (number != 0) throw NotProven("a part of " + world.describe(a) + " is inside of " + world.describe(b));
+      return true;
+    }
+    return false;
+  };
+  const auto unsure = [&]() {
+    throw NotProven("SOLID finds no point of " + world.describe(a) + " that is certainly outside of " + world.describe(b));
+  };
+  if (A.kind == Geometry::mesh) {
+    std::map<std::uint32_t, int> tried;  // per part; -1: shown
+    for (std::size_t t = 0; t < A.pieces(); ++t) {
+      int& tries = tried[A.part[t]];
+      if (tries < 0 || tries > 12) continue;
+      Vec p;  // (5 c0 + 7 c1 + 4 c2) / 16
+      const Vec c[3] = {corner(A, A.triangles[3 * t]), corner(A, A.triangles[3 * t + 1]), corner(A, A.triangles[3 * t + 2])};
+      for (std::size_t k = 0; k < 3; ++k)
+        p[k] = divided(c[0][k] * constant(integer(5)) + c[1][k] * constant(integer(7)) + c[2][k] * constant(integer(4)), 16);
+      tries = outside(p) ? -1 : tries + 1;
+    }
+    for (const auto& part : tried)
+      if (part.second >= 0) unsure();
+    return;
+  }
+  for (std::uint32_t k = 0; k < A.pieces(); ++k) {
+    Vec p{};
+    if (A.kind == Geometry::boxes) p = pointOf(&A.cells[6 * static_cast<std::size_t>(k)]);
+    if (A.kind == Geometry::hull) p = corner(A, 0);
+    if (!outside(p)) unsure();
+  }
+}
+
+/// A point of a body as a witness names it.
+Vec readPoint(const Geometry& g, Bytes& bytes);
+/// Whether x is certainly in the tetrahedron of four vertices of a hull: with each of them replaced by x, its volume
+/// keeps its sign.
+bool insideTetrahedron(const Vec corners[4], const Vec& x) {
+  const auto volume = [](const Vec& a, const Vec& b, const Vec& c, const Vec& d) {
+    return sign(determinant(b - a, c - a, d - a));
+  };
+  const Vec &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
+  const int s = volume(a, b, c, d);
+  return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s && volume(a, b, c, x) == s;
+}
+/// Whether x, in g's coordinates, is certainly in that piece.
+bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
+  const std::vector<double>& n = g.numbers;
+  const auto half = [&](std::size_t k) { return exactly(n[k] / 2); };
+  const auto within = [&](const Tm& value, const Tm& size) { return atMost(value, size) && atMost(-value, size); };
+  switch (g.kind) {
+    case Geometry::box:
+      return within(x[0], half(0)) && within(x[1], half(1)) && within(x[2], half(2));
+    case Geometry::boxes: {
+      const double* c = &g.cells[6 * static_cast<std::size_t>(piece)];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!within(x[k] - exactly(c[k]), exactly(c[3 + k]))) return false;
+      return true;
+    }
+    case Geometry::sphere:
+      return atMost(dot(x, x), square(exactly(n[0])));
+    case Geometry::ellipsoid: {  // sum (x_k / a_k)^2 <= 1, times the square of a b c
+      const Tm a = exactly(n[0]), b = exactly(n[1]), c = exactly(n[2]);
+      return n[0] > 0 && n[1] > 0 && n[2] > 0 &&
+             atMost(square(x[0] * b * c) + square(a * x[1] * c) + square(a * b * x[2]), square(a * b * c));
+    }
+    case Geometry::capsule: {  // any point of the segment serves; the nearest is best
+      const Fix end = encloseDown(n[1] / 2);
+      const Tm nearest = constant(most(-end, least(end, x[2].c0)));
+      return end >= Fix{0} && atMost(square(x[0]) + square(x[1]) + square(x[2] - nearest), square(exactly(n[0])));
+    }
+    case Geometry::cylinder:
+      return within(x[2], half(1)) && atMost(square(x[0]) + square(x[1]), square(exactly(n[0])));
+    case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z)
+      const Tm l = exactly(n[1]);
+      return within(x[2], half(1)) &&
+             atMost((square(x[0]) + square(x[1])) * square(l), square(exactly(n[0]) * (half(1) - x[2])));
+    }
+    case Geometry::halfspace:
+      return atMost(dot(pointOf(n.data()), x), exactly(n[3]));
+    default:
+      return false;
+  }
+}
+
+Vec readPoint(const Geometry& g, Bytes& bytes) {
+  const std::uint32_t piece = bytes.varint();
+  if (piece >= g.pieces()) throw BadInput("a witness names a piece that is not there");
+  Vec x{};
+  if (g.kind != Geometry::mesh && g.kind != Geometry::hull) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint64_t bits = bytes.little(8);
+      double value = 0;
+      std::memcpy(&value, &bits, sizeof value);
+      x[k] = exactly(value);
+    }
+    if (!inside(g, piece, x)) throw NotProven("a witness' point is not certainly in its piece");
+    return x;
+  }
+  // sum w_k v_k / sum w_k, with integers w_k >= 0: in the hull of the v_k.
+  const std::uint32_t count = bytes.varint();
+  if (count == 0 || count > 16) throw BadInput("a witness' point has 1 to 16 weights");
+  std::uint64_t sum = 0;
+  for (std::uint32_t n = 0; n < count; ++n) {
+    std::uint32_t vertex = bytes.varint();
+    const auto weight = static_cast<std::int64_t>(bytes.little(4));
+    if (vertex >= (g.kind == Geometry::mesh ? 3 : g.vertices.size() / 3))
+      throw BadInput("a witness names a vertex that is not there");
+    if (g.kind == Geometry::mesh) vertex = g.triangles[3 * static_cast<std::size_t>(piece) + vertex];
+    const Vec v = corner(g, vertex);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // w 2^-37 keeps the sum small; weights are 32 bits wide, so it is exact
+      x[k] = x[k] + constant(Fix{static_cast<Int>(weight) * (kOne >> 37)}) * v[k];
+    }
+    sum += static_cast<std::uint64_t>(weight);
+  }
+  if (sum == 0) throw BadInput("a witness' weights are all 0");
+  // Divided by W = sum 2^-37: X / W, by the integer quotient; errors grow by 1/W and one ulp more.
+  const Int W = static_cast<Int>(sum) * (kOne >> 37);
+  for (Tm& c : x) {
+    const Int limit = (static_cast<Int>(1) << 126) / (static_cast<Int>(1) << 37);
+    if (c.c0.v > limit || c.c0.v < -limit || c.r.v > limit) throw NotProven("a witness' point is out of range");
+    const Int scale = W >> 27;  // sum, exactly: W = sum 2^27
+    c.c0 = checked(c.c0.v * (static_cast<Int>(1) << 37) / scale);
+    c.r = checked(c.r.v * (static_cast<Int>(1) << 37) / scale + 2);
+  }
+  return x;
+}
+
+}  // namespace
+
+void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& budget) {
+  checkOutside(world, poses, a, b, {t, t}, budget);
+  checkOutside(world, poses, b, a, {t, t}, budget);
+}
+
+std::string checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
+  bytes.byte();
+  const std::uint32_t piece = bytes.varint(), first = bytes.varint(), second = bytes.varint();
+  const std::uint64_t bits = bytes.little(8);
+  double t = 0;
+  std::memcpy(&t, &bits, sizeof t);
+  if (piece >= motion.pieces.size()) throw BadInput("the contact is in a piece that is not there");
+  if (first >= world.bodies.size() || second >= world.bodies.size()) throw BadInput("the contact's body is not there");
+  if (!(t >= 0 && t <= 1)) throw BadInput("the contact's time is not in [0, 1]");
+  const Enclosed at = enclose(t);
+  const std::vector<Opponent> list = opponents(world, motion, piece, static_cast<int>(std::max(first, second)));
+  const auto pair = std::find_if(list.begin(), list.end(), [&](const Opponent& o) {
+    return o.body == static_cast<int>(std::min(first, second));
+  });
+  if (first == second || pair == list.end()) throw NotProven("the contact is between bodies that are not checked");
+  for (const Ignored& ignored : motion.pieces[piece].ignored)
+    if (ignored.a == pair->body && ignored.b == static_cast<int>(std::max(first, second)) && t <= ignored.until)
+      throw NotProven("the contact is at a time at which its pair is ignored");
+
+  const Span span{at.x, at.x + at.error};
+  Poses poses(world, motion.pieces[piece], budget);
+  const std::uint8_t kind = bytes.byte();
+  if (kind > 4) throw BadInput("there is no witness of kind " + std::to_string(kind));
+  // The one that has the edge or the point, and the other one, in whose coordinates all is computed.
+  const int a = static_cast<int>(kind == 1 || kind == 3 ? second : first);
+  const int b = static_cast<int>(kind == 1 || kind == 3 ? first : second);
+  const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
+  const Relative toB(world, poses, span, a, b);
+  bool shown = false;
+  if (kind <= 1) {
+    const std::uint32_t triangle = bytes.varint(), edge = bytes.varint(), crossed = bytes.varint();
+    if (A.kind != Geometry::mesh || B.kind != Geometry::mesh || triangle >= A.pieces() || crossed >= B.pieces() || edge > 2)
+      throw BadInput("CROSS names a triangle or edge that is not there");
+    const Vec p = toB(corner(A, A.triangles[3 * triangle + edge])),
+              q = toB(corner(A, A.triangles[3 * triangle + (edge + 1) % 3]));
+    Vec c[3];
+    for (std::size_t k = 0; k < 3; ++k) c[k] = corner(B, B.triangles[3 * crossed + k]) - p;
+    const Vec e = q - p;
+    // p and q are on different sides of the plane; the line pq passes all edges on one side.
+    const int side_p = sign(determinant(c[0], c[1], c[2]));
+    const int side_q = sign(determinant(c[0] - e, c[1] - e, c[2] - e));
+    const int s0 = sign(determinant(e, c[0], c[1])), s1 = sign(determinant(e, c[1], c[2])),
+              s2 = sign(determinant(e, c[2], c[0]));
+    shown = side_p * side_q == -1 && s0 != 0 && s0 == s1 && s1 == s2;
+  } else if (kind <= 3) {
+    const Vec x = toB(readPoint(A, bytes));
+    const std::uint32_t container = bytes.varint();
+    if (container >= B.pieces()) throw BadInput("a witness names a piece that is not there");
+    if (B.kind == Geometry::hull) {
+      Vec corners[4];
+      for (Vec& c : corners) {
+        const std::uint32_t vertex = bytes.varint();
+        if (vertex >= B.vertices.size() / 3) throw BadInput("a witness names a vertex that is not there");
+        c = corner(B, vertex);
+      }
+      shown = insideTetrahedron(corners, x);
+    } else {
+      shown = inside(B, container, x);
+    }
+  } else {
+    const Vec x = toB(readPoint(A, bytes)), y = readPoint(B, bytes), d = x - y;
+    const Tm margin = constant(encloseDown(world.margin(a, b, motion.margin)) + encloseDown(motion.added));
+    shown = margin.c0 > Fix{0} && atMost(dot(d, d), square(margin));
+  }
+  if (!shown) throw NotProven("the witness does not show that " + world.describe(a) + " and " + world.describe(b) + " meet");
+  char text[64];
+  std::snprintf(text, sizeof text, " at t = %.17g of piece %u", t, piece);
+  return world.describe(a) + " and " + world.describe(b) + text;
+}
+
+}  // namespace verify

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion.h"
+
+#include <algorithm>
+
+namespace verify {
+
+// t = centre + half s. The centre is rounded down, the half up: the model's range of t covers [a, b], and at most 2 ulp
+// more. Then Horner's scheme in Taylor models.
+Tm Poses::variable(int v, const Span& span) const {
+  const auto at = std::lower_bound(piece_.polynomials.begin(), piece_.polynomials.end(), v,
+                                   [](const Polynomial& p, int w) { return p.variable < w; });
+  if (at == piece_.polynomials.end() || at->variable != v) return {};
+  const Fix centre = span.middle();
+  const Tm t{centre, most(span.b - centre, centre - span.a), {}, {}};
+  Tm value;
+  for (std::size_t k = at->coefficients.size(); k-- > 0;) value = value * t + constant(enclose(at->coefficients[k]));
+  return value;
+}
+
+Pose Poses::compute(int index, const Span& span) const {
+  const Frame& frame = world_.frames[index];
+  Pose pose = frame.origin;
+  for (const Element& e : frame.elements) {
+    if (e.kind == Element::rotate) {
+      const Mat turn = rotation(
+          Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
+      pose.R = pose.R * turn;
+      const auto at = std::lower_bound(piece_.orientations.begin(), piece_.orientations.end(), e.variable,
+                                       [](const Orientation& o, int w) { return o.variable < w; });
+      if (at != piece_.orientations.end() && at->variable == e.variable) pose.R = pose.R * statedRotation(at->numbers);
+      continue;
+    }
+    const Tm value = constant(enclose(e.multiplier)) * variable(e.variable, span) + constant(enclose(e.offset));
+    if (e.kind == Element::slide) {
+      pose.t = pose.t + pose.R * Vec{e.unit[0] * value, e.unit[1] * value, e.unit[2] * value};
+    } else {
+      pose.R = pose.R * rotation(e.unit, e.products, value);
+    }
+  }
+  return pose;
+}
+
+const Pose& Poses::local(int frame, const Span& span) {
+  if (world_.frames[frame].elements.empty()) return world_.frames[frame].origin;
+  if (count_ > 20000) {
+    known_.clear();
+    count_ = 0;
+  }
+  std::map<int, Pose>& at = known_[{span.a.v, span.b.v}];
+  const auto found = at.find(frame);
+  if (found != at.end()) return found->second;
+  ++count_;
+  budget_.spend(100 * world_.frames[frame].elements.size());
+  return at.emplace(frame, compute(frame, span)).first->second;
+}
+
+// x = R y + t: v.x + d = (R^T v).y + (d + v.t), and v.y + d = v.R^T (x - t) + d = (R v).x + (d - (R v).t).
+Functional::Value toChild(const Functional::Value& f, const Pose& pose) {
+  return {transposed(pose.R, f.v), f.d + dot(f.v, pose.t)};
+}
+Functional::Value toParent(const Functional::Value& f, const Pose& pose) {
+  const Vec v = pose.R * f.v;
+  return {v, f.d - dot(v, pose.t)};
+}
+
+Functional::Functional(const World& world, Poses& poses, const Span& span, int frame, const Vec& v, const Tm& d)
+    : world_(world), poses_(poses), span_(span), start_(frame) {
+  known_.emplace(frame, Value{v, d});
+  for (int child = frame, up; child != 0; child = up) {
+    up = world.frames[child].parent;
+    towards_.emplace(up, child);
+  }
+}
+
+const Functional::Value& Functional::in(int frame) {
+  const auto found = known_.find(frame);
+  if (found != known_.end()) return found->second;
+  const auto ancestor = towards_.find(frame);
+  // Recursion ends: an ancestor of the first frame asks for its child towards it, another frame for its parent; at the
+  // latest frame 0 is an ancestor. The chain is at most 1000 frames deep (statement.cpp).
+  Value value = ancestor != towards_.end() ? toParent(in(ancestor->second), poses_.local(ancestor->second, span_))
+                                           : toChild(in(world_.frames[frame].parent), poses_.local(frame, span_));
+  return known_.emplace(frame, value).first->second;
+}
+
+Functional::Value Functional::inBody(int body) {
+  return toChild(in(world_.bodies[body].frame), world_.bodies[body].pose);
+}
+
+}  // namespace verify

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where frames and directions are over an interval of time.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "statement.h"
+
+namespace verify {
+
+/// An interval of time, a <= b, both exact.
+struct Span {
+  Fix a, b;
+  Fix middle() const { return Fix{a.v + (b.v - a.v) / 2}; }
+};
+
+/// Each frame's pose in its parent over the intervals asked for, of one piece of a motion.
+class Poses {
+ public:
+  Poses(const World& world, const Piece& piece, Budget& budget) : world_(world), piece_(piece), budget_(budget) {}
+
+  const Pose& local(int frame, const Span& span);
+
+ private:
+  Tm variable(int v, const Span& span) const;
+  Pose compute(int frame, const Span& span) const;
+
+  const World& world_;
+  const Piece& piece_;
+  Budget& budget_;
+  std::map<std::pair<Int, Int>, std::map<int, Pose>> known_;
+  std::size_t count_ = 0;
+};
+
+/// An affine function of points, f(x) = v.x + d: given in one frame, it is asked for in others. Only the frames on the
+/// path between the two take part, so what both have above them cancels exactly.
+class Functional {
+ public:
+  /// f(x) = v.x + d for x in `frame`'s coordinates.
+  Functional(const World& world, Poses& poses, const Span& span, int frame, const Vec& v, const Tm& d);
+
+  struct Value {
+    Vec v;
+    Tm d;
+  };
+  /// The same function for x in the coordinates of another frame, or of a body's geometry.
+  const Value& in(int frame);
+  Value inBody(int body);
+
+ private:
+  const World& world_;
+  Poses& poses_;
+  const Span span_;
+  const int start_;
+  std::map<int, Value> known_;
+  std::map<int, int> towards_;  // of each ancestor of the first frame: its child on the way there
+};
+
+/// f(x) = v.x + d for x in a parent's coordinates, where y = R^T (x - t) are the child's: and the other way.
+Functional::Value toChild(const Functional::Value& f, const Pose& pose);
+Functional::Value toParent(const Functional::Value& f, const Pose& pose);
+
+}  // namespace verify

@@ -1,0 +1,416 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk over a proof. Each node is about a task; TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover
+// it, and a leaf's claim is computed here. So when the walk has come through, every pair, piece and time is proven.
+#include "proof.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace verify {
+
+std::uint8_t Bytes::peek() const {
+  if (empty()) throw BadInput("the proof ends too early");
+  return static_cast<std::uint8_t>(bytes_[at_]);
+}
+std::string_view Bytes::take(std::size_t n) {
+  if (n > left()) throw BadInput("the proof ends too early");
+  at_ += n;
+  return bytes_.substr(at_ - n, n);
+}
+std::uint64_t Bytes::little(int n) {
+  const std::string_view bytes = take(static_cast<std::size_t>(n));
+  std::uint64_t value = 0;
+  for (int k = n; k-- > 0;) value = value << 8 | static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(k)]);
+  return value;
+}
+std::int64_t Bytes::signedLittle(int n) {
+  const std::uint64_t value = little(n), sign = static_cast<std::uint64_t>(1) << (8 * n - 1);
+  return static_cast<std::int64_t>(value & (sign - 1)) - static_cast<std::int64_t>(value & sign);
+}
+std::uint32_t Bytes::varint() {
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 35; shift += 7) {
+    const std::uint8_t b = byte();
+    value |= static_cast<std::uint64_t>(b & 127) << shift;
+    if ((b & 128) == 0) {
+      if (value >> 32 != 0 || (b == 0 && shift > 0)) break;
+      return static_cast<std::uint32_t>(value);
+    }
+  }
+  throw BadInput("a varint has more than 32 bits or is not in its shortest form");
+}
+
+std::vector<Record> splitRecords(std::string_view file) {
+  std::vector<Record> records;
+  Bytes bytes(file);
+  const auto text = [&]() { return bytes.take(bytes.little(4)); };
+  while (!bytes.empty()) {
+    if (bytes.take(4) != "FAC1") throw BadInput("a record does not begin with FAC1");
+    Record record;
+    record.motion = text();
+    record.proof = text();
+    records.push_back(record);
+  }
+  return records;
+}
+
+std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body) {
+  std::vector<Opponent> list;
+  for (const Partner& partner : world.partners[body]) {
+    if (!(partner.self ? motion.self : motion.scene)) continue;
+    const double own = world.margin(body, partner.body, motion.margin);
+    list.push_back({partner.body, Fix{-kOne}, encloseUp(own) + encloseUp(motion.added)});
+  }
+  // An ignored pair is left out at and before its time, of which the lower end is taken; whether that is to the end of
+  // the piece is decided in doubles. The list is in ascending order, as world.partners is.
+  const double end = piece + 1 == motion.pieces.size() ? motion.until : 1;
+  for (const Ignored& ignored : motion.pieces[piece].ignored) {
+    if (ignored.b != body) continue;
+    const auto at =
+        std::lower_bound(list.begin(), list.end(), ignored.a, [](const Opponent& o, int b) { return o.body < b; });
+    if (at == list.end() || at->body != ignored.a) continue;
+    at->from = most(at->from, ignored.until >= end ? integer(2) : encloseDown(ignored.until));
+  }
+  return list;
+}
+
+namespace {
+
+using Direction = std::array<Fix, 3>;
+
+/// Says already which bodies, pieces and time it is about.
+struct Located : NotProven {
+  using NotProven::NotProven;
+};
+
+std::string spanText(const Span& span) {
+  char text[80];
+  std::snprintf(text, sizeof text, "[%.9g, %.9g]", toDouble(span.a), toDouble(span.b));
+  return text;
+}
+
+class Walk {
+ public:
+  Walk(const World& world, const Motion& motion, std::size_t piece, Bytes& bytes, const Options& options,
+       Budget& budget, Verdict& verdict)
+      : world_(world),
+        motion_(motion),
+        piece_(piece),
+        bytes_(bytes),
+        options_(options),
+        budget_(budget),
+        verdict_(verdict),
+        poses_(world, motion.pieces[piece], budget) {}
+
+  void run() {
+    const bool last = piece_ + 1 == motion_.pieces.size();
+    const Span all{Fix{0}, last ? encloseUp(motion_.until) : Fix{kOne}};
+    for (std::size_t a = 0; a < world_.bodies.size(); ++a) {
+      a_ = static_cast<int>(a);
+      partners_ = opponents(world_, motion_, piece_, a_);
+      if (partners_.empty()) continue;
+      if (piece_ == 0) verdict_.checked += partners_.size();
+      Task task;
+      task.to = geometry(a_).pieces();
+      task.q = static_cast<std::uint32_t>(partners_.size());
+      task.span = all;
+      choose(task);
+      node(task);
+    }
+  }
+
+ private:
+  struct Task {
+    std::uint32_t from = 0, to = 0;  // pieces of A
+    std::uint32_t p = 0, q = 0;      // partners
+    std::uint32_t k = 0, l = 0;      // pieces of the partner, where there is one
+    Span span;
+    int depth = 0, time_depth = 0;
+    bool outside = false;  // SOLID has shown that neither is in the other
+  };
+
+  const Geometry& geometry(int body) const { return world_.geometries[world_.bodies[body].geometry]; }
+  void choose(Task& task) const {
+    if (task.q - task.p != 1) return;
+    task.k = 0;
+    task.l = geometry(partners_[task.p].body).pieces();
+  }
+  bool wholeOther(const Task& task) const {
+    return task.k == 0 && task.l == geometry(partners_[task.p].body).pieces();
+  }
+  bool wholeOwn(const Task& task) const { return task.from == 0 && task.to == geometry(a_).pieces(); }
+
+  [[noreturn]] void fail(const Task& task, const std::string& why) const {
+    std::string text = why + ": " + world_.describe(a_);
+    if (!wholeOwn(task)) text += " pieces " + std::to_string(task.from) + "-" + std::to_string(task.to - 1);
+    text += " and ";
+    if (task.q - task.p == 1) {
+      text += world_.describe(partners_[task.p].body);
+      if (!wholeOther(task)) text += " pieces " + std::to_string(task.k) + "-" + std::to_string(task.l - 1);
+    } else {
+      text += std::to_string(task.q - task.p) + " bodies from " + world_.describe(partners_[task.p].body) + " on";
+    }
+    text += ", time " + spanText(task.span);
+    if (motion_.pieces.size() > 1) text += " of piece " + std::to_string(piece_);
+    throw Located(text);
+  }
+
+  std::uint32_t cut(std::uint32_t size, const Task& task) {
+    const std::uint32_t c = bytes_.varint();
+    if (c == 0 || c >= size) fail(task, "a cut is not inside its task");
+    return c;
+  }
+
+  void node(const Task& task) {
+    if (task.depth > kMostDepth) fail(task, "the proof is more than " + std::to_string(kMostDepth) + " nodes deep");
+    budget_.spend(10);
+    const std::uint8_t kind = bytes_.byte();
+    Task first = task, second = task;
+    ++first.depth;
+    ++second.depth;
+    switch (kind) {
+      case kTime:
+        if (task.time_depth == kMostTimeDepth) fail(task, "time is cut more than 60 times");
+        first.time_depth = second.time_depth = task.time_depth + 1;
+        first.span.b = second.span.a = task.span.middle();
+        break;
+      case kPartners:
+        first.q = second.p = task.p + cut(task.q - task.p, task);
+        choose(first);
+        choose(second);
+        break;
+      case kOwn:
+        if (geometry(a_).solid && !task.outside) fail(task, "a solid is cut without SOLID");
+        first.to = second.from = task.from + cut(task.to - task.from, task);
+        break;
+      case kOther:
+        if (task.q - task.p != 1) fail(task, "OTHER has more than one partner");
+        if (geometry(partners_[task.p].body).solid && !task.outside) fail(task, "a solid is cut without SOLID");
+        first.l = second.k = task.k + cut(task.l - task.k, task);
+        break;
+      case kSolid:
+        solid(first);
+        node(first);
+        return;
+      default:
+        leaf(task, kind);
+        return;
+    }
+    node(first);
+    node(second);
+  }
+
+  void solid(Task& task) {
+    if (task.q - task.p != 1 || !wholeOwn(task) || !wholeOther(task)) fail(task, "SOLID is about two whole bodies");
+    const Opponent& other = partners_[task.p];
+    const Fix at = most(task.span.a, other.from);
+    if (other.from < task.span.b) {  // else the pair is ignored for all of the task's time
+      try {
+        checkSolid(world_, poses_, a_, other.body, at, budget_);
+      } catch (const NotProven& error) {
+        fail(task, error.what());
+      }
+    }
+    task.outside = true;
+  }
+
+  void leaf(const Task& task, std::uint8_t kind) {
+    ++verdict_.leaves;
+    Direction n[2];
+    int frame = 0;
+    if (kind == kWall || kind == kWallOther) {
+      wall(task, kind == kWallOther);
+      return;
+    }
+    if (kind >= kWall) fail(task, "there is no node of kind " + std::to_string(kind));
+    const int where = kind % 3, width = kind < kSepFine ? 2 : 4;
+    frame = where == 0 ? 0 : world_.bodies[where == 1 ? a_ : partners_[task.p].body].frame;
+    // A power of two scales n to about 1; which n it is has no influence on what is proven.
+    std::int64_t integers[6] = {}, largest = 0;
+    for (int k = 0; k < (kind < kTurn ? 3 : 6); ++k) {
+      integers[k] = bytes_.signedLittle(width);
+      largest = std::max(largest, std::abs(integers[k]));
+    }
+    int shift = 0;
+    while (largest >> shift > 0) ++shift;
+    for (int k = 0; k < 6; ++k)
+      n[k / 3][static_cast<std::size_t>(k % 3)] = Fix{static_cast<Int>(integers[kind < kTurn ? k % 3 : k]) * (kOne >> shift)};
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t k = task.p; k < task.q; ++k) {
+      const Fix from = partners_[k].from;
+      if (from >= task.span.b) continue;  // ignored all the time
+      if (from <= task.span.a) {
+        all.push_back(k);
+      } else {  // from then on; the direction of a TURN moves along
+        const Fix m = checked((from - task.span.a).v);
+        const Fix length = task.span.b - task.span.a;
+        const double part = length.v == 0 ? 0 : static_cast<double>(m.v) / static_cast<double>(length.v);  // a hint
+        const Fix f = enclose(std::min(1.0, std::max(0.0, part))).x;
+        Direction from_n;
+        for (std::size_t c = 0; c < 3; ++c) from_n[c] = n[0][c] + (n[1][c] - n[0][c]) * f;
+        separated(task, {k}, frame, {from, task.span.b}, from_n, n[1], 0);
+      }
+    }
+    separated(task, all, frame, task.span, n[0], n[1], 0);
+  }
+
+  static Fix lengthUp(const Direction& n) {
+    return sqrtUp(mulUp(n[0], n[0]) + mulUp(n[1], n[1]) + mulUp(n[2], n[2]));
+  }
+
+  // For all t in the span: max over A of -n.x + max over a partner of n.y + margin |n| < 0, by the Bernstein
+  // coefficients of each sum (support.cpp). n(s) = (n0 + n1)/2 + s (n1 - n0)/2; |n(s)| <= max(|n0|, |n1|), since a
+  // length is convex. (n is halved with a rounding: the same rounded n is used for both sides.) Partners that are not
+  // shown to be apart over the whole span are looked at again over its halves.
+  void separated(const Task& task, const std::vector<std::uint32_t>& partners, int frame, const Span& span,
+                 const Direction& n0, const Direction& n1, int halvings) {
+    if (partners.empty()) return;
+    Vec n;
+    for (std::size_t k = 0; k < 3; ++k) n[k] = {shifted(n0[k] + n1[k], 1), shifted(n1[k] - n0[k], 1), {}, {}};
+    // Halving takes n(-1), n(0) and n(1) to be at most half an ulp of each term away from n0 and n1.
+    const Fix length = most(lengthUp(n0), lengthUp(n1)) + ulps(4);
+    std::vector<std::uint32_t> again;
+    try {
+      Functional f(world_, poses_, span, frame, n, Tm{});
+      Functional::Value own = f.inBody(a_);
+      own.v = {-own.v[0], -own.v[1], -own.v[2]};
+      own.d = -own.d;
+      if (geometry(a_).unbounded()) fail(task, "SEP of a body without bounds");
+      budget_.spend(50);
+      const Geometry::Reach a = geometry(a_).reach(task.from, task.to, own.v, own.d, length, budget_);
+      const bool single = task.q - task.p == 1;
+      for (const std::uint32_t k : partners) {
+        const Geometry& g = geometry(partners_[k].body);
+        if (g.unbounded()) fail(task, "SEP of a body without bounds");
+        const Functional::Value other = f.inBody(partners_[k].body);
+        budget_.spend(50);
+        const Geometry::Reach b =
+            g.reach(single ? task.k : 0, single ? task.l : g.pieces(), other.v, other.d, length, budget_);
+        if (apart(task, a, b, mulUp(partners_[k].margin, length))) continue;
+        again.push_back(k);
+      }
+    } catch (const Located&) {
+      throw;
+    } catch (const NotProven& error) {
+      fail(task, error.what());
+    }
+    if (again.empty()) return;
+    if (halvings == options_.halvings || span.b.v - span.a.v < 4) fail(task, "not shown to be apart");
+    Direction middle;
+    for (std::size_t k = 0; k < 3; ++k) middle[k] = shifted(n0[k] + n1[k], 1);
+    separated(task, again, frame, {span.a, span.middle()}, n0, middle, halvings + 1);
+    separated(task, again, frame, {span.middle(), span.b}, middle, n1, halvings + 1);
+  }
+
+  /// @throws where halving the time can't help: in its middle the two are not apart even without the remainder.
+  bool apart(const Task& task, const Geometry::Reach& a, const Geometry::Reach& b, Fix margin) const {
+    bool all = true;
+    for (int i = 0; i < 3; ++i) all = all && a.b[i] + b.b[i] + margin < Fix{0};
+    if (!all && a.centre + b.centre + margin - a.slack - a.slack - b.slack - b.slack > Fix{0})
+      fail(task, "not apart along the direction");
+    return all;
+  }
+
+  // Halfspace n.y <= d: apart when the least n.x of the other body is above d + margin |n|. Plane: on either side.
+  void wall(const Task& task, bool turned) {
+    if (task.q - task.p != 1) fail(task, "WALL has more than one partner");
+    const Opponent& opponent = partners_[task.p];
+    const bool own = geometry(a_).unbounded();
+    const int wall = own ? a_ : opponent.body, other = own ? opponent.body : a_;
+    const Geometry& g = geometry(wall);
+    if (!g.unbounded() || geometry(other).unbounded()) fail(task, "WALL of two bodies with bounds, or two without");
+    if (turned && g.kind != Geometry::plane) fail(task, "WALL from the other side of a halfspace");
+    int exponent = 0;
+    std::frexp(std::max({std::fabs(g.numbers[0]), std::fabs(g.numbers[1]), std::fabs(g.numbers[2])}), &exponent);
+    Functional::Value f;  // of a point x in the wall's coordinates: d - n.x, scaled by a power of two
+    Direction high;       // |n_k| at most
+    const double sign = turned ? -1 : 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Enclosed e = enclose(std::ldexp(sign * g.numbers[k], -exponent));
+      f.v[k] = -constant(e);
+      high[k] = abs(e.x) + e.error;
+    }
+    f.d = constant(enclose(std::ldexp(sign * g.numbers[3], -exponent)));
+    const Span span{most(task.span.a, opponent.from), task.span.b};
+    if (opponent.from >= task.span.b) return;
+    const Fix length = lengthUp(high);
+    walled(task, wall, other, toParent(f, world_.bodies[wall].pose), length, mulUp(opponent.margin, length), span, 0);
+  }
+  void walled(const Task& task, int wall, int other, const Functional::Value& f, Fix length, Fix margin,
+              const Span& span, int halvings) {
+    bool all = false;
+    try {
+      budget_.spend(50);
+      Functional::Value at = Functional(world_, poses_, span, world_.bodies[wall].frame, f.v, f.d).inBody(other);
+      const Geometry& g = geometry(other);
+      const std::uint32_t i = other == a_ ? task.from : task.k, j = other == a_ ? task.to : task.l;
+      Geometry::Reach none{};
+      all = apart(task, g.reach(i, j, at.v, at.d, length, budget_), none, margin);
+    } catch (const Located&) {
+      throw;
+    } catch (const NotProven& error) {
+      fail(task, error.what());
+    }
+    if (all) return;
+    if (halvings == options_.halvings || span.b.v - span.a.v < 4) fail(task, "not shown to be apart from the wall");
+    walled(task, wall, other, f, length, margin, {span.a, span.middle()}, halvings + 1);
+    walled(task, wall, other, f, length, margin, {span.middle(), span.b}, halvings + 1);
+  }
+
+  const World& world_;
+  const Motion& motion_;
+  const std::size_t piece_;
+  Bytes& bytes_;
+  const Options& options_;
+  Budget& budget_;
+  Verdict& verdict_;
+  Poses poses_;
+  int a_ = 0;
+  std::vector<Opponent> partners_;
+};
+
+void countUnchecked(const World& world, const Motion& motion, Verdict& verdict) {
+  std::copy(std::begin(world.not_checked), std::end(world.not_checked), std::begin(verdict.not_checked));
+  for (std::size_t a = 0; a < world.bodies.size(); ++a)
+    for (const Partner& partner : world.partners[a])
+      if (!(partner.self ? motion.self : motion.scene)) ++verdict.not_checked[static_cast<int>(Reason::scope)];
+  for (const Piece& piece : motion.pieces) verdict.not_checked[static_cast<int>(Reason::ignored)] += piece.ignored.size();
+}
+
+}  // namespace
+
+Verdict verifyRecord(const World& world, const Record& record, const Options& options) {
+  Verdict verdict;
+  Budget budget{options.work};
+  try {
+    const Motion motion = readMotion(record.motion, world);
+    verdict.pieces = motion.pieces.size();
+    verdict.until = motion.until;
+    if (motion.world != hexOf(world.hash)) throw NotProven("the motion is about another world: " + motion.world);
+    if (!world.false_neighbours.empty())
+      throw NotProven("the world calls them neighbours, and they are not: " + world.false_neighbours);
+    countUnchecked(world, motion, verdict);
+    Bytes bytes(record.proof);
+    const std::string_view hash = bytes.take(32);
+    if (!std::equal(hash.begin(), hash.end(), motion.hash.begin(),
+                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; }))
+      throw NotProven("the proof is about another motion");
+    for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece)
+      Walk(world, motion, piece, bytes, options, budget, verdict).run();
+    if (!bytes.empty() && bytes.peek() == kContact) {
+      verdict.contact_text = checkContact(world, motion, bytes, budget);
+      verdict.contact = true;
+    }
+    if (!bytes.empty()) throw BadInput("the proof has " + std::to_string(bytes.left()) + " bytes after its end");
+    verdict.verified = true;
+  } catch (const BadInput& error) {
+    verdict.bad_input = true;
+    verdict.reason = error.what();
+  } catch (const NotProven& error) {
+    verdict.reason = error.what();
+  }
+  verdict.steps = options.work - budget.left;
+  return verdict;
+}
+
+}  // namespace verify

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// World and motion as doc/CERTIFICATES.md describes them, read strictly.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sha256.h"
+#include "support.h"
+#include "taylor.h"
+
+namespace verify {
+
+struct Element {
+  enum Kind { turn, slide, rotate } kind;
+  int variable;
+  double axis[3], multiplier, offset;
+  Vec unit;  // turn and slide: the unit axis
+  Mat products;
+};
+
+struct Frame {
+  std::string name;
+  int parent, depth;
+  double numbers[12];  // as stated: rotation by rows, then translation
+  Pose origin;         // with every rotation that the numbers may mean
+  std::vector<Element> elements;
+};
+
+enum class Role { link, carried, obstacle };
+enum class Reason { same_frame, obstacles, neighbours, allowed, touch_link, scope, ignored };
+constexpr int kReasons = 7;
+const char* nameOf(Reason reason);
+const char* nameOf(Role role);
+
+struct Body {
+  Role role;
+  std::string name;
+  int name_id, frame, geometry;
+  double numbers[12];
+  Pose pose;
+};
+
+struct Unchecked {
+  Reason reason;
+  int a, b;  // name ids, a <= b
+};
+
+/// A pair that is checked unless the motion's scope leaves it out.
+struct Partner {
+  int body;
+  bool self;  // neither is an obstacle
+};
+
+struct World {
+  Hash hash;
+  std::vector<std::string> variables, names;
+  std::vector<Frame> frames;  // frame 0: the world
+  std::vector<Geometry> geometries;
+  std::vector<Body> bodies;
+  std::map<int, double> margins;
+  std::map<std::pair<int, int>, double> pair_margins;
+  std::map<std::pair<int, int>, Reason> unchecked;
+  // Derived:
+  std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
+  std::uint64_t not_checked[kReasons] = {};
+  std::string false_neighbours;  // a pair that the world calls neighbours, and that are not; empty: none
+
+  /// margin(A, B) without `added`, where the motion's own is `general`.
+  double margin(int a, int b, double general) const;
+  std::string describe(int body) const;
+};
+
+struct Polynomial {
+  int variable;
+  std::vector<double> coefficients;
+};
+struct Orientation {
+  int variable;
+  double numbers[9];
+};
+struct Ignored {
+  int a, b;
+  double until;
+};
+struct Piece {
+  std::vector<Polynomial> polynomials;    // by variable
+  std::vector<Orientation> orientations;  // by variable
+  std::vector<Ignored> ignored;
+};
+struct Motion {
+  Hash hash;
+  std::string world;
+  double margin = 0, added = 0, duration = 0, until = 1;
+  bool self = false, scene = false;
+  std::vector<Piece> pieces;
+};
+
+/// @throws BadInput, naming the line.
+World readWorld(std::string_view text);
+Motion readMotion(std::string_view text, const World& world);
+
+/// Numbers of a rotation (by rows) and a translation as the statement means them: any rotation whose entries are within
+/// 2^-49 of the numbers, exactly that translation.
+Mat statedRotation(const double numbers[9]);
+Pose statedPose(const double numbers[12]);
+
+}  // namespace verify

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// True claims are proven, false ones never: hand-made worlds of which the truth is known.
+#include <gtest/gtest.h>
+
+#include "worlds.h"
+
+namespace verify::test {
+namespace {
+
+const M kHere;
+M at(double x, double y, double z) {
+  M m;
+  m.t = {x, y, z};
+  return m;
+}
+void expectRefused(const Verdict& v, const std::string& words) {
+  EXPECT_FALSE(v.verified);
+  EXPECT_NE(v.reason.find(words), std::string::npos) << v.reason;
+}
+void expectVerified(const Verdict& v) { EXPECT_TRUE(v.verified) << v.reason; }
+
+/// A cart that slides along x, with a unit box; a wall: a box of thickness 0.2 around x = `wall`.
+World cart(double wall, const std::string& more = "") {
+  return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+                   hex(0) + "\ngeometry box " + hex(V{1, 1, 1}) + "\ngeometry box " + hex(V{0.2, 4, 4}) +
+                   "\nbody obstacle wall 0 1 " + hex(at(wall, 0, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n" + more);
+}
+MotionText moving(const std::vector<double>& coefficients) {
+  MotionText m;
+  std::string q = "q 0";
+  for (const double c : coefficients) q += " " + hex(c);
+  m.pieces = {q + "\n"};
+  return m;
+}
+
+TEST(VerifyProof, ASlideIsApartUpToTheVeryTouch) {
+  const World world = cart(2);  // the wall begins at 1.9; the box ends at x + 0.5
+  const MotionText free = moving({0, 1.3999999});
+  expectVerified(judge(world, free.write(world), sep({-1, 0, 0})));
+  expectVerified(judge(world, free.write(world), sep({-1, 0, 0}, 1)));
+  expectVerified(judge(world, free.write(world), sep({-1, 0, 0}, 2)));
+  expectVerified(judge(world, free.write(world), fine({-1, 0, 0})));
+  expectVerified(judge(world, free.write(world), turnNode({-1, 0, 0}, {-0.2, 0, 0})));
+  expectRefused(judge(world, free.write(world), sep({1, 0, 0})), "not apart along the direction");
+  const MotionText hits = moving({0, 1.4000001});
+  expectRefused(judge(world, hits.write(world), sep({-1, 0, 0})), "apart");
+  // It hits at the end only, at the beginning only, in the middle only.
+  expectRefused(judge(world, moving({1.41, -2}).write(world), sep({-1, 0, 0})), "apart");
+  expectRefused(judge(world, moving({-1, 0, 2.41}).write(world), sep({-1, 0, 0})), "apart");
+  expectRefused(judge(world, moving({0, 5.64, -5.64}).write(world), sep({-1, 0, 0})), "apart");  // most at 1/2: 1.41
+  expectVerified(judge(world, moving({0, 5.59, -5.59}).write(world), sep({-1, 0, 0})));
+}
+
+TEST(VerifyProof, MarginsCount) {
+  const World world = cart(2);
+  MotionText m = moving({0, 1});  // 0.4 apart at the end
+  m.margin = 0.3999;
+  expectVerified(judge(world, m.write(world), sep({-1, 0, 0})));
+  m.margin = 0.4001;
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m.margin = 0.3;
+  m.added = 0.0999;
+  expectVerified(judge(world, m.write(world), sep({-1, 0, 0})));
+  m.added = 0.1001;
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m.margin = m.added = 0;
+  expectRefused(judge(cart(2, "margin cart " + hex(0.5) + "\n"), m.write(cart(2, "margin cart " + hex(0.5) + "\n")),
+                      sep({-1, 0, 0})), "apart");
+  // A pair's own margin stands above the bodies', and those above the motion's.
+  const World own = cart(2, "margin cart " + hex(0.5) + "\nmargin wall cart " + hex(0.1) + "\n");
+  m.margin = 0.45;
+  expectVerified(judge(own, m.write(own), sep({-1, 0, 0})));
+  const World bodies = cart(2, "margin cart " + hex(0.1) + "\nmargin wall " + hex(0.2) + "\n");
+  expectVerified(judge(bodies, m.write(bodies), sep({-1, 0, 0})));
+  const World larger = cart(2, "margin cart " + hex(0.1) + "\nmargin wall " + hex(0.41) + "\n");
+  expectRefused(judge(larger, m.write(larger), sep({-1, 0, 0})), "apart");
+}
+
+TEST(VerifyProof, UntilAndIgnored) {
+  const World world = cart(2);
+  MotionText m = moving({0, 2.8});  // touches at 1/2
+  m.until = 0.4999;
+  expectVerified(judge(world, m.write(world), sep({-1, 0, 0})));
+  m.until = 0.5001;
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m = moving({2.8, -2.8});
+  m.ignored = "ignored 0 1 " + hex(0.5001) + "\n";
+  const Verdict v = judge(world, m.write(world), sep({-1, 0, 0}));
+  expectVerified(v);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::ignored)], 1u);
+  expectVerified(judge(world, m.write(world), node(kTime, sep({-1, 0, 0}), sep({-1, 0, 0}))));
+  expectVerified(judge(world, m.write(world), turnNode({1, 0, 0}, {-1.1, 0, 0})));
+  // At and before the time: a touch at t = 0 exactly, and one all along.
+  m = moving({1.4, -1.4});
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m.ignored = "ignored 0 1 " + hex(0) + "\n";
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m = moving({2, 1e-3});
+  m.until = 1e-3;  // no number of 2^-64
+  for (const double t : {1e-3, 1.0, 0.999e-3}) {
+    m.ignored = "ignored 0 1 " + hex(t) + "\n";
+    EXPECT_EQ(judge(world, m.write(world), sep({-1, 0, 0})).verified, t >= m.until);
+  }
+  m = moving({2.8, -2.8});
+  m.ignored = "ignored 0 1 " + hex(0.4999) + "\n";
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
+  m.ignored = "";
+  m.pieces = {"q 0 " + hex(0.0) + "\n", "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n"};
+  m.ignored = "ignored 0 1 " + hex(0.9) + "\n";  // of the first piece only
+  expectRefused(judge(world, m.write(world), sep({-1, 0, 0}) + sep({-1, 0, 0})), "of piece 1");
+}
+
+TEST(VerifyProof, EveryRootOfEveryPieceIsThere) {
+  const World world = cart(2);
+  MotionText m = moving({0, 1});
+  m.pieces.push_back(m.pieces[0]);
+  const std::string good = sep({-1, 0, 0});
+  expectVerified(judge(world, m.write(world), good + good));
+  expectRefused(judge(world, m.write(world), good), "ends too early");
+  expectRefused(judge(world, m.write(world), good + good + good), "after its end");
+  expectRefused(judge(world, m.write(world), ""), "ends too early");
+  // `until` is of the last piece: the one before must be free to its end.
+  m.until = 0.1;
+  expectVerified(judge(world, m.write(world), good + good));
+  m.pieces[0] = "q 0 " + hex(0) + " " + hex(2) + "\n";
+  expectRefused(judge(world, m.write(world), good + good), "of piece 0");
+}
+
+TEST(VerifyProof, HashesBindTheThreeTexts) {
+  const World world = cart(2), other = cart(2.25);
+  const std::string motion = moving({0, 1}).write(world), faster = moving({0, 1.25}).write(world);
+  const std::string good = record(motion, sep({-1, 0, 0}));
+  expectVerified(judge(world, good));
+  expectRefused(judge(other, good), "another world");
+  const std::string proof = hashBytes(motion) + sep({-1, 0, 0});
+  expectRefused(judge(world, "FAC1" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof), "another motion");
+}
+
+/// An arm of 1 m with a ball of 0.1 at its end, turning about z; three balls as obstacles at the places given.
+World arm(const std::vector<V>& places) {
+  std::string s = kHead + "variable a\nframe arm 0 " + hex(kHere) + "\nturn " + hex(V{0, 0, 1}) + " 0 " + hex(1) + " " + hex(0) +
+                  "\ngeometry sphere " + hex(0.1) + "\n";
+  for (const V& p : places) s += "body obstacle ball 0 0 " + hex(at(p[0], p[1], p[2])) + "\n";
+  return readWorld(s + "body link tip 1 0 " + hex(at(1, 0, 0)) + "\n");
+}
+
+// From -0.5 to 0.5 rad the tip reaches x = 1 in the middle, and 0.878 at both ends.
+TEST(VerifyProof, AnArcIsWidestInItsMiddle) {
+  const MotionText m = moving({-0.5, 1});
+  const World near = arm({{1.19, 0, 0}}), far = arm({{1.2001, 0, 0}});
+  expectRefused(judge(near, m.write(near), sep({-1, 0, 0})), "apart");
+  expectVerified(judge(far, m.write(far), sep({-1, 0, 0})));
+  expectVerified(judge(far, m.write(far), sep({-1, 0, 0}, 2)));
+}
+
+TEST(VerifyProof, NoPartnerIsLeftOut) {
+  const MotionText m = moving({-0.5, 1});
+  const std::vector<V> good{{1.4, 0, 0}, {1.3, 0.3, 0}, {1.4, -0.2, 0.3}};
+  for (std::size_t bad = 0; bad <= good.size(); ++bad) {
+    std::vector<V> places = good;
+    if (bad < good.size()) places[bad] = {1.15, 0, 0};
+    const World world = arm(places);
+    const std::string s = sep({-1, 0, 0});
+    for (const std::string& proof :
+         {s, cutNode(kPartners, 1, s, s), cutNode(kPartners, 2, s, s), cutNode(kPartners, 2, cutNode(kPartners, 1, s, s), s)}) {
+      const Verdict v = judge(world, m.write(world), proof);
+      EXPECT_EQ(v.verified, bad == good.size()) << v.reason;
+    }
+    for (const std::uint32_t c : {0u, 3u, 4u}) EXPECT_FALSE(judge(world, m.write(world), cutNode(kPartners, c, s, s)).verified);
+  }
+}
+
+// The normal follows the arm: in its frame one direction serves a whole turn, in the world's none does.
+TEST(VerifyProof, FramesOfDirections) {
+  const World world = arm({{0.85, 0, 0.3}});
+  const MotionText m = moving({-3, 6});
+  expectVerified(judge(world, m.write(world), sep({0, 0, -1})));
+  const World inside = arm({{0.05, 0, 0}});
+  expectVerified(judge(inside, m.write(inside), sep({1, 0, 0}, 1)));
+  expectRefused(judge(inside, m.write(inside), sep({1, 0, 0}, 0)), "apart");
+  expectRefused(judge(inside, m.write(inside), sep({1, 0, 0}, 2)), "apart");
+  const MotionText quarter = moving({0, 1.5});
+  expectVerified(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {0.07, 1, 0})));
+  expectRefused(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {1, 0, 0})), "apart");
+  expectRefused(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {-1, 0, 0})), "apart");
+}
+
+TEST(VerifyProof, Walls) {
+  const auto world = [](const std::string& wall, const M& pose) {
+    return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+                     hex(0) + "\ngeometry " + wall + "\ngeometry sphere " + hex(0.5) + "\nbody obstacle wall 0 0 " + hex(pose) +
+                     "\nbody link ball 1 1 " + hex(kHere) + "\n");
+  };
+  const std::string front(1, '\x09'), back(1, '\x0a');
+  const World half = world("halfspace " + hex(V{-3, 0, 0}) + " " + hex(-4.5), at(0.5, 0, 0));  // x >= 2
+  expectVerified(judge(half, moving({-9, 10.4999}).write(half), front));
+  expectRefused(judge(half, moving({-9, 10.5001}).write(half), front), "apart");
+  expectRefused(judge(half, moving({-9, 10}).write(half), back), "other side");
+  expectRefused(judge(half, moving({-9, 10}).write(half), sep({-1, 0, 0})), "without bounds");
+  MotionText m = moving({-9, 10});
+  m.margin = 0.4999;
+  expectVerified(judge(half, m.write(half), front));
+  m.margin = 0.5001;
+  expectRefused(judge(half, m.write(half), front), "apart");
+  const World plane = world("plane " + hex(V{1, 0, 0}) + " " + hex(2), kHere);
+  expectVerified(judge(plane, moving({-9, 10}).write(plane), back));
+  expectRefused(judge(plane, moving({-9, 10}).write(plane), front), "apart");
+  expectVerified(judge(plane, moving({9, -6}).write(plane), front));
+  expectRefused(judge(plane, moving({9, -9}).write(plane), front), "apart");
+  const World two = cart(2);
+  expectRefused(judge(two, moving({0, 1}).write(two), front), "WALL of two");
+}
+
+/// A small ball on a slide through a box's mesh of half sizes 1; `solid` or not.
+World hollow(bool solid, double radius = 0.1) {
+  return readWorld(kHead + "variable x\nframe ball 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) +
+                   "\n" + boxMesh({1, 1, 1}, solid) + "geometry sphere " + hex(radius) + "\nbody obstacle box 0 0 " + hex(kHere) +
+                   "\nbody link ball 1 1 " + hex(kHere) + "\n");
+}
+std::string others(const std::vector<std::string>& leaves, std::size_t from = 0) {
+  if (from + 1 == leaves.size()) return leaves[from];
+  return cutNode(kOther, 1, leaves[from], others(leaves, from + 1));
+}
+
+TEST(VerifyProof, InsideOfASurfaceIsFreeAndOfASolidIsNot) {
+  // Faces in the order of boxMesh(): z = -1, z = 1, y = -1, y = 1, x = -1, x = 1, two triangles each.
+  std::vector<std::string> leaves;
+  for (const V n : {V{0, 0, 1}, V{0, 0, -1}, V{0, 1, 0}, V{0, -1, 0}, V{1, 0, 0}, V{-1, 0, 0}})
+    for (int k = 0; k < 2; ++k) leaves.push_back(sep(n));
+  const MotionText m = moving({-0.5, 1});
+  const World surface = hollow(false), solid = hollow(true);
+  expectVerified(judge(surface, m.write(surface), others(leaves)));
+  expectRefused(judge(solid, m.write(solid), others(leaves)), "without SOLID");
+  expectRefused(judge(solid, m.write(solid), "\x14" + others(leaves)), "inside of");
+  expectRefused(judge(surface, moving({-0.5, 1.5}).write(surface), others(leaves)), "apart");
+  // Outside: SOLID holds, and the faces are seen from outside.
+  std::vector<std::string> outside(12, sep({1, 0, 0}));
+  const MotionText away = moving({1.5, 1});
+  expectVerified(judge(solid, away.write(solid), sep({1, 0, 0})));
+  expectVerified(judge(solid, away.write(solid), "\x14" + others(outside)));
+  expectRefused(judge(solid, away.write(solid), others(outside)), "without SOLID");
+  // SOLID is about both as a whole, not about a part of the other.
+  expectRefused(judge(solid, away.write(solid), cutNode(kOther, 1, sep({1, 0, 0}), "\x14" + sep({1, 0, 0}))), "SOLID");
+}
+
+TEST(VerifyProof, SolidAroundTheMovingOne) {
+  // The solid moves, the ball (a mesh, then a hull) is the obstacle inside of it.
+  for (const std::string& small : {boxMesh({0.2, 0.2, 0.2}, false), boxMesh({0.2, 0.2, 0.2}, true),
+                                   "geometry box " + hex(V{0.2, 0.2, 0.2}) + "\n"}) {
+    const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+                                  hex(0) + "\n" + small + boxMesh({1, 1, 1}, true) + "body obstacle o 0 0 " + hex(kHere) +
+                                  "\nbody link l 1 1 " + hex(kHere) + "\n");
+    std::string tree = sep({1, 0, 0});
+    for (const V n : {V{1, 0, 0}, V{-1, 0, 0}, V{-1, 0, 0}, V{0, 1, 0}, V{0, 1, 0}, V{0, -1, 0}, V{0, -1, 0}, V{0, 0, 1}, V{0, 0, 1}})
+      tree = cutNode(kOwn, 1, sep(n), tree);
+    std::string own = sep({1, 0, 0});  // faces x = 1 last
+    const std::vector<V> normals{{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}};
+    for (int k = 10; k >= 0; --k) own = cutNode(kOwn, 1, sep(normals[static_cast<std::size_t>(k / 2)]), own);
+    const MotionText still = moving({0.125});
+    expectRefused(judge(world, still.write(world), "\x14" + own), "inside of");
+    const MotionText far = moving({2});
+    expectVerified(judge(world, far.write(world), sep({1, 0, 0})));
+  }
+}
+
+TEST(VerifyProof, AnOpenSolidIsRefused) {
+  const std::string open = meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, true);
+  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+                                hex(0) + "\n" + open + "geometry sphere " + hex(0.1) + "\nbody obstacle o 0 0 " + hex(kHere) +
+                                "\nbody link l 1 1 " + hex(kHere) + "\n");
+  const MotionText m = moving({2, 1});
+  expectVerified(judge(world, m.write(world), sep({1, 0, 0})));
+  expectRefused(judge(world, m.write(world), "\x14" + others({sep({1, 0, 0}), sep({1, 0, 0}), sep({1, 0, 0})})), "not closed");
+}
+
+TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
+  // base - (turn) - upper - (turn) - lower, and a tool carried by lower; each a box of 1.
+  const auto chain = [](const std::string& more, const std::string& roles = "link") {
+    const std::string turn = "turn " + hex(V{0, 0, 1}) + " ";
+    return kHead + "variable a\nvariable b\nframe base 0 " + hex(kHere) + "\nframe upper 1 " + hex(at(5, 0, 0)) + "\n" + turn + "0 " +
+           hex(1) + " " + hex(0) + "\nframe lower 2 " + hex(at(5, 0, 0)) + "\n" + turn + "1 " + hex(1) + " " + hex(0) +
+           "\ngeometry box " + hex(V{1, 1, 1}) + "\nbody link base 1 0 " + hex(kHere) + "\nbody " + roles + " upper 2 0 " + hex(kHere) +
+           "\nbody link lower 3 0 " + hex(kHere) + "\nbody carried tool 3 0 " + hex(at(3, 0, 0)) + "\n" + more;
+  };
+  MotionText m;
+  m.pieces = {"q 0 " + hex(0) + " " + hex(0.1) + "\n"};
+  const auto verdict = [&](const std::string& text, const std::string& proof) {
+    const World world = readWorld(text);
+    return judge(world, m.write(world), proof);
+  };
+  const std::string x = sep({1, 0, 0});
+  Verdict v = verdict(chain(""), x + x + x);  // roots: upper, lower, tool
+  expectVerified(v);
+  EXPECT_EQ(v.checked, 5u);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::same_frame)], 1u);
+  v = verdict(chain("unchecked neighbours base upper\nunchecked neighbours upper lower\nunchecked allowed tool base\n"), x + x);
+  expectVerified(v);
+  EXPECT_EQ(v.checked, 2u);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::neighbours)], 2u);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::allowed)], 1u);
+  expectRefused(verdict(chain("unchecked neighbours base lower\n"), x + x + x), "neighbours");
+  // Without a body between them they still have two moving frames on their path.
+  expectRefused(verdict(chain("unchecked neighbours base lower\n", "carried"), x + x + x), "neighbours");
+  expectRefused(verdict(chain("unchecked neighbours upper tool\n"), x + x + x), "neighbours");
+  EXPECT_THROW(readWorld(chain("unchecked touch-link base lower\n")), BadInput);
+  expectVerified(verdict(chain("unchecked touch-link tool upper\n"), x + x + x));
+  m.scope = "scene";
+  v = verdict(chain(""), "");
+  expectVerified(v);
+  EXPECT_EQ(v.checked, 0u);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::scope)], 5u);
+}
+
+TEST(VerifyProof, WhatMovesFreelyHasNoNeighbourInTheWorld) {
+  const auto base = [](const std::string& elements) {
+    return readWorld(kHead + "variable x\nvariable y\nvariable z\nvariable a\nvariable b\nvariable c\nframe base 0 " + hex(kHere) +
+                     "\n" + elements + "geometry box " + hex(V{1, 1, 1}) + "\nbody link floor 0 0 " + hex(at(0, 0, -5)) +
+                     "\nbody link base 1 0 " + hex(kHere) + "\nunchecked neighbours floor base\n");
+  };
+  const auto slide = [](int v) { return "slide " + hex(V{1, 0, 0}) + " " + std::to_string(v) + " " + hex(1) + " " + hex(0) + "\n"; };
+  EXPECT_EQ(base("").false_neighbours, "");
+  EXPECT_EQ(base(slide(0)).false_neighbours, "");
+  EXPECT_EQ(base(slide(0) + slide(0)).false_neighbours, "");
+  EXPECT_EQ(base("rotate 3\n").false_neighbours, "");
+  EXPECT_NE(base(slide(0) + slide(1)).false_neighbours, "");
+  EXPECT_NE(base(slide(0) + "rotate 3\n").false_neighbours, "");
+}
+
+TEST(VerifyProof, HostileProofs) {
+  const World world = cart(2);
+  const std::string motion = moving({0, 1}).write(world);
+  const std::string good = sep({-1, 0, 0});
+  expectRefused(judge(world, motion, sep({0, 0, 0})), "apart");
+  expectRefused(judge(world, motion, fine({0, 0, 0})), "apart");
+  std::string deep;
+  for (int k = 0; k < 100; ++k) deep += '\x10';
+  expectRefused(judge(world, motion, deep), "60 times");
+  expectRefused(judge(world, motion, "\x15" + good), "no node");
+  expectRefused(judge(world, motion, cutNode(kOwn, 1, good, good)), "cut");
+  expectRefused(judge(world, motion, std::string("\x11\x81\x00", 3) + good + good), "varint");
+  expectRefused(judge(world, motion, std::string("\x11\xff\xff\xff\xff\xff\xff", 7)), "varint");
+  Options small;
+  small.work = 100;
+  expectRefused(judge(world, record(motion, good), small), "limit of work");
+  EXPECT_THROW(splitRecords("FAC1"), BadInput);
+  EXPECT_THROW(splitRecords("FAC2aaaaaaaa"), BadInput);
+  EXPECT_THROW(splitRecords(std::string("FAC1\xff\xff\xff\xff", 8)), BadInput);
+  // SOLID nests without cutting anything: the depth is limited.
+  std::string solids(1000, '\x14');
+  expectRefused(judge(world, motion, solids), "deep");
+  MotionText far = moving({0, 1e12});
+  expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");
+}
+
+TEST(VerifyStatement, IsReadStrictly) {
+  const std::string box = "geometry box " + hex(V{1, 1, 1}) + "\n";
+  const std::string body = "body link a 0 0 " + hex(kHere) + "\n";
+  EXPECT_NO_THROW(readWorld(kHead + "# for people\n" + box + body));
+  for (const std::string& text :
+       {std::string(""), std::string("fcl_artic world 2\n"), kHead + "geometry", kHead + "bogus\n", kHead + "variable\n",
+        kHead + "variable  x\n", kHead + "variable x y\n", kHead + "variable x%2\n", kHead + "variable x\ty\n",
+        kHead + "frame f 1 " + hex(kHere) + "\n", kHead + "turn 0x1p+0 0x0p+0 0x0p+0 0 0x1p+0 0x0p+0\n",
+        kHead + "geometry box 1 1 1\n", kHead + "geometry box 0x1p+0 0x1p+0\n", kHead + "geometry box 0x1p+0 0x1p+0 -0x1p+0\n",
+        kHead + "geometry box nan inf 0x1p+0\n", kHead + "geometry box 0x1p+99 0x1p+0 0x1p+0\n",
+        kHead + "geometry box 0x1.00000000000001p+0 0x1p+0 0x1p+0\n", kHead + "geometry box 0x1p-1080 0x1p+0 0x1p+0\n",
+        kHead + "geometry mesh surface\nvertices 1\n0x0p+0 0x0p+0 0x0p+0\ntriangles 1\n0 0 1\n",
+        kHead + "geometry mesh surface\nvertices 99999999\n", kHead + "geometry mesh surface\nvertices 0\n",
+        kHead + "geometry hull\nvertices 2\n0x0p+0 0x0p+0 0x0p+0\n", kHead + "geometry plane 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n",
+        kHead + box + "body link a 0 1 " + hex(kHere) + "\n", kHead + box + "body robot a 0 0 " + hex(kHere) + "\n",
+        kHead + box + body + "unchecked because a a\n", kHead + box + body + "margin a -0x1p+0\n",
+        kHead + box + body + "margin a 0x1p+0\nmargin a 0x1p+0\n", kHead + "frame f 0 " + hex(kHere) + "\nrotate 0\n",
+        kHead + "variable x\nframe f 0 " + hex(kHere) + "\nturn 0x0p+0 0x0p+0 0x0p+0 0 0x1p+0 0x0p+0\n"})
+    EXPECT_THROW(readWorld(text), BadInput) << text;
+  const World world = cart(2);
+  const std::string good = moving({0, 1}).write(world);
+  EXPECT_NO_THROW(readMotion(good, world));
+  const auto with = [&](const std::string& what, const std::string& by) {
+    std::string text = good;
+    const std::size_t k = text.find(what);
+    EXPECT_NE(k, std::string::npos);
+    return text.replace(k, what.size(), by);
+  };
+  for (const std::string& text : {with("margin", "margins"), with("scope self scene", "scope self self"), with("scope self scene", "scope"),
+                                  with("until 0x1p+0", "until 0x1p+1"), with("until 0x1p+0\n", ""), with("piece\n", ""),
+                                  with("q 0", "q 1"), good + "q 0 0x1p+0\n", good + "q 0\n", good + "margin 0x0p+0\n",
+                                  good + "ignored 1 0 0x0p+0\n", good + "ignored 0 2 0x0p+0\n", with("piece\n", "ignored 0 1 0x0p+0\npiece\n"),
+                                  good + "q 0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0\n"})
+    EXPECT_THROW(readMotion(text, world), BadInput) << text;
+  const World named = readWorld(kHead + box + "body link a%20b%25%c3 0 0 " + hex(kHere) + "\n");
+  EXPECT_EQ(named.bodies[0].name, "a b%\xc3");
+}
+
+TEST(VerifyStatement, Sha256) {
+  EXPECT_EQ(hexOf(sha256("", 0)), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(hexOf(sha256("abc", 3)), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  const std::string million(1000000, 'a');
+  EXPECT_EQ(hexOf(sha256(million.data(), million.size())), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  const std::string two = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";  // 56 bytes: the length needs a block more
+  EXPECT_EQ(hexOf(sha256(two.data(), two.size())), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+}
+
+}  // namespace
+}  // namespace verify::test
