@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Certificates of many answers: how many there are, how large, how long they take, and the files for fcl_artic_verify,
-// which says whether they hold.
+// Certificates of many answers, proven again by the verifier: how many hold, how large they are, how long they take; and
+// forged ones, of which none must.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,8 @@
 #include "modes/world.h"
 #include "pairs/random_pairs.h"
 #include "planning/problems.h"
+#include "proof.h"
+#include "sha256.h"
 
 namespace fcl_artic {
 namespace {
@@ -31,9 +35,35 @@ double microseconds(Clock::time_point begin) {
 }
 
 struct Sum {
-  std::size_t free = 0, other = 0, missing = 0;
-  std::vector<double> query_us, emit_us, bytes, motion_bytes;
+  std::size_t free = 0, other = 0, missing = 0, nothing_claimed = 0;
+  std::vector<double> query_us, emit_us, check_us, bytes, motion_bytes;
   std::map<std::string, int> reasons;
+  std::size_t verified = 0, meetings = 0, refused = 0;
+  std::size_t forged = 0, forged_accepted = 0, flipped = 0, flipped_accepted = 0;
+
+  void add(const Sum& other_sum) {
+    free += other_sum.free;
+    other += other_sum.other;
+    missing += other_sum.missing;
+    nothing_claimed += other_sum.nothing_claimed;
+    verified += other_sum.verified;
+    meetings += other_sum.meetings;
+    refused += other_sum.refused;
+    forged += other_sum.forged;
+    forged_accepted += other_sum.forged_accepted;
+    flipped += other_sum.flipped;
+    flipped_accepted += other_sum.flipped_accepted;
+    for (const auto& [reason, n] : other_sum.reasons) reasons[reason] += n;
+    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    append(query_us, other_sum.query_us);
+    append(emit_us, other_sum.emit_us);
+    append(check_us, other_sum.check_us);
+    append(bytes, other_sum.bytes);
+    append(motion_bytes, other_sum.motion_bytes);
+  }
+  bool good() const { return refused == 0 && forged_accepted == 0; }
 };
 
 double at(std::vector<double> values, double part) {
@@ -43,36 +73,121 @@ double at(std::vector<double> values, double part) {
 }
 
 void print(const std::string& name, const Sum& sum) {
-  std::printf(
-      "%-18s free %6zu (without a certificate %zu), others %zu; proof bytes %5.0f %5.0f %6.0f (motion %4.0f); query us "
-      "%7.1f, with certificate %8.1f %8.1f %8.1f\n",
-      name.c_str(), sum.free, sum.missing, sum.other, at(sum.bytes, 0.5), at(sum.bytes, 0.95), at(sum.bytes, 1),
-      at(sum.motion_bytes, 0.5), at(sum.query_us, 0.5), at(sum.emit_us, 0.5), at(sum.emit_us, 0.95),
-      at(sum.emit_us, 1));
+  std::printf("%s: %zu free, %zu others; without a proof %zu, nothing claimed %zu\n", name.c_str(), sum.free, sum.other,
+              sum.missing, sum.nothing_claimed);
+  std::printf("  VERIFIED %zu, %zu of them with a meeting; not verified %zu\n", sum.verified, sum.meetings, sum.refused);
+  const auto row = [](const char* what, const std::vector<double>& values) {
+    std::printf("  %-28s median %8.1f  95 %% %8.1f  largest %9.1f\n", what, at(values, 0.5), at(values, 0.95),
+                at(values, 1));
+  };
+  row("proof, bytes", sum.bytes);
+  row("motion's text, bytes", sum.motion_bytes);
+  row("query, us", sum.query_us);
+  row("query with certificate, us", sum.emit_us);
+  row("verifier, us", sum.check_us);
+  if (sum.flipped > 0) {
+    std::printf("  single bits of proofs flipped %zu, of these still proofs %zu\n", sum.flipped, sum.flipped_accepted);
+  }
+  if (sum.forged > 0) std::printf("  false claims with forged proofs %zu, accepted %zu\n", sum.forged, sum.forged_accepted);
   for (const auto& [reason, n] : sum.reasons) std::printf("    %d times: %s\n", n, reason.c_str());
   std::fflush(stdout);
 }
 
-class Writer {
+/// The text with the value of one of its lines replaced.
+std::string withLine(std::string text, const std::string& key, const std::string& value) {
+  const std::size_t begin = text.find("\n" + key + " ") + 1, end = text.find('\n', begin);
+  return text.replace(begin, end - begin, key + " " + value);
+}
+
+/// A record that names its motion by the right hash, whatever the motion is.
+std::string recordOf(const std::string& motion, const std::string& nodes) {
+  const auto hash = verify::sha256(motion.data(), motion.size());
+  Certificate forged;
+  forged.motion = motion;
+  forged.proof.assign(hash.begin(), hash.end());
+  forged.proof += nodes;
+  return forged.record();
+}
+
+/// Has certificates proven again, written to files, forged.
+class Judge {
  public:
-  explicit Writer(fs::path folder) : folder_(std::move(folder)) {
+  Judge(fs::path folder, bool forge) : folder_(std::move(folder)), forge_(forge) {
     if (!folder_.empty()) fs::create_directories(folder_);
   }
-  void add(const std::string& name, const Certificate& certificate) const {
-    if (folder_.empty()) return;
-    const fs::path world = folder_ / (name + ".world");
-    if (!fs::exists(world)) std::ofstream(world, std::ios::binary) << *certificate.world;
-    std::ofstream(folder_ / (name + ".fac"), std::ios::binary | std::ios::app) << certificate.record();
+
+  /// @param free  the motion is; else it certainly touches, if `meets`.
+  void look(const std::string& name, const Certificate& certificate, bool free, bool meets, Sum& sum) {
+    if (certificate.world != world_text_) {
+      world_text_ = certificate.world;
+      world_ = std::make_unique<verify::World>(verify::readWorld(*world_text_));
+      kept_.clear();
+    }
+    const std::string record = certificate.record();
+    const auto begin = Clock::now();
+    const verify::Verdict verdict = verdictOn(record);
+    sum.check_us.push_back(microseconds(begin));
+    sum.verified += verdict.verified;
+    sum.meetings += verdict.verified && verdict.contact;
+    if (!verdict.verified) {
+      ++sum.refused;
+      ++sum.reasons["NOT VERIFIED: " + name + ": " + verdict.reason];
+    }
+    write(name, record);
+    if (forge_) forge(certificate, free, meets, sum);
   }
 
  private:
+  verify::Verdict verdictOn(const std::string& record) const {
+    return verify::verifyRecord(*world_, verify::splitRecords(record).at(0));
+  }
+  void write(const std::string& name, const std::string& record) const {
+    if (folder_.empty()) return;
+    const fs::path world = folder_ / (name + ".world");
+    if (!fs::exists(world)) std::ofstream(world, std::ios::binary) << *world_text_;
+    std::ofstream(folder_ / (name + ".fac"), std::ios::binary | std::ios::app) << record;
+  }
+
+  void forge(const Certificate& certificate, bool free, bool meets, Sum& sum) {
+    const std::string nodes = certificate.proof.substr(32);
+    // A bit more or less: the claim stays, so what is accepted is a proof all the same.
+    for (int i = 0; i < 8 && !nodes.empty(); ++i) {
+      std::string flipped = nodes;
+      const std::uint64_t bit = random_() % (8 * flipped.size());
+      flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+      ++sum.flipped;
+      sum.flipped_accepted += verdictOn(recordOf(certificate.motion, flipped)).verified;
+    }
+    if (free) {
+      if (kept_.size() < 20) kept_.push_back(nodes);
+      return;
+    }
+    if (!meets) return;
+    // It touches, and is claimed not to: with its own proof, stretched, and with those of free motions of this world.
+    const std::string lie = withLine(certificate.motion, "until", "0x1p+0");
+    std::vector<std::string> proofs = kept_;
+    proofs.push_back(nodes);
+    if (const std::size_t at = nodes.rfind(std::string("\x20\0", 2)); at != std::string::npos) proofs.push_back(nodes.substr(0, at));
+    for (const std::string& proof : proofs) {
+      ++sum.forged;
+      if (!verdictOn(recordOf(lie, proof)).verified) continue;
+      ++sum.forged_accepted;
+      ++sum.reasons["A FALSE CLAIM WAS ACCEPTED"];
+    }
+  }
+
   fs::path folder_;
+  bool forge_;
+  std::shared_ptr<const std::string> world_text_;
+  std::unique_ptr<verify::World> world_;
+  std::vector<std::string> kept_;  ///< nodes of free motions of this world
+  std::mt19937_64 random_{7};
 };
 
 /// Asks for an answer, and again for its certificate.
 /// @param query  query(request, result)
 template <class Request, class Result, class Query>
-void ask(const Query& query, bool others, const std::string& name, const Writer& writer, Sum& sum) {
+void ask(const Query& query, bool others, const std::string& name, Judge& judge, Sum& sum) {
   Request request;
   Result result;
   query(request, result);
@@ -88,53 +203,52 @@ void ask(const Query& query, bool others, const std::string& name, const Writer&
   sum.query_us.push_back(query_us);
   sum.free += result.isFree();
   if (!*result.certificate) {
-    ++sum.missing;
-    ++sum.reasons[result.certificate->missing];
+    const bool nothing = result.certificate->missing.rfind("nothing is claimed", 0) == 0;
+    ++(nothing ? sum.nothing_claimed : sum.missing);
+    if (!nothing) ++sum.reasons[name + ": " + result.certificate->missing];
     return;
   }
   sum.bytes.push_back(static_cast<double>(result.certificate->proof.size()));
   sum.motion_bytes.push_back(static_cast<double>(result.certificate->motion.size()));
-  writer.add(name, *result.certificate);
+  judge.look(name, *result.certificate, result.isFree(), result.certain, sum);
 }
 template <class Motion>
 void ask(const ArticulatedCollisionManager& manager, const Motion& motion, bool others, const std::string& name,
-         const Writer& writer, Sum& sum) {
+         Judge& judge, Sum& sum) {
   ask<CertifiedRequest, CertifiedResult>(
       [&](const CertifiedRequest& request, CertifiedResult& result) {
         manager.continuousCollide(motion, request, result);
       },
-      others, name, writer, sum);
+      others, name, judge, sum);
 }
 
-void panda(const fs::path& data, std::size_t most, bool others, const Writer& writer) {
+void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Sum& all) {
   using namespace planning_data;
   const Robot robot = readRobot(data, "panda");
-  Sum all;
   for (const std::string name : {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick",
                                  "table_under_pick", "thin"}) {
     const Environment environment = readEnvironment(data / "problems/panda" / (name + ".json"), *robot.tree);
     std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers;
     Sum sum;
-    std::size_t asked = 0;
+    std::size_t asked[2] = {0, 0};
     for (const Edge& edge : readTrace(data / "edges" / ("panda_trace." + name + ".json"))) {
       if (edge.hit && !others) continue;
-      if (asked++ == most) break;
+      if (asked[edge.hit]++ >= most) continue;
       auto& manager = managers[edge.problem];
       const std::string file = name + "_" + std::to_string(edge.problem);
       if (!manager) manager = makeManager(robot, environment.problem(edge.problem).scene);
       const auto motion = JointMotion::linear(*robot.tree, environment.configuration(*robot.tree, edge.from),
                                               environment.configuration(*robot.tree, edge.to));
-      ask(*manager, motion, others, file, writer, sum);
-      ask(*manager, motion, others, file, Writer({}), all);
+      ask(*manager, motion, others, file, judge, sum);
     }
     print(name, sum);
+    all.add(sum);
   }
-  print("panda, all", all);
 }
 
 /// Two bodies of any kinds, by FCL's motions (data/pairs).
 void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint64_t seed, bool others,
-             const Writer& writer) {
+             Judge& judge, Sum& all) {
   using namespace pairs;
   Sum sum;
   for (const Moves moves : {Moves::interp, Moves::translation, Moves::screw, Moves::spline}) {
@@ -151,14 +265,15 @@ void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint6
             fcl_artic::continuousCollide(query.body1->geometry.get(), motion1.get(), query.body2->geometry.get(),
                                          motion2.get(), request, result);
           },
-          others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i), writer, sum);
+          others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i), judge, sum);
     }
   }
   print(set, sum);
+  all.add(sum);
 }
 
 /// The arm of bench_arm amid spheres, 100,000 triangles, without self-collision.
-void arm(std::size_t most, std::uint64_t seed, bool others, const Writer& writer) {
+void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
   bench::ArmSceneOptions options;
   options.seed = seed;
   const bench::ArmScene scene = bench::makeArmScene(options);
@@ -185,16 +300,17 @@ void arm(std::size_t most, std::uint64_t seed, bool others, const Writer& writer
               own.check_self = false;
               manager.continuousCollide(JointMotion::linear(*scene.tree, q.q0, q.q1), own, result);
             },
-            others, "arm", writer, sum);
+            others, "arm", judge, sum);
       }
     }
     print("arm, " + std::to_string(static_cast<int>(step)) + " degrees", sum);
+    all.add(sum);
   }
 }
 
 /// Small worlds with all that there is: attached objects, moving obstacles, margins, trajectories, solids, ignored
 /// contacts (test/modes).
-void modesOf(std::size_t most, std::uint64_t seed, bool others, const Writer& writer) {
+void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
   std::map<std::string, Sum> sums;
   for (std::size_t i = 0; i < most; ++i) {
     modes::Random random(seed + i);
@@ -209,9 +325,12 @@ void modesOf(std::size_t most, std::uint64_t seed, bool others, const Writer& wr
           own.ignore_initial_contact = ignore;
           world.ask(own, result);
         },
-        others, "modes_" + std::to_string(i), writer, sums[kind]);
+        others, "modes_" + std::to_string(i), judge, sums[kind]);
   }
-  for (const auto& [kind, sum] : sums) print(kind, sum);
+  for (const auto& [kind, sum] : sums) {
+    print(kind, sum);
+    all.add(sum);
+  }
 }
 
 }  // namespace
@@ -223,33 +342,36 @@ int main(int argc, char** argv) try {
   std::string out, set = "panda";
   std::size_t most = 1000000;
   std::uint64_t seed = 1;
-  bool others = false;
+  bool others = false, forge = false;
   app.add_option("--out", out, "folder for worlds and certificates");
   app.add_option("--set", set, "motions")
       ->check(CLI::IsMember({"panda", "arm", "meshes", "shapes", "mixed", "modes"}))
       ->capture_default_str();
   app.add_option("--most", most, "motions of each part of the set")->capture_default_str();
   app.add_option("--seed", seed, "of what is random")->capture_default_str();
+  app.add_flag("--forge", forge, "also flip bits of proofs, and try to pass colliding motions off as free");
   app.add_flag("--contacts", others, "motions that are not free, too: until their t_lower");
   CLI11_PARSE(app, argc, argv);
-  const Writer writer(out);
+  Judge judge(out, forge);
+  Sum all;
   if (set == "arm") {
-    arm(most, seed, others, writer);
+    arm(most, seed, others, judge, all);
   } else if (set == "modes") {
-    modesOf(most, seed, others, writer);
+    modesOf(most, seed, others, judge, all);
   } else if (set != "panda") {
     const std::map<std::string, pairs::Bodies> bodies = {
         {"meshes", pairs::Bodies::meshes}, {"shapes", pairs::Bodies::shapes}, {"mixed", pairs::Bodies::mixed}};
-    pairsOf(bodies.at(set), set.c_str(), most, seed, others, writer);
+    pairsOf(bodies.at(set), set.c_str(), most, seed, others, judge, all);
   } else {
     const std::filesystem::path data = planning_data::sharedData();
     if (data.empty()) {
       std::cout << "FCL_ARTIC_DATA does not name a folder with robots/, problems/ and edges/\n";
       return 0;
     }
-    panda(data, most, others, writer);
+    panda(data, most, others, judge, all);
   }
-  return 0;
+  print("all", all);
+  return all.good() && all.verified > 0 ? 0 : 1;
 } catch (const std::exception& error) {
   std::cerr << "certificate_campaign: " << error.what() << '\n';
   return 1;
