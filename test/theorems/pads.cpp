@@ -465,10 +465,6 @@ std::vector<Theorem> theorems(bool all) {
                   [](const Slice& slice, Statement& s) { sines(slice, s, false); }, one, true, true, 0.1});
   list.push_back({"cosine", "sineCosine", "numerics/lanes.h", "1.5 of section 7's 2.5",
                   [](const Slice& slice, Statement& s) { sines(slice, s, true); }, one, true, true, 0.1});
-  list.push_back({"sine", "sineCosine", "numerics/lanes.h", "1.1 of section 7's 2.1",
-                  [](const Slice& slice, Statement& s) { sines(slice, s, false); }, one, true, true, 0.1});
-  list.push_back({"cosine", "sineCosine", "numerics/lanes.h", "1.5 of section 7's 2.5",
-                  [](const Slice& slice, Statement& s) { sines(slice, s, true); }, one, true, true, 0.1});
   list.push_back({"pad", "roundingPart", "motion/remainder.h", "second order", padItself, one});
   return list;
 }
