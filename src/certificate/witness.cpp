@@ -249,6 +249,50 @@ NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   return core;
 }
 
+/// One piece against another one that is a little smaller than it is, both with their rounding: a point that these have
+/// in common is well within the larger one.
+struct Shrunk {
+  const Side &own, &other;
+  Pose other_in_own;
+  Vector3d centre;  ///< inside of the other piece, in its frame
+
+  Vector3d farthest(const Side& side, const Vector3d& u) const {
+    const Vec3 core = baseline::supportPoint(side.tree, side.piece, Vec3(u[0], u[1], u[2]));
+    return toEigen(core) + u * (side.piece.radius / u.norm());
+  }
+  void support(const Vec3& n, baseline::DifferencePoint& p) const {
+    // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
+    const double smaller = other.piece.kind == PieceKind::cone ? 1 - 1e-6 : 1 - 1e-9;
+    const Vector3d u = toEigen(n), a = farthest(own, u);
+    const Vector3d b = centre + smaller * (farthest(other, other_in_own.R.transpose() * -u) - centre);
+    const Vector3d w = other_in_own.R * b + other_in_own.c - a;
+    for (int k = 0; k < 3; ++k) {
+      p.a[k] = a[k];
+      p.b[k] = b[k];
+      p.w[k] = w[k];
+    }
+  }
+  void subtract(baseline::DifferencePoint&) const {}
+};
+
+/// A point of the one piece that is well within the other one; none is found where they don't overlap enough.
+std::optional<NamedPoint> pointInside(const Side& own, const Side& other) {
+  Vector3d centre = Vector3d::Map(other.piece.center);
+  if (other.hasVertices()) {
+    const std::vector<Vec3> vertices = other.vertices();
+    centre.setZero();
+    for (const Vec3& v : vertices) centre += toEigen(v) / static_cast<double>(vertices.size());
+  }
+  const Shrunk body{own, other, own.pose.inverse() * other.pose, centre};
+  baseline::GjkResult found;
+  baseline::searchNearest(body, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite, 100, found);
+  if (!found.overlap || found.simplex.n != 4) return std::nullopt;
+  weigh(found.simplex);
+  std::vector<std::pair<Vec3, double>> points;
+  for (int i = 0; i < 4; ++i) points.emplace_back(found.simplex.v[i].a, found.simplex.weight[i]);
+  return nameCore(own, points);
+}
+
 std::string witnessAt(const Side& a, const Side& b, double margin) {
   std::string text;
   ProofBytes out(text);
@@ -282,8 +326,14 @@ std::string witnessAt(const Side& a, const Side& b, double margin) {
   for (const bool swap : {false, true}) {
     const Side &own = swap ? b : a, &other = swap ? a : b;
     if (other.isTriangle() || other.piece.kind == PieceKind::plane || baseline::unbounded(own.piece)) continue;
-    const NamedPoint& core = swap ? points.b : points.a;
-    const NamedPoint x = rounded(own, core, seenFrom(own, other, swap ? points.a : points.b));
+    NamedPoint x;
+    if (baseline::unbounded(other.piece)) {
+      x = rounded(own, swap ? points.b : points.a, seenFrom(own, other, swap ? points.a : points.b));
+    } else {
+      const std::optional<NamedPoint> within = pointInside(own, other);
+      if (!within) continue;
+      x = rounded(own, *within, within->x);
+    }
     const Vector3d there = seenFrom(other, own, x);
     std::string bytes;
     ProofBytes to(bytes);
