@@ -23,6 +23,7 @@
 #include "planning/problems.h"
 #include "proof.h"
 #include "sha256.h"
+#include "urdf/tree_campaign.h"
 
 namespace fcl_artic {
 namespace {
@@ -184,6 +185,21 @@ class Judge {
   std::mt19937_64 random_{7};
 };
 
+/// Takes an answer's certificate, if it has a proof.
+template <class Result>
+void take(const std::string& name, const Result& result, Judge& judge, Sum& sum) {
+  const Certificate& certificate = *result.certificate;
+  if (!certificate) {
+    const bool nothing = certificate.missing.rfind("nothing is claimed", 0) == 0;
+    ++(nothing ? sum.nothing_claimed : sum.missing);
+    if (!nothing) ++sum.reasons[name + ": " + certificate.missing];
+    return;
+  }
+  sum.bytes.push_back(static_cast<double>(certificate.proof.size()));
+  sum.motion_bytes.push_back(static_cast<double>(certificate.motion.size()));
+  judge.look(name, certificate, result.isFree(), result.certain, sum);
+}
+
 /// Asks for an answer, and again for its certificate.
 /// @param query  query(request, result)
 template <class Request, class Result, class Query>
@@ -202,15 +218,7 @@ void ask(const Query& query, bool others, const std::string& name, Judge& judge,
   sum.emit_us.push_back(microseconds(again));
   sum.query_us.push_back(query_us);
   sum.free += result.isFree();
-  if (!*result.certificate) {
-    const bool nothing = result.certificate->missing.rfind("nothing is claimed", 0) == 0;
-    ++(nothing ? sum.nothing_claimed : sum.missing);
-    if (!nothing) ++sum.reasons[name + ": " + result.certificate->missing];
-    return;
-  }
-  sum.bytes.push_back(static_cast<double>(result.certificate->proof.size()));
-  sum.motion_bytes.push_back(static_cast<double>(result.certificate->motion.size()));
-  judge.look(name, *result.certificate, result.isFree(), result.certain, sum);
+  take(name, result, judge, sum);
 }
 template <class Motion>
 void ask(const ArticulatedCollisionManager& manager, const Motion& motion, bool others, const std::string& name,
@@ -308,6 +316,56 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& a
   }
 }
 
+/// Random robots from URDF text (test/urdf).
+void trees(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
+  Sum sum;
+  urdf_trees::Options options;
+  options.trees = static_cast<int>(most);
+  options.seed = seed;
+  options.certificates = [&](int tree, const CertifiedResult& result) {
+    sum.free += result.isFree();
+    sum.other += !result.isFree();
+    if (result.isFree() || others) take("tree_" + std::to_string(tree), result, judge, sum);
+  };
+  const urdf_trees::Report report = urdf_trees::run(options);
+  std::printf("%s", urdf_trees::toText(report).c_str());
+  print("trees", sum);
+  all.add(sum);
+}
+
+/// Trajectories of the Panda: from one end of an edge to the other and on to a third configuration, as cubic pieces, at
+/// rest at the ends only, and with straight pieces and parabolic blends.
+void trajectories(const fs::path& data, std::size_t most, bool others, Judge& judge, Sum& all) {
+  using namespace planning_data;
+  const Robot robot = readRobot(data, "panda");
+  const KinematicTree& tree = *robot.tree;
+  Sum sum;
+  for (const std::string name : {"bookshelf_small", "box", "cage", "table_pick", "thin"}) {
+    const Environment environment = readEnvironment(data / "problems/panda" / (name + ".json"), tree);
+    std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers;
+    std::map<int, Eigen::VectorXd> last;
+    std::size_t asked = 0;
+    for (const Edge& edge : readTrace(data / "edges" / ("panda_trace." + name + ".json"))) {
+      if (edge.hit) continue;
+      if (asked >= most) break;
+      auto& manager = managers[edge.problem];
+      if (!manager) manager = makeManager(robot, environment.problem(edge.problem).scene);
+      const Eigen::VectorXd q0 = environment.configuration(tree, edge.from), q1 = environment.configuration(tree, edge.to);
+      const auto before = last.find(edge.problem);
+      const Eigen::VectorXd q2 = before == last.end() ? q0 : Eigen::VectorXd(q1 + 0.2 * (before->second - q1));
+      last[edge.problem] = q0;
+      const std::vector<double> times = {0, 1, 1.7};
+      const Eigen::VectorXd rest = Eigen::VectorXd::Zero(q0.size());
+      const std::string file = "trajectory_" + name + "_" + std::to_string(edge.problem);
+      ask(*manager, JointTrajectory::cubic(tree, times, {q0, q1, q2}, {rest, 0.2 * (q2 - q0), rest}), others, file, judge, sum);
+      ask(*manager, JointTrajectory::parabolicBlends(tree, times, {q0, q1, q2}, 0.2), others, file, judge, sum);
+      ++asked;
+    }
+  }
+  print("trajectories", sum);
+  all.add(sum);
+}
+
 /// Small worlds with all that there is: attached objects, moving obstacles, margins, trajectories, solids, ignored
 /// contacts (test/modes).
 void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
@@ -345,7 +403,7 @@ int main(int argc, char** argv) try {
   bool others = false, forge = false;
   app.add_option("--out", out, "folder for worlds and certificates");
   app.add_option("--set", set, "motions")
-      ->check(CLI::IsMember({"panda", "arm", "meshes", "shapes", "mixed", "modes"}))
+      ->check(CLI::IsMember({"panda", "trajectories", "arm", "trees", "meshes", "shapes", "mixed", "modes"}))
       ->capture_default_str();
   app.add_option("--most", most, "motions of each part of the set")->capture_default_str();
   app.add_option("--seed", seed, "of what is random")->capture_default_str();
@@ -356,9 +414,11 @@ int main(int argc, char** argv) try {
   Sum all;
   if (set == "arm") {
     arm(most, seed, others, judge, all);
+  } else if (set == "trees") {
+    trees(most, seed, others, judge, all);
   } else if (set == "modes") {
     modesOf(most, seed, others, judge, all);
-  } else if (set != "panda") {
+  } else if (set != "panda" && set != "trajectories") {
     const std::map<std::string, pairs::Bodies> bodies = {
         {"meshes", pairs::Bodies::meshes}, {"shapes", pairs::Bodies::shapes}, {"mixed", pairs::Bodies::mixed}};
     pairsOf(bodies.at(set), set.c_str(), most, seed, others, judge, all);
@@ -368,7 +428,7 @@ int main(int argc, char** argv) try {
       std::cout << "FCL_ARTIC_DATA does not name a folder with robots/, problems/ and edges/\n";
       return 0;
     }
-    panda(data, most, others, judge, all);
+    (set == "panda" ? panda : trajectories)(data, most, others, judge, all);
   }
   print("all", all);
   return all.good() && all.verified > 0 ? 0 : 1;

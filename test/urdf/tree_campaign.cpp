@@ -88,7 +88,8 @@ class Case {
   }
 
   /// @param without  link whose geometry is left out; -1: none.
-  CertifiedResult ask(const Robot& robot, ContactMode mode, const std::string& without = {}) const {
+  CertifiedResult ask(const Robot& robot, ContactMode mode, const std::string& without = {},
+                      bool certificate = false) const {
     const KinematicTree& tree = *robot.tree;
     ArticulatedCollisionManager manager(robot.tree);
     for (const LinkGeometry& g : robot.geometry) {
@@ -113,6 +114,7 @@ class Case {
     }
     CertifiedRequest request;
     request.mode = mode;
+    request.certificate = certificate;
     CertifiedResult result;
     manager.continuousCollide(JointMotion::linear(tree, q0, q1), request, result);
     return result;
@@ -216,7 +218,9 @@ void judge(const Options& options, int number, const std::string& folder, Report
     ++count;
     if (report.faults.size() < kMostFaults) report.faults.push_back("tree " + std::to_string(number) + ": " + what);
   };
-  const CertifiedResult r = c.ask(robot, ContactMode::first), any = c.ask(robot, ContactMode::any);
+  const CertifiedResult r = c.ask(robot, ContactMode::first, {}, static_cast<bool>(options.certificates)),
+                        any = c.ask(robot, ContactMode::any);
+  if (options.certificates) options.certificates(number, r);
 
   ++report.trees;
   report.links += robot.tree->numLinks();

@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "fcl_artic/result.h"
 
 namespace urdf_trees {
 
@@ -17,6 +20,8 @@ struct Options {
   /// Takes the geometry of the link that touches first out of a second manager, whose answer is judged by the whole
   /// tree: to see that the judge would notice.
   bool spoil = false;
+  /// Gets the answer for the first contact of each tree, with its certificate; may be empty. Called by all threads.
+  std::function<void(int tree, const fcl_artic::CertifiedResult&)> certificates;
 };
 
 struct Report {
