@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Certificates of answers in files: FILE, a record for each answer that has a proof, and FILE.world, what they are about.
+// Certificates of answers in files: FILE, a record for each answer that has a proof, and FILE.world, what they are
+// about.
 #pragma once
 
 #include <memory>

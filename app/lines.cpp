@@ -191,8 +191,8 @@ class Answers {
 
 }  // namespace
 
-int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
-               const LinesOptions& options, CertificateFile& certificates) {
+int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, const LinesOptions& options,
+               CertificateFile& certificates) {
   Answers answers(manager, request, options, certificates);
   const bool standard_input = options.path == "-";
   std::istringstream file(standard_input ? std::string() : files::read(options.path));

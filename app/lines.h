@@ -23,7 +23,7 @@ struct LinesOptions {
 /// @param[in,out] certificates  written at the end, where they are wanted.
 /// @return exit status: that of the worst answer, an error before a contact before undecided before free.
 /// @throws std::runtime_error for a file that can't be read, std::invalid_argument for one without a question.
-int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
-               const LinesOptions& options, CertificateFile& certificates);
+int checkLines(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, const LinesOptions& options,
+               CertificateFile& certificates);
 
 }  // namespace fcl_artic::app

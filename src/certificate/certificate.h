@@ -20,7 +20,7 @@ namespace fcl_artic::certificate {
 /// is the first one's.
 struct Claim {
   std::vector<Motion> pieces;
-  double duration = 1;  ///< of all of them, for people
+  double duration = 1;             ///< of all of them, for people
   std::optional<Meeting> meeting;  ///< in the last one, after its `until`
 };
 

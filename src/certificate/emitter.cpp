@@ -26,7 +26,7 @@ constexpr int kSep = 0x00, kSepFine = 0x03, kWall = 0x09, kWallOther = 0x0a, kTi
 /// In which frame a direction is constant, as a number to be added to kSep and kSepFine.
 enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
 
-constexpr int kMostTimeCuts = 40;   ///< of one root: 1e-12 of the motion
+constexpr int kMostTimeCuts = 40;  ///< of one root: 1e-12 of the motion
 constexpr int kMostSearchSteps = 40;
 
 Vec3 fromEigen(const Vector3d& v) {
@@ -44,8 +44,8 @@ struct Task {
   std::size_t first, last;
   std::int32_t partner_node = 0;
   double begin, end;
-  int cuts = 0;         ///< of time, so far
-  bool solid = false;   ///< a SOLID node is above
+  int cuts = 0;        ///< of time, so far
+  bool solid = false;  ///< a SOLID node is above
   std::size_t size() const { return last - first; }
   double middle() const { return 0.5 * (begin + end); }
 };
@@ -102,7 +102,8 @@ class Emitter {
     return pose.R * farthest(geometry, node, pose.R.transpose() * u, exact) + pose.c;
   }
 
-  /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all times.
+  /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all
+  /// times.
   struct Sets {
     const Task& task;
     int frame;
@@ -193,13 +194,14 @@ class Emitter {
     const std::vector<double>& times;
 
     /// The partners' point least along n, margins included.
-    void takeLeast(const std::vector<int>& partners, const Vector3d& n, double t, double& least, Vector3d& point) const {
+    void takeLeast(const std::vector<int>& partners, const Vector3d& n, double t, double& least,
+                   Vector3d& point) const {
       const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
       for (const int partner : partners) {
         const Pose& pose = emitter.moving_.pose(partner, sets.frame, t);
         const double margin = emitter.moving_.margin(sets.task.body, partner);
-        const Vector3d x = farthestAt(emitter.moving_.geometry(partner), node, pose, -n, sets.exact) -
-                           n * (margin / n.norm());
+        const Vector3d x =
+            farthestAt(emitter.moving_.geometry(partner), node, pose, -n, sets.exact) - n * (margin / n.norm());
         const double value = n.dot(x);
         if (value >= least) continue;
         least = value;
@@ -214,8 +216,7 @@ class Emitter {
       for (const double t : times) {
         const Task& task = sets.task;
         const Pose& pose = emitter.moving_.pose(task.body, sets.frame, t);
-        const Vector3d own =
-            farthestAt(emitter.moving_.geometry(task.body), task.node, pose, along, sets.exact);
+        const Vector3d own = farthestAt(emitter.moving_.geometry(task.body), task.node, pose, along, sets.exact);
         double other = still;
         Vector3d other_point = still_point;
         takeLeast(sets.moving, along, t, other, other_point);
@@ -358,9 +359,7 @@ class Emitter {
     if (moving_.body(body).role != Body::Role::obstacle) return 3;
     return moving_.body(body).frame == 0 ? 1 : 2;
   }
-  bool isMixed(const Task& task) const {
-    return groupOf(partners_[task.first]) != groupOf(partners_[task.last - 1]);
-  }
+  bool isMixed(const Task& task) const { return groupOf(partners_[task.first]) != groupOf(partners_[task.last - 1]); }
 
   void cutPartners(const Task& task) {
     std::size_t half = task.size() / 2;
@@ -396,8 +395,7 @@ class Emitter {
     const bool time_left = task.cuts < kMostTimeCuts;
     if (leaves && !time_left) return fail(task);
     if (time_left && beginsWithin(task, partner)) return cutTime(task);
-    const bool apart =
-        !wall && apartAt(task, task.middle()) && apartAt(task, task.begin) && apartAt(task, task.end);
+    const bool apart = !wall && apartAt(task, task.middle()) && apartAt(task, task.begin) && apartAt(task, task.end);
     if (time_left && (leaves || apart)) return cutTime(task);
     if (leaves) return fail(task);
     if (!task.solid && (isSolid(task.body) || isSolid(partner))) {

@@ -142,7 +142,8 @@ Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u
   double most = -baseline::kInfinite;
   const auto upper = [&](const engine::Node& n) {
     double value = 0;
-    for (int k = 0; k < 3; ++k) value += d[k] < 0 ? d[k] * static_cast<double>(n.lo[k]) : d[k] * static_cast<double>(n.hi[k]);
+    for (int k = 0; k < 3; ++k)
+      value += d[k] < 0 ? d[k] * static_cast<double>(n.lo[k]) : d[k] * static_cast<double>(n.hi[k]);
     return value;
   };
   struct Open {

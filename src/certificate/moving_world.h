@@ -15,10 +15,10 @@ namespace fcl_artic::certificate {
 
 /// One motion over t in [0, 1], as a certificate states it.
 struct Motion {
-  Eigen::MatrixXd coefficients;                ///< of the world's variables, column k for t^k
-  std::vector<Eigen::Matrix3d> orientations;   ///< R0, as World::orientations lists them
-  double margin = 0, added = 0;                ///< m
-  bool self = true, scene = true;              ///< what is checked
+  Eigen::MatrixXd coefficients;               ///< of the world's variables, column k for t^k
+  std::vector<Eigen::Matrix3d> orientations;  ///< R0, as World::orientations lists them
+  double margin = 0, added = 0;               ///< m
+  bool self = true, scene = true;             ///< what is checked
   struct Ignored {
     int a, b;      ///< bodies, a < b
     double until;  ///< not checked before that time
@@ -55,11 +55,11 @@ class MovingWorld {
   Pose pose(const Element& element, double t) const;
   const World& world_;
   const Motion& motion_;
-  std::vector<Pose> in_frame_;                 ///< of bodies
-  std::vector<Pose> origins_;                  ///< of frames
-  std::vector<double> rate_, acceleration_;    ///< of variables: bounds on |q'|, |q''|
+  std::vector<Pose> in_frame_;               ///< of bodies
+  std::vector<Pose> origins_;                ///< of frames
+  std::vector<double> rate_, acceleration_;  ///< of variables: bounds on |q'|, |q''|
   struct Moment {
-    std::vector<Pose> frames;              ///< in the world
+    std::vector<Pose> frames;                    ///< in the world
     std::map<std::pair<int, int>, Pose> bodies;  ///< seen from frames
   };
   Moment& moment(double t);

@@ -46,9 +46,8 @@ struct Side {
     for (int i = 0; i < piece.num_vertices; ++i) {
       const Vec3 v = isTriangle() ? Vec3(baseline::VerticesKind::points(tree, piece) + 3 * i)
                                   : baseline::HullKind::vertex(tree, piece, i);
-      const bool known = std::any_of(all.begin(), all.end(), [&](const Vec3& u) {
-        return u[0] == v[0] && u[1] == v[1] && u[2] == v[2];
-      });
+      const bool known = std::any_of(all.begin(), all.end(),
+                                     [&](const Vec3& u) { return u[0] == v[0] && u[1] == v[1] && u[2] == v[2]; });
       if (isTriangle() || !known) all.push_back(v);
     }
     return all;
@@ -140,8 +139,7 @@ double crossing(const Side& a, const Side& b, int& edge) {
     for (int i = 0; i < 3; ++i) c[i] = toEigen(other[static_cast<std::size_t>(i)]) - p;
     const double area = (c[1] - c[0]).cross(c[2] - c[0]).norm(), length = e.norm();
     if (!(area > 0) || !(length > 0)) continue;
-    const double side_p = volume(c[0], c[1], c[2]) / area,
-                 side_q = volume(c[0] - e, c[1] - e, c[2] - e) / area;
+    const double side_p = volume(c[0], c[1], c[2]) / area, side_q = volume(c[0] - e, c[1] - e, c[2] - e) / area;
     double sure = side_p * side_q < 0 ? std::min(std::abs(side_p), std::abs(side_q)) : -1;
     double least = INFINITY, most = -INFINITY;
     for (int i = 0; i < 3; ++i) {
@@ -175,8 +173,8 @@ std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Ve
     void subtract(baseline::DifferencePoint&) const {}
   };
   baseline::GjkResult found;
-  baseline::searchNearest(Shifted{vertices, Vec3(x[0], x[1], x[2])}, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite, 100,
-                          found);
+  baseline::searchNearest(Shifted{vertices, Vec3(x[0], x[1], x[2])}, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite,
+                          100, found);
   if (!found.overlap || found.simplex.n != 4) return std::nullopt;
   // x must be so far from each face.
   Vector3d w[4];
@@ -314,8 +312,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin) {
     return Vector3d(from.pose.R.transpose() * (of.pose.R * p.x + of.pose.c - from.pose.c));
   };
   if (margin > 0) {
-    const NamedPoint x = rounded(a, points.a, seenFrom(a, b, points.b)),
-                     y = rounded(b, points.b, seenFrom(b, a, x));
+    const NamedPoint x = rounded(a, points.a, seenFrom(a, b, points.b)), y = rounded(b, points.b, seenFrom(b, a, x));
     const double distance = ((a.pose.R * x.x + a.pose.c) - (b.pose.R * y.x + b.pose.c)).norm();
     if (!(distance < margin - kSure)) return {};
     out.byte(kNear);
@@ -365,8 +362,8 @@ std::string findWitness(MovingWorld& world, const Meeting& meeting) {
   // A little later they are deeper in each other.
   for (const double later : {0.0, 1.0, 10.0, 100.0, 1000.0}) {
     const double t = std::min(1.0, meeting.t_upper + later * meeting.tolerance);
-    const std::string witness =
-        witnessAt(side(meeting.a, meeting.leaf_a, t), side(meeting.b, meeting.leaf_b, t), world.margin(meeting.a, meeting.b));
+    const std::string witness = witnessAt(side(meeting.a, meeting.leaf_a, t), side(meeting.b, meeting.leaf_b, t),
+                                          world.margin(meeting.a, meeting.b));
     if (witness.empty()) continue;
     std::string text;
     ProofBytes out(text);

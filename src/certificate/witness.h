@@ -11,11 +11,11 @@ namespace fcl_artic::certificate {
 
 /// A contact that an answer calls certain.
 struct Meeting {
-  int piece = 0;                  ///< of the motion
-  int a = -1, b = -1;             ///< bodies of the world
-  std::int32_t leaf_a, leaf_b;    ///< pieces of their trees
-  double t_upper;                 ///< they meet at or before it, in the piece's time
-  double tolerance;               ///< of time
+  int piece = 0;                ///< of the motion
+  int a = -1, b = -1;           ///< bodies of the world
+  std::int32_t leaf_a, leaf_b;  ///< pieces of their trees
+  double t_upper;               ///< they meet at or before it, in the piece's time
+  double tolerance;             ///< of time
 };
 
 /// The bytes that show it to a verifier, at t_upper or a little later; empty if none are found. Nothing rests on them:

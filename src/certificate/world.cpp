@@ -270,8 +270,8 @@ class Builder {
                const Eigen::Isometry3d& pose, std::size_t number) {
     const auto [it, is_new] = geometry_of_.try_emplace(shape.get(), static_cast<int>(world.geometries.size()));
     if (is_new) world.geometries.emplace_back(std::move(shape));
-    world.bodies.push_back({role, name, frame, it->second, pose, static_cast<std::int32_t>(number),
-                            world.margins.ofBody(name), {}});
+    world.bodies.push_back(
+        {role, name, frame, it->second, pose, static_cast<std::int32_t>(number), world.margins.ofBody(name), {}});
   }
   void exclude(const char* reason, const std::string& a, const std::string& b) {
     unchecked_.insert({reason, std::min(a, b), std::max(a, b)});
@@ -370,7 +370,8 @@ class ManagedWorld {
     for (const std::size_t i : inSpace(obstacles, bounded)) addBody(obstacles[i], first + i, 0, obstacles[i].offset);
     const std::vector<ManagedBody>& moving = registry_.moving();
     for (std::size_t i = 0; i < moving.size(); ++i) {
-      addBody(moving[i], registry_.links().size() + i, addFrames(moving[i].name, moving[i].motion, world_), moving[i].motion.after);
+      addBody(moving[i], registry_.links().size() + i, addFrames(moving[i].name, moving[i].motion, world_),
+              moving[i].motion.after);
     }
   }
 

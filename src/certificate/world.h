@@ -57,10 +57,10 @@ struct Body {
   Role role;
   std::string name;
   int frame, geometry;
-  Eigen::Isometry3d pose;    ///< in the frame
-  std::int32_t number;       ///< as the registry counts bodies
-  double own_margin = -1;    ///< of its name, m; -1: none
-  std::vector<int> partners; ///< bodies of lower number that make a checked pair with it, ascending
+  Eigen::Isometry3d pose;     ///< in the frame
+  std::int32_t number;        ///< as the registry counts bodies
+  double own_margin = -1;     ///< of its name, m; -1: none
+  std::vector<int> partners;  ///< bodies of lower number that make a checked pair with it, ascending
 };
 
 struct World {
@@ -74,10 +74,10 @@ struct World {
   /// `first_moving` on.
   Eigen::MatrixXd moving;
   int first_moving = 0;
-  std::vector<int> orientations;  ///< first variable of each `rotate` whose R0 the motion gives, in its order
+  std::vector<int> orientations;            ///< first variable of each `rotate` whose R0 the motion gives, in its order
   std::shared_ptr<const std::string> text;  ///< what a verifier reads
-  std::string hash;               ///< its SHA-256, in hexadecimal digits
-  std::string missing;            ///< why no certificate can be made in this world; empty: one can
+  std::string hash;                         ///< its SHA-256, in hexadecimal digits
+  std::string missing;                      ///< why no certificate can be made in this world; empty: one can
 
   /// The body that the registry counts as `number`.
   int bodyOf(std::int32_t number) const;
@@ -88,8 +88,7 @@ struct World {
 /// @param registry  what is set up.
 World makeWorld(const Registry& registry);
 /// Two bodies, each with a motion of its own. The shapes must outlive the world.
-World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2,
-                const BodyMotion& motion2);
+World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2, const BodyMotion& motion2);
 
 /// A number as statements have it: C's hexadecimal floating-point constant.
 std::string numberText(double x);

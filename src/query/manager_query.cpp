@@ -167,9 +167,12 @@ void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const Tim
   }
   if (details.contact) {
     const engine::LeafContact& leaf = *details.contact;
-    claim.meeting = certificate::Meeting{static_cast<int>(claim.pieces.size()), about->bodyOf(leaf.body_a),
-                                         about->bodyOf(leaf.body_b),            leaf.piece_a,
-                                         leaf.piece_b,                          leaf.t_upper,
+    claim.meeting = certificate::Meeting{static_cast<int>(claim.pieces.size()),
+                                         about->bodyOf(leaf.body_a),
+                                         about->bodyOf(leaf.body_b),
+                                         leaf.piece_a,
+                                         leaf.piece_b,
+                                         leaf.t_upper,
                                          request.tolerance_time};
   }
   claim.pieces.push_back(std::move(stated));

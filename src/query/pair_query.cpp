@@ -156,8 +156,8 @@ std::shared_ptr<const Certificate> certificateOf(const MovingShape& body1, const
   certificate::Claim claim{{motion}, 1, std::nullopt};
   if (answer.num_contacts > 0 && answer.contacts[0].certain) {
     const engine::LeafContact& leaf = answer.contacts[0];
-    claim.meeting = certificate::Meeting{0, leaf.body_a, leaf.body_b, leaf.piece_a, leaf.piece_b, leaf.t_upper,
-                                         request.tolerance_time};
+    claim.meeting = certificate::Meeting{
+        0, leaf.body_a, leaf.body_b, leaf.piece_a, leaf.piece_b, leaf.t_upper, request.tolerance_time};
   }
   return std::make_shared<const Certificate>(certificate::makeCertificate(world, claim));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Certificates of many answers, proven again by the verifier: how many hold, how large they are, how long they take; and
-// forged ones, of which none must.
+// Certificates of many answers, proven again by the verifier: how many hold, how large they are, how long they take;
+// and forged ones, of which none must.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -76,7 +76,8 @@ double at(std::vector<double> values, double part) {
 void print(const std::string& name, const Sum& sum) {
   std::printf("%s: %zu free, %zu others; without a proof %zu, nothing claimed %zu\n", name.c_str(), sum.free, sum.other,
               sum.missing, sum.nothing_claimed);
-  std::printf("  VERIFIED %zu, %zu of them with a meeting; not verified %zu\n", sum.verified, sum.meetings, sum.refused);
+  std::printf("  VERIFIED %zu, %zu of them with a meeting; not verified %zu\n", sum.verified, sum.meetings,
+              sum.refused);
   const auto row = [](const char* what, const std::vector<double>& values) {
     std::printf("  %-28s median %8.1f  95 %% %8.1f  largest %9.1f\n", what, at(values, 0.5), at(values, 0.95),
                 at(values, 1));
@@ -89,7 +90,8 @@ void print(const std::string& name, const Sum& sum) {
   if (sum.flipped > 0) {
     std::printf("  single bits of proofs flipped %zu, of these still proofs %zu\n", sum.flipped, sum.flipped_accepted);
   }
-  if (sum.forged > 0) std::printf("  false claims with forged proofs %zu, accepted %zu\n", sum.forged, sum.forged_accepted);
+  if (sum.forged > 0)
+    std::printf("  false claims with forged proofs %zu, accepted %zu\n", sum.forged, sum.forged_accepted);
   for (const auto& [reason, n] : sum.reasons) std::printf("    %d times: %s\n", n, reason.c_str());
   std::fflush(stdout);
 }
@@ -168,7 +170,8 @@ class Judge {
     const std::string lie = withLine(certificate.motion, "until", "0x1p+0");
     std::vector<std::string> proofs = kept_;
     proofs.push_back(nodes);
-    if (const std::size_t at = nodes.rfind(std::string("\x20\0", 2)); at != std::string::npos) proofs.push_back(nodes.substr(0, at));
+    if (const std::size_t at = nodes.rfind(std::string("\x20\0", 2)); at != std::string::npos)
+      proofs.push_back(nodes.substr(0, at));
     for (const std::string& proof : proofs) {
       ++sum.forged;
       if (!verdictOn(recordOf(lie, proof)).verified) continue;
@@ -255,8 +258,8 @@ void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Su
 }
 
 /// Two bodies of any kinds, by FCL's motions (data/pairs).
-void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint64_t seed, bool others,
-             Judge& judge, Sum& all) {
+void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint64_t seed, bool others, Judge& judge,
+             Sum& all) {
   using namespace pairs;
   Sum sum;
   for (const Moves moves : {Moves::interp, Moves::translation, Moves::screw, Moves::spline}) {
@@ -287,7 +290,8 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& a
   const bench::ArmScene scene = bench::makeArmScene(options);
   ArticulatedCollisionManager manager(scene.tree);
   for (const bench::ArmLink& link : scene.links) {
-    manager.bind(link.link, std::make_shared<fcl::CollisionObjectd>(bench::toBvh<fcl::OBBRSSd>(link.mesh)), link.offset);
+    manager.bind(link.link, std::make_shared<fcl::CollisionObjectd>(bench::toBvh<fcl::OBBRSSd>(link.mesh)),
+                 link.offset);
   }
   for (const bench::TriangleMesh& mesh : scene.obstacles) {
     manager.registerObject(std::make_shared<fcl::CollisionObjectd>(bench::toBvh<fcl::OBBRSSd>(mesh)));
@@ -350,14 +354,16 @@ void trajectories(const fs::path& data, std::size_t most, bool others, Judge& ju
       if (asked >= most) break;
       auto& manager = managers[edge.problem];
       if (!manager) manager = makeManager(robot, environment.problem(edge.problem).scene);
-      const Eigen::VectorXd q0 = environment.configuration(tree, edge.from), q1 = environment.configuration(tree, edge.to);
+      const Eigen::VectorXd q0 = environment.configuration(tree, edge.from),
+                            q1 = environment.configuration(tree, edge.to);
       const auto before = last.find(edge.problem);
       const Eigen::VectorXd q2 = before == last.end() ? q0 : Eigen::VectorXd(q1 + 0.2 * (before->second - q1));
       last[edge.problem] = q0;
       const std::vector<double> times = {0, 1, 1.7};
       const Eigen::VectorXd rest = Eigen::VectorXd::Zero(q0.size());
       const std::string file = "trajectory_" + name + "_" + std::to_string(edge.problem);
-      ask(*manager, JointTrajectory::cubic(tree, times, {q0, q1, q2}, {rest, 0.2 * (q2 - q0), rest}), others, file, judge, sum);
+      ask(*manager, JointTrajectory::cubic(tree, times, {q0, q1, q2}, {rest, 0.2 * (q2 - q0), rest}), others, file,
+          judge, sum);
       ask(*manager, JointTrajectory::parabolicBlends(tree, times, {q0, q1, q2}, 0.2), others, file, judge, sum);
       ++asked;
     }
@@ -375,7 +381,9 @@ void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Su
     const modes::World world(random);
     const double margin = random.chance(0.3) ? random.in(0, 0.05) : 0;
     const bool ignore = random.chance(0.3);
-    const std::string kind = world.isPair() ? "modes, pair" : world.isTrajectory() ? "modes, trajectory" : "modes, motion";
+    const std::string kind = world.isPair()         ? "modes, pair"
+                             : world.isTrajectory() ? "modes, trajectory"
+                                                    : "modes, motion";
     ask<CertifiedRequest, CertifiedResult>(
         [&](const CertifiedRequest& request, CertifiedResult& result) {
           CertifiedRequest own = request;

@@ -20,7 +20,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 std::shared_ptr<fcl::CollisionObjectd> ball(double radius, const Vector3d& at = Vector3d::Zero()) {
-  return std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radius), Eigen::Matrix3d::Identity(), at);
+  return std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(radius), Eigen::Matrix3d::Identity(),
+                                                 at);
 }
 std::shared_ptr<fcl::CollisionObjectd> box(const Vector3d& size, const Vector3d& at = Vector3d::Zero()) {
   return std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(size), Eigen::Matrix3d::Identity(), at);
@@ -143,9 +144,9 @@ TEST_F(Machine, WhatIsNotCheckedIsSaidWithItsReason) {
   ASSERT_TRUE(result.isFree());
   expectProven(result.certificate);
   const std::string& world = *result.certificate->world;
-  for (const char* line : {"unchecked allowed base hand", "unchecked neighbours base slider",
-                           "unchecked neighbours arm slider", "unchecked neighbours arm hand",
-                           "unchecked touch-link a%20cup arm"}) {
+  for (const char* line :
+       {"unchecked allowed base hand", "unchecked neighbours base slider", "unchecked neighbours arm slider",
+        "unchecked neighbours arm hand", "unchecked touch-link a%20cup arm"}) {
     EXPECT_TRUE(hasLine(world, line)) << line << "\n" << world;
   }
 }
@@ -174,15 +175,15 @@ TEST_F(Machine, TheWorldIsSharedUntilTheNextSetup) {
 }
 
 TEST_F(Machine, ATrajectoryAmongMovingObstaclesIsProvenPieceByPiece) {
-  const auto motion = std::make_shared<fcl::TranslationMotion<double>>(fcl::Transform3d(at(2, -3, 2)),
-                                                                       fcl::Transform3d(at(2, 3, 2)));
+  const auto motion =
+      std::make_shared<fcl::TranslationMotion<double>>(fcl::Transform3d(at(2, -3, 2)), fcl::Transform3d(at(2, 3, 2)));
   fcl::ContinuousCollisionObjectd passer(std::make_shared<fcl::Sphered>(0.2), motion);
   manager_->registerObject(&passer, "passer");
   manager_->setup();
   CertifiedRequest request;
   request.certificate = true;
-  const auto trajectory = JointTrajectory::linear(
-      *tree_, {0, 1, 2}, {Vector3d(0, 0, 0), Vector3d(-1, -0.5, 0), Vector3d(-1, -1, 1)});
+  const auto trajectory =
+      JointTrajectory::linear(*tree_, {0, 1, 2}, {Vector3d(0, 0, 0), Vector3d(-1, -0.5, 0), Vector3d(-1, -1, 1)});
   const CertifiedResult result = manager_->continuousCollide(trajectory, request);
   ASSERT_TRUE(result.isFree());
   expectProven(result.certificate);
@@ -220,8 +221,8 @@ TEST(CertificatesOfPairs, ASolidIsNotItsSurface) {
   CertifiedPairResult result;
   const auto ask = [&](const fcl::CollisionGeometryd& o1, double from, double to) {
     continuousCollide(&o1, fcl::Transform3d::Identity(), fcl::Transform3d::Identity(), &ball,
-                      fcl::Transform3d(Eigen::Translation3d(from, 0, 0)), fcl::Transform3d(Eigen::Translation3d(to, 0, 0)),
-                      fcl::CCDM_LINEAR, request, result);
+                      fcl::Transform3d(Eigen::Translation3d(from, 0, 0)),
+                      fcl::Transform3d(Eigen::Translation3d(to, 0, 0)), fcl::CCDM_LINEAR, request, result);
   };
   ask(*mesh, -0.5, 0.5);
   ASSERT_TRUE(result.isFree());
