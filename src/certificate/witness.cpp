@@ -240,8 +240,13 @@ NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   if (side.hasVertices()) return core;
   const Vector3d d = towards - core.x;
   if (side.piece.radius > 0 && d.norm() > 0) core.x += d * std::min(1.0, side.piece.radius / d.norm());
-  // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
-  const double inwards = side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13;
+  // Inequalities are squares of lengths: what they are kept by must show in the verifier's last digits, 2^-64. Next to
+  // a cone's tip they are small themselves.
+  double least = side.piece.radius > 0 ? side.piece.radius : INFINITY;
+  for (const double size : side.piece.size) {
+    if (size > 0) least = std::min(least, size);
+  }
+  const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-17 / (least * least));
   const Vector3d centre = Vector3d::Map(side.piece.center);
   core.x = centre + (core.x - centre) * (1 - inwards);
   return core;

@@ -23,6 +23,7 @@
 #include "planning/problems.h"
 #include "proof.h"
 #include "sha256.h"
+#include "tables/random_links.h"
 #include "urdf/tree_campaign.h"
 
 namespace fcl_artic {
@@ -320,6 +321,28 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& a
   }
 }
 
+/// Two links with up to three joint variables between them, which have tables (test/tables), on small and large
+/// motions.
+void links(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
+  Sum sum;
+  for (std::size_t i = 0; i < most; ++i) {
+    pairs::Random random(pairs::Random::mix(seed, i));
+    const tables::RandomLinks links(random);
+    ArticulatedCollisionManager manager(links.tree);
+    manager.bind("a", links.a, links.on_a);
+    manager.bind("b", links.b, links.on_b);
+    if (links.margin > 0) manager.setMargin("a", "b", links.margin);
+    manager.setup();
+    for (int k = 0; k < 40; ++k) {
+      const Eigen::VectorXd q0 = links.draw(random), q1 = q0 + random.logUniform(1e-5, 1) * (links.draw(random) - q0);
+      const auto motion = JointMotion::linear(*links.tree, q0, q1);
+      ask(manager, motion, others, "links_" + std::to_string(i), judge, sum);
+    }
+  }
+  print("links", sum);
+  all.add(sum);
+}
+
 /// Random robots from URDF text (test/urdf).
 void trees(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
   Sum sum;
@@ -411,7 +434,7 @@ int main(int argc, char** argv) try {
   bool others = false, forge = false;
   app.add_option("--out", out, "folder for worlds and certificates");
   app.add_option("--set", set, "motions")
-      ->check(CLI::IsMember({"panda", "trajectories", "arm", "trees", "meshes", "shapes", "mixed", "modes"}))
+      ->check(CLI::IsMember({"panda", "trajectories", "arm", "trees", "links", "meshes", "shapes", "mixed", "modes"}))
       ->capture_default_str();
   app.add_option("--most", most, "motions of each part of the set")->capture_default_str();
   app.add_option("--seed", seed, "of what is random")->capture_default_str();
@@ -422,6 +445,8 @@ int main(int argc, char** argv) try {
   Sum all;
   if (set == "arm") {
     arm(most, seed, others, judge, all);
+  } else if (set == "links") {
+    links(most, seed, others, judge, all);
   } else if (set == "trees") {
     trees(most, seed, others, judge, all);
   } else if (set == "modes") {
