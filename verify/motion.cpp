@@ -23,8 +23,8 @@ Pose Poses::compute(int index, const Span& span) const {
   Pose pose = frame.origin;
   for (const Element& e : frame.elements) {
     if (e.kind == Element::rotate) {
-      const Mat turn = rotation(
-          Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
+      const Mat turn =
+          rotation(Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
       pose.R = pose.R * turn;
       const auto at = std::lower_bound(piece_.orientations.begin(), piece_.orientations.end(), e.variable,
                                        [](const Orientation& o, int w) { return o.variable < w; });

@@ -70,7 +70,9 @@ class Lines {
   double number() {
     const std::string_view all = word();
     std::string_view text = all;
-    const auto wrong = [&]() { fail("'" + std::string(all.substr(0, 60)) + "' is no hexadecimal constant of a double"); };
+    const auto wrong = [&]() {
+      fail("'" + std::string(all.substr(0, 60)) + "' is no hexadecimal constant of a double");
+    };
     const bool negative = !text.empty() && text[0] == '-';
     if (negative) text.remove_prefix(1);
     if (text.size() < 3 || text[0] != '0' || text[1] != 'x') wrong();
@@ -236,7 +238,9 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
-bool moves(const World& world, int frame) { return !world.frames[frame].elements.empty(); }
+bool moves(const World& world, int frame) {
+  return !world.frames[frame].elements.empty();
+}
 
 bool movesFreely(const World& world, int frame) {
   int slides = 0, first = -1;
@@ -353,7 +357,8 @@ World readWorld(std::string_view text) {
   World world;
   world.hash = sha256(text.data(), text.size());
   Lines lines(text, "world");
-  if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n") lines.fail("the first line is not 'fcl_artic world 1'");
+  if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n")
+    lines.fail("the first line is not 'fcl_artic world 1'");
   Frame ground{};
   ground.name = "world";
   world.frames.push_back(ground);
@@ -516,9 +521,8 @@ Motion readMotion(std::string_view text, const World& world) {
   const auto before = [](const auto& x, const auto& y) { return x.variable < y.variable; };
   const auto twice = [&](auto& list) {
     std::sort(list.begin(), list.end(), before);
-    return std::adjacent_find(list.begin(), list.end(), [](const auto& x, const auto& y) {
-             return x.variable == y.variable;
-           }) != list.end();
+    return std::adjacent_find(list.begin(), list.end(),
+                              [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
   };
   for (Piece& piece : motion.pieces)
     if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");

@@ -36,7 +36,9 @@ Fix anyFix(Rng& rng, int most_bits = 83) {
   if (rng() % 4 == 0) v = (static_cast<Int>(1) << bits) - static_cast<Int>(rng() % 3);
   return Fix{rng() % 2 ? v : -v};
 }
-double uniform(Rng& rng, double a, double b) { return std::uniform_real_distribution<double>(a, b)(rng); }
+double uniform(Rng& rng, double a, double b) {
+  return std::uniform_real_distribution<double>(a, b)(rng);
+}
 
 TEST(VerifyFixed, ProductIsRoundedDownByLessThanOneUlp) {
   Rng rng(1);
@@ -96,7 +98,8 @@ TEST(VerifyFixed, DoublesAreEnclosed) {
     if (n % 2) x = std::ldexp(uniform(rng, -1, 1), static_cast<int>(rng() % 160) - 120);
     if (std::isfinite(x) && std::fabs(x) < 1e12) check(x);
   }
-  for (const double x : {0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0, std::ldexp(1, -64), std::ldexp(-1, -65), std::ldexp(1.5, -64)})
+  for (const double x :
+       {0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0, std::ldexp(1, -64), std::ldexp(-1, -65), std::ldexp(1.5, -64)})
     check(x);
 }
 
@@ -112,7 +115,8 @@ TEST(VerifyFixed, RootsSinesAndUnitVectors) {
     ASSERT_TRUE((Big(s) - Big(angle).sin()).abs() <= Big(ulps(2)));
     ASSERT_TRUE((Big(c) - Big(angle).cos()).abs() <= Big(ulps(2)));
     const double scale = std::ldexp(1, static_cast<int>(rng() % 600) - 300);
-    const double axis[3] = {scale * uniform(rng, -1, 1), n % 3 ? scale * uniform(rng, -1, 1) : 0, scale * uniform(rng, -1, 1)};
+    const double axis[3] = {scale * uniform(rng, -1, 1), n % 3 ? scale * uniform(rng, -1, 1) : 0,
+                            scale * uniform(rng, -1, 1)};
     Fix unit[3];
     unitVector(axis, unit);
     const Big x(axis[0]), y(axis[1]), z(axis[2]), length = (x * x + y * y + z * z).sqrt();
