@@ -137,8 +137,10 @@ std::string proofAsJson(const World& world, const Record& record) {
     std::memcpy(hash.data(), raw.data(), hash.size());
     s += "\"motion\": \"" + hexOf(hash) + "\", \"roots\": [";
     const char* before = "\n  ";
+    Budget budget{Options().work};
     for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece) {
       for (std::size_t a = 0; a < world.bodies.size(); ++a) {
+        budget.spend(1 + world.partners[a].size() + motion.pieces[piece].ignored.size());
         const std::vector<Opponent> partners = opponents(world, motion, piece, static_cast<int>(a));
         if (partners.empty()) continue;
         s += before;

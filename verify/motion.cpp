@@ -76,6 +76,7 @@ Functional::Functional(const World& world, Poses& poses, const Span& span, int f
 const Functional::Value& Functional::in(int frame) {
   const auto found = known_.find(frame);
   if (found != known_.end()) return found->second;
+  poses_.spend(25);
   const auto ancestor = towards_.find(frame);
   // Recursion ends: an ancestor of the first frame asks for its child towards it, another frame for its parent; at the
   // latest frame 0 is an ancestor. The chain is at most 1000 frames deep (statement.cpp).

@@ -23,6 +23,7 @@ class Poses {
   Poses(const World& world, const Piece& piece, Budget& budget) : world_(world), piece_(piece), budget_(budget) {}
 
   const Pose& local(int frame, const Span& span);
+  void spend(std::uint64_t steps) { budget_.spend(steps); }
 
  private:
   Tm variable(int v, const Span& span) const;

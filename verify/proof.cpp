@@ -108,6 +108,7 @@ class Walk {
     const Span all{Fix{0}, last ? encloseUp(motion_.until) : Fix{kOne}};
     for (std::size_t a = 0; a < world_.bodies.size(); ++a) {
       a_ = static_cast<int>(a);
+      budget_.spend(1 + world_.partners[a].size() + motion_.pieces[piece_].ignored.size());
       partners_ = opponents(world_, motion_, piece_, a_);
       if (partners_.empty()) continue;
       if (piece_ == 0) verdict_.checked += partners_.size();

@@ -183,6 +183,16 @@ TEST(VerifyTaylor, SineAndCosine) {
       ASSERT_TRUE(holds(c, Big(at), angle.at(Big(at)).cos()));
     }
   }
+  // Where nothing but Lagrange's remainder is left: at s = 1/2, T3 = -1, d - d^3/6 is at the end of what it leaves out,
+  // and d^5/120 takes the sine beyond; at s = 1/sqrt(2), T4 = -1, so does -d^6/720 with the cosine.
+  for (const double d : {1.0, -1.0, 0.5, 0.1}) {
+    Tm s, c;
+    sineCosine(Tm{{}, encloseUp(d), {}, {}}, s, c);
+    for (const double at : {0.5, -0.5, std::sqrt(0.5), -std::sqrt(0.5)}) {
+      EXPECT_TRUE(holds(s, Big(at), (Big(encloseUp(d)) * Big(at)).sin())) << d << " " << at;
+      EXPECT_TRUE(holds(c, Big(at), (Big(encloseUp(d)) * Big(at)).cos())) << d << " " << at;
+    }
+  }
   // Third order: an interval half as wide has about a tenth of the remainder, or less.
   Tm s, c, s2, c2;
   sineCosine(Tm{integer(1), encloseUp(0.2), {}, {}}, s, c);
