@@ -80,8 +80,11 @@ const Functional::Value& Functional::in(int frame) {
   const auto ancestor = towards_.find(frame);
   // Recursion ends: an ancestor of the first frame asks for its child towards it, another frame for its parent; at the
   // latest frame 0 is an ancestor. The chain is at most 1000 frames deep (statement.cpp).
-  Value value = ancestor != towards_.end() ? toParent(in(ancestor->second), poses_.local(ancestor->second, span_))
-                                           : toChild(in(world_.frames[frame].parent), poses_.local(frame, span_));
+  // First the function, then the pose: asking for another pose may forget this one.
+  const bool up = ancestor != towards_.end();
+  const Value& near = in(up ? ancestor->second : world_.frames[frame].parent);
+  const Value value =
+      up ? toParent(near, poses_.local(ancestor->second, span_)) : toChild(near, poses_.local(frame, span_));
   return known_.emplace(frame, value).first->second;
 }
 

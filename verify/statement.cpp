@@ -353,7 +353,9 @@ std::string World::describe(int body) const {
   return std::string(nameOf(bodies[body].role)) + " '" + bodies[body].name + "' (body " + std::to_string(body) + ")";
 }
 
-World readWorld(std::string_view text) {
+namespace {
+
+World readWorldText(std::string_view text) {
   World world;
   world.hash = sha256(text.data(), text.size());
   Lines lines(text, "world");
@@ -442,6 +444,16 @@ World readWorld(std::string_view text) {
     for (Geometry& g : world.geometries) g.joinSurfaces();
   derivePairs(world);
   return world;
+}
+
+}  // namespace
+
+World readWorld(std::string_view text) {
+  try {
+    return readWorldText(text);
+  } catch (const NotProven& error) {  // a sum that leaves the range
+    throw BadInput(std::string("world: ") + error.what());
+  }
 }
 
 Motion readMotion(std::string_view text, const World& world) {

@@ -339,6 +339,24 @@ TEST(VerifyProof, WhatMovesFreelyHasNoNeighbourInTheWorld) {
   EXPECT_NE(base(slide(0) + "rotate 3\n").false_neighbours, "");
 }
 
+// More poses than are kept: those in use stay.
+TEST(VerifyProof, ALongChainOverManyIntervals) {
+  std::string text = kHead + "variable a\n";
+  const int links = 800;
+  for (int k = 0; k < links; ++k)
+    text += "frame f " + std::to_string(k) + " " + hex(at(0.01, 0, 0)) + "\nturn " + hex(V{0, 0, k % 2 ? 1.0 : -1.0}) +
+            " 0 " + hex(1) + " " + hex(0) + "\n";
+  const World world = readWorld(text + "geometry sphere " + hex(0.01) + "\nbody obstacle o 0 0 " + hex(at(0, 0, 9)) +
+                                "\nbody link l " + std::to_string(links) + " 0 " + hex(kHere) + "\n");
+  std::string tree = sep({0, 0, -1});
+  for (int k = 0; k < 20; ++k) tree = node(kTime, sep({0, 0, -1}), tree);
+  const MotionText m = moving({0, 0.001});
+  expectVerified(judge(world, m.write(world), tree));
+  std::string deep = text;
+  for (int k = links; k < 1001; ++k) deep += "frame f " + std::to_string(k) + " " + hex(kHere) + "\n";
+  EXPECT_THROW(readWorld(deep), BadInput);
+}
+
 TEST(VerifyProof, HostileProofs) {
   const World world = cart(2);
   const std::string motion = moving({0, 1}).write(world);
@@ -385,6 +403,7 @@ TEST(VerifyStatement, IsReadStrictly) {
         kHead + "geometry box 0x1p+0 0x1p+0\n",
         kHead + "geometry box 0x1p+0 0x1p+0 -0x1p+0\n",
         kHead + "geometry box nan inf 0x1p+0\n",
+        kHead + "geometry boxes\ncells 1\n0x1p+40 0x0p+0 0x0p+0 0x1p+40 0x0p+0 0x0p+0\n",
         kHead + "geometry box 0x1p+99 0x1p+0 0x1p+0\n",
         kHead + "geometry box 0x1.00000000000001p+0 0x1p+0 0x1p+0\n",
         kHead + "geometry box 0x1p-1080 0x1p+0 0x1p+0\n",
