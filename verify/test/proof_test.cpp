@@ -383,6 +383,18 @@ TEST(VerifyProof, HostileProofs) {
   expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");
 }
 
+TEST(VerifyStatement, RotationsAreRotations) {
+  const auto with = [](const M& m) { return kHead + "frame f 0 " + hex(m) + "\n"; };
+  M mirror, stretched, sheared, nothing;
+  mirror.R[0] = -1;
+  stretched.R[4] = 1 + 1e-14;
+  sheared.R[1] = 1e-14;
+  nothing.R = {};
+  for (const M& m : {mirror, stretched, sheared, nothing}) EXPECT_THROW(readWorld(with(m)), BadInput);
+  Rng rng(31);
+  for (int n = 0; n < 1000; ++n) EXPECT_NO_THROW(readWorld(with(anyPose(rng, 1))));
+}
+
 TEST(VerifyStatement, IsReadStrictly) {
   const std::string box = "geometry box " + hex(V{1, 1, 1}) + "\n";
   const std::string body = "body link a 0 0 " + hex(kHere) + "\n";
