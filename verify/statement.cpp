@@ -310,7 +310,7 @@ void derivePairs(World& world) {
     const Body& A = world.bodies[a];
     const bool obstacle = A.role == Role::obstacle;
     const auto look = [&](int b) {
-      if (++steps > 100000000) throw BadInput("world: there are more than 100 million pairs to look at");
+      if (++steps > 20000000) throw BadInput("world: there are more than 20 million pairs to look at");
       const Body& B = world.bodies[b];
       const auto listed = world.unchecked.find(std::minmax(A.name_id, B.name_id));
       if (A.frame == B.frame) {
