@@ -10,14 +10,28 @@
 namespace verify {
 namespace {
 
-Fix up(const Tm& a) { return a.c0 + abs(a.c1) + abs(a.c2) + a.r; }
-Fix down(const Tm& a) { return a.c0 - abs(a.c1) - abs(a.c2) - a.r; }
+Fix up(const Tm& a) {
+  return a.c0 + abs(a.c1) + abs(a.c2) + a.r;
+}
+Fix down(const Tm& a) {
+  return a.c0 - abs(a.c1) - abs(a.c2) - a.r;
+}
 /// 1 or -1 where certain, else 0.
-int sign(const Tm& a) { return down(a) > Fix{0} ? 1 : up(a) < Fix{0} ? -1 : 0; }
-bool atMost(const Tm& a, const Tm& b) { return up(a) <= down(b); }
-Tm square(const Tm& a) { return a * a; }
-Tm exactly(double x) { return constant(enclose(x)); }
-Vec pointOf(const double* x) { return {exactly(x[0]), exactly(x[1]), exactly(x[2])}; }
+int sign(const Tm& a) {
+  return down(a) > Fix{0} ? 1 : up(a) < Fix{0} ? -1 : 0;
+}
+bool atMost(const Tm& a, const Tm& b) {
+  return up(a) <= down(b);
+}
+Tm square(const Tm& a) {
+  return a * a;
+}
+Tm exactly(double x) {
+  return constant(enclose(x));
+}
+Vec pointOf(const double* x) {
+  return {exactly(x[0]), exactly(x[1]), exactly(x[2])};
+}
 
 /// det(a, b, c)
 Tm determinant(const Vec& a, const Vec& b, const Vec& c) {
@@ -45,15 +59,20 @@ class Relative {
   Functional::Value rows_[3];
 };
 
-const Geometry& geometryOf(const World& world, int body) { return world.geometries[world.bodies[body].geometry]; }
+const Geometry& geometryOf(const World& world, int body) {
+  return world.geometries[world.bodies[body].geometry];
+}
 
-Vec corner(const Geometry& g, std::uint32_t vertex) { return pointOf(&g.vertices[3 * static_cast<std::size_t>(vertex)]); }
+Vec corner(const Geometry& g, std::uint32_t vertex) {
+  return pointOf(&g.vertices[3 * static_cast<std::size_t>(vertex)]);
+}
 
 /// The winding number of a closed mesh around x: its crossings with the half-line from x along coordinate axis k, each
 /// counted by the side that it is crossed from. In the plane of the two other coordinates, relative to x, a triangle
 /// (a, b, c) is crossed where the areas [a b], [b c], [c a] have one sign, at the height
 /// ([b c] a_k + [c a] b_k + [a b] c_k) / ([a b] + [b c] + [c a]). @return false where a sign is not certain.
-bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backwards, Budget& budget, std::int64_t& number) {
+bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backwards, Budget& budget,
+                   std::int64_t& number) {
   const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
   Fix low[3], high[3];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -108,7 +127,8 @@ void checkOutside(const World& world, Poses& poses, int a, int b, const Span& sp
     return false;
   };
   const auto unsure = [&]() {
-    throw NotProven("SOLID finds no point of " + world.describe(a) + " that is certainly outside of " + world.describe(b));
+    throw NotProven("SOLID finds no point of " + world.describe(a) + " that is certainly outside of " +
+                    world.describe(b));
   };
   if (A.kind == Geometry::mesh) {
     std::map<std::uint32_t, int> tried;  // per part; -1: shown
@@ -116,9 +136,11 @@ void checkOutside(const World& world, Poses& poses, int a, int b, const Span& sp
       int& tries = tried[A.part[t]];
       if (tries < 0 || tries > 12) continue;
       Vec p;  // (5 c0 + 7 c1 + 4 c2) / 16
-      const Vec c[3] = {corner(A, A.triangles[3 * t]), corner(A, A.triangles[3 * t + 1]), corner(A, A.triangles[3 * t + 2])};
+      const Vec c[3] = {corner(A, A.triangles[3 * t]), corner(A, A.triangles[3 * t + 1]),
+                        corner(A, A.triangles[3 * t + 2])};
       for (std::size_t k = 0; k < 3; ++k)
-        p[k] = divided(c[0][k] * constant(integer(5)) + c[1][k] * constant(integer(7)) + c[2][k] * constant(integer(4)), 16);
+        p[k] = divided(c[0][k] * constant(integer(5)) + c[1][k] * constant(integer(7)) + c[2][k] * constant(integer(4)),
+                       16);
       tries = outside(p) ? -1 : tries + 1;
     }
     for (const auto& part : tried)
@@ -143,7 +165,8 @@ bool insideTetrahedron(const Vec corners[4], const Vec& x) {
   };
   const Vec &a = corners[0], &b = corners[1], &c = corners[2], &d = corners[3];
   const int s = volume(a, b, c, d);
-  return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s && volume(a, b, c, x) == s;
+  return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s &&
+         volume(a, b, c, x) == s;
 }
 /// Whether x, in g's coordinates, is certainly in that piece.
 bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
@@ -247,9 +270,8 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
   if (!(t >= 0 && t <= 1)) throw BadInput("the contact's time is not in [0, 1]");
   const Enclosed at = enclose(t);
   const std::vector<Opponent> list = opponents(world, motion, piece, static_cast<int>(std::max(first, second)));
-  const auto pair = std::find_if(list.begin(), list.end(), [&](const Opponent& o) {
-    return o.body == static_cast<int>(std::min(first, second));
-  });
+  const auto pair = std::find_if(
+      list.begin(), list.end(), [&](const Opponent& o) { return o.body == static_cast<int>(std::min(first, second)); });
   if (first == second || pair == list.end()) throw NotProven("the contact is between bodies that are not checked");
   for (const Ignored& ignored : motion.pieces[piece].ignored)
     if (ignored.a == pair->body && ignored.b == static_cast<int>(std::max(first, second)) && t <= ignored.until)
@@ -267,7 +289,8 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
   bool shown = false;
   if (kind <= 1) {
     const std::uint32_t triangle = bytes.varint(), edge = bytes.varint(), crossed = bytes.varint();
-    if (A.kind != Geometry::mesh || B.kind != Geometry::mesh || triangle >= A.pieces() || crossed >= B.pieces() || edge > 2)
+    if (A.kind != Geometry::mesh || B.kind != Geometry::mesh || triangle >= A.pieces() || crossed >= B.pieces() ||
+        edge > 2)
       throw BadInput("CROSS names a triangle or edge that is not there");
     const Vec p = toB(corner(A, A.triangles[3 * triangle + edge])),
               q = toB(corner(A, A.triangles[3 * triangle + (edge + 1) % 3]));
@@ -300,7 +323,8 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     const Tm margin = constant(encloseDown(world.margin(a, b, motion.margin)) + encloseDown(motion.added));
     shown = margin.c0 > Fix{0} && atMost(dot(d, d), square(margin));
   }
-  if (!shown) throw NotProven("the witness does not show that " + world.describe(a) + " and " + world.describe(b) + " meet");
+  if (!shown)
+    throw NotProven("the witness does not show that " + world.describe(a) + " and " + world.describe(b) + " meet");
   char text[64];
   std::snprintf(text, sizeof text, " at t = %.17g of piece %u", t, piece);
   return world.describe(a) + " and " + world.describe(b) + text;

@@ -34,41 +34,76 @@ inline Fix checked(Int v) {
   if (v > kMost || v < -kMost) throw NotProven("a number is beyond the verifier's range of 2^40");
   return Fix{v};
 }
-inline Fix ulps(int n) { return Fix{n}; }
-inline Fix integer(std::int64_t n) { return checked(static_cast<Int>(n) * kOne); }
+inline Fix ulps(int n) {
+  return Fix{n};
+}
+inline Fix integer(std::int64_t n) {
+  return checked(static_cast<Int>(n) * kOne);
+}
 
 // Sums are exact: two numbers of at most 2^104 add up to at most 2^105, which the 127 bits hold.
-inline Fix operator+(Fix a, Fix b) { return checked(a.v + b.v); }
-inline Fix operator-(Fix a, Fix b) { return checked(a.v - b.v); }
-inline Fix operator-(Fix a) { return Fix{-a.v}; }
-inline Fix& operator+=(Fix& a, Fix b) { return a = a + b; }
-inline Fix& operator-=(Fix& a, Fix b) { return a = a - b; }
-inline bool operator<(Fix a, Fix b) { return a.v < b.v; }
-inline bool operator>(Fix a, Fix b) { return a.v > b.v; }
-inline bool operator<=(Fix a, Fix b) { return a.v <= b.v; }
-inline bool operator>=(Fix a, Fix b) { return a.v >= b.v; }
-inline bool operator==(Fix a, Fix b) { return a.v == b.v; }
-inline Fix abs(Fix a) { return Fix{a.v < 0 ? -a.v : a.v}; }
-inline Fix most(Fix a, Fix b) { return a.v < b.v ? b : a; }
-inline Fix least(Fix a, Fix b) { return a.v < b.v ? a : b; }
+inline Fix operator+(Fix a, Fix b) {
+  return checked(a.v + b.v);
+}
+inline Fix operator-(Fix a, Fix b) {
+  return checked(a.v - b.v);
+}
+inline Fix operator-(Fix a) {
+  return Fix{-a.v};
+}
+inline Fix& operator+=(Fix& a, Fix b) {
+  return a = a + b;
+}
+inline Fix& operator-=(Fix& a, Fix b) {
+  return a = a - b;
+}
+inline bool operator<(Fix a, Fix b) {
+  return a.v < b.v;
+}
+inline bool operator>(Fix a, Fix b) {
+  return a.v > b.v;
+}
+inline bool operator<=(Fix a, Fix b) {
+  return a.v <= b.v;
+}
+inline bool operator>=(Fix a, Fix b) {
+  return a.v >= b.v;
+}
+inline bool operator==(Fix a, Fix b) {
+  return a.v == b.v;
+}
+inline Fix abs(Fix a) {
+  return Fix{a.v < 0 ? -a.v : a.v};
+}
+inline Fix most(Fix a, Fix b) {
+  return a.v < b.v ? b : a;
+}
+inline Fix least(Fix a, Fix b) {
+  return a.v < b.v ? a : b;
+}
 /// a 2^-k rounded down: less than one ulp too small. (Right shifts of negative numbers round down with every compiler
 /// that has __int128.)
-inline Fix shifted(Fix a, int k) { return Fix{a.v >> k}; }
+inline Fix shifted(Fix a, int k) {
+  return Fix{a.v >> k};
+}
 
 /// The product rounded down: exact - 1 ulp < result <= exact.
-/// With a = a1 2^64 + a0 and b likewise, 0 <= a0, b0 < 2^64: a b 2^-64 = a1 b1 2^64 + a1 b0 + a0 b1 + a0 b0 2^-64, and only
-/// the last term is no integer. |a1 b1| <= 2^80; where it is above 2^42 the product is out of range and refused; else
-/// the sum stays below 2^106 + 2 * 2^104 + 2^64 < 2^127.
+/// With a = a1 2^64 + a0 and b likewise, 0 <= a0, b0 < 2^64: a b 2^-64 = a1 b1 2^64 + a1 b0 + a0 b1 + a0 b0 2^-64, and
+/// only the last term is no integer. |a1 b1| <= 2^80; where it is above 2^42 the product is out of range and refused;
+/// else the sum stays below 2^106 + 2 * 2^104 + 2^64 < 2^127.
 inline Fix operator*(Fix a, Fix b) {
   const Int a1 = a.v >> 64, b1 = b.v >> 64;
   const Uint a0 = static_cast<std::uint64_t>(a.v), b0 = static_cast<std::uint64_t>(b.v);
   const Int high = a1 * b1;
   constexpr Int kHigh = static_cast<Int>(1) << 42;
   if (high > kHigh || high < -kHigh) throw NotProven("a product is beyond the verifier's range of 2^40");
-  return checked(high * kOne + a1 * static_cast<Int>(b0) + static_cast<Int>(a0) * b1 + static_cast<Int>((a0 * b0) >> 64));
+  return checked(high * kOne + a1 * static_cast<Int>(b0) + static_cast<Int>(a0) * b1 +
+                 static_cast<Int>((a0 * b0) >> 64));
 }
 /// An upper bound of the product.
-inline Fix mulUp(Fix a, Fix b) { return a * b + ulps(1); }
+inline Fix mulUp(Fix a, Fix b) {
+  return a * b + ulps(1);
+}
 
 /// A number of the statement and how far its Fix may be from it: 0 or 1 ulp.
 struct Enclosed {
@@ -81,7 +116,9 @@ Enclosed enclose(double value);
 Fix encloseUp(double value);
 Fix encloseDown(double value);
 /// For people only: never decides anything.
-inline double toDouble(Fix a) { return std::ldexp(static_cast<double>(a.v), -64); }
+inline double toDouble(Fix a) {
+  return std::ldexp(static_cast<double>(a.v), -64);
+}
 
 /// An upper bound of the square root of a >= 0; at most 2 ulp above it.
 Fix sqrtUp(Fix a);

@@ -101,8 +101,9 @@ std::string contact(const World& world, Bytes& bytes) {
   std::memcpy(&t, &bits, sizeof t);
   char text[64];
   std::snprintf(text, sizeof text, "%.17g", t);
-  std::string s = "{\"piece\": " + std::to_string(piece) + ", \"bodies\": [" + quoted(world.describe(static_cast<int>(a))) + ", " +
-                  quoted(world.describe(static_cast<int>(b))) + "], \"t\": " + text;
+  std::string s = "{\"piece\": " + std::to_string(piece) + ", \"bodies\": [" +
+                  quoted(world.describe(static_cast<int>(a))) + ", " + quoted(world.describe(static_cast<int>(b))) +
+                  "], \"t\": " + text;
   const std::uint8_t kind = bytes.byte();
   if (kind > 4) throw BadInput("there is no witness of kind " + std::to_string(kind));
   s += std::string(", \"of\": \"") + (kind % 2 == 0 || kind == 4 ? "first" : "second") + "\", ";
@@ -136,8 +137,10 @@ std::string proofAsJson(const World& world, const Record& record) {
     std::memcpy(hash.data(), raw.data(), hash.size());
     s += "\"motion\": \"" + hexOf(hash) + "\", \"roots\": [";
     const char* before = "\n  ";
+    Budget budget{Options().work};
     for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece) {
       for (std::size_t a = 0; a < world.bodies.size(); ++a) {
+        budget.spend(1 + world.partners[a].size() + motion.pieces[piece].ignored.size());
         const std::vector<Opponent> partners = opponents(world, motion, piece, static_cast<int>(a));
         if (partners.empty()) continue;
         s += before;

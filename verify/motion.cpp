@@ -23,8 +23,8 @@ Pose Poses::compute(int index, const Span& span) const {
   Pose pose = frame.origin;
   for (const Element& e : frame.elements) {
     if (e.kind == Element::rotate) {
-      const Mat turn = rotation(
-          Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
+      const Mat turn =
+          rotation(Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
       pose.R = pose.R * turn;
       const auto at = std::lower_bound(piece_.orientations.begin(), piece_.orientations.end(), e.variable,
                                        [](const Orientation& o, int w) { return o.variable < w; });
@@ -76,11 +76,15 @@ Functional::Functional(const World& world, Poses& poses, const Span& span, int f
 const Functional::Value& Functional::in(int frame) {
   const auto found = known_.find(frame);
   if (found != known_.end()) return found->second;
+  poses_.spend(25);
   const auto ancestor = towards_.find(frame);
   // Recursion ends: an ancestor of the first frame asks for its child towards it, another frame for its parent; at the
   // latest frame 0 is an ancestor. The chain is at most 1000 frames deep (statement.cpp).
-  Value value = ancestor != towards_.end() ? toParent(in(ancestor->second), poses_.local(ancestor->second, span_))
-                                           : toChild(in(world_.frames[frame].parent), poses_.local(frame, span_));
+  // First the function, then the pose: asking for another pose may forget this one.
+  const bool up = ancestor != towards_.end();
+  const Value& near = in(up ? ancestor->second : world_.frames[frame].parent);
+  const Value value =
+      up ? toParent(near, poses_.local(ancestor->second, span_)) : toChild(near, poses_.local(frame, span_));
   return known_.emplace(frame, value).first->second;
 }
 

@@ -22,7 +22,9 @@ class Poses {
  public:
   Poses(const World& world, const Piece& piece, Budget& budget) : world_(world), piece_(piece), budget_(budget) {}
 
+  /// Valid until the next call.
   const Pose& local(int frame, const Span& span);
+  void spend(std::uint64_t steps) { budget_.spend(steps); }
 
  private:
   Tm variable(int v, const Span& span) const;

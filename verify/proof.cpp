@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The walk over a proof. Each node is about a task; TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover
-// it, and a leaf's claim is computed here. So when the walk has come through, every pair, piece and time is proven.
+// The walk over a proof. Each node is about a task; TIME, PARTNERS, OWN and OTHER cut their task in two parts that
+// cover it, and a leaf's claim is computed here. So when the walk has come through, every pair, piece and time is
+// proven.
 #include "proof.h"
 
 #include <algorithm>
@@ -107,6 +108,7 @@ class Walk {
     const Span all{Fix{0}, last ? encloseUp(motion_.until) : Fix{kOne}};
     for (std::size_t a = 0; a < world_.bodies.size(); ++a) {
       a_ = static_cast<int>(a);
+      budget_.spend(1 + world_.partners[a].size() + motion_.pieces[piece_].ignored.size());
       partners_ = opponents(world_, motion_, piece_, a_);
       if (partners_.empty()) continue;
       if (piece_ == 0) verdict_.checked += partners_.size();
@@ -135,9 +137,7 @@ class Walk {
     task.k = 0;
     task.l = geometry(partners_[task.p].body).pieces();
   }
-  bool wholeOther(const Task& task) const {
-    return task.k == 0 && task.l == geometry(partners_[task.p].body).pieces();
-  }
+  bool wholeOther(const Task& task) const { return task.k == 0 && task.l == geometry(partners_[task.p].body).pieces(); }
   bool wholeOwn(const Task& task) const { return task.from == 0 && task.to == geometry(a_).pieces(); }
 
   [[noreturn]] void fail(const Task& task, const std::string& why) const {
@@ -234,7 +234,8 @@ class Walk {
     int shift = 0;
     while (largest >> shift > 0) ++shift;
     for (int k = 0; k < 6; ++k)
-      n[k / 3][static_cast<std::size_t>(k % 3)] = Fix{static_cast<Int>(integers[kind < kTurn ? k % 3 : k]) * (kOne >> shift)};
+      n[k / 3][static_cast<std::size_t>(k % 3)] =
+          Fix{static_cast<Int>(integers[kind < kTurn ? k % 3 : k]) * (kOne >> shift)};
     std::vector<std::uint32_t> all;
     for (std::uint32_t k = task.p; k < task.q; ++k) {
       const Fix from = partners_[k].from;
@@ -254,9 +255,7 @@ class Walk {
     separated(task, all, frame, task.span, n[0], n[1], 0);
   }
 
-  static Fix lengthUp(const Direction& n) {
-    return sqrtUp(mulUp(n[0], n[0]) + mulUp(n[1], n[1]) + mulUp(n[2], n[2]));
-  }
+  static Fix lengthUp(const Direction& n) { return sqrtUp(mulUp(n[0], n[0]) + mulUp(n[1], n[1]) + mulUp(n[2], n[2])); }
 
   // For all t in the span: max over A of -n.x + max over a partner of n.y + margin |n| < 0, by the Bernstein
   // coefficients of each sum (support.cpp). n(s) = (n0 + n1)/2 + s (n1 - n0)/2; |n(s)| <= max(|n0|, |n1|), since a
@@ -374,7 +373,8 @@ void countUnchecked(const World& world, const Motion& motion, Verdict& verdict) 
   for (std::size_t a = 0; a < world.bodies.size(); ++a)
     for (const Partner& partner : world.partners[a])
       if (!(partner.self ? motion.self : motion.scene)) ++verdict.not_checked[static_cast<int>(Reason::scope)];
-  for (const Piece& piece : motion.pieces) verdict.not_checked[static_cast<int>(Reason::ignored)] += piece.ignored.size();
+  for (const Piece& piece : motion.pieces)
+    verdict.not_checked[static_cast<int>(Reason::ignored)] += piece.ignored.size();
 }
 
 }  // namespace

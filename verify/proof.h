@@ -24,13 +24,13 @@ struct Options {
 
 struct Verdict {
   bool verified = false;
-  bool bad_input = false;        // the record is not what the format says
-  std::string reason;            // why not
-  bool contact = false;          // the record also shows that two bodies meet
-  std::string contact_text;      // which, and when
+  bool bad_input = false;    // the record is not what the format says
+  std::string reason;        // why not
+  bool contact = false;      // the record also shows that two bodies meet
+  std::string contact_text;  // which, and when
   std::size_t pieces = 0;
-  double until = 0;              // of the last piece
-  std::uint64_t checked = 0;     // pairs
+  double until = 0;           // of the last piece
+  std::uint64_t checked = 0;  // pairs
   std::uint64_t not_checked[kReasons] = {};
   std::uint64_t leaves = 0, steps = 0;
 };
@@ -77,7 +77,7 @@ enum NodeKind : std::uint8_t {
   kContact = 0x20
 };
 
-constexpr int kMostDepth = 400;      // of nodes
+constexpr int kMostDepth = 400;  // of nodes
 constexpr int kMostTimeDepth = 60;
 
 /// Who is checked against body A in a piece of the motion, and from which time on.

@@ -36,7 +36,8 @@ std::string attribute(const XMLElement* e, const char* name, const char* otherwi
 }
 std::vector<double> attributeNumbers(const XMLElement* e, const char* name, const char* otherwise, std::size_t count) {
   std::vector<double> numbers = numbersOf(attribute(e, name, otherwise));
-  if (numbers.size() != count) throw BadInput(std::string("an attribute '") + name + "' has not " + std::to_string(count) + " numbers");
+  if (numbers.size() != count)
+    throw BadInput(std::string("an attribute '") + name + "' has not " + std::to_string(count) + " numbers");
   return numbers;
 }
 
@@ -44,11 +45,19 @@ std::vector<double> attributeNumbers(const XMLElement* e, const char* name, cons
 Mat fromAngles(const std::vector<double>& rpy) {
   Tm s[3], c[3];
   for (std::size_t k = 0; k < 3; ++k) sineCosine(constant(enclose(rpy[k])), s[k], c[k]);
-  return {c[2] * c[1], c[2] * s[1] * s[0] - s[2] * c[0], c[2] * s[1] * c[0] + s[2] * s[0],
-          s[2] * c[1], s[2] * s[1] * s[0] + c[2] * c[0], s[2] * s[1] * c[0] - c[2] * s[0],
-          -s[1],       c[1] * s[0],                      c[1] * c[0]};
+  return {c[2] * c[1],
+          c[2] * s[1] * s[0] - s[2] * c[0],
+          c[2] * s[1] * c[0] + s[2] * s[0],
+          s[2] * c[1],
+          s[2] * s[1] * s[0] + c[2] * c[0],
+          s[2] * s[1] * c[0] - c[2] * s[0],
+          -s[1],
+          c[1] * s[0],
+          c[1] * c[0]};
 }
-bool within(const Tm& a, const Tm& b, int bits) { return bound(a - b) <= Fix{kOne >> bits}; }
+bool within(const Tm& a, const Tm& b, int bits) {
+  return bound(a - b) <= Fix{kOne >> bits};
+}
 
 /// Whether the numbers are the pose of an <origin>: the rotation within 2^-49, so that it is among those that the claim
 /// is about; the translation to the very bit.
@@ -92,7 +101,8 @@ bool hasNoArea(const Triangle& t) {
     b[k] = t[2][static_cast<std::size_t>(k)] - t[0][static_cast<std::size_t>(k)];
     longest = std::max({longest, std::fabs(a[k]), std::fabs(b[k]), std::fabs(a[k] - b[k])});
   }
-  for (int k = 0; k < 3; ++k) area = std::max(area, std::fabs(a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]));
+  for (int k = 0; k < 3; ++k)
+    area = std::max(area, std::fabs(a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]));
   return area <= std::ldexp(longest * longest, -40);
 }
 
@@ -101,12 +111,14 @@ class Urdf {
   Urdf(const World& world, const std::string& path, const std::map<std::string, std::string>& packages)
       : world_(world), folder_(std::filesystem::absolute(path).parent_path()), packages_(packages) {
     const std::string text = readFile(path);
-    if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || !(robot_ = document_.FirstChildElement("robot")))
+    if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS ||
+        !(robot_ = document_.FirstChildElement("robot")))
       throw BadInput("'" + path + "' is no URDF");
   }
 
   Comparison run() {
-    for (std::size_t f = 0; f < world_.frames.size(); ++f) frames_[world_.frames[f].name].push_back(static_cast<int>(f));
+    for (std::size_t f = 0; f < world_.frames.size(); ++f)
+      frames_[world_.frames[f].name].push_back(static_cast<int>(f));
     frames_["world"].erase(std::remove(frames_["world"].begin(), frames_["world"].end(), 0), frames_["world"].end());
     for (std::size_t b = 0; b < world_.bodies.size(); ++b)
       if (world_.bodies[b].role == Role::link) ++link_bodies_;
@@ -124,8 +136,8 @@ class Urdf {
       ++links;
       if (children.count(name) == 0) root(name);
     }
-    result_.notes.push_back("the file has " + std::to_string(links) + " links, " + std::to_string(joints) + " joints and " +
-                            std::to_string(matched_) + " collision geometries; the world has " +
+    result_.notes.push_back("the file has " + std::to_string(links) + " links, " + std::to_string(joints) +
+                            " joints and " + std::to_string(matched_) + " collision geometries; the world has " +
                             std::to_string(link_bodies_ - matched_) + " more bodies of links");
     return result_;
   }
@@ -178,7 +190,8 @@ class Urdf {
     }
     const std::vector<double> axis = attributeNumbers(j.FirstChildElement("axis"), "xyz", "1 0 0", 3);
     const bool slides = type == "prismatic", planar = type == "planar";
-    if (!slides && !planar && type != "revolute" && type != "continuous") return wrong("there is no type '" + type + "'");
+    if (!slides && !planar && type != "revolute" && type != "continuous")
+      return wrong("there is no type '" + type + "'");
     if (planar) {
       if (e.size() != 3 || e[0].kind != Element::slide || e[1].kind != Element::slide || e[2].kind != Element::turn ||
           !isAlong(e[0], axis, true) || !isAlong(e[1], axis, true) || !isAlong(e[2], axis) ||
@@ -206,7 +219,8 @@ class Urdf {
       if (body.role == Role::link && body.name == name && body.frame == frame) bodies.push_back(static_cast<int>(b));
     }
     int number = 0;
-    for (const XMLElement* c = l.FirstChildElement("collision"); c != nullptr; c = c->NextSiblingElement("collision"), ++number) {
+    for (const XMLElement* c = l.FirstChildElement("collision"); c != nullptr;
+         c = c->NextSiblingElement("collision"), ++number) {
       const auto body = std::find_if(bodies.begin(), bodies.end(), [&](int b) {
         return isOrigin(c->FirstChildElement("origin"), world_.bodies[static_cast<std::size_t>(b)].numbers) &&
                isGeometry(c->FirstChildElement("geometry"), world_.bodies[static_cast<std::size_t>(b)].geometry);
@@ -230,8 +244,10 @@ class Urdf {
     if (kind == "sphere") return g.kind == Geometry::sphere && attributeNumbers(e, "radius", "", 1) == g.numbers;
     if (kind == "cylinder" || kind == "capsule")
       return g.kind == (kind == "capsule" ? Geometry::capsule : Geometry::cylinder) &&
-             attributeNumbers(e, "radius", "", 1)[0] == g.numbers[0] && attributeNumbers(e, "length", "", 1)[0] == g.numbers[1];
-    return kind == "mesh" && g.kind == Geometry::mesh && isMesh(find(attribute(e, "filename")), attributeNumbers(e, "scale", "1 1 1", 3), g);
+             attributeNumbers(e, "radius", "", 1)[0] == g.numbers[0] &&
+             attributeNumbers(e, "length", "", 1)[0] == g.numbers[1];
+    return kind == "mesh" && g.kind == Geometry::mesh &&
+           isMesh(find(attribute(e, "filename")), attributeNumbers(e, "scale", "1 1 1", 3), g);
   }
 
   bool isMesh(const std::string& path, const std::vector<double>& scale, const Geometry& g) {
@@ -249,7 +265,8 @@ class Urdf {
     std::set_difference(read.begin(), read.end(), stated.begin(), stated.end(), std::back_inserter(missing));
     if (!std::all_of(missing.begin(), missing.end(), hasNoArea)) return false;
     if (!missing.empty())
-      result_.notes.push_back("'" + path + "': " + std::to_string(missing.size()) + " triangles without area are not in the world");
+      result_.notes.push_back("'" + path + "': " + std::to_string(missing.size()) +
+                              " triangles without area are not in the world");
     return true;
   }
 
@@ -285,7 +302,8 @@ std::vector<double> readStl(const std::string& bytes) {
   std::vector<double> corners;
   std::uint32_t count = 0;
   if (bytes.size() >= 84) {
-    for (std::size_t k = 0; k < 4; ++k) count |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[80 + k])) << 8 * k;
+    for (std::size_t k = 0; k < 4; ++k)
+      count |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[80 + k])) << 8 * k;
     if (bytes.size() >= 84 + 50 * static_cast<std::uint64_t>(count) && count > 0) {  // normal, 3 corners, 2 bytes
       for (std::size_t t = 0; t < count; ++t) {
         for (std::size_t k = 0; k < 9; ++k) {
@@ -324,13 +342,15 @@ std::vector<double> readObj(const std::string& text) {
         const std::size_t word = line.find_first_not_of(" \t\r", k);
         if (word == std::string::npos) break;
         const long index = std::strtol(line.c_str() + word, nullptr, 10), n = static_cast<long>(vertices.size() / 3);
-        if (index == 0 || index > n || index < -n) throw BadInput("an OBJ file has a face of a vertex that is not there");
+        if (index == 0 || index > n || index < -n)
+          throw BadInput("an OBJ file has a face of a vertex that is not there");
         face.push_back(static_cast<std::size_t>(index > 0 ? index - 1 : n + index));
         k = std::min(line.find_first_of(" \t\r", word), line.size());
       }
       for (std::size_t k = 2; k < face.size(); ++k)
         for (const std::size_t v : {face[0], face[k - 1], face[k]})
-          corners.insert(corners.end(), vertices.begin() + static_cast<std::ptrdiff_t>(3 * v), vertices.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
+          corners.insert(corners.end(), vertices.begin() + static_cast<std::ptrdiff_t>(3 * v),
+                         vertices.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
     }
   }
   return corners;
@@ -360,7 +380,8 @@ std::vector<double> readMesh(const std::string& path) {
   return corners;
 }
 
-Comparison compareWithUrdf(const World& world, const std::string& path, const std::map<std::string, std::string>& packages) {
+Comparison compareWithUrdf(const World& world, const std::string& path,
+                           const std::map<std::string, std::string>& packages) {
   return Urdf(world, path, packages).run();
 }
 
@@ -387,7 +408,8 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
   std::size_t found = 0;
   for (const auto& [pair, reason] : world.unchecked) {
     if (reason != Reason::allowed) continue;
-    const std::string &x = world.names[static_cast<std::size_t>(pair.first)], &y = world.names[static_cast<std::size_t>(pair.second)];
+    const std::string &x = world.names[static_cast<std::size_t>(pair.first)],
+                      &y = world.names[static_cast<std::size_t>(pair.second)];
     const std::pair<std::string, std::string> key(std::min(x, y), std::max(x, y));
     const bool by_default = (defaults.count(x) > 0 || defaults.count(y) > 0) && enabled.count(key) == 0;
     if (links.count(x) > 0 && links.count(y) > 0 && (disabled.count(key) > 0 || by_default)) {

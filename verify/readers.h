@@ -17,7 +17,8 @@ struct Comparison {
 
 /// Frames, joints and collision geometry of a URDF. @param packages  folders of "package://NAME/".
 /// @throws BadInput: unreadable.
-Comparison compareWithUrdf(const World& world, const std::string& path, const std::map<std::string, std::string>& packages);
+Comparison compareWithUrdf(const World& world, const std::string& path,
+                           const std::map<std::string, std::string>& packages);
 /// Every pair that the world calls `allowed` is one that the SRDF disables.
 Comparison compareWithSrdf(const World& world, const std::string& path);
 

@@ -6,7 +6,9 @@
 namespace verify {
 namespace {
 
-std::uint32_t turned(std::uint32_t x, int n) { return x >> n | x << (32 - n); }
+std::uint32_t turned(std::uint32_t x, int n) {
+  return x >> n | x << (32 - n);
+}
 
 /// Section 6.2.2 of the standard.
 void block(std::uint32_t H[8], const std::uint8_t* bytes) {
@@ -31,9 +33,9 @@ void block(std::uint32_t H[8], const std::uint8_t* bytes) {
   std::memcpy(v, H, sizeof v);
   for (int t = 0; t < 64; ++t) {
     const std::uint32_t e = v[4], a = v[0];
-    const std::uint32_t t1 = v[7] + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) + ((e & v[5]) ^ (~e & v[6])) + K[t] + W[t];
-    const std::uint32_t t2 =
-        (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
+    const std::uint32_t t1 =
+        v[7] + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) + ((e & v[5]) ^ (~e & v[6])) + K[t] + W[t];
+    const std::uint32_t t2 = (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) + ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
     for (int k = 7; k > 0; --k) v[k] = v[k - 1];
     v[4] += t1;
     v[0] = t1 + t2;
@@ -52,7 +54,8 @@ Hash sha256(const void* data, std::size_t size) {
   const std::size_t left = size - done, length = left < 56 ? 64 : 128;
   if (left > 0) std::memcpy(end, bytes + done, left);
   end[left] = 0x80;
-  for (int k = 0; k < 8; ++k) end[length - 1 - k] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(size) * 8 >> 8 * k);
+  for (int k = 0; k < 8; ++k)
+    end[length - 1 - k] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(size) * 8 >> 8 * k);
   for (std::size_t k = 0; k < length; k += 64) block(H, end + k);
   Hash hash;
   for (int k = 0; k < 32; ++k) hash[k] = static_cast<std::uint8_t>(H[k / 4] >> (24 - 8 * (k % 4)));

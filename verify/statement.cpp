@@ -8,6 +8,25 @@ namespace {
 
 constexpr std::size_t kMostLines = 200u << 20;  // numbers of lines and entries are 32 bits wide
 
+/// Whether a proper rotation may be within 2^-49 of the numbers: without one, the claim would be about nothing at all.
+/// If R + E is that rotation, |E_ij| <= 2^-49, then |R R^T - I|_ij <= sum over k of |R_ik E_jk| + |E_ik R_jk| + |E_ik
+/// E_jk|
+/// <= 2 sqrt(3) 2^-49 + 3 2^-98 < 2^-47, rows of a rotation being of length 1; and R's determinant is near 1.
+bool mayBeRotation(const double numbers[9]) {
+  for (int k = 0; k < 9; ++k)
+    if (!(std::fabs(numbers[k]) < 2)) return false;
+  Vec row[3];
+  for (std::size_t i = 0; i < 9; ++i) row[i / 3][i % 3] = constant(enclose(numbers[i]));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Fix product = dot(row[i], row[j]).c0;
+      if (abs(i == j ? product - integer(1) : product) > Fix{kOne >> 47}) return false;
+    }
+  const Vec cross{row[0][1] * row[1][2] - row[0][2] * row[1][1], row[0][2] * row[1][0] - row[0][0] * row[1][2],
+                  row[0][0] * row[1][1] - row[0][1] * row[1][0]};
+  return dot(cross, row[2]).c0 > Fix{0};
+}
+
 /// The lines of a text, each cut into words at single spaces.
 class Lines {
  public:
@@ -70,7 +89,9 @@ class Lines {
   double number() {
     const std::string_view all = word();
     std::string_view text = all;
-    const auto wrong = [&]() { fail("'" + std::string(all.substr(0, 60)) + "' is no hexadecimal constant of a double"); };
+    const auto wrong = [&]() {
+      fail("'" + std::string(all.substr(0, 60)) + "' is no hexadecimal constant of a double");
+    };
     const bool negative = !text.empty() && text[0] == '-';
     if (negative) text.remove_prefix(1);
     if (text.size() < 3 || text[0] != '0' || text[1] != 'x') wrong();
@@ -112,6 +133,11 @@ class Lines {
     if (std::ldexp(value, -exponent) != static_cast<double>(mantissa)) wrong();  // it left the doubles
     if (value > 1099511627776.0) fail("the number " + std::string(all.substr(0, 40)) + " is beyond 2^40");
     return negative ? -value : value;
+  }
+  /// Nine numbers near a rotation.
+  void rotation(double numbers[9]) {
+    for (int k = 0; k < 9; ++k) numbers[k] = number();
+    if (!mayBeRotation(numbers)) fail("no rotation is within 2^-49 of the nine numbers");
   }
   double notNegative() {
     const double value = number();
@@ -236,7 +262,9 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
-bool moves(const World& world, int frame) { return !world.frames[frame].elements.empty(); }
+bool moves(const World& world, int frame) {
+  return !world.frames[frame].elements.empty();
+}
 
 bool movesFreely(const World& world, int frame) {
   int slides = 0, first = -1;
@@ -282,7 +310,7 @@ void derivePairs(World& world) {
     const Body& A = world.bodies[a];
     const bool obstacle = A.role == Role::obstacle;
     const auto look = [&](int b) {
-      if (++steps > 100000000) throw BadInput("world: there are more than 100 million pairs to look at");
+      if (++steps > 20000000) throw BadInput("world: there are more than 20 million pairs to look at");
       const Body& B = world.bodies[b];
       const auto listed = world.unchecked.find(std::minmax(A.name_id, B.name_id));
       if (A.frame == B.frame) {
@@ -349,11 +377,14 @@ std::string World::describe(int body) const {
   return std::string(nameOf(bodies[body].role)) + " '" + bodies[body].name + "' (body " + std::to_string(body) + ")";
 }
 
-World readWorld(std::string_view text) {
+namespace {
+
+World readWorldText(std::string_view text) {
   World world;
   world.hash = sha256(text.data(), text.size());
   Lines lines(text, "world");
-  if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n") lines.fail("the first line is not 'fcl_artic world 1'");
+  if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n")
+    lines.fail("the first line is not 'fcl_artic world 1'");
   Frame ground{};
   ground.name = "world";
   world.frames.push_back(ground);
@@ -373,7 +404,8 @@ World readWorld(std::string_view text) {
       frame.parent = static_cast<int>(lines.integer(world.frames.size()));
       frame.depth = world.frames[frame.parent].depth + 1;
       if (frame.depth > 1000) lines.fail("a chain of more than 1000 frames is not read");
-      for (double& x : frame.numbers) x = lines.number();
+      lines.rotation(frame.numbers);
+      for (int k = 9; k < 12; ++k) frame.numbers[k] = lines.number();
       frame.origin = statedPose(frame.numbers);
       world.frames.push_back(std::move(frame));
     } else if (kind == "turn" || kind == "slide" || kind == "rotate") {
@@ -400,7 +432,8 @@ World readWorld(std::string_view text) {
       body.name_id = idOf(body.name);
       body.frame = static_cast<int>(lines.integer(world.frames.size()));
       body.geometry = static_cast<int>(lines.integer(world.geometries.size()));
-      for (double& x : body.numbers) x = lines.number();
+      lines.rotation(body.numbers);
+      for (int k = 9; k < 12; ++k) body.numbers[k] = lines.number();
       body.pose = statedPose(body.numbers);
       world.bodies.push_back(std::move(body));
     } else if (kind == "margin") {
@@ -437,6 +470,16 @@ World readWorld(std::string_view text) {
     for (Geometry& g : world.geometries) g.joinSurfaces();
   derivePairs(world);
   return world;
+}
+
+}  // namespace
+
+World readWorld(std::string_view text) {
+  try {
+    return readWorldText(text);
+  } catch (const NotProven& error) {  // a sum that leaves the range
+    throw BadInput(std::string("world: ") + error.what());
+  }
 }
 
 Motion readMotion(std::string_view text, const World& world) {
@@ -501,7 +544,7 @@ Motion readMotion(std::string_view text, const World& world) {
         piece.polynomials.push_back(std::move(q));
       } else {
         Orientation orientation{variable, {}};
-        for (double& x : orientation.numbers) x = lines.number();
+        lines.rotation(orientation.numbers);
         piece.orientations.push_back(orientation);
       }
     } else {
@@ -516,9 +559,8 @@ Motion readMotion(std::string_view text, const World& world) {
   const auto before = [](const auto& x, const auto& y) { return x.variable < y.variable; };
   const auto twice = [&](auto& list) {
     std::sort(list.begin(), list.end(), before);
-    return std::adjacent_find(list.begin(), list.end(), [](const auto& x, const auto& y) {
-             return x.variable == y.variable;
-           }) != list.end();
+    return std::adjacent_find(list.begin(), list.end(),
+                              [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
   };
   for (Piece& piece : motion.pieces)
     if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");

@@ -21,7 +21,9 @@ namespace {
 constexpr std::uint32_t kLeaf = 8;
 
 /// w.p with three products, each less than one ulp too small.
-Fix along(const Fix w[3], const Fix p[3]) { return w[0] * p[0] + w[1] * p[1] + w[2] * p[2]; }
+Fix along(const Fix w[3], const Fix p[3]) {
+  return w[0] * p[0] + w[1] * p[1] + w[2] * p[2];
+}
 /// The most of w.p in a box: its farthest corner.
 Fix along(const Fix w[3], const Box& box) {
   Fix sum;
@@ -221,8 +223,8 @@ Fix Geometry::farthest(std::uint32_t i, std::uint32_t j, const Fix w[3], Budget&
   return best;
 }
 
-// f(p)(s) = v(s).p + d(s) is, up to the remainder r_v.|p| + r_d, the polynomial C0 + C1 s + C2 s^2 with C_k = v_k.p + d_k.
-// In Bernstein's basis of degree 2 on [-1, 1], (1-s)^2/4, (1-s)(1+s)/2, (1+s)^2/4, its coefficients are
+// f(p)(s) = v(s).p + d(s) is, up to the remainder r_v.|p| + r_d, the polynomial C0 + C1 s + C2 s^2 with C_k = v_k.p +
+// d_k. In Bernstein's basis of degree 2 on [-1, 1], (1-s)^2/4, (1-s)(1+s)/2, (1+s)^2/4, its coefficients are
 //   b0 = C0 - C1 + C2,   b1 = C0 - C2,   b2 = C0 + C1 + C2
 // (its values at -1 and 1, and 4 C0 = b0 + 2 b1 + b2). The basis is positive and adds up to 1, so the polynomial is at
 // most the largest coefficient. Each is linear in p: b_i(p) = w_i.p + o_i with w_i the same combination of v's.

@@ -35,11 +35,11 @@ struct Round {
 
 struct Geometry {
   enum Kind { mesh, boxes, box, sphere, ellipsoid, capsule, cylinder, cone, hull, halfspace, plane } kind = mesh;
-  bool solid = false;             // mesh: with what is inside
-  std::vector<double> numbers;    // of the shape, as stated
-  std::vector<double> vertices;   // as stated, three each
+  bool solid = false;            // mesh: with what is inside
+  std::vector<double> numbers;   // of the shape, as stated
+  std::vector<double> vertices;  // as stated, three each
   std::vector<std::uint32_t> triangles;
-  std::vector<double> cells;      // as stated: centre, half sizes
+  std::vector<double> cells;  // as stated: centre, half sizes
 
   std::uint32_t pieces() const { return pieces_; }
   bool unbounded() const { return kind == halfspace || kind == plane; }
@@ -47,8 +47,8 @@ struct Geometry {
   void prepare();
 
   // Derived:
-  std::vector<Point> points;  // within 1 ulp
-  std::vector<Round> rounds;  // of round shapes: the one piece is their hull
+  std::vector<Point> points;    // within 1 ulp
+  std::vector<Round> rounds;    // of round shapes: the one piece is their hull
   std::vector<Box> cell_boxes;  // of boxes and box, each end within 2 ulp
 
   /// Of a mesh, after joinSurfaces(): a part that hangs together per triangle, and whether each edge of each triangle
@@ -68,9 +68,9 @@ struct Geometry {
 
  private:
   struct Node {
-    std::uint32_t from, to;        // pieces
-    std::uint32_t right;           // the second child; the first follows its parent; 0: a leaf
-    std::uint32_t first, last;     // of a leaf of triangles: its corners in leaf_points_
+    std::uint32_t from, to;     // pieces
+    std::uint32_t right;        // the second child; the first follows its parent; 0: a leaf
+    std::uint32_t first, last;  // of a leaf of triangles: its corners in leaf_points_
     Box box;
   };
   std::uint32_t build(std::uint32_t i, std::uint32_t j);

@@ -13,21 +13,40 @@ struct Tm {
   Fix c0, c1, c2, r;
 };
 
-inline Tm constant(Fix x, Fix error = Fix{0}) { return {x, {}, {}, error}; }
-inline Tm constant(const Enclosed& e) { return constant(e.x, e.error); }
-inline Fix magnitude(const Tm& a) { return abs(a.c0) + abs(a.c1) + abs(a.c2); }  // of the polynomial
-inline Fix bound(const Tm& a) { return magnitude(a) + a.r; }                      // of the functions
-inline bool isZero(const Tm& a) { return (a.c0.v | a.c1.v | a.c2.v | a.r.v) == 0; }
-inline bool isConstant(const Tm& a) { return (a.c1.v | a.c2.v) == 0; }
+inline Tm constant(Fix x, Fix error = Fix{0}) {
+  return {x, {}, {}, error};
+}
+inline Tm constant(const Enclosed& e) {
+  return constant(e.x, e.error);
+}
+inline Fix magnitude(const Tm& a) {
+  return abs(a.c0) + abs(a.c1) + abs(a.c2);
+}  // of the polynomial
+inline Fix bound(const Tm& a) {
+  return magnitude(a) + a.r;
+}  // of the functions
+inline bool isZero(const Tm& a) {
+  return (a.c0.v | a.c1.v | a.c2.v | a.r.v) == 0;
+}
+inline bool isConstant(const Tm& a) {
+  return (a.c1.v | a.c2.v) == 0;
+}
 
-inline Tm operator+(const Tm& a, const Tm& b) { return {a.c0 + b.c0, a.c1 + b.c1, a.c2 + b.c2, a.r + b.r}; }
-inline Tm operator-(const Tm& a, const Tm& b) { return {a.c0 - b.c0, a.c1 - b.c1, a.c2 - b.c2, a.r + b.r}; }
-inline Tm operator-(const Tm& a) { return {-a.c0, -a.c1, -a.c2, a.r}; }
+inline Tm operator+(const Tm& a, const Tm& b) {
+  return {a.c0 + b.c0, a.c1 + b.c1, a.c2 + b.c2, a.r + b.r};
+}
+inline Tm operator-(const Tm& a, const Tm& b) {
+  return {a.c0 - b.c0, a.c1 - b.c1, a.c2 - b.c2, a.r + b.r};
+}
+inline Tm operator-(const Tm& a) {
+  return {-a.c0, -a.c1, -a.c2, a.r};
+}
 
 /// (p + [-ra, ra])(q + [-rb, rb]) lies in p q + [-R, R], R = |p| rb + |q| ra + ra rb, |p| <= |a0| + |a1| + |a2|.
-/// Of p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1, which
-/// are in [-1, 1]: s^3 = 3/4 s + T3/4, s^4 = s^2 - 1/8 + T4/8: a quarter and an eighth of the coefficient is left over.
-/// Each product and each shift is off by less than one ulp: at most 9 products and 3 shifts in the polynomial, 12 ulp.
+/// Of p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1,
+/// which are in [-1, 1]: s^3 = 3/4 s + T3/4, s^4 = s^2 - 1/8 + T4/8: a quarter and an eighth of the coefficient is left
+/// over. Each product and each shift is off by less than one ulp: at most 9 products and 3 shifts in the polynomial, 12
+/// ulp.
 inline Tm operator*(const Tm& a, const Tm& b) {
   if (isZero(a) || isZero(b)) return {};
   Tm p;
@@ -57,9 +76,15 @@ inline Tm divided(const Tm& a, int n) {
 using Vec = std::array<Tm, 3>;
 using Mat = std::array<Tm, 9>;  // by rows
 
-inline Tm dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline Vec operator+(const Vec& a, const Vec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Tm dot(const Vec& a, const Vec& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vec operator+(const Vec& a, const Vec& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vec operator-(const Vec& a, const Vec& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
 inline Vec operator*(const Mat& R, const Vec& x) {
   Vec y;
   for (int i = 0; i < 3; ++i) y[i] = R[3 * i] * x[0] + R[3 * i + 1] * x[1] + R[3 * i + 2] * x[2];

@@ -36,7 +36,9 @@ Fix anyFix(Rng& rng, int most_bits = 83) {
   if (rng() % 4 == 0) v = (static_cast<Int>(1) << bits) - static_cast<Int>(rng() % 3);
   return Fix{rng() % 2 ? v : -v};
 }
-double uniform(Rng& rng, double a, double b) { return std::uniform_real_distribution<double>(a, b)(rng); }
+double uniform(Rng& rng, double a, double b) {
+  return std::uniform_real_distribution<double>(a, b)(rng);
+}
 
 TEST(VerifyFixed, ProductIsRoundedDownByLessThanOneUlp) {
   Rng rng(1);
@@ -96,7 +98,8 @@ TEST(VerifyFixed, DoublesAreEnclosed) {
     if (n % 2) x = std::ldexp(uniform(rng, -1, 1), static_cast<int>(rng() % 160) - 120);
     if (std::isfinite(x) && std::fabs(x) < 1e12) check(x);
   }
-  for (const double x : {0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0, std::ldexp(1, -64), std::ldexp(-1, -65), std::ldexp(1.5, -64)})
+  for (const double x :
+       {0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0, std::ldexp(1, -64), std::ldexp(-1, -65), std::ldexp(1.5, -64)})
     check(x);
 }
 
@@ -112,7 +115,8 @@ TEST(VerifyFixed, RootsSinesAndUnitVectors) {
     ASSERT_TRUE((Big(s) - Big(angle).sin()).abs() <= Big(ulps(2)));
     ASSERT_TRUE((Big(c) - Big(angle).cos()).abs() <= Big(ulps(2)));
     const double scale = std::ldexp(1, static_cast<int>(rng() % 600) - 300);
-    const double axis[3] = {scale * uniform(rng, -1, 1), n % 3 ? scale * uniform(rng, -1, 1) : 0, scale * uniform(rng, -1, 1)};
+    const double axis[3] = {scale * uniform(rng, -1, 1), n % 3 ? scale * uniform(rng, -1, 1) : 0,
+                            scale * uniform(rng, -1, 1)};
     Fix unit[3];
     unitVector(axis, unit);
     const Big x(axis[0]), y(axis[1]), z(axis[2]), length = (x * x + y * y + z * z).sqrt();
@@ -177,6 +181,16 @@ TEST(VerifyTaylor, SineAndCosine) {
     for (const double at : {-1.0, 1.0, 0.0, uniform(rng, -1, 1)}) {
       ASSERT_TRUE(holds(s, Big(at), angle.at(Big(at)).sin()));
       ASSERT_TRUE(holds(c, Big(at), angle.at(Big(at)).cos()));
+    }
+  }
+  // Where nothing but Lagrange's remainder is left: at s = 1/2, T3 = -1, d - d^3/6 is at the end of what it leaves out,
+  // and d^5/120 takes the sine beyond; at s = 1/sqrt(2), T4 = -1, so does -d^6/720 with the cosine.
+  for (const double d : {1.0, -1.0, 0.5, 0.1}) {
+    Tm s, c;
+    sineCosine(Tm{{}, encloseUp(d), {}, {}}, s, c);
+    for (const double at : {0.5, -0.5, std::sqrt(0.5), -std::sqrt(0.5)}) {
+      EXPECT_TRUE(holds(s, Big(at), (Big(encloseUp(d)) * Big(at)).sin())) << d << " " << at;
+      EXPECT_TRUE(holds(c, Big(at), (Big(encloseUp(d)) * Big(at)).cos())) << d << " " << at;
     }
   }
   // Third order: an interval half as wide has about a tenth of the remainder, or less.

@@ -61,7 +61,9 @@ inline bool holds(const Tm& m, const Big& s, const Big& x) {
   const Big p = Big(m.c0) + s * (Big(m.c1) + s * Big(m.c2));
   return (x - p).abs() <= Big(m.r);
 }
-inline Fix ulp() { return Fix{1}; }
+inline Fix ulp() {
+  return Fix{1};
+}
 
 using BigVec = std::array<Big, 3>;
 struct BigPose {
@@ -70,8 +72,7 @@ struct BigPose {
 };
 inline BigVec operator*(const BigPose& M, const BigVec& x) {
   BigVec y;
-  for (std::size_t i = 0; i < 3; ++i)
-    y[i] = M.R[3 * i] * x[0] + M.R[3 * i + 1] * x[1] + M.R[3 * i + 2] * x[2] + M.t[i];
+  for (std::size_t i = 0; i < 3; ++i) y[i] = M.R[3 * i] * x[0] + M.R[3 * i + 1] * x[1] + M.R[3 * i + 2] * x[2] + M.t[i];
   return y;
 }
 inline BigPose operator*(const BigPose& A, const BigPose& B) {

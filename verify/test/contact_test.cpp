@@ -14,8 +14,9 @@ struct Pair {
   World world;
   std::string motion;
   Pair(const std::string& still, const std::string& moving, double margin = 0, const M& pose = {}) {
-    world = readWorld(kHead + "variable x\nframe f 0 " + hex(pose) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) +
-                      "\n" + still + moving + "body obstacle o 0 0 " + hex(pose) + "\nbody link l 1 1 " + hex(M{}) + "\n");
+    world = readWorld(kHead + "variable x\nframe f 0 " + hex(pose) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                      " " + hex(0) + "\n" + still + moving + "body obstacle o 0 0 " + hex(pose) + "\nbody link l 1 1 " +
+                      hex(M{}) + "\n");
     MotionText m;
     m.margin = margin;
     m.scope = "scene";
@@ -26,8 +27,9 @@ struct Pair {
   /// The root: the pair is ignored until the end of the claim, so that any node proves it.
   mutable std::string last;
   bool shown(int first, int second, double t, const std::string& witness) const {
-    const Verdict v = judge(world, motion, sep({1, 0, 0}) + "\x20" + varint(0) + varint(static_cast<std::uint32_t>(first)) +
-                                               varint(static_cast<std::uint32_t>(second)) + number(t) + witness);
+    const Verdict v = judge(world, motion,
+                            sep({1, 0, 0}) + "\x20" + varint(0) + varint(static_cast<std::uint32_t>(first)) +
+                                varint(static_cast<std::uint32_t>(second)) + number(t) + witness);
     EXPECT_EQ(v.verified, v.contact);
     if (v.bad_input) ADD_FAILURE() << v.reason;
     last = v.reason;
@@ -42,20 +44,25 @@ std::string weights(std::uint32_t piece, const std::vector<std::pair<std::uint32
   for (const auto& [vertex, weight] : all) s += varint(vertex) + little(weight, 4);
   return s;
 }
-std::string place(const V& x, std::uint32_t piece = 0) { return varint(piece) + number(x[0]) + number(x[1]) + number(x[2]); }
+std::string place(const V& x, std::uint32_t piece = 0) {
+  return varint(piece) + number(x[0]) + number(x[1]) + number(x[2]);
+}
 
 TEST(VerifyContact, AnEdgeCrossesATriangle) {
-  // The still triangle lies in z = 0, corners (0,0), (1,0), (0,1); the moving one has the edge (x + a, a, -1)-(x + a, a, 1).
+  // The still triangle lies in z = 0, corners (0,0), (1,0), (0,1); the moving one has the edge (x + a, a, -1)-(x + a,
+  // a, 1).
   const std::string still = meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, false);
   Rng rng(21);
   int yes = 0, no = 0;
   for (int n = 0; n < 400; ++n) {
-    const double a = uniform(rng, -0.5, 1), y = uniform(rng, -0.5, 1), z0 = uniform(rng, -1, 1), z1 = uniform(rng, -1, 1);
+    const double a = uniform(rng, -0.5, 1), y = uniform(rng, -0.5, 1), z0 = uniform(rng, -1, 1),
+                 z1 = uniform(rng, -1, 1);
     const std::string moving = meshText({{9, 9, 9}, {a, y, z0}, {a, y, z1}}, {{0, 1, 2}}, false);
     const Pair pair(still, moving, 0, anyPose(rng, 1));
     const double x = a + kX;
     const bool truth = x > 0 && y > 0 && x + y < 1 && z0 * z1 < 0;
-    EXPECT_EQ(pair.shown(1, 0, 0.5, cross(false, 0, 1, 0)), truth) << pair.last << " " << x << " " << y << " " << z0 << " " << z1;
+    EXPECT_EQ(pair.shown(1, 0, 0.5, cross(false, 0, 1, 0)), truth)
+        << pair.last << " " << x << " " << y << " " << z0 << " " << z1;
     EXPECT_EQ(pair.shown(0, 1, 0.5, cross(true, 0, 1, 0)), truth);
     EXPECT_FALSE(pair.shown(1, 0, 0.5, cross(false, 0, 0, 0)) && false);
     (truth ? yes : no)++;
@@ -77,24 +84,34 @@ TEST(VerifyContact, APointIsInsideOfAShape) {
     std::function<bool(const V&)> inside;
   };
   const std::vector<Shape> shapes = {
-      {"geometry box " + hex(V{1, 0.5, 2}) + "\n", [](const V& p) { return std::fabs(p[0]) < 0.5 && std::fabs(p[1]) < 0.25 && std::fabs(p[2]) < 1; }},
+      {"geometry box " + hex(V{1, 0.5, 2}) + "\n",
+       [](const V& p) { return std::fabs(p[0]) < 0.5 && std::fabs(p[1]) < 0.25 && std::fabs(p[2]) < 1; }},
       {"geometry sphere " + hex(0.4) + "\n", [](const V& p) { return norm(p) < 0.4; }},
-      {"geometry ellipsoid " + hex(V{0.4, 0.2, 0.6}) + "\n", [](const V& p) { return norm({p[0] / 0.4, p[1] / 0.2, p[2] / 0.6}) < 1; }},
+      {"geometry ellipsoid " + hex(V{0.4, 0.2, 0.6}) + "\n",
+       [](const V& p) {
+         return norm({p[0] / 0.4, p[1] / 0.2, p[2] / 0.6}) < 1;
+       }},
       {"geometry capsule " + hex(0.3) + " " + hex(0.8) + "\n",
-       [](const V& p) { return norm({p[0], p[1], p[2] - std::max(-0.4, std::min(0.4, p[2]))}) < 0.3; }},
-      {"geometry cylinder " + hex(0.3) + " " + hex(0.8) + "\n", [](const V& p) { return std::hypot(p[0], p[1]) < 0.3 && std::fabs(p[2]) < 0.4; }},
+       [](const V& p) {
+         return norm({p[0], p[1], p[2] - std::max(-0.4, std::min(0.4, p[2]))}) < 0.3;
+       }},
+      {"geometry cylinder " + hex(0.3) + " " + hex(0.8) + "\n",
+       [](const V& p) { return std::hypot(p[0], p[1]) < 0.3 && std::fabs(p[2]) < 0.4; }},
       {"geometry cone " + hex(0.6) + " " + hex(0.8) + "\n",
        [](const V& p) { return std::fabs(p[2]) < 0.4 && std::hypot(p[0], p[1]) < 0.6 * (0.4 - p[2]) / 0.8; }},
       {"geometry halfspace " + hex(V{0, 2, 0}) + " " + hex(0.2) + "\n", [](const V& p) { return p[1] < 0.1; }},
-      {"geometry boxes\ncells 2\n" + hex(V{5, 5, 5}) + " " + hex(V{1, 1, 1}) + "\n" + hex(V{0.1, 0, 0}) + " " + hex(V{0.2, 0.2, 0.3}) + "\n",
+      {"geometry boxes\ncells 2\n" + hex(V{5, 5, 5}) + " " + hex(V{1, 1, 1}) + "\n" + hex(V{0.1, 0, 0}) + " " +
+           hex(V{0.2, 0.2, 0.3}) + "\n",
        [](const V& p) { return std::fabs(p[0] - 0.1) < 0.2 && std::fabs(p[1]) < 0.2 && std::fabs(p[2]) < 0.3; }},
-      {"geometry hull\nvertices 4\n" + hex(V{0, 0, 0}) + "\n" + hex(V{0, 0.5, 0}) + "\n" + hex(V{1, 0, 0}) + "\n" + hex(V{0, 0, 0.5}) + "\n",
+      {"geometry hull\nvertices 4\n" + hex(V{0, 0, 0}) + "\n" + hex(V{0, 0.5, 0}) + "\n" + hex(V{1, 0, 0}) + "\n" +
+           hex(V{0, 0, 0.5}) + "\n",
        [](const V& p) { return p[0] > 0 && p[1] > 0 && p[2] > 0 && p[0] + 2 * p[1] + 2 * p[2] < 1; }}};
   Rng rng(22);
   for (std::size_t k = 0; k < shapes.size(); ++k) {
     const M pose = anyPose(rng, 1);
     const Pair pair(shapes[k].text, sphere, 0, pose);
-    const std::string container = varint(k == 7 ? 1 : 0) + (k == 8 ? varint(0) + varint(1) + varint(2) + varint(3) : "");
+    const std::string container =
+        varint(k == 7 ? 1 : 0) + (k == 8 ? varint(0) + varint(1) + varint(2) + varint(3) : "");
     int yes = 0, no = 0;
     for (int n = 0; n < 300; ++n) {
       const V p{uniform(rng, -0.25, 0.25), uniform(rng, -0.25, 0.25), uniform(rng, -0.25, 0.25)};
@@ -111,8 +128,8 @@ TEST(VerifyContact, APointIsInsideOfAShape) {
 
 TEST(VerifyContact, TwoPointsAreNear) {
   const std::string mesh = meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -7}}, {{0, 1, 3}, {0, 1, 2}}, false);
-  const std::string hull = "geometry hull\nvertices 4\n" + hex(V{0.2, 0.25, 0.1}) + "\n" + hex(V{0.2, 0.25, 3}) + "\n" + hex(V{0, 3, 3}) + "\n" +
-                           hex(V{3, 0, 3}) + "\n";
+  const std::string hull = "geometry hull\nvertices 4\n" + hex(V{0.2, 0.25, 0.1}) + "\n" + hex(V{0.2, 0.25, 3}) + "\n" +
+                           hex(V{0, 3, 3}) + "\n" + hex(V{3, 0, 3}) + "\n";
   const std::string on_mesh = weights(1, {{0, 500000000}, {1, 325000000}, {2, 250000000 - 75000000}});
   Rng rng(23);
   for (const double margin : {0.0, 0.1, 0.101, 0.2}) {
@@ -132,7 +149,8 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   const Pair pair(sphere, sphere);
   const std::string root = sep({1, 0, 0}), in = "\2" + place({0, 0, 0}) + varint(0);
   const auto verdict = [&](const std::string& contact) { return judge(pair.world, pair.motion, root + contact); };
-  const auto contact = [&](std::uint32_t piece, std::uint32_t a, std::uint32_t b, double t, const std::string& witness) {
+  const auto contact = [&](std::uint32_t piece, std::uint32_t a, std::uint32_t b, double t,
+                           const std::string& witness) {
     return "\x20" + varint(piece) + varint(a) + varint(b) + number(t) + witness;
   };
   EXPECT_TRUE(verdict(contact(0, 1, 0, 0.5, in)).verified);
@@ -146,8 +164,8 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, cross(false, 0, 0, 0))).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, "\2" + place({0, 0, 0}, 1) + varint(0))).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, "\2" + place({0, 0, 0}) + varint(1))).verified);
-  const World self = readWorld(kHead + sphere + "frame a 0 " + hex(M{}) + "\nbody link a 0 0 " + hex(M{}) + "\nbody link b 1 0 " + hex(M{}) +
-                               "\nunchecked allowed a b\n");
+  const World self = readWorld(kHead + sphere + "frame a 0 " + hex(M{}) + "\nbody link a 0 0 " + hex(M{}) +
+                               "\nbody link b 1 0 " + hex(M{}) + "\nunchecked allowed a b\n");
   MotionText m;
   m.pieces = {""};
   EXPECT_TRUE(judge(self, m.write(self), "").verified);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The first byte says what the rest is: 0 records for a fixed world, 1 a world, a motion and a proof with their hashes
-// made to fit, separated by bytes 30, 2 URDF, 3 SRDF, 4 STL, 5 OBJ. Wrong input may throw BadInput or be refused; what is
-// verified and yet wrong at a sample is a fault, as is a crash.
+// made to fit, separated by bytes 30, 2 URDF, 3 SRDF, 4 STL, 5 OBJ. Wrong input may throw BadInput or be refused; what
+// is verified and yet wrong at a sample is a fault, as is a crash.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -15,9 +15,14 @@ using namespace verify::test;
 
 namespace {
 
-const std::string kWorld = kHead + "variable a\nframe link1 0 " + hex(M{}) + "\nturn " + hex(V{0, 0, 1}) + " 0 " + hex(1) + " " + hex(0) +
-                           "\ngeometry box " + hex(V{1, 0.2, 0.2}) + "\n" + boxMesh({0.5, 0.5, 0.5}, true) + "body obstacle o 0 1 " +
-                           hex([] { M m; m.t = {2, 0, 0}; return m; }()) + "\nbody link link1 1 0 " + hex(M{}) + "\nunchecked allowed a b\n";
+const std::string kWorld = kHead + "variable a\nframe link1 0 " + hex(M{}) + "\nturn " + hex(V{0, 0, 1}) + " 0 " +
+                           hex(1) + " " + hex(0) + "\ngeometry box " + hex(V{1, 0.2, 0.2}) + "\n" +
+                           boxMesh({0.5, 0.5, 0.5}, true) + "body obstacle o 0 1 " + hex([] {
+                             M m;
+                             m.t = {2, 0, 0};
+                             return m;
+                           }()) +
+                           "\nbody link link1 1 0 " + hex(M{}) + "\nunchecked allowed a b\n";
 
 std::string temporaryFile(const char* name, const std::string& content) {
   static const std::string folder = [] {
@@ -74,7 +79,8 @@ void judgeBySamples(const World& world, const Motion& motion) {
       if (!small(world, poses)) return;
       for (std::size_t a = 0; a < world.bodies.size(); ++a)
         for (const Opponent& o : opponents(world, motion, piece, static_cast<int>(a)))
-          if (t > toDouble(o.from) + 1e-12 && upperDistance(world, poses, static_cast<int>(a), o.body, 40) < toDouble(o.margin) - 1e-9) {
+          if (t > toDouble(o.from) + 1e-12 &&
+              upperDistance(world, poses, static_cast<int>(a), o.body, 40) < toDouble(o.margin) - 1e-9) {
             std::fprintf(stderr, "fuzz: verified, and not so at t = %g of piece %zu\n", t, piece);
             std::abort();
           }
@@ -111,7 +117,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (const Record& record : splitRecords(rest)) verifyAndJudge(fixed, record);
         break;
       case 1: {
-        const std::size_t first = rest.find('\x1e'), second = rest.find('\x1e', first == std::string::npos ? first : first + 1);
+        const std::size_t first = rest.find('\x1e'),
+                          second = rest.find('\x1e', first == std::string::npos ? first : first + 1);
         if (second == std::string::npos) return 0;
         const std::string text = rest.substr(0, first);
         const World world = readWorld(text.empty() ? kWorld : text);

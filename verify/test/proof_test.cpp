@@ -17,13 +17,16 @@ void expectRefused(const Verdict& v, const std::string& words) {
   EXPECT_FALSE(v.verified);
   EXPECT_NE(v.reason.find(words), std::string::npos) << v.reason;
 }
-void expectVerified(const Verdict& v) { EXPECT_TRUE(v.verified) << v.reason; }
+void expectVerified(const Verdict& v) {
+  EXPECT_TRUE(v.verified) << v.reason;
+}
 
 /// A cart that slides along x, with a unit box; a wall: a box of thickness 0.2 around x = `wall`.
 World cart(double wall, const std::string& more = "") {
-  return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
-                   hex(0) + "\ngeometry box " + hex(V{1, 1, 1}) + "\ngeometry box " + hex(V{0.2, 4, 4}) +
-                   "\nbody obstacle wall 0 1 " + hex(at(wall, 0, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n" + more);
+  return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                   " " + hex(0) + "\ngeometry box " + hex(V{1, 1, 1}) + "\ngeometry box " + hex(V{0.2, 4, 4}) +
+                   "\nbody obstacle wall 0 1 " + hex(at(wall, 0, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n" +
+                   more);
 }
 MotionText moving(const std::vector<double>& coefficients) {
   MotionText m;
@@ -65,7 +68,8 @@ TEST(VerifyProof, MarginsCount) {
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
   m.margin = m.added = 0;
   expectRefused(judge(cart(2, "margin cart " + hex(0.5) + "\n"), m.write(cart(2, "margin cart " + hex(0.5) + "\n")),
-                      sep({-1, 0, 0})), "apart");
+                      sep({-1, 0, 0})),
+                "apart");
   // A pair's own margin stands above the bodies', and those above the motion's.
   const World own = cart(2, "margin cart " + hex(0.5) + "\nmargin wall cart " + hex(0.1) + "\n");
   m.margin = 0.45;
@@ -133,13 +137,14 @@ TEST(VerifyProof, HashesBindTheThreeTexts) {
   expectVerified(judge(world, good));
   expectRefused(judge(other, good), "another world");
   const std::string proof = hashBytes(motion) + sep({-1, 0, 0});
-  expectRefused(judge(world, "FAC1" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof), "another motion");
+  expectRefused(judge(world, "FAC1" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof),
+                "another motion");
 }
 
 /// An arm of 1 m with a ball of 0.1 at its end, turning about z; three balls as obstacles at the places given.
 World arm(const std::vector<V>& places) {
-  std::string s = kHead + "variable a\nframe arm 0 " + hex(kHere) + "\nturn " + hex(V{0, 0, 1}) + " 0 " + hex(1) + " " + hex(0) +
-                  "\ngeometry sphere " + hex(0.1) + "\n";
+  std::string s = kHead + "variable a\nframe arm 0 " + hex(kHere) + "\nturn " + hex(V{0, 0, 1}) + " 0 " + hex(1) + " " +
+                  hex(0) + "\ngeometry sphere " + hex(0.1) + "\n";
   for (const V& p : places) s += "body obstacle ball 0 0 " + hex(at(p[0], p[1], p[2])) + "\n";
   return readWorld(s + "body link tip 1 0 " + hex(at(1, 0, 0)) + "\n");
 }
@@ -161,12 +166,13 @@ TEST(VerifyProof, NoPartnerIsLeftOut) {
     if (bad < good.size()) places[bad] = {1.15, 0, 0};
     const World world = arm(places);
     const std::string s = sep({-1, 0, 0});
-    for (const std::string& proof :
-         {s, cutNode(kPartners, 1, s, s), cutNode(kPartners, 2, s, s), cutNode(kPartners, 2, cutNode(kPartners, 1, s, s), s)}) {
+    for (const std::string& proof : {s, cutNode(kPartners, 1, s, s), cutNode(kPartners, 2, s, s),
+                                     cutNode(kPartners, 2, cutNode(kPartners, 1, s, s), s)}) {
       const Verdict v = judge(world, m.write(world), proof);
       EXPECT_EQ(v.verified, bad == good.size()) << v.reason;
     }
-    for (const std::uint32_t c : {0u, 3u, 4u}) EXPECT_FALSE(judge(world, m.write(world), cutNode(kPartners, c, s, s)).verified);
+    for (const std::uint32_t c : {0u, 3u, 4u})
+      EXPECT_FALSE(judge(world, m.write(world), cutNode(kPartners, c, s, s)).verified);
   }
 }
 
@@ -187,9 +193,9 @@ TEST(VerifyProof, FramesOfDirections) {
 
 TEST(VerifyProof, Walls) {
   const auto world = [](const std::string& wall, const M& pose) {
-    return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
-                     hex(0) + "\ngeometry " + wall + "\ngeometry sphere " + hex(0.5) + "\nbody obstacle wall 0 0 " + hex(pose) +
-                     "\nbody link ball 1 1 " + hex(kHere) + "\n");
+    return readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                     " " + hex(0) + "\ngeometry " + wall + "\ngeometry sphere " + hex(0.5) +
+                     "\nbody obstacle wall 0 0 " + hex(pose) + "\nbody link ball 1 1 " + hex(kHere) + "\n");
   };
   const std::string front(1, '\x09'), back(1, '\x0a');
   const World half = world("halfspace " + hex(V{-3, 0, 0}) + " " + hex(-4.5), at(0.5, 0, 0));  // x >= 2
@@ -213,9 +219,9 @@ TEST(VerifyProof, Walls) {
 
 /// A small ball on a slide through a box's mesh of half sizes 1; `solid` or not.
 World hollow(bool solid, double radius = 0.1) {
-  return readWorld(kHead + "variable x\nframe ball 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) +
-                   "\n" + boxMesh({1, 1, 1}, solid) + "geometry sphere " + hex(radius) + "\nbody obstacle box 0 0 " + hex(kHere) +
-                   "\nbody link ball 1 1 " + hex(kHere) + "\n");
+  return readWorld(kHead + "variable x\nframe ball 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                   " " + hex(0) + "\n" + boxMesh({1, 1, 1}, solid) + "geometry sphere " + hex(radius) +
+                   "\nbody obstacle box 0 0 " + hex(kHere) + "\nbody link ball 1 1 " + hex(kHere) + "\n");
 }
 std::string others(const std::vector<std::string>& leaves, std::size_t from = 0) {
   if (from + 1 == leaves.size()) return leaves[from];
@@ -247,11 +253,12 @@ TEST(VerifyProof, SolidAroundTheMovingOne) {
   // The solid moves, the ball (a mesh, then a hull) is the obstacle inside of it.
   for (const std::string& small : {boxMesh({0.2, 0.2, 0.2}, false), boxMesh({0.2, 0.2, 0.2}, true),
                                    "geometry box " + hex(V{0.2, 0.2, 0.2}) + "\n"}) {
-    const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
-                                  hex(0) + "\n" + small + boxMesh({1, 1, 1}, true) + "body obstacle o 0 0 " + hex(kHere) +
-                                  "\nbody link l 1 1 " + hex(kHere) + "\n");
+    const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
+                                  hex(1) + " " + hex(0) + "\n" + small + boxMesh({1, 1, 1}, true) +
+                                  "body obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(kHere) + "\n");
     std::string tree = sep({1, 0, 0});
-    for (const V n : {V{1, 0, 0}, V{-1, 0, 0}, V{-1, 0, 0}, V{0, 1, 0}, V{0, 1, 0}, V{0, -1, 0}, V{0, -1, 0}, V{0, 0, 1}, V{0, 0, 1}})
+    for (const V n : {V{1, 0, 0}, V{-1, 0, 0}, V{-1, 0, 0}, V{0, 1, 0}, V{0, 1, 0}, V{0, -1, 0}, V{0, -1, 0},
+                      V{0, 0, 1}, V{0, 0, 1}})
       tree = cutNode(kOwn, 1, sep(n), tree);
     std::string own = sep({1, 0, 0});  // faces x = 1 last
     const std::vector<V> normals{{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}};
@@ -264,23 +271,26 @@ TEST(VerifyProof, SolidAroundTheMovingOne) {
 }
 
 TEST(VerifyProof, AnOpenSolidIsRefused) {
-  const std::string open = meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, true);
-  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
-                                hex(0) + "\n" + open + "geometry sphere " + hex(0.1) + "\nbody obstacle o 0 0 " + hex(kHere) +
-                                "\nbody link l 1 1 " + hex(kHere) + "\n");
+  const std::string open =
+      meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, true);
+  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
+                                hex(1) + " " + hex(0) + "\n" + open + "geometry sphere " + hex(0.1) +
+                                "\nbody obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(kHere) + "\n");
   const MotionText m = moving({2, 1});
   expectVerified(judge(world, m.write(world), sep({1, 0, 0})));
-  expectRefused(judge(world, m.write(world), "\x14" + others({sep({1, 0, 0}), sep({1, 0, 0}), sep({1, 0, 0})})), "not closed");
+  expectRefused(judge(world, m.write(world), "\x14" + others({sep({1, 0, 0}), sep({1, 0, 0}), sep({1, 0, 0})})),
+                "not closed");
 }
 
 TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
   // base - (turn) - upper - (turn) - lower, and a tool carried by lower; each a box of 1.
   const auto chain = [](const std::string& more, const std::string& roles = "link") {
     const std::string turn = "turn " + hex(V{0, 0, 1}) + " ";
-    return kHead + "variable a\nvariable b\nframe base 0 " + hex(kHere) + "\nframe upper 1 " + hex(at(5, 0, 0)) + "\n" + turn + "0 " +
-           hex(1) + " " + hex(0) + "\nframe lower 2 " + hex(at(5, 0, 0)) + "\n" + turn + "1 " + hex(1) + " " + hex(0) +
-           "\ngeometry box " + hex(V{1, 1, 1}) + "\nbody link base 1 0 " + hex(kHere) + "\nbody " + roles + " upper 2 0 " + hex(kHere) +
-           "\nbody link lower 3 0 " + hex(kHere) + "\nbody carried tool 3 0 " + hex(at(3, 0, 0)) + "\n" + more;
+    return kHead + "variable a\nvariable b\nframe base 0 " + hex(kHere) + "\nframe upper 1 " + hex(at(5, 0, 0)) + "\n" +
+           turn + "0 " + hex(1) + " " + hex(0) + "\nframe lower 2 " + hex(at(5, 0, 0)) + "\n" + turn + "1 " + hex(1) +
+           " " + hex(0) + "\ngeometry box " + hex(V{1, 1, 1}) + "\nbody link base 1 0 " + hex(kHere) + "\nbody " +
+           roles + " upper 2 0 " + hex(kHere) + "\nbody link lower 3 0 " + hex(kHere) + "\nbody carried tool 3 0 " +
+           hex(at(3, 0, 0)) + "\n" + more;
   };
   MotionText m;
   m.pieces = {"q 0 " + hex(0) + " " + hex(0.1) + "\n"};
@@ -293,7 +303,8 @@ TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
   expectVerified(v);
   EXPECT_EQ(v.checked, 5u);
   EXPECT_EQ(v.not_checked[static_cast<int>(Reason::same_frame)], 1u);
-  v = verdict(chain("unchecked neighbours base upper\nunchecked neighbours upper lower\nunchecked allowed tool base\n"), x + x);
+  v = verdict(chain("unchecked neighbours base upper\nunchecked neighbours upper lower\nunchecked allowed tool base\n"),
+              x + x);
   expectVerified(v);
   EXPECT_EQ(v.checked, 2u);
   EXPECT_EQ(v.not_checked[static_cast<int>(Reason::neighbours)], 2u);
@@ -313,17 +324,37 @@ TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
 
 TEST(VerifyProof, WhatMovesFreelyHasNoNeighbourInTheWorld) {
   const auto base = [](const std::string& elements) {
-    return readWorld(kHead + "variable x\nvariable y\nvariable z\nvariable a\nvariable b\nvariable c\nframe base 0 " + hex(kHere) +
-                     "\n" + elements + "geometry box " + hex(V{1, 1, 1}) + "\nbody link floor 0 0 " + hex(at(0, 0, -5)) +
-                     "\nbody link base 1 0 " + hex(kHere) + "\nunchecked neighbours floor base\n");
+    return readWorld(kHead + "variable x\nvariable y\nvariable z\nvariable a\nvariable b\nvariable c\nframe base 0 " +
+                     hex(kHere) + "\n" + elements + "geometry box " + hex(V{1, 1, 1}) + "\nbody link floor 0 0 " +
+                     hex(at(0, 0, -5)) + "\nbody link base 1 0 " + hex(kHere) + "\nunchecked neighbours floor base\n");
   };
-  const auto slide = [](int v) { return "slide " + hex(V{1, 0, 0}) + " " + std::to_string(v) + " " + hex(1) + " " + hex(0) + "\n"; };
+  const auto slide = [](int v) {
+    return "slide " + hex(V{1, 0, 0}) + " " + std::to_string(v) + " " + hex(1) + " " + hex(0) + "\n";
+  };
   EXPECT_EQ(base("").false_neighbours, "");
   EXPECT_EQ(base(slide(0)).false_neighbours, "");
   EXPECT_EQ(base(slide(0) + slide(0)).false_neighbours, "");
   EXPECT_EQ(base("rotate 3\n").false_neighbours, "");
   EXPECT_NE(base(slide(0) + slide(1)).false_neighbours, "");
   EXPECT_NE(base(slide(0) + "rotate 3\n").false_neighbours, "");
+}
+
+// More poses than are kept: those in use stay.
+TEST(VerifyProof, ALongChainOverManyIntervals) {
+  std::string text = kHead + "variable a\n";
+  const int links = 800;
+  for (int k = 0; k < links; ++k)
+    text += "frame f " + std::to_string(k) + " " + hex(at(0.01, 0, 0)) + "\nturn " + hex(V{0, 0, k % 2 ? 1.0 : -1.0}) +
+            " 0 " + hex(1) + " " + hex(0) + "\n";
+  const World world = readWorld(text + "geometry sphere " + hex(0.01) + "\nbody obstacle o 0 0 " + hex(at(0, 0, 9)) +
+                                "\nbody link l " + std::to_string(links) + " 0 " + hex(kHere) + "\n");
+  std::string tree = sep({0, 0, -1});
+  for (int k = 0; k < 20; ++k) tree = node(kTime, sep({0, 0, -1}), tree);
+  const MotionText m = moving({0, 0.001});
+  expectVerified(judge(world, m.write(world), tree));
+  std::string deep = text;
+  for (int k = links; k < 1001; ++k) deep += "frame f " + std::to_string(k) + " " + hex(kHere) + "\n";
+  EXPECT_THROW(readWorld(deep), BadInput);
 }
 
 TEST(VerifyProof, HostileProofs) {
@@ -352,23 +383,53 @@ TEST(VerifyProof, HostileProofs) {
   expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");
 }
 
+TEST(VerifyStatement, RotationsAreRotations) {
+  const auto with = [](const M& m) { return kHead + "frame f 0 " + hex(m) + "\n"; };
+  M mirror, stretched, sheared, nothing;
+  mirror.R[0] = -1;
+  stretched.R[4] = 1 + 1e-14;
+  sheared.R[1] = 1e-14;
+  nothing.R = {};
+  for (const M& m : {mirror, stretched, sheared, nothing}) EXPECT_THROW(readWorld(with(m)), BadInput);
+  Rng rng(31);
+  for (int n = 0; n < 1000; ++n) EXPECT_NO_THROW(readWorld(with(anyPose(rng, 1))));
+}
+
 TEST(VerifyStatement, IsReadStrictly) {
   const std::string box = "geometry box " + hex(V{1, 1, 1}) + "\n";
   const std::string body = "body link a 0 0 " + hex(kHere) + "\n";
   EXPECT_NO_THROW(readWorld(kHead + "# for people\n" + box + body));
   for (const std::string& text :
-       {std::string(""), std::string("fcl_artic world 2\n"), kHead + "geometry", kHead + "bogus\n", kHead + "variable\n",
-        kHead + "variable  x\n", kHead + "variable x y\n", kHead + "variable x%2\n", kHead + "variable x\ty\n",
-        kHead + "frame f 1 " + hex(kHere) + "\n", kHead + "turn 0x1p+0 0x0p+0 0x0p+0 0 0x1p+0 0x0p+0\n",
-        kHead + "geometry box 1 1 1\n", kHead + "geometry box 0x1p+0 0x1p+0\n", kHead + "geometry box 0x1p+0 0x1p+0 -0x1p+0\n",
-        kHead + "geometry box nan inf 0x1p+0\n", kHead + "geometry box 0x1p+99 0x1p+0 0x1p+0\n",
-        kHead + "geometry box 0x1.00000000000001p+0 0x1p+0 0x1p+0\n", kHead + "geometry box 0x1p-1080 0x1p+0 0x1p+0\n",
+       {std::string(""),
+        std::string("fcl_artic world 2\n"),
+        kHead + "geometry",
+        kHead + "bogus\n",
+        kHead + "variable\n",
+        kHead + "variable  x\n",
+        kHead + "variable x y\n",
+        kHead + "variable x%2\n",
+        kHead + "variable x\ty\n",
+        kHead + "frame f 1 " + hex(kHere) + "\n",
+        kHead + "turn 0x1p+0 0x0p+0 0x0p+0 0 0x1p+0 0x0p+0\n",
+        kHead + "geometry box 1 1 1\n",
+        kHead + "geometry box 0x1p+0 0x1p+0\n",
+        kHead + "geometry box 0x1p+0 0x1p+0 -0x1p+0\n",
+        kHead + "geometry box nan inf 0x1p+0\n",
+        kHead + "geometry boxes\ncells 1\n0x1p+40 0x0p+0 0x0p+0 0x1p+40 0x0p+0 0x0p+0\n",
+        kHead + "geometry box 0x1p+99 0x1p+0 0x1p+0\n",
+        kHead + "geometry box 0x1.00000000000001p+0 0x1p+0 0x1p+0\n",
+        kHead + "geometry box 0x1p-1080 0x1p+0 0x1p+0\n",
         kHead + "geometry mesh surface\nvertices 1\n0x0p+0 0x0p+0 0x0p+0\ntriangles 1\n0 0 1\n",
-        kHead + "geometry mesh surface\nvertices 99999999\n", kHead + "geometry mesh surface\nvertices 0\n",
-        kHead + "geometry hull\nvertices 2\n0x0p+0 0x0p+0 0x0p+0\n", kHead + "geometry plane 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n",
-        kHead + box + "body link a 0 1 " + hex(kHere) + "\n", kHead + box + "body robot a 0 0 " + hex(kHere) + "\n",
-        kHead + box + body + "unchecked because a a\n", kHead + box + body + "margin a -0x1p+0\n",
-        kHead + box + body + "margin a 0x1p+0\nmargin a 0x1p+0\n", kHead + "frame f 0 " + hex(kHere) + "\nrotate 0\n",
+        kHead + "geometry mesh surface\nvertices 99999999\n",
+        kHead + "geometry mesh surface\nvertices 0\n",
+        kHead + "geometry hull\nvertices 2\n0x0p+0 0x0p+0 0x0p+0\n",
+        kHead + "geometry plane 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n",
+        kHead + box + "body link a 0 1 " + hex(kHere) + "\n",
+        kHead + box + "body robot a 0 0 " + hex(kHere) + "\n",
+        kHead + box + body + "unchecked because a a\n",
+        kHead + box + body + "margin a -0x1p+0\n",
+        kHead + box + body + "margin a 0x1p+0\nmargin a 0x1p+0\n",
+        kHead + "frame f 0 " + hex(kHere) + "\nrotate 0\n",
         kHead + "variable x\nframe f 0 " + hex(kHere) + "\nturn 0x0p+0 0x0p+0 0x0p+0 0 0x1p+0 0x0p+0\n"})
     EXPECT_THROW(readWorld(text), BadInput) << text;
   const World world = cart(2);
@@ -380,11 +441,12 @@ TEST(VerifyStatement, IsReadStrictly) {
     EXPECT_NE(k, std::string::npos);
     return text.replace(k, what.size(), by);
   };
-  for (const std::string& text : {with("margin", "margins"), with("scope self scene", "scope self self"), with("scope self scene", "scope"),
-                                  with("until 0x1p+0", "until 0x1p+1"), with("until 0x1p+0\n", ""), with("piece\n", ""),
-                                  with("q 0", "q 1"), good + "q 0 0x1p+0\n", good + "q 0\n", good + "margin 0x0p+0\n",
-                                  good + "ignored 1 0 0x0p+0\n", good + "ignored 0 2 0x0p+0\n", with("piece\n", "ignored 0 1 0x0p+0\npiece\n"),
-                                  good + "q 0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0\n"})
+  for (const std::string& text :
+       {with("margin", "margins"), with("scope self scene", "scope self self"), with("scope self scene", "scope"),
+        with("until 0x1p+0", "until 0x1p+1"), with("until 0x1p+0\n", ""), with("piece\n", ""), with("q 0", "q 1"),
+        good + "q 0 0x1p+0\n", good + "q 0\n", good + "margin 0x0p+0\n", good + "ignored 1 0 0x0p+0\n",
+        good + "ignored 0 2 0x0p+0\n", with("piece\n", "ignored 0 1 0x0p+0\npiece\n"),
+        good + "q 0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0\n"})
     EXPECT_THROW(readMotion(text, world), BadInput) << text;
   const World named = readWorld(kHead + box + "body link a%20b%25%c3 0 0 " + hex(kHere) + "\n");
   EXPECT_EQ(named.bodies[0].name, "a b%\xc3");
@@ -394,8 +456,10 @@ TEST(VerifyStatement, Sha256) {
   EXPECT_EQ(hexOf(sha256("", 0)), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   EXPECT_EQ(hexOf(sha256("abc", 3)), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   const std::string million(1000000, 'a');
-  EXPECT_EQ(hexOf(sha256(million.data(), million.size())), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-  const std::string two = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";  // 56 bytes: the length needs a block more
+  EXPECT_EQ(hexOf(sha256(million.data(), million.size())),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  const std::string two =
+      "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";  // 56 bytes: the length needs a block more
   EXPECT_EQ(hexOf(sha256(two.data(), two.size())), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 

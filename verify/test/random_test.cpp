@@ -11,7 +11,8 @@ namespace verify::test {
 namespace {
 
 BigPose bigTurn(Rng& rng) {
-  return turned(BigVec{Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1))}, Big(uniform(rng, -3, 3)));
+  return turned(BigVec{Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1))},
+                Big(uniform(rng, -3, 3)));
 }
 /// A proper rotation, and its numbers rounded to doubles as a writer states them.
 BigPose stated(Rng& rng, double size, M& rounded) {
@@ -52,16 +53,19 @@ TEST(VerifyMotion, FunctionalsHoldTheExactKinematics) {
       text.replace(text.rfind("frame f 0 "), 10, "frame f " + std::to_string(parents.back()) + " ");
       steps.emplace_back();
       for (unsigned e = static_cast<unsigned>(rng() % 3); e > 0; --e) {
-        Step s{static_cast<int>(rng() % 5), static_cast<int>(rng() % 6), {uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)},
-               uniform(rng, -2, 2), uniform(rng, -3, 3)};
+        Step s{static_cast<int>(rng() % 5),
+               static_cast<int>(rng() % 6),
+               {uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)},
+               uniform(rng, -2, 2),
+               uniform(rng, -3, 3)};
         if (rng() % 2) s.axis = {0, 0, rng() % 2 ? 1.0 : -1.0};
         if (rng() % 2) s.m = 1, s.c = 0;
         steps.back().push_back(s);
         if (s.kind == 4) {
           text += "rotate " + std::to_string(s.variable) + "\n";
         } else {
-          text += std::string(s.kind == 3 ? "slide " : "turn ") + hex(s.axis) + " " + std::to_string(s.variable) + " " + hex(s.m) + " " +
-                  hex(s.c) + "\n";
+          text += std::string(s.kind == 3 ? "slide " : "turn ") + hex(s.axis) + " " + std::to_string(s.variable) + " " +
+                  hex(s.m) + " " + hex(s.c) + "\n";
         }
       }
     }
@@ -93,7 +97,8 @@ TEST(VerifyMotion, FunctionalsHoldTheExactKinematics) {
     Poses poses(world, read.pieces[0], budget);
     const double a = uniform(rng, 0, 1), width = std::ldexp(1, -static_cast<int>(rng() % 20));
     const Span span{encloseDown(a * (1 - width)), encloseDown(a * (1 - width) + width)};
-    const int from = static_cast<int>(rng() % static_cast<unsigned>(frames + 1)), to = static_cast<int>(rng() % static_cast<unsigned>(frames + 1));
+    const int from = static_cast<int>(rng() % static_cast<unsigned>(frames + 1)),
+              to = static_cast<int>(rng() % static_cast<unsigned>(frames + 1));
     const V n0{uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)};
     Vec direction;
     for (std::size_t k = 0; k < 3; ++k) direction[k] = {encloseDown(n0[k]), encloseDown(n0[k] / 3), {}, {}};
@@ -155,7 +160,9 @@ TEST(VerifyMotion, FunctionalsHoldTheExactKinematics) {
 
 std::string anyGeometry(Rng& rng, int kind, double size) {
   const auto r = [&]() { return hex(uniform(rng, 0.05, 1) * size); };
-  const auto p = [&]() { return hex(V{uniform(rng, -size, size), uniform(rng, -size, size), uniform(rng, -size, size)}); };
+  const auto p = [&]() {
+    return hex(V{uniform(rng, -size, size), uniform(rng, -size, size), uniform(rng, -size, size)});
+  };
   std::string s;
   switch (kind) {
     case 0:
@@ -179,12 +186,14 @@ std::string anyGeometry(Rng& rng, int kind, double size) {
       for (int k = 0; k < 30; ++k) s += p() + " " + hex(0.1 * size) + " " + r() + " " + hex(0) + "\n";
       return s;
     case 8:
-      return boxMesh({uniform(rng, 0.1, 1) * size, uniform(rng, 0.1, 1) * size, uniform(rng, 0.1, 1) * size}, rng() % 2);
+      return boxMesh({uniform(rng, 0.1, 1) * size, uniform(rng, 0.1, 1) * size, uniform(rng, 0.1, 1) * size},
+                     rng() % 2);
     default:
       s = "geometry mesh surface\nvertices 150\n";
       for (int k = 0; k < 150; ++k) s += p() + "\n";
       s += "triangles 50\n";
-      for (int k = 0; k < 50; ++k) s += std::to_string(3 * k) + " " + std::to_string(3 * k + 1) + " " + std::to_string(3 * k + 2) + "\n";
+      for (int k = 0; k < 50; ++k)
+        s += std::to_string(3 * k) + " " + std::to_string(3 * k + 1) + " " + std::to_string(3 * k + 2) + "\n";
       return s;
   }
 }
@@ -198,12 +207,15 @@ TEST(VerifySupport, ReachIsAboveEveryPointAndNear) {
     const int kind = n % 10;
     const World world = readWorld(kHead + anyGeometry(rng, kind, 1));
     const Geometry& g = world.geometries[0];
-    std::uint32_t i = static_cast<std::uint32_t>(rng() % g.pieces()), j = i + 1 + static_cast<std::uint32_t>(rng() % (g.pieces() - i));
+    std::uint32_t i = static_cast<std::uint32_t>(rng() % g.pieces()),
+                  j = i + 1 + static_cast<std::uint32_t>(rng() % (g.pieces() - i));
     // A unit vector that turns about z, for the ball's sake; its remainder is one of any function in it.
-    const double w0 = uniform(rng, -3, 3), w1 = n % 3 ? uniform(rng, -0.3, 0.3) : 0, z = uniform(rng, -1, 1), size = n % 4 ? 1e-6 : 1e-2;
+    const double w0 = uniform(rng, -3, 3), w1 = n % 3 ? uniform(rng, -0.3, 0.3) : 0, z = uniform(rng, -1, 1),
+                 size = n % 4 ? 1e-6 : 1e-2;
     Tm sine, cosine;
     sineCosine(Tm{encloseDown(w0), encloseDown(w1), {}, {}}, sine, cosine);
-    Vec v{constant(encloseDown(std::sqrt(1 - z * z))) * cosine, constant(encloseDown(std::sqrt(1 - z * z))) * sine, constant(encloseDown(z))};
+    Vec v{constant(encloseDown(std::sqrt(1 - z * z))) * cosine, constant(encloseDown(std::sqrt(1 - z * z))) * sine,
+          constant(encloseDown(z))};
     const double part[3] = {uniform(rng, -1, 1), 1, -1};
     const bool ball = kind == 1 || kind == 3;
     if (!ball)
@@ -221,7 +233,8 @@ TEST(VerifySupport, ReachIsAboveEveryPointAndNear) {
       if (ball) at = {std::sqrt(1 - z * z) * std::cos(angle), std::sqrt(1 - z * z) * std::sin(angle), z};
       const double most = dot(at, farthest(g, i, j, at)) + toDouble(d.c0) + s * toDouble(d.c1) + toDouble(d.r);
       const double bound = (toDouble(reach.b[0]) * (1 - s) * (1 - s) + 2 * toDouble(reach.b[1]) * (1 - s) * (1 + s) +
-                            toDouble(reach.b[2]) * (1 + s) * (1 + s)) / 4;
+                            toDouble(reach.b[2]) * (1 + s) * (1 + s)) /
+                           4;
       ASSERT_LE(most, bound + 1e-14) << "kind " << kind << " s " << s;
       ++all;
       near += bound - most < 0.02 + 3 * size;
@@ -255,7 +268,8 @@ Case anyCase(Rng& rng) {
   if (floating) {
     s += "frame float 0 " + hex(M{}) + "\n";
     for (int k = 0; k < 3; ++k)
-      s += "slide " + hex(V{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}) + " " + std::to_string(joints + k) + " " + hex(1) + " " + hex(0) + "\n";
+      s += "slide " + hex(V{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}) + " " + std::to_string(joints + k) +
+           " " + hex(1) + " " + hex(0) + "\n";
     s += "rotate " + std::to_string(joints + 3) + "\n";
     parent = 1;
   }
@@ -265,9 +279,11 @@ Case anyCase(Rng& rng) {
     origin.t = {f == 0 ? 0 : 0.5, 0, 0};
     s += "frame f" + std::to_string(f) + " " + std::to_string(parent) + " " + hex(origin) + "\n";
     if (rng() % 4) {
-      s += "turn " + hex(V{uniform(rng, -1, 1), uniform(rng, -1, 1), 1}) + " " + std::to_string(f) + " " + hex(1) + " " + hex(0) + "\n";
+      s += "turn " + hex(V{uniform(rng, -1, 1), uniform(rng, -1, 1), 1}) + " " + std::to_string(f) + " " + hex(1) +
+           " " + hex(0) + "\n";
     } else {
-      s += "slide " + hex(V{uniform(rng, -1, 1), 0, 1}) + " " + std::to_string(f) + " " + hex(0.3) + " " + hex(0.1) + "\n";
+      s += "slide " + hex(V{uniform(rng, -1, 1), 0, 1}) + " " + std::to_string(f) + " " + hex(0.3) + " " + hex(0.1) +
+           "\n";
     }
     parent = f + 1 + (floating ? 1 : 0);
     frames.push_back(parent);
@@ -280,7 +296,8 @@ Case anyCase(Rng& rng) {
     const double angle = uniform(rng, -3, 3), r = uniform(rng, 0.4, 1.6);
     pose.t = {r * std::cos(angle), r * std::sin(angle), uniform(rng, -1, 1)};
     if (rng() % 8 == 0) {
-      s += std::string("geometry ") + (rng() % 2 ? "halfspace " : "plane ") + hex(V{0.2, 0.1, 2}) + " " + hex(uniform(rng, -3, -1)) + "\n";
+      s += std::string("geometry ") + (rng() % 2 ? "halfspace " : "plane ") + hex(V{0.2, 0.1, 2}) + " " +
+           hex(uniform(rng, -3, -1)) + "\n";
       pose = M{};
     } else {
       s += anyGeometry(rng, static_cast<int>(rng() % 9), 0.3);
@@ -291,7 +308,8 @@ Case anyCase(Rng& rng) {
     s += anyGeometry(rng, static_cast<int>(rng() % 9), 0.2);
     M pose = anyPose(rng, 0);
     pose.t = {0.25, 0, 0};
-    bodies += "body link l" + std::to_string(f) + " " + std::to_string(frames[f]) + " " + std::to_string(geometries++) + " " + hex(pose) + "\n";
+    bodies += "body link l" + std::to_string(f) + " " + std::to_string(frames[f]) + " " + std::to_string(geometries++) +
+              " " + hex(pose) + "\n";
     if (f > 0) bodies += "unchecked allowed l" + std::to_string(f - 1) + " l" + std::to_string(f) + "\n";
   }
   s += bodies;
@@ -319,7 +337,8 @@ bool certainlyFalse(const World& world, const Motion& motion, int samples, int s
       const std::vector<M> poses = sampler.bodies(piece, t);
       for (std::size_t a = 0; a < world.bodies.size(); ++a)
         for (const Opponent& o : opponents(world, motion, piece, static_cast<int>(a)))
-          if (t >= toDouble(o.from) && upperDistance(world, poses, static_cast<int>(a), o.body, steps) < toDouble(o.margin) - 1e-7)
+          if (t >= toDouble(o.from) &&
+              upperDistance(world, poses, static_cast<int>(a), o.body, steps) < toDouble(o.margin) - 1e-7)
             return true;
     }
   }
@@ -355,7 +374,9 @@ TEST(VerifyRandom, TrueClaimsAreProvenAndFalseOnesNever) {
       MotionText more = c.motion;
       if (k < 2) more.added = uniform(rng, 0, 0.4);
       if (k >= 2)
-        for (std::string& piece : more.pieces) piece.replace(piece.find("q 0 ") + 4, piece.find('\n') - 4, hex(uniform(rng, -3, 3)) + " " + hex(uniform(rng, -3, 3)));
+        for (std::string& piece : more.pieces)
+          piece.replace(piece.find("q 0 ") + 4, piece.find('\n') - 4,
+                        hex(uniform(rng, -3, 3)) + " " + hex(uniform(rng, -3, 3)));
       const std::string other = more.write(world);
       const Motion changed = readMotion(other, world);
       const Verdict w = judge(world, record(other, nodes), options);
@@ -365,8 +386,8 @@ TEST(VerifyRandom, TrueClaimsAreProvenAndFalseOnesNever) {
       }
     }
   }
-  std::printf("%d verified of %d that the prover finished (%d refused); %d false, %d forged, %d wrong ones accepted\n", verified, finished,
-              refused_complete, is_false, forged, accepted_wrong);
+  std::printf("%d verified of %d that the prover finished (%d refused); %d false, %d forged, %d wrong ones accepted\n",
+              verified, finished, refused_complete, is_false, forged, accepted_wrong);
   EXPECT_EQ(accepted_wrong, 0);
   EXPECT_GT(is_false, 25);
   EXPECT_GT(forged, 100);
@@ -433,7 +454,8 @@ TEST(VerifyRandom, ADroppedPartner) {
     const V middle = sampler.bodies(0, 0.5).back().t;  // within the last link
     M pose;
     pose.t = middle;
-    const std::string add = "geometry sphere " + hex(0.3) + "\nbody obstacle more 0 " + std::to_string(world.geometries.size()) + " " + hex(pose) + "\n";
+    const std::string add = "geometry sphere " + hex(0.3) + "\nbody obstacle more 0 " +
+                            std::to_string(world.geometries.size()) + " " + hex(pose) + "\n";
     const std::size_t at = c.world_text.find("body ");
     for (const std::string& text : {c.world_text + add, c.world_text.substr(0, at) + add + c.world_text.substr(at)}) {
       const World larger = readWorld(text);

@@ -58,19 +58,24 @@ M fromRpy(double r, double p, double y, const V& t) {
 }
 std::string goodWorld() {
   const double s = 0.001;
-  return kHead + "variable j1\nvariable j2\nframe base 0 " + hex(M{}) + "\nframe arm 1 " + hex(fromRpy(-1.57079632679, 0, 0, {0, 0, 0.333})) +
-         "\nturn " + hex(V{0, std::sqrt(0.5), std::sqrt(0.5)}) + " 0 " + hex(1) + " " + hex(0) + "\nframe hand 2 " + hex(M{}) + "\nslide " +
-         hex(V{0, 0, 1}) + " 1 " + hex(1) + " " + hex(0) + "\nframe finger 3 " + hex(M{}) + "\nturn " + hex(V{1, 0, 0}) + " 0 " + hex(-0.5) +
-         " " + hex(0.1) + "\nframe empty 3 " + hex(M{}) + "\ngeometry box " + hex(V{1, 0.5, 0.25}) + "\ngeometry cylinder " + hex(0.1) + " " +
-         hex(0.7) + "\n" + meshText({{0, 0, 0}, {s * 1, 0, 0}, {0, s * 2.5, 0}, {0, 0, s * 7}}, {{1, 2, 0}, {0, 3, 1}}, false) +
-         meshText({{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, true) + "geometry sphere " + hex(0.05) +
-         "\nbody link base 1 0 " + hex(M{}) + "\nbody link arm 2 2 " + hex(M{}) + "\nbody link arm 2 1 " + hex(fromRpy(0.3, -0.2, 1, {0.1, 0, 0})) +
-         "\nbody link hand 3 3 " + hex(M{}) + "\nbody link finger 4 4 " + hex(M{}) + "\nunchecked allowed base hand\nunchecked neighbours base arm\n";
+  return kHead + "variable j1\nvariable j2\nframe base 0 " + hex(M{}) + "\nframe arm 1 " +
+         hex(fromRpy(-1.57079632679, 0, 0, {0, 0, 0.333})) + "\nturn " + hex(V{0, std::sqrt(0.5), std::sqrt(0.5)}) +
+         " 0 " + hex(1) + " " + hex(0) + "\nframe hand 2 " + hex(M{}) + "\nslide " + hex(V{0, 0, 1}) + " 1 " + hex(1) +
+         " " + hex(0) + "\nframe finger 3 " + hex(M{}) + "\nturn " + hex(V{1, 0, 0}) + " 0 " + hex(-0.5) + " " +
+         hex(0.1) + "\nframe empty 3 " + hex(M{}) + "\ngeometry box " + hex(V{1, 0.5, 0.25}) + "\ngeometry cylinder " +
+         hex(0.1) + " " + hex(0.7) + "\n" +
+         meshText({{0, 0, 0}, {s * 1, 0, 0}, {0, s * 2.5, 0}, {0, 0, s * 7}}, {{1, 2, 0}, {0, 3, 1}}, false) +
+         meshText({{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, true) + "geometry sphere " +
+         hex(0.05) + "\nbody link base 1 0 " + hex(M{}) + "\nbody link arm 2 2 " + hex(M{}) + "\nbody link arm 2 1 " +
+         hex(fromRpy(0.3, -0.2, 1, {0.1, 0, 0})) + "\nbody link hand 3 3 " + hex(M{}) + "\nbody link finger 4 4 " +
+         hex(M{}) + "\nunchecked allowed base hand\nunchecked neighbours base arm\n";
 }
 void writeMeshes(const std::function<std::string(const std::string&, const std::string&)>& write) {
   write("robot_pkg/meshes/tri.stl",
-        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2.5 0\nendloop\nendfacet\nfacet normal 0 0 1\nouter "
-        "loop\nvertex 0 0 0\nvertex 1e0 0 0\nvertex 0 0 7\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 "
+        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 2.5 0\nendloop\nendfacet\nfacet "
+        "normal 0 0 1\nouter "
+        "loop\nvertex 0 0 0\nvertex 1e0 0 0\nvertex 0 0 7\nendloop\nendfacet\nfacet normal 0 0 0\nouter loop\nvertex 0 "
+        "0 0\nvertex 1 0 "
         "0\nvertex 1 0 0\nendloop\nendfacet\nendsolid s\n");
   write("deep/quad.obj", "# a square\nv 0 0 0\nv 1 0 0\r\nv 1 1.5 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 -2//1 4//1\n");
 }
@@ -81,21 +86,40 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
   for (const std::string& what : good.differences) ADD_FAILURE() << what;
   EXPECT_EQ(good.notes.size(), 3u);  // the root, counts, a triangle without area
   for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
-           {"1 0.5 0.25", "1 0.5 0.2500000001"}, {"radius=\"0.1\"", "radius=\"0.10000000000000002\""}, {"length=\"0.7\"", "length=\"0.8\""},
-           {"0 0 0.333", "0 0 0.334"}, {"-1.57079632679", "-1.5707963267"}, {"rpy=\"0.3 -0.2 1\"", "rpy=\"0.3 -0.2 1.00000000000001\""},
-           {"0 1 1", "0 1 1.00000000000001"}, {"0 1 1", "0 -1 -1"}, {"0 0 2", "0 2 0"}, {"revolute", "prismatic"}, {"revolute", "fixed"},
-           {"revolute", "floating"}, {"revolute", "planar"}, {"-0.5", "0.5"}, {"offset=\"0.1\"", "offset=\"0\""}, {"mimic joint=\"j1\"", "mimic joint=\"j2\""},
-           {"scale=\"0.001 ", "scale=\"0.002 "}, {"<sphere radius=\"0.05\"/>", "<box size=\"1 1 1\"/>"},
-           {"<link name=\"empty\"/>", "<link name=\"empty\"><collision><geometry><sphere radius=\"1\"/></geometry></collision></link>"},
-           {"<link name=\"empty\"/>", "<link name=\"empty\"/><link name=\"more\"/>"}, {"<collision><geometry><sphere radius=\"0.05\"/></geometry></collision>", ""},
-           {"name=\"j1\"", "name=\"j9\""}, {"<parent link=\"hand\"/><child link=\"finger\"/>", "<parent link=\"arm\"/><child link=\"finger\"/>"}})
+           {"1 0.5 0.25", "1 0.5 0.2500000001"},
+           {"radius=\"0.1\"", "radius=\"0.10000000000000002\""},
+           {"length=\"0.7\"", "length=\"0.8\""},
+           {"0 0 0.333", "0 0 0.334"},
+           {"-1.57079632679", "-1.5707963267"},
+           {"rpy=\"0.3 -0.2 1\"", "rpy=\"0.3 -0.2 1.00000000000001\""},
+           {"0 1 1", "0 1 1.00000000000001"},
+           {"0 1 1", "0 -1 -1"},
+           {"0 0 2", "0 2 0"},
+           {"revolute", "prismatic"},
+           {"revolute", "fixed"},
+           {"revolute", "floating"},
+           {"revolute", "planar"},
+           {"-0.5", "0.5"},
+           {"offset=\"0.1\"", "offset=\"0\""},
+           {"mimic joint=\"j1\"", "mimic joint=\"j2\""},
+           {"scale=\"0.001 ", "scale=\"0.002 "},
+           {"<sphere radius=\"0.05\"/>", "<box size=\"1 1 1\"/>"},
+           {"<link name=\"empty\"/>",
+            "<link name=\"empty\"><collision><geometry><sphere radius=\"1\"/></geometry></collision></link>"},
+           {"<link name=\"empty\"/>", "<link name=\"empty\"/><link name=\"more\"/>"},
+           {"<collision><geometry><sphere radius=\"0.05\"/></geometry></collision>", ""},
+           {"name=\"j1\"", "name=\"j9\""},
+           {"<parent link=\"hand\"/><child link=\"finger\"/>", "<parent link=\"arm\"/><child link=\"finger\"/>"}})
     EXPECT_FALSE(compare(goodWorld(), replaced(kUrdf, what, by)).differences.empty()) << what << " -> " << by;
   // The world without a body, with a moved one, with a triangle less or more.
   const std::string g = goodWorld();
-  for (const std::string& world : {replaced(g, "body link finger 4 4 " + hex(M{}) + "\n", ""), replaced(g, "body link finger 4", "body carried finger 4"),
-                                   replaced(g, "body link finger 4", "body link finger 3"), replaced(g, "triangles 2\n1 2 0\n0 3 1\n", "triangles 1\n1 2 0\n"),
-                                   replaced(g, "triangles 2\n1 2 0\n0 3 1\n", "triangles 3\n1 2 0\n0 3 1\n1 2 3\n"), replaced(g, "frame empty 3", "frame finger 3"),
-                                   replaced(g, "body link base 1 0", "body link base 1 4")})
+  for (const std::string& world :
+       {replaced(g, "body link finger 4 4 " + hex(M{}) + "\n", ""),
+        replaced(g, "body link finger 4", "body carried finger 4"),
+        replaced(g, "body link finger 4", "body link finger 3"),
+        replaced(g, "triangles 2\n1 2 0\n0 3 1\n", "triangles 1\n1 2 0\n"),
+        replaced(g, "triangles 2\n1 2 0\n0 3 1\n", "triangles 3\n1 2 0\n0 3 1\n1 2 3\n"),
+        replaced(g, "frame empty 3", "frame finger 3"), replaced(g, "body link base 1 0", "body link base 1 4")})
     EXPECT_FALSE(compare(world, kUrdf).differences.empty());
   EXPECT_THROW(compare(g, "<robot"), BadInput);
   EXPECT_THROW(compare(g, replaced(kUrdf, "package://elsewhere", "package://nowhere")), BadInput);
@@ -129,14 +153,16 @@ TEST_F(VerifyReaders, BinaryStl) {
 
 TEST_F(VerifyReaders, AllowedPairsAreInTheSrdf) {
   const auto compare = [&](const std::string& world, const std::string& srdf) {
-    return compareWithSrdf(readWorld(world), write("robot.srdf", "<robot name=\"r\">" + srdf + "</robot>")).differences.size();
+    return compareWithSrdf(readWorld(world), write("robot.srdf", "<robot name=\"r\">" + srdf + "</robot>"))
+        .differences.size();
   };
   const std::string g = goodWorld();
   EXPECT_EQ(compare(g, ""), 1u);
   EXPECT_EQ(compare(g, "<disable_collisions link1=\"hand\" link2=\"base\" reason=\"Never\"/>"), 0u);
   EXPECT_EQ(compare(g, "<disable_collisions link1=\"hand\" link2=\"arm\"/>"), 1u);
   EXPECT_EQ(compare(g, "<disable_default_collisions link=\"hand\"/>"), 0u);
-  EXPECT_EQ(compare(g, "<disable_default_collisions link=\"hand\"/><enable_collisions link1=\"hand\" link2=\"base\"/>"), 1u);
+  EXPECT_EQ(compare(g, "<disable_default_collisions link=\"hand\"/><enable_collisions link1=\"hand\" link2=\"base\"/>"),
+            1u);
   EXPECT_EQ(compare(g + "unchecked allowed base nobody\n", "<disable_collisions link1=\"hand\" link2=\"base\"/>"), 1u);
   EXPECT_THROW(compareWithSrdf(readWorld(g), write("b.srdf", "<robot")), BadInput);
 }

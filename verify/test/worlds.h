@@ -16,14 +16,26 @@
 namespace verify::test {
 
 using Rng = std::mt19937_64;
-inline double uniform(Rng& rng, double a, double b) { return std::uniform_real_distribution<double>(a, b)(rng); }
+inline double uniform(Rng& rng, double a, double b) {
+  return std::uniform_real_distribution<double>(a, b)(rng);
+}
 
 using V = std::array<double, 3>;
-inline V operator+(const V& a, const V& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline V operator-(const V& a, const V& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline V operator*(double s, const V& a) { return {s * a[0], s * a[1], s * a[2]}; }
-inline double dot(const V& a, const V& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-inline double norm(const V& a) { return std::sqrt(dot(a, a)); }
+inline V operator+(const V& a, const V& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline V operator-(const V& a, const V& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline V operator*(double s, const V& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
+inline double dot(const V& a, const V& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double norm(const V& a) {
+  return std::sqrt(dot(a, a));
+}
 
 struct M {
   std::array<double, 9> R{1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -37,7 +49,9 @@ inline V turnBack(const M& m, const V& x) {
   return {m.R[0] * x[0] + m.R[3] * x[1] + m.R[6] * x[2], m.R[1] * x[0] + m.R[4] * x[1] + m.R[7] * x[2],
           m.R[2] * x[0] + m.R[5] * x[1] + m.R[8] * x[2]};
 }
-inline V operator*(const M& m, const V& x) { return turn(m, x) + m.t; }
+inline V operator*(const M& m, const V& x) {
+  return turn(m, x) + m.t;
+}
 inline M operator*(const M& a, const M& b) {
   M c;
   for (std::size_t i = 0; i < 3; ++i)
@@ -74,8 +88,11 @@ inline std::string hex(const M& m) {
   for (const double x : m.R) s += hex(x) + " ";
   return s + hex(m.t[0]) + " " + hex(m.t[1]) + " " + hex(m.t[2]);
 }
-inline std::string hex(const V& x) { return hex(x[0]) + " " + hex(x[1]) + " " + hex(x[2]); }
-inline std::string meshText(const std::vector<V>& vertices, const std::vector<std::array<int, 3>>& triangles, bool solid) {
+inline std::string hex(const V& x) {
+  return hex(x[0]) + " " + hex(x[1]) + " " + hex(x[2]);
+}
+inline std::string meshText(const std::vector<V>& vertices, const std::vector<std::array<int, 3>>& triangles,
+                            bool solid) {
   std::string s = std::string("geometry mesh ") + (solid ? "solid" : "surface") + "\nvertices " +
                   std::to_string(vertices.size()) + "\n";
   for (const V& v : vertices) s += hex(v) + "\n";
@@ -87,10 +104,21 @@ inline std::string meshText(const std::vector<V>& vertices, const std::vector<st
 /// A box's surface, its triangles counter-clockwise from outside. @param half  its half sizes.
 inline std::string boxMesh(const V& half, bool solid) {
   std::vector<V> v;
-  for (int k = 0; k < 8; ++k) v.push_back({k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]});
+  for (int k = 0; k < 8; ++k)
+    v.push_back({k & 1 ? half[0] : -half[0], k & 2 ? half[1] : -half[1], k & 4 ? half[2] : -half[2]});
   return meshText(v,
-                  {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6},
-                   {1, 3, 5}, {3, 7, 5}},
+                  {{0, 2, 1},
+                   {1, 2, 3},
+                   {4, 5, 6},
+                   {5, 7, 6},
+                   {0, 1, 4},
+                   {1, 5, 4},
+                   {2, 6, 3},
+                   {3, 6, 7},
+                   {0, 4, 2},
+                   {2, 4, 6},
+                   {1, 3, 5},
+                   {3, 7, 5}},
                   solid);
 }
 inline const std::string kHead = "fcl_artic world 1\n";
@@ -101,8 +129,8 @@ struct MotionText {
   std::string ignored;              // lines, of the first piece
   std::vector<std::string> pieces;  // each: lines "q ..." and "orientation ..."
   std::string write(const World& world) const {
-    std::string s = "fcl_artic motion 1\nworld " + hexOf(world.hash) + "\nmargin " + hex(margin) + "\nadded " + hex(added) +
-                    "\nscope " + scope + "\nduration " + hex(1) + "\nuntil " + hex(until) + "\n";
+    std::string s = "fcl_artic motion 1\nworld " + hexOf(world.hash) + "\nmargin " + hex(margin) + "\nadded " +
+                    hex(added) + "\nscope " + scope + "\nduration " + hex(1) + "\nuntil " + hex(until) + "\n";
     for (std::size_t k = 0; k < pieces.size(); ++k) s += "piece\n" + (k == 0 ? ignored : "") + pieces[k];
     return s;
   }
@@ -241,14 +269,16 @@ inline V farthest(const Geometry& g, std::uint32_t i, std::uint32_t j, const V& 
   const std::vector<double>& s = g.numbers;
   switch (g.kind) {
     case Geometry::mesh:
-      for (std::size_t k = 3 * static_cast<std::size_t>(i); k < 3 * static_cast<std::size_t>(j); ++k) take(vertex(g.triangles[k]));
+      for (std::size_t k = 3 * static_cast<std::size_t>(i); k < 3 * static_cast<std::size_t>(j); ++k)
+        take(vertex(g.triangles[k]));
       break;
     case Geometry::hull:
       for (std::size_t k = 0; k < g.vertices.size() / 3; ++k) take(vertex(k));
       break;
     case Geometry::boxes:
       for (std::size_t k = i; k < j; ++k)
-        corners({g.cells[6 * k], g.cells[6 * k + 1], g.cells[6 * k + 2]}, {g.cells[6 * k + 3], g.cells[6 * k + 4], g.cells[6 * k + 5]});
+        corners({g.cells[6 * k], g.cells[6 * k + 1], g.cells[6 * k + 2]},
+                {g.cells[6 * k + 3], g.cells[6 * k + 4], g.cells[6 * k + 5]});
       break;
     case Geometry::box:
       corners({0, 0, 0}, {s[0] / 2, s[1] / 2, s[2] / 2});
@@ -299,7 +329,9 @@ inline Nearest nearest(V x, const std::function<V(const V&)>& least, int steps) 
 
 /// The distance of two bodies' convex pieces at a time; halfspaces are exact.
 inline double upperDistance(const World& world, const std::vector<M>& poses, int a, int b, int steps = 200) {
-  const auto geometry = [&](int k) -> const Geometry& { return world.geometries[static_cast<std::size_t>(world.bodies[static_cast<std::size_t>(k)].geometry)]; };
+  const auto geometry = [&](int k) -> const Geometry& {
+    return world.geometries[static_cast<std::size_t>(world.bodies[static_cast<std::size_t>(k)].geometry)];
+  };
   const M &A = poses[static_cast<std::size_t>(a)], &B = poses[static_cast<std::size_t>(b)];
   if (geometry(a).unbounded()) return upperDistance(world, poses, b, a, steps);
   if (geometry(b).unbounded()) {
@@ -316,7 +348,8 @@ inline double upperDistance(const World& world, const std::vector<M>& poses, int
   for (std::uint32_t i = 0; i < geometry(a).pieces(); ++i) {
     for (std::uint32_t j = 0; j < geometry(b).pieces(); ++j) {
       const auto least = [&](const V& n) {
-        return A * farthest(geometry(a), i, i + 1, turnBack(A, -1 * n)) - B * farthest(geometry(b), j, j + 1, turnBack(B, n));
+        return A * farthest(geometry(a), i, i + 1, turnBack(A, -1 * n)) -
+               B * farthest(geometry(b), j, j + 1, turnBack(B, n));
       };
       best = std::min(best, nearest(least({1, 0.3, 0.2}), least, steps).upper);
     }
@@ -327,7 +360,8 @@ inline double upperDistance(const World& world, const std::vector<M>& poses, int
 /// A proof by samples: may be wrong, and is then for the verifier to refuse.
 class Prover {
  public:
-  Prover(const World& world, const Motion& motion, int samples = 9) : world_(world), motion_(motion), sampler_(world, motion), samples_(samples) {}
+  Prover(const World& world, const Motion& motion, int samples = 9)
+      : world_(world), motion_(motion), sampler_(world, motion), samples_(samples) {}
   /// Whether every node that was written is right at its samples.
   bool complete = true;
   int most_time_depth = 6;
