@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// check --certificate. (What the verifier says of such files: test/certificate.)
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// A ball at the end of a rail along x.
+class CertificateOptionTest : public ProgramTest {
+ protected:
+  std::string rail() const {
+    return write("rail.urdf", R"(<robot name='rail'><link name='base'/><link name='ball'><collision><geometry>
+<sphere radius='0.1'/></geometry></collision></link><joint name='slide' type='prismatic'><parent link='base'/>
+<child link='ball'/><axis xyz='1 0 0'/><limit lower='-9' upper='9' effort='1' velocity='1'/></joint></robot>)");
+  }
+  std::string wall() const {
+    return write("wall.urdf", R"(<robot name='wall'><link name='wall'><collision><origin xyz='2 0 0'/><geometry>
+<box size='0.1 1 1'/></geometry></collision></link></robot>)");
+  }
+  std::string path(const std::string& name) const { return write(name + ".old", "") + ".fac"; }
+  static std::string read(const std::string& file) {
+    std::stringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+};
+
+TEST_F(CertificateOptionTest, WritesProofAndWorld) {
+  const std::string file = path("free");
+  const Outcome run =
+      this->run("check " + rail() + " --scene " + wall() + " --from 0 --to 1 --json --certificate " + file);
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json answer = Json::parse(run.out);
+  EXPECT_EQ(answer.at("certificate").at("proof_bytes"), 39);  // a hash and one direction
+  EXPECT_EQ(read(file).substr(0, 4), "FAC1");
+  EXPECT_EQ(read(file + ".world").substr(0, 18), "fcl_artic world 1\n");
+}
+
+TEST_F(CertificateOptionTest, OfManyLinesThereIsARecordEach) {
+  const std::string file = path("lines"), lines = write("lines.json",
+                                                        "{\"from\": [0], \"to\": [1]}\n{\"from\": [0], \"to\": [3]}\n"
+                                                        "{\"from\": [2], \"to\": [3]}\n{\"from\": [1], \"to\": [0]}\n");
+  const Outcome run =
+      this->run("check " + rail() + " --scene " + wall() + " --lines " + lines + " --certificate " + file);
+  ASSERT_EQ(run.status, 1) << run.err;
+  std::istringstream answers(run.out);
+  std::size_t proofs = 0, missing = 0;
+  for (std::string line; std::getline(answers, line);) {
+    const Json certificate = Json::parse(line).at("certificate");
+    proofs += certificate.contains("proof_bytes");
+    missing += certificate.contains("missing");
+  }
+  EXPECT_EQ(proofs, 3u);
+  EXPECT_EQ(missing, 1u);  // what touches from the beginning on
+  const std::string records = read(file);
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = records.find("FAC1", at)) != std::string::npos; ++at) ++count;
+  EXPECT_EQ(count, 3u);
+}
+
+TEST_F(CertificateOptionTest, NoFileIsLeftWithoutAProof) {
+  const std::string file = write("none.fac", "FAC1 of another call");
+  const Outcome run = this->run("check " + rail() + " --scene " + wall() + " --from 2 --to 3 --certificate " + file);
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_NE(run.out.find("no certificate: nothing is claimed"), std::string::npos) << run.out;
+  EXPECT_FALSE(std::filesystem::exists(file));
+  EXPECT_FALSE(std::filesystem::exists(file + ".world"));
+}
+
+TEST_F(CertificateOptionTest, AFolderThatIsNotThereIsAnError) {
+  const Outcome run =
+      this->run("check " + rail() + " --from 0 --to 1 --scene " + wall() + " --certificate /nowhere/at/all/x.fac");
+  EXPECT_EQ(run.status, 2);
+  EXPECT_NE(run.err.find("/nowhere/at/all/x.fac.world"), std::string::npos) << run.err;
+}
+
+}  // namespace
