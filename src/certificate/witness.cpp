@@ -23,8 +23,9 @@ using engine::PieceKind;
 using engine::TreeView;
 
 constexpr int kContact = 0x20, kCross = 0, kInside = 2, kNear = 4;
-/// What doubles may be off by, in m and for bodies of some metres: witnesses are farther from failing than this.
-constexpr double kSure = 1e-12;
+/// Witnesses are so far from failing, in m: the first, if there is one. What a verifier's poses are off by grows with
+/// the chain, to some 1e-12 m after thirty joints.
+constexpr double kSure[] = {1e-9, 1e-11};
 
 Vector3d toEigen(const Vec3& v) {
   return {v[0], v[1], v[2]};
@@ -157,7 +158,7 @@ double crossing(const Side& a, const Side& b, int& edge) {
 }
 
 /// Four vertices of the hull whose tetrahedron holds x.
-std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Vector3d& x) {
+std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Vector3d& x, double sure) {
   const std::vector<Vec3> vertices = hull.vertices();
   struct Shifted {
     const std::vector<Vec3>& vertices;
@@ -181,7 +182,7 @@ std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Ve
   for (int i = 0; i < 4; ++i) w[i] = toEigen(found.simplex.v[i].w);
   for (int i = 0; i < 4; ++i) {
     const Vector3d &a = w[(i + 1) % 4], &b = w[(i + 2) % 4], &c = w[(i + 3) % 4];
-    if (!(std::abs(volume(a, b, c)) > kSure * (b - a).cross(c - a).norm())) return std::nullopt;
+    if (!(std::abs(volume(a, b, c)) > sure * (b - a).cross(c - a).norm())) return std::nullopt;
   }
   std::array<std::size_t, 4> corners;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -235,6 +236,15 @@ CorePoints nearestPoints(const Side& a, const Side& b) {
   return points;
 }
 
+/// About, and not more than half of it where it is known.
+double inradius(const Side& side) {
+  double least = side.piece.radius > 0 ? side.piece.radius : INFINITY;
+  for (const double size : side.piece.size) {
+    if (size > 0) least = std::min(least, size);
+  }
+  return std::isfinite(least) ? 0.5 * least : 0.01;
+}
+
 /// The core's point, or the one of the rounded piece that is nearest to `towards` (geometry's frame). A little inside.
 NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   if (side.hasVertices()) return core;
@@ -242,10 +252,7 @@ NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   if (side.piece.radius > 0 && d.norm() > 0) core.x += d * std::min(1.0, side.piece.radius / d.norm());
   // Inequalities are squares of lengths: what they are kept by must show in the verifier's last digits, 2^-64. Next to
   // a cone's tip they are small themselves.
-  double least = side.piece.radius > 0 ? side.piece.radius : INFINITY;
-  for (const double size : side.piece.size) {
-    if (size > 0) least = std::min(least, size);
-  }
+  const double least = inradius(side);
   const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-17 / (least * least));
   const Vector3d centre = Vector3d::Map(side.piece.center);
   core.x = centre + (core.x - centre) * (1 - inwards);
@@ -258,14 +265,13 @@ struct Shrunk {
   const Side &own, &other;
   Pose other_in_own;
   Vector3d centre;  ///< inside of the other piece, in its frame
+  double smaller;   ///< part of its size
 
   Vector3d farthest(const Side& side, const Vector3d& u) const {
     const Vec3 core = baseline::supportPoint(side.tree, side.piece, Vec3(u[0], u[1], u[2]));
     return toEigen(core) + u * (side.piece.radius / u.norm());
   }
   void support(const Vec3& n, baseline::DifferencePoint& p) const {
-    // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
-    const double smaller = other.piece.kind == PieceKind::cone ? 1 - 1e-6 : 1 - 1e-9;
     const Vector3d u = toEigen(n), a = farthest(own, u);
     const Vector3d b = centre + smaller * (farthest(other, other_in_own.R.transpose() * -u) - centre);
     const Vector3d w = other_in_own.R * b + other_in_own.c - a;
@@ -279,14 +285,16 @@ struct Shrunk {
 };
 
 /// A point of the one piece that is well within the other one; none is found where they don't overlap enough.
-std::optional<NamedPoint> pointInside(const Side& own, const Side& other) {
+std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double sure) {
   Vector3d centre = Vector3d::Map(other.piece.center);
   if (other.hasVertices()) {
     const std::vector<Vec3> vertices = other.vertices();
     centre.setZero();
     for (const Vec3& v : vertices) centre += toEigen(v) / static_cast<double>(vertices.size());
   }
-  const Shrunk body{own, other, own.pose.inverse() * other.pose, centre};
+  // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
+  const double less = (other.piece.kind == PieceKind::cone ? 1e-6 : 10 * sure / std::max(sure, inradius(other)));
+  const Shrunk body{own, other, own.pose.inverse() * other.pose, centre, 1 - std::min(0.5, less)};
   baseline::GjkResult found;
   baseline::searchNearest(body, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite, 100, found);
   if (!found.overlap || found.simplex.n != 4) return std::nullopt;
@@ -296,13 +304,14 @@ std::optional<NamedPoint> pointInside(const Side& own, const Side& other) {
   return nameCore(own, points);
 }
 
-std::string witnessAt(const Side& a, const Side& b, double margin) {
+/// @param sure  m, how far it is from failing.
+std::string witnessAt(const Side& a, const Side& b, double margin, double sure) {
   std::string text;
   ProofBytes out(text);
   if (margin <= 0 && a.isTriangle() && b.isTriangle()) {
     int edge = 0, other_edge = 0;
     const double own = crossing(a, b, edge), other = crossing(b, a, other_edge);
-    if (!(std::max(own, other) > kSure)) return {};
+    if (!(std::max(own, other) > sure)) return {};
     const bool swap = other > own;
     out.byte(kCross + swap);
     out.number(swap ? b.number : a.number);
@@ -319,7 +328,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin) {
   if (margin > 0) {
     const NamedPoint x = rounded(a, points.a, seenFrom(a, b, points.b)), y = rounded(b, points.b, seenFrom(b, a, x));
     const double distance = ((a.pose.R * x.x + a.pose.c) - (b.pose.R * y.x + b.pose.c)).norm();
-    if (!(distance < margin - kSure)) return {};
+    if (!(distance < margin - sure)) return {};
     out.byte(kNear);
     put(a, x, out);
     put(b, y, out);
@@ -332,7 +341,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin) {
     if (baseline::unbounded(other.piece)) {
       x = rounded(own, swap ? points.b : points.a, seenFrom(own, other, swap ? points.a : points.b));
     } else {
-      const std::optional<NamedPoint> within = pointInside(own, other);
+      const std::optional<NamedPoint> within = pointInside(own, other, sure);
       if (!within) continue;
       x = rounded(own, *within, within->x);
     }
@@ -343,12 +352,12 @@ std::string witnessAt(const Side& a, const Side& b, double margin) {
     put(own, x, to);
     to.number(other.number);
     if (other.piece.kind == PieceKind::hull) {
-      const auto corners = tetrahedron(other, there);
+      const auto corners = tetrahedron(other, there, sure);
       if (!corners) continue;
       for (const std::size_t corner : *corners) to.number(corner);
       return bytes;
     }
-    if (depthIn(other.piece, there) > kSure) return bytes;
+    if (depthIn(other.piece, there) > sure) return bytes;
   }
   return {};
 }
@@ -365,19 +374,21 @@ std::string findWitness(MovingWorld& world, const Meeting& meeting) {
   };
   if (meeting.leaf_a < 0 || meeting.leaf_b < 0) return {};
   // A little later they are deeper in each other.
-  for (const double later : {0.0, 1.0, 10.0, 100.0, 1000.0}) {
-    const double t = std::min(1.0, meeting.t_upper + later * meeting.tolerance);
-    const std::string witness = witnessAt(side(meeting.a, meeting.leaf_a, t), side(meeting.b, meeting.leaf_b, t),
-                                          world.margin(meeting.a, meeting.b));
-    if (witness.empty()) continue;
-    std::string text;
-    ProofBytes out(text);
-    out.byte(kContact);
-    out.number(static_cast<std::size_t>(meeting.piece));
-    out.number(static_cast<std::size_t>(meeting.a));
-    out.number(static_cast<std::size_t>(meeting.b));
-    out.real(t);
-    return text + witness;
+  for (const double sure : kSure) {
+    for (const double later : {0.0, 1.0, 10.0, 100.0, 1000.0}) {
+      const double t = std::min(1.0, meeting.t_upper + later * meeting.tolerance);
+      const std::string witness = witnessAt(side(meeting.a, meeting.leaf_a, t), side(meeting.b, meeting.leaf_b, t),
+                                            world.margin(meeting.a, meeting.b), sure);
+      if (witness.empty()) continue;
+      std::string text;
+      ProofBytes out(text);
+      out.byte(kContact);
+      out.number(static_cast<std::size_t>(meeting.piece));
+      out.number(static_cast<std::size_t>(meeting.a));
+      out.number(static_cast<std::size_t>(meeting.b));
+      out.real(t);
+      return text + witness;
+    }
   }
   return {};
 }
