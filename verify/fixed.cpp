@@ -29,7 +29,7 @@ void set(Integer& z, Uint value) {
 }
 
 Int get(const Integer& z) {
-  if (mpz_sizeinbase(z.x, 2) > 105) throw NotProven("a number is beyond the verifier's range of 2^40");
+  if (mpz_sizeinbase(z.x, 2) > 105) throw OutOfRange("a number is beyond the verifier's range of 2^40");
   std::uint64_t words[2] = {0, 0};
   mpz_export(words, nullptr, -1, sizeof words[0], 0, 0, z.x);
   const Int magnitude = static_cast<Int>((static_cast<Uint>(words[1]) << 64) | words[0]);

@@ -19,6 +19,11 @@ struct NotProven : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Numbers are too large here; over a shorter interval of time they may not be.
+struct OutOfRange : NotProven {
+  using NotProven::NotProven;
+};
+
 __extension__ typedef __int128 Int;
 __extension__ typedef unsigned __int128 Uint;
 
@@ -31,7 +36,7 @@ constexpr Int kOne = static_cast<Int>(1) << 64;
 constexpr Int kMost = static_cast<Int>(1) << 104;
 
 inline Fix checked(Int v) {
-  if (v > kMost || v < -kMost) throw NotProven("a number is beyond the verifier's range of 2^40");
+  if (v > kMost || v < -kMost) throw OutOfRange("a number is beyond the verifier's range of 2^40");
   return Fix{v};
 }
 inline Fix ulps(int n) {
@@ -96,7 +101,7 @@ inline Fix operator*(Fix a, Fix b) {
   const Uint a0 = static_cast<std::uint64_t>(a.v), b0 = static_cast<std::uint64_t>(b.v);
   const Int high = a1 * b1;
   constexpr Int kHigh = static_cast<Int>(1) << 42;
-  if (high > kHigh || high < -kHigh) throw NotProven("a product is beyond the verifier's range of 2^40");
+  if (high > kHigh || high < -kHigh) throw OutOfRange("a product is beyond the verifier's range of 2^40");
   return checked(high * kOne + a1 * static_cast<Int>(b0) + static_cast<Int>(a0) * b1 +
                  static_cast<Int>((a0 * b0) >> 64));
 }

@@ -290,6 +290,9 @@ class Walk {
       }
     } catch (const Located&) {
       throw;
+    } catch (const OutOfRange& error) {
+      if (halvings == options_.halvings) fail(task, error.what());
+      again = partners;
     } catch (const NotProven& error) {
       fail(task, error.what());
     }
@@ -347,6 +350,8 @@ class Walk {
       all = apart(task, g.reach(i, j, at.v, at.d, length, budget_), none, margin);
     } catch (const Located&) {
       throw;
+    } catch (const OutOfRange& error) {
+      if (halvings == options_.halvings) fail(task, error.what());
     } catch (const NotProven& error) {
       fail(task, error.what());
     }

@@ -50,7 +50,7 @@ Mat rotation(const Vec& k, const Mat& kk, const Tm& angle) {
 // [-2, 2]. At k = 40 and z <= 100: x_i <= 100/6480. From there back to the front the bracket is divided 40 times.
 Mat rotation(const Vec& w) {
   const Tm z = dot(w, w);
-  if (bound(z) > integer(100)) throw NotProven("an orientation turns by more than 10 rad in one piece");
+  if (bound(z) > integer(100)) throw OutOfRange("an orientation turns by more than 10 rad in one piece");
   constexpr int kTerms = 40;
   const Tm one = constant(integer(1));
   Tm A = constant(Fix{0}, integer(2)), B = A;

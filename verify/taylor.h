@@ -112,7 +112,7 @@ struct Pose {
 void sineCosine(const Tm& angle, Tm& sine, Tm& cosine);
 /// Rotation about a unit axis. @param kk  its products k_i k_j.
 Mat rotation(const Vec& k, const Mat& kk, const Tm& angle);
-/// exp([w]) @throws NotProven where |w| may be above 10.
+/// exp([w]) @throws OutOfRange where |w| may be above 10.
 Mat rotation(const Vec& w);
 
 }  // namespace verify

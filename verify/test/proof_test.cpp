@@ -357,6 +357,16 @@ TEST(VerifyProof, ALongChainOverManyIntervals) {
   EXPECT_THROW(readWorld(deep), BadInput);
 }
 
+// Over the whole motion the remainders leave the range (a sine's alone, with 3000 rad: D^5/120); over shorter intervals
+// they do not.
+TEST(VerifyProof, WhatIsOutOfRangeIsHalved) {
+  const World world = arm({{1.3, 0, 0}});
+  const MotionText m = moving({0, 3000});
+  expectVerified(judge(world, m.write(world), sep({-1, 0, 0})));
+  const World near = arm({{1.19, 0, 0}});
+  EXPECT_FALSE(judge(near, m.write(near), sep({-1, 0, 0})).verified);
+}
+
 TEST(VerifyProof, HostileProofs) {
   const World world = cart(2);
   const std::string motion = moving({0, 1}).write(world);
