@@ -2,7 +2,7 @@
 //
 // Two links over the whole ranges of all joint variables between them, however many: proven apart, or where they touch.
 // The ranges are cut into boxes, as finely as it takes; the engine proves one box at a time (doc/NUMERICS.md,
-// section 10, Lemma 8).
+// section 10, Lemmas 8 and 10).
 #pragma once
 
 #include <cstdint>
