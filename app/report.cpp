@@ -17,10 +17,21 @@ std::string vectorText(const Eigen::Vector3d& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // + 0.0: no "-0"
 }
 
-std::string bodyText(const BodyRef& body, std::intptr_t primitive) {
-  const char* kind = body.link >= 0 ? "link" : "obstacle";
-  return primitive >= 0 ? fmt::format("{} '{}' (triangle {})", kind, body.name, primitive)
-                        : fmt::format("{} '{}'", kind, body.name);
+/// What a link carries has a name that is not its own; no obstacle or attached object has that of a link.
+bool isAttached(const KinematicTree& tree, const BodyRef& body) {
+  return body.link >= 0 && body.name != tree.linkName(body.link);
+}
+
+const char* kindOf(const KinematicTree& tree, const BodyRef& body) {
+  if (isAttached(tree, body)) return "attached object";
+  return body.link >= 0 ? "link" : "obstacle";
+}
+
+std::string bodyText(const KinematicTree& tree, const BodyRef& body, std::intptr_t primitive) {
+  std::string text = fmt::format("{} '{}'", kindOf(tree, body), body.name);
+  if (isAttached(tree, body)) text += fmt::format(" on link '{}'", tree.linkName(body.link));
+  if (primitive >= 0) text += fmt::format(" (triangle {})", primitive);
+  return text;
 }
 
 /// Joint values at time t, one "name = value" each.
@@ -64,8 +75,9 @@ std::string bracketText(double lower, double upper) {
   return fmt::format("[{:.12g}, {:.12g}]", lower, upper);
 }
 
-std::string contactText(const CertifiedContact& c) {
-  std::string text = entry("pair", fmt::format("{} and {}", bodyText(c.body1, c.b1), bodyText(c.body2, c.b2)));
+std::string contactText(const KinematicTree& tree, const CertifiedContact& c) {
+  std::string text =
+      entry("pair", fmt::format("{} and {}", bodyText(tree, c.body1, c.b1), bodyText(tree, c.body2, c.b2)));
   text += entry("time", fmt::format("t in {}, {}", bracketText(c.t_lower, c.t_upper),
                                     c.certain ? "contact proven" : "contact not proven: nearer than can be decided"));
   text += entry("point", fmt::format("{} m in the world, at t = {:.12g}", vectorText(c.point),
@@ -116,13 +128,13 @@ std::string headline(const Report& r) {
   return {};
 }
 
-std::string clearanceText(const Clearance& c) {
+std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
   const bool any = std::isfinite(c.upper);
   std::string text = fmt::format("proven: no checked pair comes nearer than {:.6g} m", c.lower);
   if (c.upper == 0) text = "none";
   if (any) {
-    text += fmt::format("; {} and {} are within {:.6g} m at t = {:.12g}", bodyText(c.body1, -1), bodyText(c.body2, -1),
-                        c.upper, c.time);
+    text += fmt::format("; {} and {} are within {:.6g} m at t = {:.12g}", bodyText(tree, c.body1, -1),
+                        bodyText(tree, c.body2, -1), c.upper, c.time);
   }
   return text + (c.within_tolerance ? "" : " (the search ended early)");
 }
@@ -167,25 +179,26 @@ Json valuesJson(const KinematicTree& tree, const Eigen::VectorXd& q) {
   return out;
 }
 
-Json bodyJson(const BodyRef& body, std::intptr_t primitive) {
-  Json out{{"name", body.name}, {"kind", body.link >= 0 ? "link" : "obstacle"}};
+Json bodyJson(const KinematicTree& tree, const BodyRef& body, std::intptr_t primitive) {
+  Json out{{"name", body.name}, {"kind", kindOf(tree, body)}};
+  if (isAttached(tree, body)) out["link"] = tree.linkName(body.link);
   out["triangle"] = primitive >= 0 ? Json(primitive) : Json();
   return out;
 }
 
-Json clearanceJson(const Clearance& c) {
+Json clearanceJson(const KinematicTree& tree, const Clearance& c) {
   const bool any = std::isfinite(c.upper);
   return {{"lower", c.lower},
           {"upper", any ? Json(c.upper) : Json()},
           {"t", any ? Json(c.time) : Json()},
-          {"body1", any ? bodyJson(c.body1, -1) : Json()},
-          {"body2", any ? bodyJson(c.body2, -1) : Json()},
+          {"body1", any ? bodyJson(tree, c.body1, -1) : Json()},
+          {"body2", any ? bodyJson(tree, c.body2, -1) : Json()},
           {"within_tolerance", c.within_tolerance}};
 }
 
-Json contactJson(const CertifiedContact& c) {
-  return {{"body1", bodyJson(c.body1, c.b1)},
-          {"body2", bodyJson(c.body2, c.b2)},
+Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
+  return {{"body1", bodyJson(tree, c.body1, c.b1)},
+          {"body2", bodyJson(tree, c.body2, c.b2)},
           {"t_lower", c.t_lower},
           {"t_upper", c.t_upper},
           {"certain", c.certain},
@@ -232,9 +245,9 @@ std::string textReport(const Report& r) {
   const bool several = result.contacts.size() > 1;
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
     if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
-    text += contactText(result.contacts[i]);
+    text += contactText(r.tree, result.contacts[i]);
   }
-  if (r.clearance) text += entry("clearance", clearanceText(*r.clearance));
+  if (r.clearance) text += entry("clearance", clearanceText(r.tree, *r.clearance));
   if (result.status != Status::free) {
     text += entry("joints", fmt::format("at t = {:.12g}: {}", result.t_lower,
                                         jointsText(r.tree, r.configuration(result.t_lower))));
@@ -250,7 +263,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
   const CertifiedResult& result = r.result;
   Json ignored = Json::array(), contacts = Json::array();
   for (const auto& [a, b] : result.ignored_initial_contacts) ignored.push_back({a.name, b.name});
-  for (const CertifiedContact& c : result.contacts) contacts.push_back(contactJson(c));
+  for (const CertifiedContact& c : result.contacts) contacts.push_back(contactJson(r.tree, c));
   return {{"status", toString(result.status)},
           {"t_lower", result.t_lower},
           {"t_upper", result.t_upper},
@@ -264,7 +277,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"q_at_t_lower", valuesJson(r.tree, r.configuration(result.t_lower))},
           {"contacts", contacts},
           {"poses", posesJson(r)},
-          {"clearance", r.clearance ? clearanceJson(*r.clearance) : Json()},
+          {"clearance", r.clearance ? clearanceJson(r.tree, *r.clearance) : Json()},
           {"ignored_initial_contacts", ignored},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
           {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},

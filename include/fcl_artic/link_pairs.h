@@ -57,7 +57,8 @@ struct LinkPairFinding {
   /// `neighbours`, and for `always` if no joint moves the two links apart.
   bool proven = false;
   /// Number of configurations tried, all joints at 0 and others spread evenly over the joints' limits, and of those in
-  /// contact for certain. (0 where a proof came first.)
+  /// contact for certain. (0 where there is a proof.) Where none of them is in contact, the one that a search for a
+  /// contact found, if it did, counts as one more.
   std::size_t tried = 0, touching = 0;
   /// Joint values, rad or m: `always` and `sometimes`: a configuration in contact for certain; `unproven`: where the
   /// links come near each other, if that is known; else empty.
@@ -71,8 +72,8 @@ struct LinkPairOptions {
   /// Distance that links must keep to count as apart, m, finite, at least 0. Proofs serve queries with this margin or a
   /// smaller one.
   double margin = 0;
-  /// Work at most per pair, in tests of nodes and leaves (a million takes about 0.5 s). A pair that needs
-  /// more stays `unproven` and is checked.
+  /// Work at most per pair of geometries, and once more where balls stand for links, in tests of nodes and leaves (a
+  /// million takes 0.05 to 0.5 s). A pair that needs more stays `unproven` and is checked.
   std::uint64_t work = 1000000;
   /// Number of configurations tried per pair that is not proven apart. More find contacts that are rarer.
   std::size_t samples = 1000;

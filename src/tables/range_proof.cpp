@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "geometry/shape_tree.h"
 #include "kinematics/angles.h"
 #include "numerics/assertion.h"
 #include "numerics/sine_cosine.h"
+#include "tables/bring_together.h"
 
 namespace fcl_artic {
 namespace {
@@ -53,7 +56,7 @@ ValueRange wholeRange(const KinematicTree& tree, int variable) {
 }
 
 RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair,
-                       double margin, engine::EngineWorkspace& workspace)
+                       double margin, engine::EngineWorkspace& workspace, const Cut& cut)
     : workspace_(workspace),
       pair_(pair),
       margin_(margin),
@@ -93,9 +96,7 @@ RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem
   }
   if (!bounded_) return;
   for (const engine::SweepStep& step : path_) {
-    const ValueRange& range = whole_[static_cast<std::size_t>(step.variable)];
-    const double most =
-        std::abs(step.multiplier) * std::max(std::abs(range.lower), std::abs(range.upper)) + std::abs(step.offset);
+    const double most = mostOf(step);
     bounded_ = bounded_ && most <= kMostValue;
     length += step.length + (step.kind == engine::StepKind::prismatic ? most : 0);
     ulps += step.ulps + 64 + 4 * most;
@@ -103,10 +104,7 @@ RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem
   // Every product of the path is off by less than 64 ulp of the lengths so far, an angle by 4 ulp of its terms.
   pad_ = kUlp * ulps * length;
 
-  sweep_.steps = path_.data();
-  sweep_.num_steps = static_cast<std::int32_t>(path_.size());
   pair_.sweep = 0;
-  pair_.step_b = sweep_.num_steps - 1;
   problem_.bodies = problem.bodies;
   problem_.num_bodies = problem.num_bodies;
   problem_.sweeps = &sweep_;
@@ -117,6 +115,10 @@ RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem
   of_a_.points =
       RowMajor(pair_.inverse_a.R).transpose() * (of_a_.points.colwise() - Eigen::Vector3d::Map(pair_.inverse_a.t));
   of_b_.points = (RowMajor(pair_.placement_b.R) * of_b_.points).colwise() + Eigen::Vector3d::Map(pair_.placement_b.t);
+  if (cut.of_a + cut.of_b > 0) standIn(cut);
+  sweep_.steps = path_.data();
+  sweep_.num_steps = static_cast<std::int32_t>(path_.size());
+  pair_.step_b = sweep_.num_steps - 1;
   middle_.resize(path_.size());
   way_of_a_.resize(path_.size());
   way_of_b_.resize(path_.size());
@@ -126,6 +128,107 @@ RangeProof::RangeProof(const KinematicTree& tree, const engine::Problem& problem
   query_.check_scene = false;
   query_.describe_contacts = false;
   query_.any = true;
+}
+
+/// The value of a step's own motion is at most this, over the whole range; up to rounding.
+double RangeProof::mostOf(const engine::SweepStep& step) const {
+  const ValueRange& range = whole_[static_cast<std::size_t>(step.variable)];
+  return std::abs(step.multiplier) * std::max(std::abs(range.lower), std::abs(range.upper)) + std::abs(step.offset);
+}
+
+std::vector<RangeProof::Cut> RangeProof::cuts() const {
+  std::vector<Cut> cuts;
+  // (A body within the ball may lie in what a solid encloses, and the ball's middle outside.)
+  if (!bounded_ || problem_.bodies[pair_.a].space || problem_.bodies[pair_.b].space) return cuts;
+  const std::size_t n = path_.size();
+  // Turns about axes that meet have the same ball: all of them are cut off, or none.
+  const auto sameBall = [&](std::size_t step, std::size_t turn) {
+    return Eigen::Vector3d::Map(path_[step].p).isZero(0) && path_[turn].kind == engine::StepKind::revolute;
+  };
+  std::vector<std::pair<std::size_t, Cut>> found;
+  for (std::size_t of_a = 0; of_a <= n; ++of_a) {
+    if (of_a > 0 && of_a < n && sameBall(of_a, of_a)) continue;
+    for (std::size_t of_b = 0; of_a + of_b <= n; ++of_b) {
+      if (of_b > 0 && of_a + of_b < n && sameBall(n - of_b, n - of_b - 1)) continue;
+      std::vector<int> left;
+      for (std::size_t i = of_a; i < n - of_b; ++i) left.push_back(path_[i].variable);
+      std::sort(left.begin(), left.end());
+      left.erase(std::unique(left.begin(), left.end()), left.end());
+      if (left.size() < variables_.size()) found.push_back({left.size(), {of_a, of_b}});
+    }
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+  for (const auto& [variables, cut] : found) cuts.push_back(cut);
+  return cuts;
+}
+
+/// Lemma 10: the bodies become points, the balls' middles, and the margin pays for the radii.
+void RangeProof::standIn(const Cut& cut) {
+  static const std::shared_ptr<const ShapeTree> kPoint = ShapeTree::fromHull({Eigen::Vector3d::Zero()});
+  const std::size_t n = path_.size();
+  FCL_ARTIC_ASSERT(cut.of_a + cut.of_b <= n);
+  FCL_ARTIC_ASSERT(!problem_.bodies[pair_.a].space && !problem_.bodies[pair_.b].space);
+  const auto slide = [&](std::size_t i) { return path_[i].kind == engine::StepKind::prismatic ? mostOf(path_[i]) : 0; };
+  const auto offset = [&](std::size_t i) { return Eigen::Vector3d::Map(path_[i].p).norm(); };
+  bodies_[0] = problem_.bodies[pair_.a];
+  bodies_[1] = problem_.bodies[pair_.b];
+  pair_.a = 0;
+  pair_.b = 1;
+  problem_.bodies = bodies_;
+  problem_.num_bodies = 2;
+  double radii = 0;
+  if (cut.of_a > 0) {
+    // From the first step on: how far A reaches from each step's origin, seen from after its motion.
+    Outline a = of_a_;
+    a.points = RowMajor(path_[0].C).transpose() * (a.points.colwise() - Eigen::Vector3d::Map(path_[0].p));
+    double reach = farthestFromOrigin(a) + slide(0);
+    for (std::size_t i = 1; i < cut.of_a; ++i) reach += offset(i) + slide(i);
+    radii += reach + pad_;
+    bodies_[0] = engine::Body();
+    bodies_[0].tree = &kPoint->view();
+    pair_.inverse_a = engine::Placement();
+    of_a_.points.setZero();
+    of_a_.radius = 0;
+  }
+  if (cut.of_b > 0) {
+    // From the last step on: how far B reaches from each step's origin, seen from before its motion.
+    const std::size_t first = n - cut.of_b;
+    double reach = farthestFromOrigin(of_b_) + slide(n - 1);
+    for (std::size_t i = n - 1; i > first; --i) reach += offset(i) + slide(i - 1);
+    radii += reach + pad_;
+    bodies_[1] = engine::Body();
+    bodies_[1].tree = &kPoint->view();
+    engine::Placement& middle = bodies_[1].placement;
+    middle.length = path_[first].length;
+    middle.ulps = path_[first].ulps;
+    middle.identity = false;
+    std::copy_n(path_[first].p, 3, middle.t);
+    std::copy_n(path_[first].p, 3, bodies_[1].lss);
+    std::copy_n(path_[first].p, 3, bodies_[1].lss + 3);
+    pair_.placement_b = middle;
+    of_b_.points.colwise() = Eigen::Vector3d::Map(middle.t);
+    of_b_.radius = 0;
+  }
+  balls_ = radii * (1 + 1e-9);
+  path_.erase(path_.end() - static_cast<std::ptrdiff_t>(cut.of_b), path_.end());
+  path_.erase(path_.begin(), path_.begin() + static_cast<std::ptrdiff_t>(cut.of_a));
+  // The variables that are left.
+  const std::vector<int> all = std::exchange(variables_, {});
+  const Box ranges = std::exchange(whole_, {});
+  steps_of_.clear();
+  for (std::size_t i = 0; i < path_.size(); ++i) {
+    path_[i].parent = static_cast<std::int32_t>(i) - 1;
+    const auto old = static_cast<std::size_t>(path_[i].variable);
+    const auto known = std::find(variables_.begin(), variables_.end(), all[old]);
+    const auto number = static_cast<std::size_t>(known - variables_.begin());
+    if (known == variables_.end()) {
+      variables_.push_back(all[old]);
+      whole_.push_back(ranges[old]);
+      steps_of_.push_back(0);
+    }
+    ++steps_of_[number];
+    path_[i].variable = static_cast<std::int32_t>(number);
+  }
 }
 
 RangeProof::Outline RangeProof::outlineOf(const engine::Body& body) {
@@ -149,6 +252,12 @@ RangeProof::Outline RangeProof::outlineOf(const engine::Body& body) {
 /// Upper bound of a body's distance from the z axis of the frame that its outline is given in, without rounding.
 double RangeProof::farthestFromAxis(const Outline& outline) {
   const auto squared = outline.points.topRows<2>().colwise().squaredNorm().eval();
+  return std::min(std::sqrt(squared.head<8>().maxCoeff()), std::sqrt(squared.tail<2>().maxCoeff()) + outline.radius);
+}
+
+/// The same of its distance from that frame's origin.
+double RangeProof::farthestFromOrigin(const Outline& outline) {
+  const auto squared = outline.points.colwise().squaredNorm().eval();
   return std::min(std::sqrt(squared.head<8>().maxCoeff()), std::sqrt(squared.tail<2>().maxCoeff()) + outline.radius);
 }
 
@@ -208,28 +317,29 @@ RangeProof::Contact RangeProof::at(const std::vector<double>& values, double mar
   FCL_ARTIC_ASSERT(bounded_ && values.size() == variables_.size());
   std::fill(coefficients_.begin(), coefficients_.end(), 0);
   std::copy(values.begin(), values.end(), coefficients_.begin());
-  query_.margins = engine::Margins(margin);
+  query_.margins = engine::Margins(margin + balls_);
   query_.work_budget = 0;
   solve();
   if (answer_.isFree()) return Contact::none;
   return answer_.certain ? Contact::touch : Contact::unknown;
 }
 
-/// Keeps the nearest points of a contact of the bodies grown by the margin.
-void RangeProof::addWitness() {
-  if (answer_.num_contacts == 0) return;
+/// The nearest points of the contact found last, of the bodies grown by the margin.
+bool RangeProof::findWitness(Witness& witness) {
+  if (answer_.num_contacts == 0) return false;
   engine::LeafContact contact = answer_.contacts[0];
-  if (contact.piece_a < 0 || contact.piece_b < 0) return;
+  if (contact.piece_a < 0 || contact.piece_b < 0) return false;
   engine::Query query = query_;
   query.any = false;
   contact.t_lower = contact.t;
   workspace_.addWitness(problem_, query, contact);
   // The points in the base frame and in the last step's.
-  Witness witness;
   witness.a = RowMajor(pair_.inverse_a.R).transpose() *
               (Eigen::Vector3d::Map(contact.nearest_a) - Eigen::Vector3d::Map(pair_.inverse_a.t));
   witness.b = RowMajor(pair_.inverse_a.R).transpose() *
               (Eigen::Vector3d::Map(contact.nearest_b) - Eigen::Vector3d::Map(pair_.inverse_a.t));
+  witness.distance = (witness.a - witness.b).norm() - balls_;
+  witness.normal = (witness.a - witness.b).normalized();
   for (const engine::SweepStep& step : path_) {
     const auto v = static_cast<std::size_t>(step.variable);
     Joint joint;
@@ -237,11 +347,54 @@ void RangeProof::addWitness() {
     witness.b = RowMajor(step.C).transpose() * (witness.b - Eigen::Vector3d::Map(step.p));
     joint.inverse().apply(witness.b);
   }
+  return true;
+}
+
+/// Keeps them.
+void RangeProof::addWitness() {
+  Witness witness;
+  if (!findWitness(witness)) return;
   if (witnesses_.size() < kMostWitnesses) {
     witnesses_.push_back(witness);
   } else {
     witnesses_[next_witness_++ % kMostWitnesses] = witness;
   }
+}
+
+double RangeProof::comeNearer(const std::vector<ValueRange>& within, double margin, std::vector<double>& values) {
+  constexpr double kLeast = 1e-7;
+  constexpr int kRounds = 12, kSweeps = 12;
+  constexpr double kDepth = 0.002;  // points that only meet are not certainly in contact
+  constexpr double kWorthwhile = 0.98;
+  // First the middles of both, then the points that are nearest.
+  const auto a = of_a_.points.leftCols<8>(), b = of_b_.points.leftCols<8>();
+  Witness witness{a.rowwise().mean(), b.rowwise().mean(), Eigen::Vector3d::Zero(), 0};
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> here = values;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::Vector3d goal = witness.a + kDepth * witness.normal;
+    const double aimed = bringTogether(path_, within, goal, witness.b, kSweeps, here);
+    if (at(here, margin) == Contact::touch) {
+      values = here;
+      return margin;
+    }
+    // What is known of the distance, and what the nearest points of two pieces say of it.
+    double known = least, seen = std::numeric_limits<double>::infinity();
+    double next = round > 0 ? least : aimed + 2 * (a.colwise().norm().maxCoeff() + b.colwise().norm().maxCoeff());
+    while (next > kLeast && at(here, margin + next) == Contact::touch) {
+      known = next;
+      if (findWitness(witness) && witness.distance > margin) seen = witness.distance - margin;
+      next = 0.9 * std::min(next, seen);
+    }
+    const double little_more = 1.001 * seen + kLeast;
+    if (little_more < known && at(here, margin + little_more) == Contact::touch) known = little_more;
+    if (!(known < least)) break;
+    const bool worthwhile = known < kWorthwhile * least;
+    least = known;
+    values = here;
+    if (!worthwhile) break;
+  }
+  return margin + least;
 }
 
 /// Whether points of both bodies are known that come as near as the margin where the box is to be proven.
@@ -328,7 +481,7 @@ RangeProof::Tried RangeProof::tryBox(const Box& box, std::uint64_t work) {
     coefficients_[v] = box[v].lower - slack;
     coefficients_[box.size() + v] = box[v].upper + slack - coefficients_[v];
   }
-  const double whole_margin = margin_ + margin * (1 + 1e-9);
+  const double whole_margin = margin_ + balls_ + margin * (1 + 1e-9);
   Tried tried;
   if (path_.empty() || !mustFail(box, moved, whole_margin)) {
     query_.margins = engine::Margins(whole_margin);

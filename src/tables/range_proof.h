@@ -2,7 +2,7 @@
 //
 // Two links over the whole ranges of all joint variables between them, however many: proven apart, or where they touch.
 // The ranges are cut into boxes, as finely as it takes; the engine proves one box at a time (doc/NUMERICS.md,
-// section 10, Lemma 8).
+// section 10, Lemmas 8 and 10).
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,9 @@
 #include "fcl_artic/kinematic_tree.h"
 #include "model/problem.h"
 #include "narrowphase/engine_workspace.h"
+#include "tables/value_range.h"
 
 namespace fcl_artic {
-
-/// Values of a joint variable, both ends included. Any value is meant where they are infinite.
-struct ValueRange {
-  double lower = 0, upper = 0;
-
-  double middle() const { return 0.5 * (lower + upper); }
-  /// No value in the range is farther from the middle; rounding of a sum and a half included.
-  double half() const;
-};
 
 /// What a variable can be, as far as proofs for its whole range go: its limits and a little more, as joints may stand
 /// at them; all values, where an angle has no limits. Nothing (lower > upper) for what has no bounds: a slide without
@@ -31,11 +23,19 @@ ValueRange wholeRange(const KinematicTree& tree, int variable);
 /// Two links and the joint variables between them.
 class RangeProof {
  public:
+  /// Steps at both ends of the path, each with the link behind it, that a ball about the joint next to them stands for:
+  /// it holds the link for all values of these steps' variables (Lemma 10). Without them there is less to prove: fewer
+  /// variables, of bodies that are larger.
+  struct Cut {
+    std::size_t of_a, of_b;
+  };
+
   /// @param problem, pair  must stay as they are as long as this lives.
   /// @param margin  m, that the links are proven to keep.
   /// @param workspace  of this thread.
+  /// @param cut  one of cuts(): all below is of the balls then. What is proven apart is so of the links as well.
   RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair, double margin,
-             engine::EngineWorkspace& workspace);
+             engine::EngineWorkspace& workspace, const Cut& cut = {0, 0});
   RangeProof(const RangeProof&) = delete;
   RangeProof& operator=(const RangeProof&) = delete;
 
@@ -44,6 +44,8 @@ class RangeProof {
   bool bounded() const { return bounded_; }
   /// The variables between the links, each once, from the first link on.
   const std::vector<int>& variables() const { return variables_; }
+  /// Cuts that leave less to prove, the fewest variables first; none where a mesh is a solid.
+  std::vector<Cut> cuts() const;
 
   /// What is certain of the links where the variables have given values.
   enum class Contact : std::uint8_t {
@@ -53,6 +55,14 @@ class RangeProof {
   };
   /// @param margin  m, in place of the one that is proven.
   Contact at(const std::vector<double>& values, double margin);
+
+  /// Goes from one configuration to others in which the links are nearer, as long as that gets on.
+  /// @param within  what each variable may be; finite.
+  /// @param margin  m: links that come nearer count as touching.
+  /// @param[in,out] values  of each variable.
+  /// @return at the new values: the margin, if the links certainly touch; else an upper bound of their distance, m,
+  /// more than the margin; infinite, where none is known.
+  double comeNearer(const std::vector<ValueRange>& within, double margin, std::vector<double>& values);
 
   struct Finding {
     bool apart = false;          ///< proven, for all values in the ranges
@@ -91,8 +101,19 @@ class RangeProof {
     void apply(Points& points) const;
   };
 
+  /// Points of both bodies, A's in the base frame and B's in the last step's, that were found near each other: they
+  /// show at once that a box can't be proven. (A guess only spares work: nothing is proven with them.)
+  struct Witness {
+    Eigen::Vector3d a, b;
+    Eigen::Vector3d normal;  ///< from b to a where they were found, in the base frame; of length 0 or 1
+    double distance;         ///< of the two, there, less the balls' radii
+  };
+
   static Outline outlineOf(const engine::Body& body);
   static double farthestFromAxis(const Outline& outline);
+  static double farthestFromOrigin(const Outline& outline);
+  void standIn(const Cut& cut);
+  double mostOf(const engine::SweepStep& step) const;
   void measureWays(const Box& box);
   Tried tryBox(const Box& box, std::uint64_t work);
   void solve();
@@ -100,6 +121,7 @@ class RangeProof {
   double valueAt(std::size_t variable, double t) const {
     return coefficients_[variable] + t * coefficients_[variables_.size() + variable];
   }
+  bool findWitness(Witness& witness);
   void addWitness();
   bool mustFail(const Box& box, std::size_t moved, double margin) const;
 
@@ -108,6 +130,7 @@ class RangeProof {
   engine::SweepView sweep_;
   engine::LinkPair pair_;
   engine::Problem problem_;
+  engine::Body bodies_[2];  ///< where a ball stands for one of them: the problem's
   engine::Query query_;
   engine::Answer answer_;
   std::vector<int> variables_;
@@ -115,6 +138,7 @@ class RangeProof {
   Box whole_;
   bool bounded_ = true;
   double margin_, pad_ = 0;
+  double balls_ = 0;           ///< radii of both balls that stand for links; the bodies are their middles
   Outline of_a_, of_b_;        ///< in the base frame, and in the last step's
   std::vector<Joint> middle_;  ///< per step, of the box measured last: where it stands in the middle
   /// Per step, of the box measured last: how far a point goes at most when the step leaves the middle of its range,
@@ -122,11 +146,6 @@ class RangeProof {
   std::vector<double> way_of_a_, way_of_b_;
   std::vector<double> coefficients_;
   std::uint64_t work_ = 0;
-  /// Points of both bodies, A's in the base frame and B's in the last step's, that were found near each other: they
-  /// show at once that a box can't be proven. (A guess only spares work: nothing is proven with them.)
-  struct Witness {
-    Eigen::Vector3d a, b;
-  };
   static constexpr std::size_t kMostWitnesses = 8;
   std::vector<Witness> witnesses_;
   std::size_t next_witness_ = 0;

@@ -87,6 +87,18 @@ TEST_F(ProgramTest, LinksCarryObjects) {
   const Json contact = Json::parse(held.out).at("contacts").at(0);
   EXPECT_EQ(contact.at("body1").at("name").get<std::string>() + contact.at("body2").at("name").get<std::string>(),
             "blockfar");
+  // It is named as what it is, and the link that carries it.
+  const bool first = contact.at("body1").at("name") == "block";
+  const Json& block_body = contact.at(first ? "body1" : "body2");
+  EXPECT_EQ(block_body.at("kind"), "attached object");
+  EXPECT_EQ(block_body.at("link"), "arm");
+  EXPECT_EQ(contact.at(first ? "body2" : "body1").at("kind"), "obstacle");
+  EXPECT_FALSE(contact.at(first ? "body2" : "body1").contains("link"));
+  const std::string text_check =
+      "check --robot " + arm() + " --scene " + far + " --from 0,0 --to 90deg,0 --attach arm=";
+  const Outcome text = this->run(text_check + block + "@1.05,-0.05,0");
+  EXPECT_NE(text.out.find("attached object 'block' on link 'arm'"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("link 'block'"), std::string::npos) << text.out;
   EXPECT_EQ(this->run(check + " --attach arm=" + block + "@1.05,0,3").status, 0);
   EXPECT_EQ(this->run(check + " --no-scene --attach arm=" + block + "@1.05,-0.05,0").status, 0);
   // At the other link's place it touches that, which may be allowed.

@@ -116,6 +116,24 @@ TEST(LinkPairs, SometimesShowsWhere) {
   EXPECT_NE(out.str().find("base and hand: sometimes"), std::string::npos) << out.str();
 }
 
+// They touch where the elbow is within 0.05 rad of pi: a cone of the range that the one sample, at rest, is far from.
+TEST(LinkPairs, ASearchFindsContactsThatSamplesMiss) {
+  const PlanarArm arm(0.401);
+  LinkPairOptions options;
+  options.samples = 1;
+  const LinkPairReport report = arm.manager().classifyLinkPairs(options);
+  const LinkPairFinding* pair = nullptr;
+  for (const LinkPairFinding& finding : report.pairs) {
+    if (finding.link1 == "base" && finding.link2 == "hand") pair = &finding;
+  }
+  ASSERT_NE(pair, nullptr);
+  EXPECT_EQ(pair->kind, LinkPairKind::sometimes);
+  EXPECT_EQ(pair->tried, 2u);
+  EXPECT_EQ(pair->touching, 1u);
+  ASSERT_EQ(pair->configuration.size(), 2);
+  EXPECT_LT(std::abs(std::remainder(pair->configuration[1] - M_PI, 2 * M_PI)), 0.07);
+}
+
 TEST(LinkPairs, AlwaysIsSaidOfWhatTouchesInAllThatWasTried) {
   const LinkPairReport report = PlanarArm(1.5).manager().classifyLinkPairs();
   EXPECT_EQ(report.pairs.at(0).kind, LinkPairKind::always);
