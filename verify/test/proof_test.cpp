@@ -367,6 +367,22 @@ TEST(VerifyProof, WhatIsOutOfRangeIsHalved) {
   EXPECT_FALSE(judge(near, m.write(near), sep({-1, 0, 0})).verified);
 }
 
+// The moving body has a triangle on either side of the wall: each part needs its own direction.
+TEST(VerifyProof, BothPartsOfABodyAreShown) {
+  const World world = readWorld(
+      kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) +
+      "\n" +
+      meshText({{-2, 0, 0}, {-2, 1, 0}, {-2, 0, 1}, {2, 0, 0}, {2, 1, 0}, {2, 0, 1}}, {{0, 1, 2}, {3, 4, 5}}, false) +
+      "geometry box " + hex(V{0.2, 4, 4}) + "\nbody obstacle wall 0 1 " + hex(kHere) + "\nbody link l 1 0 " +
+      hex(kHere) + "\n");
+  const MotionText m = moving({0, 1});
+  const std::string left = sep({-1, 0, 0}), right = sep({1, 0, 0});
+  expectVerified(judge(world, m.write(world), cutNode(kOwn, 1, left, right)));
+  for (const std::string& proof :
+       {cutNode(kOwn, 1, left, left), cutNode(kOwn, 1, right, right), cutNode(kOwn, 1, right, left), left, right})
+    EXPECT_FALSE(judge(world, m.write(world), proof).verified);
+}
+
 TEST(VerifyProof, HostileProofs) {
   const World world = cart(2);
   const std::string motion = moving({0, 1}).write(world);
