@@ -21,7 +21,8 @@ class CertificateFile {
   /// Adds an answer's certificate, if it has a proof.
   /// @return what to tell the user of it, one line.
   std::string add(const Certificate& certificate);
-  /// Writes both files; if nothing was added, removes them: without a proof no file is left that could be taken for one.
+  /// Writes both files; if nothing was added, removes them: without a proof no file is left that could be taken for
+  /// one.
   /// @throws std::runtime_error naming the file.
   void write() const;
 

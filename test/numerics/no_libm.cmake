@@ -7,7 +7,8 @@ set(others
   kinematics/                      # makes motions from joint values; poses for reports
   fcl/fcl_motion          # makes motions from FCL's
   fcl/fcl_link_motion     # gives FCL poses
-  tables/contact_grid               # guesses, proven afterwards
+  tables/contact_grid tables/bring_together  # guesses, proven afterwards
+  certificate/moving_world          # hints for a verifier
   query/link_pairs                  # configurations to try
   geometry/outer_hull geometry/line_swept_sphere geometry/inner_balls  # directions and sizes to try
   visibility/adversary)            # where to look
