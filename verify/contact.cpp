@@ -196,9 +196,9 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
     }
     case Geometry::cylinder:
       return within(x[2], half(1)) && atMost(square(x[0]) + square(x[1]), square(exactly(n[0])));
-    case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z)
+    case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z), which says nothing where l is 0
       const Tm l = exactly(n[1]);
-      return within(x[2], half(1)) &&
+      return n[1] > 0 && within(x[2], half(1)) &&
              atMost((square(x[0]) + square(x[1])) * square(l), square(exactly(n[0]) * (half(1) - x[2])));
     }
     case Geometry::halfspace:

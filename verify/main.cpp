@@ -31,10 +31,23 @@ NOT VERIFIED, with what could not be proven: bodies and interval of time.
 Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input.
 )";
 
+/// A text that may hold names: what is no printing character as \xNN, so that no name can look like a line of this
+/// program.
+std::string shown(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    char escape[8];
+    std::snprintf(escape, sizeof escape, byte < 32 || byte > 126 ? "\\x%02x" : "%c", byte);
+    safe += escape;
+  }
+  return safe;
+}
+
 /// @return whether the world is what the file says.
 bool report(const char* path, const verify::Comparison& comparison) {
-  for (const std::string& note : comparison.notes) std::printf("%s: %s\n", path, note.c_str());
-  for (const std::string& what : comparison.differences) std::printf("%s: DIFFERENT: %s\n", path, what.c_str());
+  for (const std::string& note : comparison.notes) std::printf("%s: %s\n", path, shown(note).c_str());
+  for (const std::string& what : comparison.differences) std::printf("%s: DIFFERENT: %s\n", path, shown(what).c_str());
   return comparison.differences.empty();
 }
 
@@ -57,7 +70,7 @@ void print(const verify::Verdict& v) {
                 verify::nameOf(static_cast<verify::Reason>(k)));
     before = ", ";
   }
-  if (v.contact) std::printf("; CONTACT of %s", v.contact_text.c_str());
+  if (v.contact) std::printf("; CONTACT of %s", shown(v.contact_text).c_str());
   std::printf("\n");
 }
 
@@ -122,13 +135,13 @@ int main(int argc, char** argv) {
         bad = bad || verdict.bad_input;
         if (json) printJson(world, record);
         if (!verdict.verified || !quiet) std::printf("%s:%zu: ", files[f], number);
-        if (!verdict.verified) std::printf("NOT VERIFIED: %s\n", verdict.reason.c_str());
+        if (!verdict.verified) std::printf("NOT VERIFIED: %s\n", shown(verdict.reason).c_str());
         if (verdict.verified && !quiet) print(verdict);
         ++number;
       }
     }
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "fcl_artic_verify: %s\n", error.what());
+    std::fprintf(stderr, "fcl_artic_verify: %s\n", shown(error.what()).c_str());
     return 2;
   }
   std::printf("%zu of %zu records verified\n", verified, all);

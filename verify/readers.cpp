@@ -122,6 +122,9 @@ class Urdf {
     frames_["world"].erase(std::remove(frames_["world"].begin(), frames_["world"].end(), 0), frames_["world"].end());
     for (std::size_t b = 0; b < world_.bodies.size(); ++b)
       if (world_.bodies[b].role == Role::link) ++link_bodies_;
+    std::set<std::string> variables;
+    for (const std::string& variable : world_.variables)
+      if (!variables.insert(variable).second) different("the world has two variables of the name '" + variable + "'");
     std::set<std::string> children;
     std::size_t joints = 0, links = 0;
     for (const XMLElement* j = robot_->FirstChildElement("joint"); j != nullptr; j = j->NextSiblingElement("joint")) {
@@ -164,6 +167,16 @@ class Urdf {
     result_.notes.push_back(text);
   }
 
+  /// Whether the elements of a planar or floating joint move by variables of their own, as they are.
+  template <class Wrong>
+  void own(const std::vector<Element>& elements, const Wrong& wrong) {
+    for (const Element& e : elements) {
+      for (int k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k)
+        if (!used_.insert(e.variable + k).second) wrong("its variables move something else, too");
+      if (e.kind != Element::rotate && (e.multiplier != 1 || e.offset != 0)) wrong("another multiplier or offset");
+    }
+  }
+
   void joint(const XMLElement& j) {
     const std::string name = attribute(&j, "name"), type = attribute(&j, "type");
     const int parent = frameOf(attribute(j.FirstChildElement("parent"), "link"));
@@ -185,7 +198,8 @@ class Urdf {
         axis[k] = 1;
         right = e[k].kind == Element::slide && isAlong(e[k], axis) && e[k].multiplier == 1 && e[k].offset == 0;
       }
-      if (!right) wrong("it is floating, and not so in the world");
+      if (!right) return wrong("it is floating, and not so in the world");
+      own(e, wrong);
       return;
     }
     const std::vector<double> axis = attributeNumbers(j.FirstChildElement("axis"), "xyz", "1 0 0", 3);
@@ -196,7 +210,8 @@ class Urdf {
       if (e.size() != 3 || e[0].kind != Element::slide || e[1].kind != Element::slide || e[2].kind != Element::turn ||
           !isAlong(e[0], axis, true) || !isAlong(e[1], axis, true) || !isAlong(e[2], axis) ||
           !isAlong(e[0], {e[1].axis[0], e[1].axis[1], e[1].axis[2]}, true))
-        wrong("it is planar, and not so in the world");
+        return wrong("it is planar, and not so in the world");
+      own(e, wrong);
       return;
     }
     if (e.size() != 1 || e[0].kind != (slides ? Element::slide : Element::turn)) return wrong("another kind of motion");
@@ -207,6 +222,7 @@ class Urdf {
     const double offset = mimic == nullptr ? 0 : attributeNumbers(mimic, "offset", "0", 1)[0];
     if (world_.variables[static_cast<std::size_t>(e[0].variable)] != variable) wrong("another variable");
     if (e[0].multiplier != multiplier || e[0].offset != offset) wrong("another multiplier or offset");
+    if (mimic == nullptr && !used_.insert(e[0].variable).second) wrong("its variable moves something else, too");
   }
 
   void link(const XMLElement& l) {
@@ -294,6 +310,7 @@ class Urdf {
   const XMLElement* robot_ = nullptr;
   std::map<std::string, std::vector<int>> frames_;
   std::map<std::string, std::vector<double>> meshes_;
+  std::set<int> used_;  // variables of joints that do not mimic
   std::size_t link_bodies_ = 0, matched_ = 0;
   Comparison result_;
 };
@@ -312,15 +329,19 @@ std::vector<double> readStl(const std::string& bytes) {
             bits |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(bytes[84 + 50 * t + 12 + 4 * k + b])) << 8 * b;
           float x = 0;
           std::memcpy(&x, &bits, sizeof x);
+          if (!std::isfinite(x)) throw BadInput("an STL file has a number that is not finite");
           corners.push_back(x);
         }
       }
       return corners;
     }
   }
-  for (std::size_t at = bytes.find("vertex"); at != std::string::npos; at = bytes.find("vertex", at)) {
+  std::string text = bytes;
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (std::size_t at = text.find("vertex"); at != std::string::npos; at = text.find("vertex", at)) {
     at += 6;
-    const std::vector<double> x = numbersOf(bytes.substr(at, 120));
+    const std::vector<double> x = numbersOf(text.substr(at, 120));
     if (x.size() < 3) throw BadInput("an STL file has a vertex without three numbers");
     corners.insert(corners.end(), x.begin(), x.begin() + 3);
   }
@@ -331,7 +352,12 @@ std::vector<double> readObj(const std::string& text) {
   std::vector<double> vertices, corners;
   for (std::size_t at = 0, end; at < text.size(); at = end + 1) {
     end = std::min(text.find('\n', at), text.size());
-    const std::string line = text.substr(at, end - at);
+    std::string line = text.substr(at, end - at);
+    line.erase(0, std::min(line.find_first_not_of(" \t"), line.size()));
+    if (line.size() > 1 && line[1] == '\t') line[1] = ' ';
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
+    if (!line.empty() && line[0] != '#' && line.back() == '\\')
+      throw BadInput("an OBJ file has a line that goes on in the next one");
     if (line.rfind("v ", 0) == 0) {
       const std::vector<double> x = numbersOf(line.substr(2));
       if (x.size() < 3) throw BadInput("an OBJ file has a vertex without three numbers");
@@ -402,9 +428,9 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
     (kind[0] == 'd' ? disabled : enabled).insert({std::min(a, b), std::max(a, b)});
   }
   Comparison result;
-  std::set<std::string> links;
-  for (const Body& body : world.bodies)
-    if (body.role == Role::link) links.insert(body.name);
+  std::set<std::string> links, others;
+  for (const Body& body : world.bodies) (body.role == Role::link ? links : others).insert(body.name);
+  for (const std::string& name : others) links.erase(name);  // the SRDF's word is about links
   std::size_t found = 0;
   for (const auto& [pair, reason] : world.unchecked) {
     if (reason != Reason::allowed) continue;

@@ -320,8 +320,10 @@ void derivePairs(World& world) {
         if (listed->second == Reason::neighbours && world.false_neighbours.empty() &&
             !areNeighbours(world, links, A, B, steps))
           world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
-        if (listed->second == Reason::touch_link && A.role != Role::carried && B.role != Role::carried)
-          throw BadInput("world: 'touch-link' of " + A.name + " and " + B.name + ", neither of which is carried");
+        if (listed->second == Reason::touch_link &&
+            (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
+          throw BadInput("world: 'touch-link' of " + A.name + " and " + B.name +
+                         ": it is for what a link carries, and a link");
       } else {
         world.partners[a].push_back({b, !obstacle && B.role != Role::obstacle});
       }

@@ -99,6 +99,8 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   const bool stay_parallel = askew + heading1.deviation + heading2.deviation <= least;
   const bool solids = piece1.kind == PieceKind::halfspace && piece2.kind == PieceKind::halfspace;
   const bool alike = solids && n1.dot(n2) > 0;  // one holds the other, wherever they are
+  std::shared_ptr<const Certificate> none;
+  if (request.certificate) none = withoutProof("both bodies are unbounded, and no hint fits two of them");
   if (stay_parallel && !alike) {
     const bool keep_first = piece1.kind == PieceKind::halfspace || piece2.kind == PieceKind::plane;
     const Piece& other = keep_first ? piece2 : piece1;
@@ -108,11 +110,14 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
     const std::shared_ptr<const ShapeTree> shape = ShapeTree::fromPiece(point);
     const MovingShape &stays = keep_first ? body1 : body2, &goes = keep_first ? body2 : body1;
     const MovingShape pointwise{*shape, goes.motion, goes.geometry};
-    return keep_first ? solveBounded(stays, pointwise, request, result)
-                      : solveBounded(pointwise, stays, request, result);
+    CertifiedPairRequest bounded = request;
+    bounded.certificate = false;  // it would be about the point
+    keep_first ? solveBounded(stays, pointwise, bounded, result) : solveBounded(pointwise, stays, bounded, result);
+    result.certificate = none;
+    return;
   }
   result = CertifiedPairResult();
-  if (request.certificate) result.certificate = withoutProof("both bodies are unbounded, and no hint fits two of them");
+  result.certificate = none;
   result.status = Status::contact;
   // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
   // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then

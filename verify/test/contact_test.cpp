@@ -126,6 +126,22 @@ TEST(VerifyContact, APointIsInsideOfAShape) {
   }
 }
 
+TEST(VerifyContact, AFlatConeIsADisc) {
+  // Its inequality, multiplied by the height, holds for every point of its plane.
+  const World world = readWorld(
+      kHead + "variable x\nframe f 0 " + hex(M{}) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) +
+      "\ngeometry cone " + hex(1) + " " + hex(0) + "\ngeometry sphere " + hex(1) + "\nbody obstacle o 0 1 " +
+      hex(M{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1000, 0, 0}}) + "\nbody link cone 1 0 " + hex(M{}) + "\n");
+  MotionText m;
+  m.pieces = {""};
+  const std::string far = number(1000) + number(0) + number(0);
+  const Verdict v = judge(
+      world, m.write(world),
+      sep({-1, 0, 0}) + "\x20" + varint(0) + varint(1) + varint(0) + number(0.5) + "\2" + varint(0) + far + varint(0));
+  EXPECT_FALSE(v.verified);
+  EXPECT_NE(v.reason.find("not certainly in its piece"), std::string::npos) << v.reason;
+}
+
 TEST(VerifyContact, TwoPointsAreNear) {
   const std::string mesh = meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -7}}, {{0, 1, 3}, {0, 1, 2}}, false);
   const std::string hull = "geometry hull\nvertices 4\n" + hex(V{0.2, 0.25, 0.1}) + "\n" + hex(V{0.2, 0.25, 3}) + "\n" +

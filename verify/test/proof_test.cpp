@@ -428,7 +428,8 @@ TEST(VerifyProof, PosesThatAreForgottenAreNotUsed) {
   for (int k = 0; k < 8; ++k)
     text += "frame f" + std::to_string(k) + " " + std::to_string(k) + " " + hex(at(0, 0, k == 0)) + "\nslide " +
             hex(V{0, 0, 1}) + (k == 7 ? " 1 " : " 0 ") + hex(1) + " " + hex(0) + "\n";
-  text += "geometry sphere " + hex(0.125) + "\nbody obstacle below 0 0 " + hex(kHere) + "\nbody link ball 8 0 " + hex(kHere) + "\n";
+  text += "geometry sphere " + hex(0.125) + "\nbody obstacle below 0 0 " + hex(kHere) + "\nbody link ball 8 0 " +
+          hex(kHere) + "\n";
   const World world = readWorld(text);
   MotionText m;
   m.pieces = {"q 1 " + hex(0) + " " + hex(-4.0 / 3) + "\n"};

@@ -126,6 +126,55 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
   EXPECT_THROW(compare(g, replaced(kUrdf, "0 0 0.333", "0 0 x")), BadInput);
 }
 
+TEST_F(VerifyReaders, VariablesOfTheWorldAreThoseOfTheJoints) {
+  const std::string ball = "<collision><geometry><sphere radius='0.5'/></geometry></collision>";
+  const auto urdf = [&](const std::string& type) {
+    return "<robot name='r'><link name='a'>" + ball + "</link><link name='b'>" + ball +
+           "</link><joint name='j' type='" + type +
+           "'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+  };
+  const auto world = [&](const std::string& elements) {
+    return kHead + "variable x\nvariable y\nvariable z\nvariable u\nvariable v\nvariable w\nframe a 0 " + hex(M{}) +
+           "\nframe b 1 " + hex(M{}) + "\n" + elements + "geometry sphere " + hex(0.5) + "\nbody link a 1 0 " +
+           hex(M{}) + "\nbody link b 2 0 " + hex(M{}) + "\n";
+  };
+  const auto element = [](const std::string& kind, const V& axis, int variable, double m = 1, double c = 0) {
+    return kind + " " + hex(axis) + " " + std::to_string(variable) + " " + hex(m) + " " + hex(c) + "\n";
+  };
+  const V X{1, 0, 0}, Y{0, 1, 0}, Z{0, 0, 1};
+  const auto planar = [&](int x, int y, int t, double m, double c) {
+    return world(element("slide", X, x) + element("slide", Y, y, m) + element("turn", Z, t, 1, c));
+  };
+  EXPECT_TRUE(compare(planar(0, 1, 2, 1, 0), urdf("planar")).differences.empty());
+  EXPECT_FALSE(compare(planar(0, 0, 2, 1, 0), urdf("planar")).differences.empty());
+  EXPECT_FALSE(compare(planar(0, 1, 2, 0, 0), urdf("planar")).differences.empty());
+  EXPECT_FALSE(compare(planar(0, 1, 2, 1, 1), urdf("planar")).differences.empty());
+  const auto floating = [&](int r) {
+    return world(element("slide", X, 0) + element("slide", Y, 1) + element("slide", Z, 2) + "rotate " +
+                 std::to_string(r) + "\n");
+  };
+  EXPECT_TRUE(compare(floating(3), urdf("floating")).differences.empty());
+  EXPECT_FALSE(compare(floating(2), urdf("floating")).differences.empty());
+  EXPECT_FALSE(compare(replaced(goodWorld(), "variable j2", "variable j1"), kUrdf).differences.empty());
+}
+
+TEST_F(VerifyReaders, WhatOtherReadersSeeIsNotPassedOver) {
+  EXPECT_EQ(readMesh(write("t.obj", "v\t0 0 0\n  v 1 0 0\nv 0 1 0\nf\t1 2 3\n f 3 2 1\n")).size(), 18u);
+  EXPECT_THROW(readMesh(write("c.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n")), BadInput);
+  EXPECT_EQ(readMesh(write("u.stl", "SOLID\nVERTEX 0 0 0\nvertex 1 0 0\nVertex 0 1 0\n")).size(), 9u);
+  std::string bytes(80, 'x');
+  bytes += little(1, 4) + std::string(12, '\0') + little(0x7fc00000, 4) + std::string(34, '\0');
+  EXPECT_THROW(readMesh(write("nan.stl", bytes)), BadInput);
+}
+
+TEST_F(VerifyReaders, AnObstacleOfALinksNameIsNoLink) {
+  const std::string srdf = write("n.srdf", "<robot name='r'><disable_collisions link1='base' link2='hand'/></robot>");
+  const std::string good = replaced(goodWorld(), "unchecked neighbours base arm\n", "");
+  EXPECT_TRUE(compareWithSrdf(readWorld(good), srdf).differences.empty());
+  EXPECT_FALSE(
+      compareWithSrdf(readWorld(good + "body obstacle base 0 4 " + hex(M{}) + "\n"), srdf).differences.empty());
+}
+
 TEST_F(VerifyReaders, BinaryStl) {
   std::string bytes(80, 'x');
   bytes += little(2, 4);
