@@ -310,6 +310,20 @@ TEST(CertificatesOfPairs, WhereThereIsNoneTheReasonIsSaid) {
   EXPECT_TRUE(result.certificate->proof.empty());
 }
 
+TEST(CertificatesOfPairs, OfTwoHalfSpacesThereIsNone) {
+  // The answer comes from a point in the place of one of them, which is nothing to prove about the two.
+  const fcl::Halfspaced below(Vector3d::UnitZ(), -1), above(-Vector3d::UnitZ(), -1);
+  const fcl::Transform3d here = fcl::Transform3d::Identity();
+  const fcl::TranslationMotion<double> still(here, here), rises(here, fcl::Transform3d(Eigen::Translation3d(0, 0, 1)));
+  CertifiedPairRequest request;
+  request.certificate = true;
+  CertifiedPairResult result;
+  continuousCollide(&below, &still, &above, &rises, request, result);
+  EXPECT_TRUE(result.isFree());
+  ASSERT_TRUE(result.certificate);
+  EXPECT_FALSE(*result.certificate);
+}
+
 TEST(CertificatesOfPairs, AManagerOfManyPairsRefuses) {
   ContinuousCollisionManager manager;
   manager.setup();
