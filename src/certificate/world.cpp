@@ -199,6 +199,9 @@ std::string geometryText(const Geometry& geometry) {
   };
   const double* e = piece.size;
   const bool centred = Eigen::Vector3d::Map(piece.center).isZero(0);
+  // Of all other bounded shapes FCL's lie about their frames' origins. (Of unbounded ones it is the offset.)
+  FCL_ARTIC_ASSERT(centred || piece.kind == PieceKind::box || piece.kind == PieceKind::vertices ||
+                   baseline::unbounded(piece));
   switch (piece.kind) {
     case PieceKind::vertices:
       return meshText(geometry);
