@@ -239,8 +239,6 @@ void readGeometry(Lines& lines, Geometry& g) {
   }
   if (g.kind == Geometry::boxes) rows(list("cells", 24), 6, g.cells);
   g.prepare();
-  if (g.solid && !g.closed)
-    lines.fail("a solid's surface is closed: each edge as often in one direction as in the other");
 }
 
 void readElement(Lines& lines, std::string_view kind, std::size_t variables, Frame& frame) {
