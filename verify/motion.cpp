@@ -65,7 +65,7 @@ Functional::Value toParent(const Functional::Value& f, const Pose& pose) {
 }
 
 Functional::Functional(const World& world, Poses& poses, const Span& span, int frame, const Vec& v, const Tm& d)
-    : world_(world), poses_(poses), span_(span), start_(frame) {
+    : world_(world), poses_(poses), span_(span) {
   known_.emplace(frame, Value{v, d});
   for (int child = frame, up; child != 0; child = up) {
     up = world.frames[child].parent;

@@ -56,7 +56,6 @@ class Functional {
   const World& world_;
   Poses& poses_;
   const Span span_;
-  const int start_;
   std::map<int, Value> known_;
   std::map<int, int> towards_;  // of each ancestor of the first frame: its child on the way there
 };

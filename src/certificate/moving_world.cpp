@@ -109,9 +109,10 @@ double MovingWorld::acceleration(int body, int frame, double t) {
     for (const Element& element : f.elements) {
       const bool rotate = element.kind == Element::Kind::rotate;
       double rate = 0, second = 0;
-      for (int k = 0; k < (rotate ? 3 : 1); ++k) {
-        rate += rate_[static_cast<std::size_t>(element.variable + k)];
-        second += acceleration_[static_cast<std::size_t>(element.variable + k)];
+      for (std::size_t k = 0; k < (rotate ? 3u : 1u); ++k) {
+        const std::size_t v = static_cast<std::size_t>(element.variable) + k;
+        rate += rate_[v];
+        second += acceleration_[v];
       }
       rate *= std::abs(element.multiplier);
       second *= std::abs(element.multiplier);

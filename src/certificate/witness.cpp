@@ -300,6 +300,7 @@ std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double
   if (!found.overlap || found.simplex.n != 4) return std::nullopt;
   weigh(found.simplex);
   std::vector<std::pair<Vec3, double>> points;
+  points.reserve(4);
   for (int i = 0; i < 4; ++i) points.emplace_back(found.simplex.v[i].a, found.simplex.weight[i]);
   return nameCore(own, points);
 }
