@@ -36,7 +36,7 @@ namespace {
 constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
 // A check looks at an SRDF's pairs in passing, a second or two for all of them; the verb srdf takes its time.
-constexpr std::uint64_t kWorkForAllowed = 10000000, kLeastWorkForPair = 20000;
+constexpr std::uint64_t kWorkForAllowed = 40000000, kLeastWorkForPair = 20000;
 
 struct Options {
   RobotOptions robot;

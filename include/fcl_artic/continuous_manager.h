@@ -35,7 +35,7 @@ struct MovingPair {
 struct CertifiedPairsResult : Bracket {
   /// Pairs that are not proven free, in the order of their t_lower, and of registration if that is the same. With
   /// ContactMode::firstOfEveryPair these are all (if the work budget runs out, up to the first pair that it leaves
-  /// undecided), with other modes only the first.
+  /// undecided), with ContactMode::first only the first, with ContactMode::any one whose contact is proven, if any is.
   std::vector<MovingPair> pairs;
   /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
@@ -138,8 +138,7 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   void collide(const ContinuousCollisionManager* other, void* cdata, Callback callback, double margin = 0) const;
 
   /// Finds the first contact of all pairs of registered objects, or proves that there is none.
-  /// @param request  max_contacts is per pair, work_budget for all pairs together; progress is not called, and
-  ///   ContactMode::any ends the search in each pair only.
+  /// @param request  max_contacts is per pair, work_budget for all pairs together; progress is not called.
   /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
   /// @throws std::invalid_argument for tolerances that are not positive numbers, and margins that are negative or not
   ///   finite.

@@ -61,6 +61,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Removes an obstacle that stands still, also one that is attached to a link. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::CollisionObjectd* object);
+  /// Removes an obstacle that stands still, as the form with a pointer does. Needs setup().
+  /// @throws std::invalid_argument if it is not registered.
+  void unregisterObject(const std::shared_ptr<const fcl::CollisionObjectd>& object) { unregisterObject(object.get()); }
 
   /// Adds an obstacle that moves. The time of its motion is the query's, t in [0, 1] (for a trajectory, all of it),
   /// whatever the robot does. Links are checked against it as against any obstacle (CertifiedRequest::check_scene);
@@ -103,6 +106,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Removes a geometry from its link. Needs setup().
   /// @throws std::invalid_argument if it is bound to no link, or attached (use detach()).
   void unbind(const fcl::CollisionObjectd* object);
+  /// Removes a geometry from its link, as the form with a pointer does. Needs setup().
+  /// @throws std::invalid_argument if it is bound to no link, or attached (use detach()).
+  void unbind(const std::shared_ptr<const fcl::CollisionObjectd>& object) { unbind(object.get()); }
 
   /// Attaches a registered obstacle to a link, as a gripper picks it up: after the next setup() the link carries it. It
   /// keeps its name, and with it its allowed pairs and margins. It is checked against the rest of the scene and against
@@ -122,10 +128,31 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument as attach() to a LinkId.
   void attach(const std::string& link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
+  /// Attaches a registered obstacle to a link: does what attach() of a pointer does.
+  /// @param object  an obstacle that stands still.
+  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  names of further links that it may touch.
+  /// @throws std::invalid_argument as attach() of a pointer.
+  void attach(LinkId link, const std::shared_ptr<const fcl::CollisionObjectd>& object, const Eigen::Isometry3d& offset,
+              const std::vector<std::string>& touch_links = {}) {
+    attach(link, object.get(), offset, touch_links);
+  }
+  /// Attaches a registered obstacle to the link of this name: does what attach() to a LinkId does.
+  /// @param object  an obstacle that stands still.
+  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
+  /// @param touch_links  names of further links that it may touch.
+  /// @throws std::invalid_argument as attach() to a LinkId.
+  void attach(const std::string& link, const std::shared_ptr<const fcl::CollisionObjectd>& object,
+              const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links = {}) {
+    attach(link, object.get(), offset, touch_links);
+  }
   /// Puts an attached object down: it is an obstacle again, at the object's own transform. Needs setup().
   /// (unregisterObject() removes it altogether.)
   /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
   void detach(const fcl::CollisionObjectd* object);
+  /// Puts an attached object down, as the form with a pointer does. Needs setup().
+  /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
+  void detach(const std::shared_ptr<const fcl::CollisionObjectd>& object) { detach(object.get()); }
 
   /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup().
   ///
@@ -195,6 +222,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Reads one object again, an obstacle or one that a link carries, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
   void update(const fcl::CollisionObjectd* object);
+  /// Reads one object again, as the form with a pointer does, and makes all changes effective.
+  /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
+  void update(const std::shared_ptr<const fcl::CollisionObjectd>& object) { update(object.get()); }
   /// Reads these objects again, obstacles or those that links carry, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and for an object that is neither registered nor bound.
   void update(const std::vector<fcl::CollisionObjectd*>& objects);

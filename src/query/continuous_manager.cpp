@@ -145,6 +145,16 @@ class Earliest {
     if (pair.result.isFree()) return false;
 
     const CertifiedPairResult& r = pair.result;
+    if (request_.mode == ContactMode::any && r.status == Status::contact && r.certain) {
+      // The pairs that follow are not asked, so that nothing is claimed of any time before the contact.
+      found_any_ = true;
+      first_ = {};
+      engine::joinLower(first_, 0);
+      engine::joinUpper(first_, engine::provenBy(r));
+      result_.pairs.clear();
+      result_.pairs.push_back(std::move(pair));
+      return true;
+    }
     engine::joinLower(first_, r.t_lower);
     engine::joinUpper(first_, engine::provenBy(r));
     if (request_.mode == ContactMode::firstOfEveryPair || result_.pairs.empty()) {
@@ -166,7 +176,7 @@ class Earliest {
     } else {
       const CertifiedPairResult& first = result_.pairs[0].result;
       result_.status = first.status;
-      result_.t_lower = first.t_lower;
+      result_.t_lower = found_any_ ? 0 : first.t_lower;
       result_.t_upper = std::min(1.0, first_.t_upper);
       const bool close = engine::isCertain(first_, request_.tolerance_time, false);
       result_.certain = first.status == Status::contact && (first.certain || close);
@@ -188,6 +198,7 @@ class Earliest {
   CertifiedPairRequest request_;
   CertifiedPairsResult& result_;
   engine::FirstContact first_;  ///< of all pairs that are not free
+  bool found_any_ = false;      ///< a contact is proven, and any was asked for
   Clock::time_point begin_;
 };
 

@@ -404,6 +404,44 @@ TEST(BroadPhaseTest, FirstContactIsTheEarliestOfAllPairs) {
   EXPECT_GE(free, 1);
 }
 
+TEST(BroadPhaseTest, AnyContactEndsTheSearch) {
+  int contacts = 0, free = 0;
+  std::uint64_t asked = 0, asked_for_the_first = 0;
+  for (int seed = 10; seed < 40; ++seed) {
+    const Scene scene(seed, 24, seed < 30 ? 3 : 9, 1);
+    ContinuousCollisionManager manager;
+    manager.registerObjects(scene.pointers());
+    manager.setup();
+    CertifiedRequest request;
+    request.ignore_initial_contact = true;
+    CertifiedPairsResult first, any;
+    manager.continuousCollide(request, first);
+    request.mode = ContactMode::any;
+    manager.continuousCollide(request, any);
+    asked_for_the_first += first.statistics.pairs_after_culling;
+    asked += any.statistics.pairs_after_culling;
+    EXPECT_EQ(any.status, first.status);
+    if (any.isFree()) {
+      ++free;
+      continue;
+    }
+    // What is said of times before the contact must not be more than what is known of all pairs.
+    EXPECT_LE(any.t_lower, first.t_upper);
+    EXPECT_GE(any.t_upper, first.t_lower);
+    if (!any.certain) continue;
+    ++contacts;
+    ASSERT_EQ(any.pairs.size(), 1u);
+    CertifiedPairResult alone;
+    collide(any.pairs[0].object1, any.pairs[0].object2, request, alone);
+    expectSame(any.pairs[0].result, alone);
+    EXPECT_TRUE(alone.certain);
+    EXPECT_EQ(any.t_upper, alone.t_upper);
+  }
+  EXPECT_GE(contacts, 15);
+  EXPECT_GE(free, 1);
+  EXPECT_LT(2 * asked, asked_for_the_first);
+}
+
 TEST(BroadPhaseTest, ContactTimeInClosedForm) {
   // Two spheres of radius 0.5 meet when their centres are 1 apart: 10 - 12 t = 1. Of the other, later pair, nothing
   // shows.

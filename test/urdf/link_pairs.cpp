@@ -41,37 +41,35 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Two links by FCL alone.
+/// Two links by FCL alone. They are placed in the frame of their nearest common ancestor, and shapes whose spheres
+/// about FCL's own boxes are apart are not asked.
 class Judge {
  public:
   Judge(const Robot& robot, const std::string& link1, const std::string& link2) : tree_(*robot.tree) {
-    for (const LinkGeometry& g : robot.geometry) {
-      const std::string& name = tree_.linkName(g.link);
-      if (name == link1) of1_.push_back(&g);
-      if (name == link2) of2_.push_back(&g);
-    }
-    for (const std::string& link : {link1, link2}) {
-      for (JointId j = tree_.parentJoint(tree_.linkId(link)); j >= 0;) {
-        const int v = tree_.joint(j).type == JointType::fixed ? -1 : tree_.jointVariable(j);
-        // A joint above both moves neither against the other, but does no harm.
-        if (v >= 0) variables_.insert(v);
-        j = tree_.parentJoint(tree_.linkId(tree_.joint(j).parent));
+    std::vector<JointId> path1 = pathTo(tree_.linkId(link1)), path2 = pathTo(tree_.linkId(link2));
+    std::size_t shared = 0;
+    while (shared < path1.size() && shared < path2.size() && path1[shared] == path2[shared]) ++shared;
+    path1.erase(path1.begin(), path1.begin() + static_cast<std::ptrdiff_t>(shared));
+    path2.erase(path2.begin(), path2.begin() + static_cast<std::ptrdiff_t>(shared));
+    for (const auto* path : {&path1, &path2}) {
+      for (const JointId j : *path) {
+        if (tree_.joint(j).type != JointType::fixed) variables_.insert(tree_.jointVariable(j));
       }
     }
+    of1_ = {path1, shapesOf(robot, link1)};
+    of2_ = {path2, shapesOf(robot, link2)};
   }
 
   bool touch(const VectorXd& q) {
-    tree_.forwardKinematics(q, M_0_);
-    return anyPair([](const auto* g1, const Isometry3d& M1, const auto* g2, const Isometry3d& M2) {
+    return anyPair(q, true, [](const auto* g1, const Isometry3d& M1, const auto* g2, const Isometry3d& M2) {
       fcl::CollisionResultd result;
       return fcl::collide(g1, M1, g2, M2, fcl::CollisionRequestd(), result) > 0;
     });
   }
   /// FCL's distance, or that of the middles where it has none for these two.
   double distance(const VectorXd& q) {
-    tree_.forwardKinematics(q, M_0_);
     double least = 1e9;
-    anyPair([&](const auto* g1, const Isometry3d& M1, const auto* g2, const Isometry3d& M2) {
+    anyPair(q, false, [&](const auto* g1, const Isometry3d& M1, const auto* g2, const Isometry3d& M2) {
       fcl::DistanceResultd result;
       fcl::DistanceRequestd request;
       least = std::min(least, fcl::distance(g1, M1, g2, M2, request, result));
@@ -82,21 +80,54 @@ class Judge {
   const std::set<int>& variables() const { return variables_; }
 
  private:
+  struct Shape {
+    const fcl::CollisionGeometryd* geometry;
+    Isometry3d offset;
+  };
+  struct Side {
+    std::vector<JointId> path;  // from the common ancestor to the link
+    std::vector<Shape> shapes;
+  };
+
+  std::vector<JointId> pathTo(LinkId link) const {
+    std::vector<JointId> path;
+    for (JointId j = tree_.parentJoint(link); j >= 0; j = tree_.parentJoint(tree_.linkId(tree_.joint(j).parent))) {
+      path.insert(path.begin(), j);
+    }
+    return path;
+  }
+  std::vector<Shape> shapesOf(const Robot& robot, const std::string& link) const {
+    std::vector<Shape> shapes;
+    for (const LinkGeometry& g : robot.geometry) {
+      if (tree_.linkName(g.link) == link) shapes.push_back({g.object->collisionGeometry().get(), g.offset});
+    }
+    return shapes;
+  }
+  Isometry3d place(const Side& side, const VectorXd& q) const {
+    Isometry3d M = Isometry3d::Identity();
+    for (const JointId j : side.path) {
+      M = M * tree_.joint(j).origin;
+      if (tree_.joint(j).type != JointType::fixed) M = M * tree_.jointPose(j, q);
+    }
+    return M;
+  }
   template <class F>
-  bool anyPair(const F& f) const {
-    for (const LinkGeometry* a : of1_) {
-      for (const LinkGeometry* b : of2_) {
-        if (f(a->object->collisionGeometry().get(), M_0_[static_cast<std::size_t>(a->link)] * a->offset,
-              b->object->collisionGeometry().get(), M_0_[static_cast<std::size_t>(b->link)] * b->offset)) {
-          return true;
-        }
+  bool anyPair(const VectorXd& q, bool near_only, const F& f) const {
+    const Isometry3d M1 = place(of1_, q), M2 = place(of2_, q);
+    for (const Shape& a : of1_.shapes) {
+      const Isometry3d Ma = M1 * a.offset;
+      const Eigen::Vector3d middle = Ma * a.geometry->aabb_center;
+      for (const Shape& b : of2_.shapes) {
+        const Isometry3d Mb = M2 * b.offset;
+        const double reach = 1.000001 * (a.geometry->aabb_radius + b.geometry->aabb_radius);
+        if (near_only && (Mb * b.geometry->aabb_center - middle).norm() > reach) continue;
+        if (f(a.geometry, Ma, b.geometry, Mb)) return true;
       }
     }
     return false;
   }
   const KinematicTree& tree_;
-  std::vector<const LinkGeometry*> of1_, of2_;
-  std::vector<Isometry3d> M_0_;
+  Side of1_, of2_;
   std::set<int> variables_;
 };
 
@@ -109,10 +140,12 @@ std::pair<double, double> rangeOf(const KinematicTree& tree, int v) {
 /// Samples one pair; half of them about the closest poses known so far, ever nearer.
 /// @return number that touch.
 long sample(const KinematicTree& tree, Judge& judge, pairs::Random& random, long samples, double& closest) {
-  const auto draw = [&](const VectorXd* about, double reach) {
-    VectorXd q = tree.neutralConfiguration();
+  std::vector<std::pair<double, double>> ranges(static_cast<std::size_t>(tree.dof()));
+  for (const int v : judge.variables()) ranges[static_cast<std::size_t>(v)] = rangeOf(tree, v);
+  VectorXd q = tree.neutralConfiguration();
+  const auto draw = [&](const VectorXd* about, double reach) -> const VectorXd& {
     for (const int v : judge.variables()) {
-      const auto [lower, upper] = rangeOf(tree, v);
+      const auto& [lower, upper] = ranges[static_cast<std::size_t>(v)];
       q[v] = about ? std::clamp((*about)[v] + reach * random.uniform(-1, 1) * (upper - lower), lower, upper)
                    : random.uniform(lower, upper);
       if (random.chance(0.05)) q[v] = random.chance(0.5) ? lower : upper;
@@ -127,8 +160,7 @@ long sample(const KinematicTree& tree, Judge& judge, pairs::Random& random, long
     VectorXd best = draw(nullptr, 0);
     double least = judge.distance(best), reach = 0.3;
     for (int i = 0; i < 60; ++i) {
-      const VectorXd q = draw(i < 10 ? nullptr : &best, reach);
-      const double d = judge.distance(q);
+      const double d = judge.distance(draw(i < 10 ? nullptr : &best, reach));
       if (d < least) {
         least = d;
         best = q;

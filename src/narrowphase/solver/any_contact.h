@@ -213,7 +213,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   for (int i = 0; i < overlap_guesses_.size() && !horizon_.isOver(); ++i) {
     const Entry& e = overlap_guesses_[i];
     motion_.set(e.pair, middles);
-    traversal_.descend(e, Aim::leaves, open);
+    traversal_.descend(e, Aim::poses, open);
     open.truncate(roots);
   }
   horizon_.dropSuspicion();

@@ -15,6 +15,9 @@ namespace FCL_ARTIC_ISA {
 /// cent fewer at more expense.
 constexpr double kFollowingAccuracy = 0.02;
 
+/// Nothing is known of how near they are.
+constexpr double kFarApart = 1e300;
+
 /// What is left of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts of
 /// their trees.
 struct Candidate {
@@ -145,7 +148,11 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
       gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
       ++statistics().gjk;
       f.simplex = g.simplex;
-      if (g.overlap) return false;
+      if (g.overlap) {
+        Simplex nearest = g.simplex;
+        f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
+        return false;
+      }
       f.normal = g.n;
       motion_.setWitness(g.n);
       f.gap = g.lower - radii;

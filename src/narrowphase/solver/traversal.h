@@ -23,6 +23,8 @@ constexpr int kMostHullOverlaps = 2;
 /// A traversal that has left so many pairs open leaves the others as they are: that lane is to be split anyway.
 /// Measured: 128 are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
 constexpr int kMostOpen = 512;
+/// The same of leaves at single poses that are neither proven apart nor in contact, as where bodies rest on each other.
+constexpr int kMostOpenAtPoses = 16;
 /// GJK stops when it knows the gap to this part: enough for a direction.
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -41,6 +43,7 @@ FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
 enum class Aim {
   split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
   leaves,  ///< the same, down to the leaves: lanes are as narrow as they get
+  poses,   ///< the same at single poses, for contacts to be proven: ends where many leaves can't be decided
   decide,  ///< only which lanes are free matters
 };
 
@@ -309,7 +312,9 @@ inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& o
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   const double split_time = aim == Aim::split ? kSplitTime * motion_.amplitude() : 0;
-  const int most = aim == Aim::split ? open.size() + kMostOpen : 0x7fffffff;
+  const int most = aim == Aim::split   ? open.size() + kMostOpen
+                   : aim == Aim::poses ? open.size() + kMostOpenAtPoses
+                                       : 0x7fffffff;
   unsigned blocked = 0;
   Entry e = root;
   bool held = true;  // e goes on with a child; else it is the next of the stacks
