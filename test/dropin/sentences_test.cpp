@@ -265,7 +265,7 @@ TEST(PromiseSentences, RestingCostsAboutWhatStandingClearCosts) {
       EXPECT_TRUE(clear.isFree());
       EXPECT_EQ(resting.status, Status::contact);
       EXPECT_EQ(resting.t_lower, 0);
-      EXPECT_LT(workOf(resting), 400 + 10 * workOf(clear)) << i;
+      EXPECT_LT(workOf(resting), 600 + 10 * workOf(clear)) << i;
     }
   }
 }

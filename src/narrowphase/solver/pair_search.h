@@ -133,12 +133,14 @@ inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a,
 /// looked at by themselves: where contact of two of them at 0 is proven, or can't be told from it, no contact is
 /// earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to the finest
 /// lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
-/// @return false where nothing is known; the batch in motion_ is another then.
+/// @return false where others may touch earlier; the batch in motion_ is another then.
 inline bool PairSearch::restsAtStart(int pair) {
   const PairParts parts = problem().parts(pair);
   const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
   if (!A.outer || !B.outer || contacts_.watchFrom(pair) > 0) return false;
-  motion_.set(pair, whole());
+  // In wider lanes than the finest the pose at 0 itself is off by what the quadratic leaves out.
+  const double finest = max(query().tolerance_time, kNarrowestLane);
+  motion_.set(pair, TimeBatch::partsOf(0, finest));
   const DifferenceBody hulls = motion_.differenceAt(*A.outer, *B.outer, 0, -1);
   const double radii = A.outer->radius + B.outer->radius + motion_.margin();
   GjkResult g;
@@ -155,24 +157,29 @@ inline bool PairSearch::restsAtStart(int pair) {
   const double reach = max(query().tolerance_distance, motion_.pad());
   const int num_a = piecesAround(A, g.simplex, true, x, A.outer->radius + motion_.margin() + reach, near_a);
   const int num_b = piecesAround(B, g.simplex, false, y, B.outer->radius + motion_.margin() + reach, near_b);
-  for (int i = 0; i < num_a; ++i) {
-    for (int j = 0; j < num_b; ++j) {
-      Candidate f = {};
-      f.entry = {pair, 0, 0, kAllLanes};
-      f.target = Candidate::Target::leafPair;
-      f.piece_a = near_a[i];
-      f.piece_b = near_b[j];
-      f.apart = kFarApart;
-      motion_.set(pair, whole());
-      if (follower_.followToRoot(f, 1.0 / kLanes, false)) continue;
-      if (!f.certain && (f.t_lower > 0 || !isNear(f.apart) || follower_.decide(f, 1.0 / kLanes))) continue;
-      if (f.t_lower > 0) continue;
-      if (!f.certain) horizon_.closeAt(query().tolerance_time);
+  Candidate resting = {};
+  int uncertain = 0;
+  for (int i = 0; i < num_a * num_b && uncertain < kMostAround; ++i) {
+    Candidate f = {};
+    f.entry = {pair, 0, 0, kAllLanes};
+    f.target = Candidate::Target::leafPair;
+    f.piece_a = near_a[i / num_b];
+    f.piece_b = near_b[i % num_b];
+    f.apart = kFarApart;
+    const auto isOpen = [&] { return f.t_lower <= 0 && isNear(f.apart); };
+    if (follower_.followToRoot(f, finest, false)) continue;
+    if (!f.certain && (!isOpen() || follower_.decide(f, finest))) continue;
+    if (f.certain) {
       follower_.record(f);
-      return true;
+      if (f.t_lower <= 0 || horizon_.isOver()) return true;
+    } else if (isOpen() && uncertain++ == 0) {
+      resting = f;
     }
   }
-  return false;
+  if (uncertain == 0) return false;
+  horizon_.closeAt(query().tolerance_time);
+  follower_.record(resting);
+  return true;
 }
 
 template <class DirectionOf>
