@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A question: a straight motion, or waypoints.
-struct Question {
+struct Question {  // NOLINT(bugprone-exception-escape): moving it throws nothing
   Json id;
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;

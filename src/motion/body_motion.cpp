@@ -214,7 +214,7 @@ Isometry3d BodyMotion::pose(double t) const {
         turnBy(rotationBy(q));
         break;
       case MotionElement::Kind::bounded:
-        moveBy(element.bounded->state(t).pose);
+        moveBy(element.bounded->state(t).pose);  // NOLINT(clang-analyzer-core.CallAndMessage): the kind has one
         break;
     }
   }

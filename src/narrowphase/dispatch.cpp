@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 
 #include "narrowphase/engine.h"
 
@@ -32,9 +33,10 @@ const Engine& chooseEngine() {
   if (const char* asked = std::getenv("FCL_ARTIC_ISA")) {
     if (const Engine* found = engineNamed(asked)) return *found;
   }
-  const Engine* const* widest = kEngines;
-  while (!runs(**widest)) ++widest;
-  return **widest;
+  for (const Engine* engine : kEngines) {  // the widest first
+    if (runs(*engine)) return *engine;
+  }
+  return *kEngines[std::size(kEngines) - 1];
 }
 
 }  // namespace

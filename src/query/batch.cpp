@@ -6,7 +6,7 @@
 
 #include "fcl_artic/manager.h"
 #include "query/claim_nothing.h"
-#include "query/parallel.h"
+#include "setup/parallel.h"
 
 namespace fcl_artic {
 

@@ -183,8 +183,10 @@ S answer(Body<S>&& body1, Body<S>&& body2, const fcl::ContinuousCollisionRequest
   result.time_of_contact = result.is_collide ? roundedDown(proven.t_lower, S()) : S(1);
   const double t = static_cast<double>(result.time_of_contact);
   const bool same = t == proven.t_lower;
+  // NOLINTBEGIN(bugprone-use-after-move): what is asked above reads bodies, it keeps nothing of them
   result.contact_tf1 = (same ? proven.tf1_at_lower : body1.motion.pose(t)).template cast<S>();
   result.contact_tf2 = (same ? proven.tf2_at_lower : body2.motion.pose(t)).template cast<S>();
+  // NOLINTEND(bugprone-use-after-move)
   return result.time_of_contact;
 }
 

@@ -12,9 +12,9 @@
 #include "numerics/shown.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
-#include "query/parallel.h"
 #include "setup/link_proofs.h"
 #include "setup/neighbours.h"
+#include "setup/parallel.h"
 #include "tables/range_proof.h"
 
 namespace fcl_artic {

@@ -31,7 +31,8 @@ void ArticulatedCollisionManager::registerObject(const fcl::CollisionObjectd* ob
 
 void ArticulatedCollisionManager::registerObject(std::shared_ptr<const fcl::CollisionObjectd> object,
                                                  const std::string& name) {
-  impl_->registry.registerObject(object.get(), name, object);
+  const fcl::CollisionObjectd* const plain = object.get();
+  impl_->registry.registerObject(plain, name, std::move(object));
   impl_->setup.obstaclesChanged();
 }
 
@@ -69,7 +70,8 @@ void ArticulatedCollisionManager::bind(const std::string& link, const fcl::Colli
 
 void ArticulatedCollisionManager::bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
                                        const Eigen::Isometry3d& offset) {
-  impl_->registry.bind(link, object.get(), offset, object);
+  const fcl::CollisionObjectd* const plain = object.get();
+  impl_->registry.bind(link, plain, offset, std::move(object));
   impl_->setup.robotChanged();
 }
 

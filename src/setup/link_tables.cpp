@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "setup/parallel.h"
+
 namespace fcl_artic {
 
 void LinkTables::build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
@@ -13,25 +15,34 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   grids_.clear();
   ranges_.clear();
   likely_.clear();
+  const KinematicTree& tree = *registry.tree();
+  std::vector<std::size_t> pairs, unknown;  // unknown: into both
   for (std::size_t i = 0; i < num_self_pairs; ++i) {
     const engine::LinkPair& pair = problem.link_pairs[i];
     const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
     if (a.attached || b.attached || proven.proven(i)) continue;
-    const KinematicTree& tree = *registry.tree();
     Made made{PairMaking(tree, a, b), margins.ofLinkPair(i), nullptr, nullptr};
     const auto known = std::find_if(before.begin(), before.end(),
                                     [&](const Made& m) { return m.margin == made.margin && m.made.sameAs(made.made); });
-    const engine::SweepView& sweep = problem.sweeps[pair.sweep];
     if (known != before.end()) {
       made.table = known->table;
       made.grid = known->grid;
     } else {
-      made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
-      made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
+      unknown.push_back(made_.size());
     }
-    if (made.table) tables_.emplace_back(i, made.table);
-    if (made.grid) addGrid(tree, static_cast<std::int32_t>(i), *made.grid);
+    pairs.push_back(i);
     made_.push_back(std::move(made));
+  }
+  parallelFor(unknown.size(), 0, [&](std::size_t k) {
+    Made& made = made_[unknown[k]];
+    const engine::LinkPair& pair = problem.link_pairs[pairs[unknown[k]]];
+    const engine::SweepView& sweep = problem.sweeps[pair.sweep];
+    made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
+    made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
+  });
+  for (std::size_t k = 0; k < made_.size(); ++k) {
+    if (made_[k].table) tables_.emplace_back(pairs[k], made_[k].table);
+    if (made_[k].grid) addGrid(tree, static_cast<std::int32_t>(pairs[k]), *made_[k].grid);
   }
 }
 

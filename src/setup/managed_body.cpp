@@ -6,12 +6,14 @@
 
 #include "fcl/fcl_geometry.h"
 #include "fcl/fcl_motion.h"
+#include "setup/shared_shapes.h"
 
 namespace fcl_artic {
 
 namespace {
 
 std::shared_ptr<const fcl::CollisionGeometryd> geometryOf(const ManagedBody& body) {
+  // NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): one of the two is there
   return body.object ? body.object->collisionGeometry() : body.moving->collisionGeometry();
 }
 
@@ -21,6 +23,7 @@ bool ManagedBody::isAsRead() const {
   if (moving) return false;
   const std::shared_ptr<const fcl::CollisionGeometryd> current = geometryOf(*this);
   if (current != geometry || !content->sameAs(*current)) return false;
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): other bits are another reading
   return link >= 0 || std::memcmp(object->getTransform().data(), transform.data(), 16 * sizeof(double)) == 0;
 }
 
@@ -34,22 +37,23 @@ void ManagedBody::readShape(const std::string& what) {
   if (!current) throw std::invalid_argument(what + ": the object has no geometry");
   if (!content || !content->sameAs(*current)) {
     try {
-      shape = readGeometry(*current);
+      const SharedShape read = readShared(*current);
+      shape = read.shape;
+      content = read.content;
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(what + ": " + e.what());
     }
-    content = std::make_shared<const GeometryContent>(*current);
   }
   geometry = current;
 }
 
 void ManagedBody::readCarried(const std::string& what) {
   readShape(what);
-  try {
-    lss = shape->lineSweptSphere();
-  } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(what + ": " + e.what());
-  }
+  requireBounded(what);
+}
+
+void ManagedBody::requireBounded(const std::string& what) const {
+  if (size() >= engine::kUnbounded) throw std::invalid_argument(what + ": it is unbounded, and no link carries that");
 }
 
 void ManagedBody::readObstacle() {

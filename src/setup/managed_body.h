@@ -4,7 +4,6 @@
 // was read of it.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <set>
 #include <string>
@@ -33,7 +32,6 @@ struct ManagedBody {
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
   std::shared_ptr<const ShapeTree> shape;
   std::shared_ptr<const GeometryContent> content;  ///< that the shape was made of: the caller may change it in place
-  std::array<double, 7> lss = {};                  ///< of a link: line swept sphere in the geometry's frame
   bool attached = false;                           ///< an obstacle that the link carries
   std::set<LinkId> touch_links;                    ///< that it may touch then
   BodyMotion motion;                               ///< of an obstacle that moves
@@ -51,6 +49,9 @@ struct ManagedBody {
   /// Reads what a link carries.
   /// @throws std::invalid_argument beginning with `what`, also for what is unbounded.
   void readCarried(const std::string& what);
+  /// Refuses what no link carries.
+  /// @throws std::invalid_argument beginning with `what`.
+  void requireBounded(const std::string& what) const;
   /// Reads an obstacle: its geometry, and its transform or its motion.
   /// @throws std::invalid_argument naming it.
   void readObstacle();

@@ -229,11 +229,7 @@ void Registry::attach(LinkId link, const fcl::CollisionObjectd* object, const Ei
   body.attached = true;
   body.offset = requireRigid(offset, what);
   for (const std::string& name : touch_links) body.touch_links.insert(requireLink(name, what));
-  try {
-    body.lss = body.shape->lineSweptSphere();
-  } catch (const std::invalid_argument& e) {
-    throw std::invalid_argument(what + ": " + e.what());
-  }
+  body.requireBounded(what);
   links_.push_back(std::move(body));
   obstacles_.erase(obstacle);
 }

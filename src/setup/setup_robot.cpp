@@ -8,6 +8,7 @@
 #include <set>
 
 #include "setup/neighbours.h"
+#include "setup/parallel.h"
 #include "setup/setup.h"
 
 namespace fcl_artic {
@@ -44,6 +45,12 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
   sweeps_.clear();
   sweeps_.push_back(FrameSweep::fromWorld(*registry.tree()));
   bodies_.assign(links.size(), engine::Body());
+  // What shapes make of themselves when first asked is most of a set-up: made by all cores.
+  parallelFor(links.size(), 0, [&](std::size_t i) {
+    links[i].shape->viewWithParts();
+    links[i].shape->innerBalls();
+    links[i].shape->lineSweptSphere();
+  });
   std::vector<int> depth(links.size(), 0);
   std::vector<Carrier> carriers(links.size());
   for (std::size_t i = 0; i < links.size(); ++i) {
@@ -55,7 +62,7 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
     body.balls = link.shape->innerBalls();
     body.step = carrier.step;
     body.placement = makePlacement(carrier, link.offset);
-    const std::array<double, 7>& lss = link.lss;
+    const LineSweptSphere& lss = link.shape->lineSweptSphere();
     const Eigen::Vector3d p0 = in_step * Eigen::Vector3d::Map(&lss[0]), p1 = in_step * Eigen::Vector3d::Map(&lss[3]);
     for (int k = 0; k < 3; ++k) {
       body.lss[k] = p0[k];

@@ -80,7 +80,8 @@ double bringTogether(const std::vector<engine::SweepStep>& path, const std::vect
     double here = (x - a).norm();
     for (std::size_t v = 0; v < within.size(); ++v) {
       if (steps[v] == 1) continue;
-      for (double way = 0.5 * (within[v].upper - within[v].lower), k = 0; k < 5; ++k, way *= -0.5) {
+      double way = 0.5 * (within[v].upper - within[v].lower);
+      for (int k = 0; k < 5; ++k, way *= -0.5) {
         const double stay = values[v];
         values[v] = std::clamp(stay + way, within[v].lower, within[v].upper);
         const double there = distance();

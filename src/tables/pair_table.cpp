@@ -275,7 +275,8 @@ std::optional<const PairTable::Cells> PairTable::chooseCells(const KinematicTree
     if (a == 2) {
       if (axis.wraps || margin > kMostMargin) return std::nullopt;
       axes[a].cells = kPlanes;
-      axes[a].lower -= (kPlanes - 1) / 2 * range;
+      constexpr int kPlanesBelow = (kPlanes - 1) / 2;
+      axes[a].lower -= kPlanesBelow * range;
       axes[a].width = range;
     } else {
       axes[a].cells =
@@ -355,7 +356,7 @@ unsigned PairTable::freeParts(const Eigen::MatrixXd& variables) const {
   const auto freeOver = [&](double middle, double half) {
     double lower[3], upper[3];
     for (int a = 0; a < cells_.count; ++a) {
-      double c[engine::kMaxDegree + 1], size = 0;
+      double c[engine::kMaxDegree + 1] = {}, size = 0;
       for (Eigen::Index k = 0; k <= degree; ++k) size += std::abs(c[k] = variables(cells_.axes[a].variable, k));
       for (Eigen::Index i = 0; i < degree; ++i) {
         for (Eigen::Index k = degree - 1; k >= i; --k) c[k] += middle * c[k + 1];

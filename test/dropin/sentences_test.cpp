@@ -330,7 +330,9 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
       for (const auto& [lower, upper] : brackets) {
         EXPECT_LE(lower, 0.5);
         EXPECT_GE(upper, 0.5);
-        if (upper < 2) EXPECT_LE(upper - lower, 1e-6);
+        if (upper < 2) {
+          EXPECT_LE(upper - lower, 1e-6);
+        }
         certain += upper < 2;
       }
     }

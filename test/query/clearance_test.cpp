@@ -232,7 +232,7 @@ TEST(Clearance, BadInputIsRefused) {
     ClearanceRequest request;
     change(request);
     try {
-      way.manager->clearance(motion, request);
+      (void)way.manager->clearance(motion, request);
     } catch (const std::invalid_argument& e) {
       return std::string(e.what());
     }

@@ -68,7 +68,7 @@ struct Asked {
           std::vector<CertifiedResult> r;
           manager.continuousCollide(std::vector<JointMotion>{motion, motion}, {}, r);
         },
-        [&] { manager.clearance(motion); },
+        [&] { (void)manager.clearance(motion); },
         [&] { FclLinkMotion(*tree, motion, tree->numLinks() - 1); },
     };
     std::vector<std::string> said;

@@ -77,6 +77,7 @@ class AnyContact : PartOfSolver {
   bool tryObstacle(int pair, int lane, const Vec3& near, bool thin);
   void considerLinks(int pair, Lanes square, double radii);
   bool tryLinks();
+  bool tryDeepLinks(const Buffer<Entry>& open);
   bool tryOverlaps(Buffer<Entry>& open);
 
  private:
@@ -140,8 +141,7 @@ inline void AnyContact::considerLinks(int pair, Lanes square, double radii) {
   if (near || distance < kDeepLinks) pose_guesses_.push({pair, lane, distance, near});
 }
 
-/// Links whose line swept spheres are deep in each other. Balls inside them at all poses at which these may meet; then
-/// each pair's triangles at the pose at which they are deepest.
+/// Balls inside links whose line swept spheres meet, at all poses at which these may meet.
 inline bool AnyContact::tryLinks() {
   frames_.set(whole());
   for (int i = 0; i < pose_guesses_.size(); ++i) {
@@ -149,6 +149,12 @@ inline bool AnyContact::tryLinks() {
       if (balls_.inLinks(pose_guesses_[i].pair, __builtin_ctz(near))) return true;
     }
   }
+  return false;
+}
+
+/// Links whose line swept spheres are deep in each other: triangles of each pair at the pose at which they are deepest.
+/// @param open  what is not proven apart by now: other pairs, and other lanes of these, are not tried.
+inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
   for (int done = 0; done < pose_guesses_.size(); ++done) {
     int first = done;
     for (int i = done + 1; i < pose_guesses_.size(); ++i) {
@@ -156,7 +162,12 @@ inline bool AnyContact::tryLinks() {
     }
     const PoseGuess guess = pose_guesses_[first];
     pose_guesses_[first] = pose_guesses_[done];
-    if (guess.distance < kDeepLinks && tryTriangles(guess.pair, guess.lane)) return true;
+    if (guess.distance >= kDeepLinks) break;
+    bool is_open = false;
+    for (int i = 0; i < open.size(); ++i) {
+      is_open = is_open || (open[i].pair == guess.pair && (open[i].mask >> guess.lane & 1));
+    }
+    if (is_open && tryTriangles(guess.pair, guess.lane)) return true;
   }
   return false;
 }
