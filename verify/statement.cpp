@@ -128,7 +128,7 @@ class Lines {
       mantissa >>= 1;
       ++exponent;
     }
-    if (mantissa >> 53 != 0) wrong();
+    if (mantissa >= std::uint64_t{1} << 53) wrong();
     const double value = std::ldexp(static_cast<double>(mantissa), exponent);
     if (std::ldexp(value, -exponent) != static_cast<double>(mantissa)) wrong();  // it left the doubles
     if (value > 1099511627776.0) fail("the number " + std::string(all.substr(0, 40)) + " is beyond 2^40");

@@ -130,7 +130,8 @@ void GlExecutor::place(const Batch& batch, const Footprint& f, int tile, std::ui
     if (best == 0 || f.bounds[k].upper - f.bounds[k].lower < f.bounds[best].upper - f.bounds[best].lower) best = k;
   }
   const DepthBounds &b = f.bounds[best], &flat = f.bounds[0];
-  const double x0 = tile % columns_ * batch.resolution, y0 = tile / columns_ * batch.resolution;
+  const int column = tile % columns_, row = tile / columns_;
+  const double x0 = column * batch.resolution, y0 = row * batch.resolution;
   const auto add = [&](const double* p) {
     vertices.push_back({{static_cast<float>(x0 + p[0]), static_cast<float>(y0 + p[1])},
                         {static_cast<float>(x0), static_cast<float>(y0)},
