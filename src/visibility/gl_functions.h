@@ -48,9 +48,11 @@ struct GlFunctions {
   /// @param context  is current.
   /// @throws std::runtime_error naming a function that is missing.
   explicit GlFunctions(const OffscreenContext& context) {
+// NOLINTBEGIN(bugprone-macro-parentheses): the name of a member
 #define FCL_ARTIC_GL_LOAD(name, NAME)                                       \
   name = reinterpret_cast<PFNGL##NAME##PROC>(context.function("gl" #name)); \
   if (!name) throw std::runtime_error("the driver lacks gl" #name);
+    // NOLINTEND(bugprone-macro-parentheses)
     FCL_ARTIC_GL_FUNCTIONS(FCL_ARTIC_GL_LOAD)
 #undef FCL_ARTIC_GL_LOAD
     MemoryBarrier = reinterpret_cast<PFNGLMEMORYBARRIERPROC>(context.function("glMemoryBarrier"));
