@@ -330,6 +330,12 @@ inline void Follower::record(Candidate& f) {
     Vec3 x, y;
     combine(body, g.simplex, x, y);
     point = f.normal * out + (x + y) * 0.5;
+    if (unbounded(a) || unbounded(b)) {  // the bounded piece's point that is nearest to the other's border
+      const Vec3 n = unboundedNormal(body);
+      DifferencePoint lowest;
+      body.support(n, lowest);
+      point = unbounded(a) ? body.place(lowest.b) - n * b.radius : lowest.a + n * a.radius;
+    }
   }
   if (!f.have_normal) {
     // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.

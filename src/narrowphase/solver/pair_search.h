@@ -453,6 +453,11 @@ inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, doub
     const Candidate& f = leaves_[i];
     if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
     if (!narrow && (!finest || !isNear(f.apart))) {
+      // What is proven meanwhile is kept: its time is the answer's already, and the narrower lanes may prove a later
+      // one.
+      for (int k = 0; k < leaves_.size(); ++k) {
+        if (leaves_[k].certain) follower_.record(leaves_[k]);
+      }
       *split = true;
       return Step::free;
     }
