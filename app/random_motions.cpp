@@ -5,8 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 namespace fcl_artic::app {
 namespace {

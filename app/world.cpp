@@ -2,7 +2,9 @@
 #include "world.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 
@@ -44,6 +46,15 @@ void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& nam
   for (const std::string& name : found) names.erase(name);
 }
 
+/// A word of a shell's command.
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-+=.,:/@%", c); };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
 }  // namespace
 
 void addWorldOptions(CLI::App& verb, WorldOptions& o) {
@@ -75,6 +86,35 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o) {
       ->group("Robot and scene")
       ->type_name("NAME");
   addAttachOption(verb, o.robot);
+}
+
+std::string shellArguments(const WorldOptions& o) {
+  std::string text = quoted(o.robot.robot);
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
+  };
+  const auto addAll = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) add(option, value);
+  };
+  const auto addFlag = [&](const char* option, bool set) {
+    if (set) text += fmt::format(" {}", option);
+  };
+  addAll("--package", o.robot.packages);
+  if (o.robot.srdf.empty()) {
+    add("--auto-srdf", "/dev/null");
+  } else {
+    add("--srdf", o.robot.srdf);
+  }
+  if (!o.robot.base.empty()) text += " --base=" + quoted(o.robot.base);  // may begin with a minus
+  addFlag("--floating-base", o.robot.floating_base);
+  addAll("--scene", o.scenes);
+  if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
+  addFlag("--collada-up-axis", o.robot.collada_up_axis);
+  addFlag("--unknown-cells", o.unknown_cells);
+  addFlag("--solid-meshes", o.robot.solid_meshes);
+  addAll("--solid", o.solids);
+  addAll("--attach", o.robot.attached);
+  return text;
 }
 
 World::World(const WorldOptions& options) : options_(options), solids_(options.solids.begin(), options.solids.end()) {}

@@ -26,6 +26,10 @@ struct WorldOptions {
 /// --unknown-cells, --solid-meshes, --solid and --attach.
 void addWorldOptions(CLI::App& verb, WorldOptions& options);
 
+/// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no
+/// check found again (--auto-srdf /dev/null).
+std::string shellArguments(const WorldOptions& options);
+
 /// Reads and sets up what the options name. The steps are separate, so that a verb can read its own input or measure
 /// time between them; they are to be called in this order.
 class World {
