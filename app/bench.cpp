@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "planning_bench.h"
+#include "robot_bench.h"
 #include "table1.h"
 
 namespace fcl_artic::app {
@@ -11,6 +12,7 @@ namespace fcl_artic::app {
 void addBench(CLI::App& program, int& exit_status) {
   CLI::App* bench = program.add_subcommand("bench", "Benchmarks on one's own machine");
   bench->require_subcommand(1);
+  addRobotBench(*bench, exit_status);
   addTable1(*bench, exit_status);
   addDepth(*bench, exit_status);
   auto options = std::make_shared<PlanningBenchOptions>();

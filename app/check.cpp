@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,38 +16,31 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
-#include "fcl_artic/urdf/urdf.h"
 #include "lines.h"
-#include "link_pairs.h"
 #include "progress.h"
 #include "redon_options.h"
 #include "render/picture.h"
 #include "report.h"
-#include "robot_options.h"
-#include "text/nearest_name.h"
 #include "usage.h"
 #include "waypoints.h"
+#include "world.h"
 
 namespace fcl_artic::app {
 namespace {
 
 constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
-// A check looks at an SRDF's pairs in passing, a second or two for all of them; the verb srdf takes its time.
-constexpr std::uint64_t kWorkForAllowed = 40000000, kLeastWorkForPair = 20000;
 
 struct Options {
-  RobotOptions robot;
-  std::string auto_srdf, certificate, image, trajectory, lines, interpolation = "linear";
-  std::vector<std::string> scenes, solids, from, to;
+  WorldOptions world;
+  std::string certificate, image, trajectory, lines, interpolation = "linear";
+  std::vector<std::string> from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
   std::optional<std::size_t> max_contacts;
   bool every_pair = false, no_self = false, no_scene = false;
   bool shortest = false, json = false, clearance = false;
   ClearanceRequest clearance_request;
-  bool unknown_cells = false;
-  double scale = 1;
 };
 
 /// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
@@ -78,55 +69,6 @@ std::string requireCamera(const std::string& text) {
   return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
 }
 
-/// The object with its mesh as a solid.
-/// @param name  of its link or obstacle.
-std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& object, const std::string& name) {
-  try {
-    return std::make_shared<fcl::CollisionObjectd>(makeSolid(*object.collisionGeometry()), object.getTransform());
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("--solid {}: {}", name, error.what()));
-  }
-}
-
-/// Makes the meshes of links or obstacles with these names solids.
-/// @param nameOf  of an item of `bodies`, each of which has an `object`.
-/// @param[in,out] names  those that are found are taken out.
-template <class Bodies, class NameOf>
-void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& names) {
-  std::set<std::string> found;
-  for (auto& body : bodies) {
-    const std::string name = nameOf(body);
-    if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
-    body.object = solidOf(*body.object, name);
-    found.insert(name);
-  }
-  for (const std::string& name : found) names.erase(name);
-}
-
-/// @param[in,out] solids  names of links and obstacles whose meshes are to be solids; links are taken out.
-Robot loadRobot(const Options& options, std::set<std::string>& solids) {
-  Robot robot = readRobot(options.robot);
-  makeSolids(
-      robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids);
-  if (!options.robot.srdf.empty() && !options.no_self) {
-    LinkPairOptions search;
-    search.only = &robot.allowed;
-    search.work = std::clamp<std::uint64_t>(kWorkForAllowed / std::max<std::size_t>(robot.allowed.pairs().size(), 1),
-                                            kLeastWorkForPair, search.work);
-    const LinkPairReport report = classify(robot, search);
-    robot.proofs = report.proofs;
-    for (const std::string& doubt : doubtsOf(report)) robot.notes.push_back(doubt);
-  }
-  if (!options.auto_srdf.empty()) {
-    const LinkPairReport report = classify(robot, {});
-    writeSrdf(options.auto_srdf, robot.tree->name(), report);
-    robot.allowed = report.alwaysTouching();
-    robot.proofs = report.proofs;
-    robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options.auto_srdf));
-  }
-  return robot;
-}
-
 int exitStatus(Status status) {
   switch (status) {
     case Status::free:
@@ -141,9 +83,11 @@ int exitStatus(Status status) {
 
 int run(const Options& options) {
   if (!options.image.empty()) render::requirePictures();
-  std::set<std::string> solids(options.solids.begin(), options.solids.end());
-  const Robot robot = loadRobot(options, solids);
-  const KinematicTree& tree = *robot.tree;
+  World world(options.world);
+  world.readRobot();
+  const bool check_allowed = !options.world.robot.srdf.empty() && !options.no_self;
+  if (check_allowed || !options.world.auto_srdf.empty()) world.provePairs();
+  const KinematicTree& tree = *world.robot.tree;
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
@@ -175,28 +119,8 @@ int run(const Options& options) {
       noteLimits(waypoints.configurations[k], fmt::format("waypoint at t = {:g}", waypoints.times[k]));
     }
   }
-  std::vector<Scene> scenes;
-  const SceneOptions carried_options = sceneOptions(options.robot, options.unknown_cells);
-  SceneOptions scene_options = carried_options;
-  scene_options.scale = options.scale;
-  for (const std::string& path : options.scenes) scenes.push_back(loadScene(path, scene_options));
-  const std::vector<Attachment> attachments = readAttachments(options.robot, tree, carried_options, scenes);
-  Scene scene = combineScenes(scenes, tree);
-  makeSolids(
-      scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids);
-  if (!solids.empty()) {
-    std::vector<std::string> names;
-    for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
-    for (const Scene::Obstacle& o : scene.obstacles) names.push_back(o.name);
-    throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh{}",
-                                            *solids.begin(), text::didYouMean(*solids.begin(), names)));
-  }
-
-  ArticulatedCollisionManager manager(robot.tree);
-  robot.addTo(manager);
-  scene.addTo(manager);
-  attachLast(attachments, scene, manager);
-  manager.setup();
+  world.readScene();
+  const ArticulatedCollisionManager manager = world.makeManager();
 
   CertifiedRequest request = options.request;
   request.check_self = !options.no_self;
@@ -237,9 +161,7 @@ int run(const Options& options) {
     clearance = trajectory ? manager.clearance(*trajectory, asked) : manager.clearance(*motion, asked);
   }
 
-  std::vector<std::string> notes = robot.notes;
-  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  for (const std::string& note : unitNotes(robot, scene)) notes.push_back(note);
+  std::vector<std::string> notes = world.notes();
   notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
   const auto configuration = [&](double t) {
     return trajectory ? trajectory->configuration(t) : motion->configuration(t);
@@ -266,8 +188,9 @@ int run(const Options& options) {
     CertifiedResult drawn = result;  // in the time of a picture
     drawn.t_lower = (result.t_lower - begin) / (end - begin);
     const auto path = [&](double t) { return configuration(begin + t * (end - begin)); };
-    Robot shown = robot;
-    moveToLinks(attachments, scene, shown);
+    Robot shown = world.robot;
+    Scene scene = world.scene;
+    moveToLinks(world.attachments, scene, shown);
     const WaitingNote note("drawing " + options.image);
     render::writePicture(options.image, shown, scene.obstacles, path, drawn, picture);
   }
@@ -299,37 +222,7 @@ void addCheck(CLI::App& program, int& exit_status) {
       "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget); with --lines the worst of all answers:\n"
       "2 before 1 before 3.");
 
-  CLI::Option* srdf = addRobotOptions(*check, o.robot);
-  check
-      ->add_option("--auto-srdf", o.auto_srdf,
-                   "Find the pairs of links that need no check, proven apart or always in "
-                   "contact, write them to FILE and use them")
-      ->group("Robot and scene")
-      ->type_name("FILE")
-      ->excludes(srdf);
-  check->add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
-      ->check(requireInput)
-      ->group("Robot and scene")
-      ->type_name("FILE...");
-  check->add_option("--scale", o.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
-      ->check(requirePositive)
-      ->group("Robot and scene")
-      ->type_name("FACTOR")
-      ->capture_default_str();
-  check
-      ->add_flag("--collada-up-axis", o.robot.collada_up_axis,
-                 "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
-      ->group("Robot and scene");
-  check->add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
-      ->group("Robot and scene");
-  check
-      ->add_flag("--solid-meshes", o.robot.solid_meshes,
-                 "Meshes are solids: what lies within one touches it. They must be closed")
-      ->group("Robot and scene");
-  check->add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
-      ->group("Robot and scene")
-      ->type_name("NAME");
-  addAttachOption(*check, o.robot);
+  addWorldOptions(*check, o.world);
 
   CLI::Option* from = check->add_option("--from", o.from, "Configuration at t = 0")->group("Motion")->type_name("Q");
   CLI::Option* to = check->add_option("--to", o.to, "Configuration at t = 1")->group("Motion")->type_name("Q");

@@ -44,7 +44,8 @@ bool onPair(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* found) {
 
 }  // namespace
 
-FclStateCheck::FclStateCheck(const Robot& robot, const Scene& scene) : tree_(robot.tree) {
+FclStateCheck::FclStateCheck(const Robot& robot, const Scene& scene, const std::vector<CarriedObject>& carried)
+    : tree_(robot.tree) {
   std::set<LinkId> with_geometry;
   for (const LinkGeometry& g : robot.geometry) {
     links_.push_back({g.link, g.offset, std::make_unique<fcl::CollisionObjectd>(*g.object)});
@@ -56,6 +57,19 @@ FclStateCheck::FclStateCheck(const Robot& robot, const Scene& scene) : tree_(rob
       if (a == b || robot.allowed.allowed(tree_->linkName(a), tree_->linkName(b))) continue;
       if (!neighbours(*tree_, with_geometry, a, b)) pairs_.emplace_back(i, j);
     }
+  }
+  for (const CarriedObject& one : carried) {
+    std::set<std::string> may_touch(one.touch_links.begin(), one.touch_links.end());
+    may_touch.insert(tree_->linkName(one.link));
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      // Links first, then the objects carried that came before this one.
+      const bool is_link = i < robot.geometry.size();
+      const std::string& link = tree_->linkName(links_[i].link);
+      const std::string& name = is_link ? link : carried[i - robot.geometry.size()].name;
+      const bool together = is_link ? may_touch.count(link) > 0 : links_[i].link == one.link;
+      if (!together && !robot.allowed.allowed(name, one.name)) pairs_.emplace_back(i, links_.size());
+    }
+    links_.push_back({one.link, one.offset, std::make_unique<fcl::CollisionObjectd>(*one.object)});
   }
   for (const Scene::Obstacle& obstacle : scene.obstacles) {
     obstacles_.push_back(std::make_unique<fcl::CollisionObjectd>(*obstacle.object));

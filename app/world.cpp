@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "world.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "fcl_artic/solid_mesh.h"
+#include "link_pairs.h"
+#include "text/nearest_name.h"
+#include "usage.h"
+
+namespace fcl_artic::app {
+namespace {
+
+// A check looks at an SRDF's pairs in passing, a second or two for all of them; the verb srdf takes its time.
+constexpr std::uint64_t kWorkForAllowed = 40000000, kLeastWorkForPair = 20000;
+
+/// The object with its mesh as a solid.
+/// @param name  of its link or obstacle.
+std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& object, const std::string& name) {
+  try {
+    return std::make_shared<fcl::CollisionObjectd>(makeSolid(*object.collisionGeometry()), object.getTransform());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("--solid {}: {}", name, error.what()));
+  }
+}
+
+/// Makes the meshes of links or obstacles with these names solids.
+/// @param nameOf  of an item of `bodies`, each of which has an `object`.
+/// @param[in,out] names  those that are found are taken out.
+template <class Bodies, class NameOf>
+void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& names) {
+  std::set<std::string> found;
+  for (auto& body : bodies) {
+    const std::string name = nameOf(body);
+    if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
+    body.object = solidOf(*body.object, name);
+    found.insert(name);
+  }
+  for (const std::string& name : found) names.erase(name);
+}
+
+/// A word of a shell's command.
+std::string quoted(const std::string& word) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-+=.,:/@%", c); };
+  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+}  // namespace
+
+void addWorldOptions(CLI::App& verb, WorldOptions& o) {
+  CLI::Option* srdf = addRobotOptions(verb, o.robot);
+  verb.add_option("--auto-srdf", o.auto_srdf,
+                  "Find the pairs of links that need no check, proven apart or always in "
+                  "contact, write them to FILE and use them")
+      ->group("Robot and scene")
+      ->type_name("FILE")
+      ->excludes(srdf);
+  verb.add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
+      ->check(requireInput)
+      ->group("Robot and scene")
+      ->type_name("FILE...");
+  verb.add_option("--scale", o.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
+      ->check(requirePositive)
+      ->group("Robot and scene")
+      ->type_name("FACTOR")
+      ->capture_default_str();
+  verb.add_flag("--collada-up-axis", o.robot.collada_up_axis,
+                "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
+      ->group("Robot and scene");
+  verb.add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
+      ->group("Robot and scene");
+  verb.add_flag("--solid-meshes", o.robot.solid_meshes,
+                "Meshes are solids: what lies within one touches it. They must be closed")
+      ->group("Robot and scene");
+  verb.add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
+      ->group("Robot and scene")
+      ->type_name("NAME");
+  addAttachOption(verb, o.robot);
+}
+
+std::string shellArguments(const WorldOptions& o) {
+  std::string text = quoted(o.robot.robot);
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
+  };
+  const auto addAll = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) add(option, value);
+  };
+  const auto addFlag = [&](const char* option, bool set) {
+    if (set) text += fmt::format(" {}", option);
+  };
+  addAll("--package", o.robot.packages);
+  if (o.robot.srdf.empty()) {
+    add("--auto-srdf", "/dev/null");
+  } else {
+    add("--srdf", o.robot.srdf);
+  }
+  if (!o.robot.base.empty()) text += " --base=" + quoted(o.robot.base);  // may begin with a minus
+  addFlag("--floating-base", o.robot.floating_base);
+  addAll("--scene", o.scenes);
+  if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
+  addFlag("--collada-up-axis", o.robot.collada_up_axis);
+  addFlag("--unknown-cells", o.unknown_cells);
+  addFlag("--solid-meshes", o.robot.solid_meshes);
+  addAll("--solid", o.solids);
+  addAll("--attach", o.robot.attached);
+  return text;
+}
+
+World::World(const WorldOptions& options) : options_(options), solids_(options.solids.begin(), options.solids.end()) {}
+
+void World::readRobot() {
+  robot = app::readRobot(options_.robot);
+  makeSolids(
+      robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids_);
+}
+
+LinkPairReport World::provePairs() {
+  LinkPairOptions search;
+  const bool given = !options_.robot.srdf.empty();
+  if (given) {
+    search.only = &robot.allowed;
+    search.work = std::clamp<std::uint64_t>(kWorkForAllowed / std::max<std::size_t>(robot.allowed.pairs().size(), 1),
+                                            kLeastWorkForPair, search.work);
+  }
+  LinkPairReport report = classify(robot, search);
+  robot.proofs = report.proofs;
+  if (given) {
+    for (const std::string& doubt : doubtsOf(report)) robot.notes.push_back(doubt);
+    return report;
+  }
+  robot.allowed = report.alwaysTouching();
+  if (!options_.auto_srdf.empty()) {
+    writeSrdf(options_.auto_srdf, robot.tree->name(), report);
+    robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options_.auto_srdf));
+  }
+  return report;
+}
+
+void World::readScene() {
+  const KinematicTree& tree = *robot.tree;
+  std::vector<Scene> scenes;
+  const SceneOptions carried_options = sceneOptions(options_.robot, options_.unknown_cells);
+  SceneOptions scene_options = carried_options;
+  scene_options.scale = options_.scale;
+  for (const std::string& path : options_.scenes) scenes.push_back(loadScene(path, scene_options));
+  attachments = readAttachments(options_.robot, tree, carried_options, scenes);
+  scene = combineScenes(scenes, tree);
+  makeSolids(
+      scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids_);
+  if (solids_.empty()) return;
+  std::vector<std::string> names;
+  for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
+  for (const Scene::Obstacle& o : scene.obstacles) names.push_back(o.name);
+  throw std::invalid_argument(fmt::format("--solid {}: no link or obstacle of that name has a mesh{}", *solids_.begin(),
+                                          text::didYouMean(*solids_.begin(), names)));
+}
+
+ArticulatedCollisionManager World::makeManager() const {
+  ArticulatedCollisionManager manager(robot.tree);
+  robot.addTo(manager);
+  scene.addTo(manager);
+  attachLast(attachments, scene, manager);
+  manager.setup();
+  return manager;
+}
+
+std::vector<std::string> World::notes() const {
+  std::vector<std::string> notes = robot.notes;
+  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  for (const std::string& note : unitNotes(robot, scene)) notes.push_back(note);
+  return notes;
+}
+
+}  // namespace fcl_artic::app

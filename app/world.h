@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What verbs ask questions about: a robot, the pairs of its links that need no check, obstacles, carried objects.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "fcl_artic/urdf/urdf.h"
+#include "robot_options.h"
+
+namespace fcl_artic::app {
+
+struct WorldOptions {
+  RobotOptions robot;
+  std::string auto_srdf;                    ///< file to write; empty: none
+  std::vector<std::string> scenes, solids;  ///< files; names of links and obstacles
+  bool unknown_cells = false;
+  double scale = 1;  ///< of the scenes
+};
+
+/// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
+/// --unknown-cells, --solid-meshes, --solid and --attach.
+void addWorldOptions(CLI::App& verb, WorldOptions& options);
+
+/// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no
+/// check found again (--auto-srdf /dev/null).
+std::string shellArguments(const WorldOptions& options);
+
+/// Reads and sets up what the options name. The steps are separate, so that a verb can read its own input or measure
+/// time between them; they are to be called in this order.
+class World {
+ public:
+  /// @param options  must outlive this object.
+  explicit World(const WorldOptions& options);
+
+  /// Reads the robot and the pairs that its SRDF allows.
+  /// @throws as loadUrdf() and loadSrdf(), and std::invalid_argument for a link that can't be made solid.
+  void readRobot();
+  /// Finds proofs of pairs of links that never touch, and notes what they leave open. With --srdf, of the pairs that it
+  /// allows; without, of all pairs: those that always touch become the allowed ones, and --auto-srdf is written.
+  LinkPairReport provePairs();
+  /// Reads the obstacles and what links carry.
+  /// @throws as loadScene() and parseAttachment(), and std::invalid_argument for a --solid that names nothing.
+  void readScene();
+  /// A manager of all this, after setup().
+  /// @throws std::invalid_argument as ArticulatedCollisionManager::attach().
+  ArticulatedCollisionManager makeManager() const;
+  /// Notes of robot and scene and what suggests other units, one line each.
+  std::vector<std::string> notes() const;
+
+  Robot robot;
+  Scene scene;                          ///< The last obstacles are carried, one for each attachment.
+  std::vector<Attachment> attachments;  ///< in the order of the carried obstacles
+
+ private:
+  const WorldOptions& options_;
+  std::set<std::string> solids_;  ///< names that are still to be found
+};
+
+}  // namespace fcl_artic::app
