@@ -108,8 +108,10 @@ class Examination {
     }
     const CertifiedContact& c = r.contacts[0];
     // The contact's own bracket may be narrower: it is of two pieces, sharpened by the equations of their features.
-    if (!(c.t_lower >= r.t_lower && c.t_lower <= c.t_upper) || c.certain != r.certain ||
-        (r.certain && c.t_upper > r.t_upper))
+    // It may be proven where the answer's bracket is wider than asked for, which is not certain then; never the other
+    // way round, and the answer knows of every proof.
+    if (!(c.t_lower >= r.t_lower && c.t_lower <= c.t_upper) || (r.certain && !c.certain) ||
+        (r.certain && c.t_upper > r.t_upper) || (c.certain && r.t_upper > c.t_upper))
       add(Fault::fields,
           format("contact in [%.17g, %.17g], answer in [%.17g, %.17g]", c.t_lower, c.t_upper, r.t_lower, r.t_upper));
     if (c.o1 != query_.body1->geometry.get() || c.o2 != query_.body2->geometry.get())
