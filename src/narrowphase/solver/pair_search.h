@@ -23,6 +23,8 @@ constexpr double kLongMotion = 0.2;
 
 /// Leaf pairs of one lane of which nothing can be proven: so many are enough.
 constexpr int kEnoughUncertain = 16;
+/// Hulls are looked at for rest that are no deeper in each other than this part of the smaller body's radius, about.
+constexpr double kShallow = 0.01;
 /// So many pieces of a body are looked at about a point where it may rest.
 constexpr int kMostAround = 4;
 
@@ -129,6 +131,37 @@ inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a,
   return found;
 }
 
+/// The largest gap, mostly a negative one, of two hulls along directions in which bodies mostly rest on each other: the
+/// axes of their frames, the triangles at a witness, and the faces of a simplex that holds the origin, which lies on
+/// one of them where they touch.
+inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
+  double gap = -kFarApart;
+  const auto look = [&](const Vec3& n) {
+    const double length = norm(n);
+    if (!(length > 0)) return;
+    for (const double sign : {1 / length, -1 / length}) {
+      DifferencePoint lowest;
+      hulls.support(n * sign, lowest);
+      gap = max(gap, dot(n * sign, lowest.w));
+    }
+  };
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis(k == 0, k == 1, k == 2);
+    look(axis);
+    look(hulls.pose.R * axis);
+  }
+  const int a = pieceAtWitness(*hulls.tree_a, simplex, true), b = pieceAtWitness(*hulls.tree_b, simplex, false);
+  if (a >= 0 && hasDirection(hulls.tree_a->pieces[a])) look(sizeOf(hulls.tree_a->pieces[a]));
+  if (b >= 0 && hasDirection(hulls.tree_b->pieces[b])) look(hulls.pose.R * sizeOf(hulls.tree_b->pieces[b]));
+  for (int out = 0; out < simplex.n && simplex.n >= 3; ++out) {
+    const Vec3 &x = simplex.v[(out + 1) % simplex.n].w, &y = simplex.v[(out + 2) % simplex.n].w;
+    const Vec3& z = simplex.v[(out + 3) % simplex.n].w;
+    look(cross(y - x, z - x));
+    if (simplex.n == 3) break;
+  }
+  return gap;
+}
+
 /// A pair whose hulls touch at t = 0 may rest there, as what stands on a table. Pieces about the hulls' witness are
 /// looked at by themselves: where contact of two of them at 0 is proven, or can't be told from it, no contact is
 /// earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to the finest
@@ -138,14 +171,20 @@ inline bool PairSearch::restsAtStart(int pair) {
   const PairParts parts = problem().parts(pair);
   const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
   if (!A.outer || !B.outer || contacts_.watchFrom(pair) > 0) return false;
-  // In wider lanes than the finest the pose at 0 itself is off by what the quadratic leaves out.
-  const double finest = max(query().tolerance_time, kNarrowestLane);
-  motion_.set(pair, TimeBatch::partsOf(0, finest));
-  const DifferenceBody hulls = motion_.differenceAt(*A.outer, *B.outer, 0, -1);
   const double radii = A.outer->radius + B.outer->radius + motion_.margin();
+  const double shallow = kShallow * min(A.nodes[0].radius, B.nodes[0].radius);
+  const double finest = max(query().tolerance_time, kNarrowestLane);
   GjkResult g;
-  gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
-  ++statistics().gjk;
+  // In the first batch's lanes, which are there already, the pose at 0 is off by what the quadratic leaves out: it only
+  // tells which hulls are deep in each other, as those of links that reach around each other, or apart.
+  for (const TimeBatch& batch : {whole(), TimeBatch::partsOf(0, finest)}) {
+    motion_.set(pair, batch);
+    const DifferenceBody hulls = motion_.differenceAt(*A.outer, *B.outer, 0, -1);
+    g = GjkResult();
+    gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
+    ++statistics().gjk;
+    if (g.overlap ? gapWhereTheyRest(hulls, g.simplex) - radii < -shallow : g.lower - radii > shallow) return false;
+  }
   if (!g.overlap && !isNear(g.distance - radii)) return false;
   if (g.overlap && !originWeights(g.simplex)) return false;
   Vec3 x(0, 0, 0), y(0, 0, 0);  // the witness, in each body's own frame
