@@ -147,7 +147,6 @@ class Earliest {
     const CertifiedPairResult& r = pair.result;
     if (request_.mode == ContactMode::any && r.status == Status::contact && r.certain) {
       // The pairs that follow are not asked, so that nothing is claimed of any time before the contact.
-      found_any_ = true;
       first_ = {};
       engine::joinLower(first_, 0);
       engine::joinUpper(first_, engine::provenBy(r));
@@ -176,7 +175,7 @@ class Earliest {
     } else {
       const CertifiedPairResult& first = result_.pairs[0].result;
       result_.status = first.status;
-      result_.t_lower = found_any_ ? 0 : first.t_lower;
+      result_.t_lower = first_.t_lower;
       result_.t_upper = std::min(1.0, first_.t_upper);
       const bool close = engine::isCertain(first_, request_.tolerance_time, false);
       result_.certain = first.status == Status::contact && (first.certain || close);
@@ -197,8 +196,7 @@ class Earliest {
 
   CertifiedPairRequest request_;
   CertifiedPairsResult& result_;
-  engine::FirstContact first_;  ///< of all pairs that are not free
-  bool found_any_ = false;      ///< a contact is proven, and any was asked for
+  engine::FirstContact first_;  ///< of all pairs that are not free; of the one pair where any contact ended the search
   Clock::time_point begin_;
 };
 

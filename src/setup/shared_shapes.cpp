@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "setup/shared_shapes.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <mutex>
 #include <unordered_map>
 
@@ -19,6 +21,18 @@ struct Held {
 struct AllHeld {
   std::mutex mutex;
   std::unordered_multimap<std::uint64_t, Held> by_key;
+  std::size_t swept = 16;  ///< entries that were left when those that nobody holds were thrown out last, at least
+
+  /// (What nobody holds is gone, but its entry would stay where no equal mesh is ever asked for again.)
+  void add(std::uint64_t key, const Held& one) {
+    if (by_key.size() >= 2 * swept) {
+      for (auto at = by_key.begin(); at != by_key.end();) {
+        at = at->second.shape.expired() || at->second.content.expired() ? by_key.erase(at) : std::next(at);
+      }
+      swept = std::max<std::size_t>(16, by_key.size());
+    }
+    by_key.emplace(key, one);
+  }
 };
 
 std::uint64_t keyOf(const fcl::CollisionGeometryd& geometry) {
@@ -57,7 +71,7 @@ SharedShape readShared(const fcl::CollisionGeometryd& geometry) {
   }
   const SharedShape made = read();
   const std::lock_guard<std::mutex> lock(held.mutex);
-  held.by_key.emplace(key, Held{made.shape, made.content});
+  held.add(key, {made.shape, made.content});
   return made;
 }
 

@@ -175,16 +175,17 @@ inline bool PairSearch::restsAtStart(int pair) {
   const double shallow = kShallow * min(A.nodes[0].radius, B.nodes[0].radius);
   const double finest = max(query().tolerance_time, kNarrowestLane);
   GjkResult g;
-  // In the first batch's lanes, which are there already, the pose at 0 is off by what the quadratic leaves out: it only
-  // tells which hulls are deep in each other, as those of links that reach around each other, or apart.
-  for (const TimeBatch& batch : {whole(), TimeBatch::partsOf(0, finest)}) {
+  const auto hullsMayRest = [&](const TimeBatch& batch) {
     motion_.set(pair, batch);
     const DifferenceBody hulls = motion_.differenceAt(*A.outer, *B.outer, 0, -1);
     g = GjkResult();
     gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
     ++statistics().gjk;
-    if (g.overlap ? gapWhereTheyRest(hulls, g.simplex) - radii < -shallow : g.lower - radii > shallow) return false;
-  }
+    return g.overlap ? gapWhereTheyRest(hulls, g.simplex) - radii >= -shallow : g.lower - radii <= shallow;
+  };
+  // In the first batch's lanes, which are there already, the pose at 0 is off by what the quadratic leaves out: it only
+  // tells which hulls are deep in each other, as those of links that reach around each other, or apart.
+  if (!hullsMayRest(whole()) || !hullsMayRest(TimeBatch::partsOf(0, finest))) return false;
   if (!g.overlap && !isNear(g.distance - radii)) return false;
   if (g.overlap && !originWeights(g.simplex)) return false;
   Vec3 x(0, 0, 0), y(0, 0, 0);  // the witness, in each body's own frame
