@@ -270,6 +270,50 @@ TEST(PromiseSentences, RestingCostsAboutWhatStandingClearCosts) {
   }
 }
 
+// A plate comes down on another one, a tile of it somewhat lower than the rest: both meet within one of the finest
+// lanes. Of the many pairs that can't be decided some are enough, and the tile may not be among them: no contact is
+// late.
+TEST(PromiseSentences, OfManyUndecidedPairsTheEarliestIsNotLate) {
+  pairs::Random random(7);
+  int contacts = 0;
+  for (int i = 0; i < 150; ++i) {
+    CertifiedRequest request;
+    request.tolerance_time = std::pow(10, -1 - random.below(3));
+    request.tolerance_distance = std::pow(10, -random.below(4));
+    request.mode = random.chance(0.5) ? fcl_artic::ContactMode::first : fcl_artic::ContactMode::firstOfEveryPair;
+    const double height = random.uniform(0.1, 0.6),
+                 lower = 0.01 * std::floor(100 * random.uniform(0, 1)) * request.tolerance_time / 8;
+    const std::size_t n = 4 + static_cast<std::size_t>(random.below(8));
+    std::vector<Vector3d> vertices;
+    std::vector<fcl::Triangle> triangles;
+    for (std::size_t k = 0; k <= n; ++k) {
+      for (std::size_t l = 0; l <= n; ++l) {
+        vertices.emplace_back(2.0 * static_cast<double>(k) / static_cast<double>(n) - 1,
+                              2.0 * static_cast<double>(l) / static_cast<double>(n) - 1, lower);
+      }
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t l = 0; l < n; ++l) {
+        const std::size_t c = k * (n + 1) + l;
+        triangles.emplace_back(c, c + 1, c + n + 1);
+        triangles.emplace_back(c + 1, c + n + 2, c + n + 1);
+      }
+    }
+    const double x = random.uniform(-0.9, 0.8), y = random.uniform(-0.9, 0.8);
+    for (const Vector3d& corner : {Vector3d(x, y, 0), Vector3d(x + 0.06, y, 0), Vector3d(x, y + 0.06, 0)}) {
+      vertices.push_back(corner);
+    }
+    triangles.emplace_back(vertices.size() - 3, vertices.size() - 2, vertices.size() - 1);
+    const Vector3d way(random.chance(0.5) ? 0 : random.uniform(-0.2, 0.2), 0, -1);
+    const CertifiedPairResult result =
+        slide(plate(2, n + 2), mesh(vertices, triangles), at({0, 0, height}), way, request);
+    EXPECT_EQ(result.status, Status::contact);
+    EXPECT_LE(result.t_lower, height + 1e-14) << i;
+    contacts += result.status == Status::contact;
+  }
+  EXPECT_EQ(contacts, 150);
+}
+
 TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
   const auto ball = std::make_shared<fcl::Sphered>(0.1);
   const auto grain = std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2);
