@@ -69,7 +69,7 @@ SharedShape readShared(const fcl::CollisionGeometryd& geometry) {
       ++at;
     }
   }
-  const SharedShape made = read();
+  SharedShape made = read();
   const std::lock_guard<std::mutex> lock(held.mutex);
   held.add(key, {made.shape, made.content});
   return made;

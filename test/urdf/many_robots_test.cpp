@@ -3,6 +3,7 @@
 // Several robots in one forest, and robots among OctoMap cells, at times worked out by hand.
 #include <cmath>
 
+#include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
 #include "fcl_artic/urdf/urdf.h"
 
@@ -205,6 +206,40 @@ TEST_F(ManyRobotsTest, UnknownEndsWhereKnowledgeEnds) {
   EXPECT_TRUE(scene.obstacles[1].object->getTranslation().isApprox(Eigen::Vector3d(0.25, 0.75, 0.25)));
   EXPECT_EQ(scene.obstacles[2].name, "part");
   EXPECT_EQ(loadScene(path).obstacles.size(), 1u);
+}
+
+/// A node at the end of a path of octants, with all above it.
+std::string branch(const std::vector<int>& octants, std::size_t from) {
+  std::string nodes;
+  for (std::size_t i = from; i < octants.size(); ++i) nodes += node(1, static_cast<unsigned char>(1 << octants[i]));
+  return nodes + node(1, 0);
+}
+
+// Two cells of the last level, far from each other: their box cuts the cells between them at no coarse level. What is
+// unknown is a few hundred boxes that fill it, not a cell for each square of its faces (10^9 of them).
+TEST_F(ManyRobotsTest, UnknownSpaceIsFewBoxes) {
+  std::vector<int> one = {0}, other = {7};
+  for (int level = 2; level <= 16; ++level) {
+    one.push_back(level % 2 ? 3 : 4);
+    other.push_back(level % 2 ? 1 : 6);
+  }
+  const std::string data = node(1, 0x81) + branch(one, 1) + branch(other, 1);
+  SceneOptions options;
+  options.unknown_cells = true;
+  const Scene scene = loadScene(write("far.ot", octomap(33, data)), options);
+  EXPECT_LT(scene.obstacles.size(), 300u);
+  double filled = 0;
+  Eigen::Array3d lower = Eigen::Array3d::Constant(2), upper = -lower;
+  for (const Scene::Obstacle& obstacle : scene.obstacles) {
+    const auto& box = dynamic_cast<const fcl::Boxd&>(*obstacle.object->collisionGeometry());
+    const Eigen::Array3d center = obstacle.object->getTranslation();
+    filled += box.side.prod();
+    lower = lower.min(center - 0.5 * box.side.array());
+    upper = upper.max(center + 0.5 * box.side.array());
+  }
+  const double whole = (upper - lower).prod();
+  EXPECT_GT(whole, 0.1);
+  EXPECT_NEAR(filled, whole, 1e-9 * whole);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <locale>
@@ -202,20 +203,10 @@ class CellCollector {
   /// Children as octomap orders them. Centres and sizes are exact multiples of the resolution's power of two.
   void visit(const Node* node, const Eigen::Vector3d& center, double half) {
     if (node && !tree_.nodeHasChildren(node)) {
-      if (tree_.isNodeOccupied(node)) add(name_, center, half);
+      if (tree_.isNodeOccupied(node)) add(name_, center, Eigen::Vector3d::Constant(2 * half));
       return;
     }
-    if (!node) {
-      if (!unknown_) return;
-      bool outside = false, inside = true;
-      const double rounding = 1e-6 * tree_.getResolution();  // of the map's box
-      for (int k = 0; k < 3; ++k) {
-        outside = outside || center[k] - half >= upper_[k] - rounding || center[k] + half <= lower_[k] + rounding;
-        inside = inside && center[k] - half >= lower_[k] - rounding && center[k] + half <= upper_[k] + rounding;
-      }
-      if (outside) return;
-      if (inside || half < 0.75 * tree_.getResolution()) return add(name_ + "/unknown", center, half);
-    }
+    if (!node) return addUnknown(center, half);
     for (unsigned i = 0; i < 8; ++i) {
       const Eigen::Vector3d out(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
       const bool known = node && tree_.nodeChildExists(node, i);
@@ -223,9 +214,18 @@ class CellCollector {
     }
   }
 
-  void add(const std::string& name, const Eigen::Vector3d& center, double half) {
-    auto& box = boxes_[half];
-    if (!box) box = detail::makeBox(Eigen::Vector3d::Constant(2 * half), "'" + path_ + "'");
+  /// What of an unknown cell lies within the map's box: a box each, however finely the map's edge would divide it.
+  void addUnknown(const Eigen::Vector3d& center, double half) {
+    if (!unknown_) return;
+    const Eigen::Vector3d lower = (center.array() - half).max(lower_), upper = (center.array() + half).min(upper_);
+    const double rounding = 1e-6 * tree_.getResolution();  // of the map's box
+    if ((upper - lower).minCoeff() <= rounding) return;
+    add(name_ + "/unknown", 0.5 * (lower + upper), upper - lower);
+  }
+
+  void add(const std::string& name, const Eigen::Vector3d& center, const Eigen::Vector3d& size) {
+    auto& box = boxes_[{size[0], size[1], size[2]}];
+    if (!box) box = detail::makeBox(size, "'" + path_ + "'");
     builder_.add(name, box, Eigen::Isometry3d(Eigen::Translation3d(center)));
   }
 
@@ -234,8 +234,8 @@ class CellCollector {
   const std::string name_;
   const bool unknown_;
   SceneBuilder& builder_;
-  Eigen::Vector3d lower_, upper_;
-  std::map<double, detail::GeometryPtr> boxes_;  ///< cells of one size share their box
+  Eigen::Array3d lower_, upper_;
+  std::map<std::array<double, 3>, detail::GeometryPtr> boxes_;  ///< cells of one size share their box
 };
 
 struct OctoMapHeader {
