@@ -86,13 +86,13 @@ namespace fcl {
 // of the same name and signature, and the slowest of FCL's headers.
 template <typename S>
 struct DefaultCollisionData;
-template <typename S>
+template <typename S>  // NOLINTNEXTLINE(readability-redundant-declaration): not where FCL's header is left out
 bool DefaultCollisionFunction(CollisionObject<S>* o1, CollisionObject<S>* o2, void* data);
 template <typename S>
 struct DefaultContinuousCollisionData;
 template <typename S>
 struct DefaultDistanceData;
-template <typename S>
+template <typename S>  // NOLINTNEXTLINE(readability-redundant-declaration): likewise
 bool DefaultDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2, void* data, S& dist);
 }  // namespace fcl
 

@@ -102,6 +102,18 @@ inline Vec3 combined(const Simplex& s) {
   return w;
 }
 
+/// How deep the origin lies within a simplex: bodies whose difference holds it overlap by as much along all directions.
+inline double depthWithin(const Simplex& s) {
+  if (s.n < 4) return 0;
+  double depth = 1e300;
+  for (int out = 0; out < 4; ++out) {
+    const Vec3 &x = s.v[(out + 1) & 3].w, &y = s.v[(out + 2) & 3].w, &z = s.v[(out + 3) & 3].w;
+    const Vec3 n = cross(y - x, z - x);
+    depth = min(depth, abs(dot(n, x)) / norm(n));
+  }
+  return depth;
+}
+
 /// Reduces the simplex to the face nearest to the origin and gives the nearest point; false when the origin is inside.
 inline bool reduceSimplex(Simplex& s, Vec3& v) {
   FCL_ARTIC_ASSERT(s.n >= 1 && s.n <= 4);

@@ -273,7 +273,6 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
   setRadius(root);
   root.child = ~0;
   tree->show();
-  tree->view_.outer = nullptr;  // the box tells all that can be told without the normal
   tree->view_.extent = tree->outer_.reach;
   return tree;
 }

@@ -60,7 +60,7 @@ SharedShape readShared(const fcl::CollisionGeometryd& geometry) {
     const std::lock_guard<std::mutex> lock(held.mutex);
     const auto [begin, end] = held.by_key.equal_range(key);
     for (auto at = begin; at != end;) {
-      const SharedShape known = {at->second.shape.lock(), at->second.content.lock()};
+      SharedShape known = {at->second.shape.lock(), at->second.content.lock()};
       if (!known.shape || !known.content) {
         at = held.by_key.erase(at);
         continue;

@@ -47,8 +47,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-std::shared_ptr<fcl::CollisionObjectd> object(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Vector3d& at) {
-  return std::make_shared<fcl::CollisionObjectd>(std::move(geometry), Isometry3d(Eigen::Translation3d(at)));
+std::shared_ptr<fcl::CollisionObjectd> object(const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
+                                              const Vector3d& at) {
+  return std::make_shared<fcl::CollisionObjectd>(geometry, Isometry3d(Eigen::Translation3d(at)));
 }
 
 /// An arm of three boxes, a mesh among them, amid a few bodies.

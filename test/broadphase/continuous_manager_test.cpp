@@ -567,7 +567,7 @@ TEST(BroadPhaseTest, SweptBoxesHoldThePathAndNotMuchMore) {
     } else if (const auto* m = dynamic_cast<const fcl::ScrewMotion<double>*>(motion)) {
       copy = std::make_shared<fcl::ScrewMotion<double>>(*m);
     } else {
-      copy = std::make_shared<fcl::SplineMotion<double>>(*dynamic_cast<const fcl::SplineMotion<double>*>(motion));
+      copy = std::make_shared<fcl::SplineMotion<double>>(dynamic_cast<const fcl::SplineMotion<double>&>(*motion));
     }
     fcl::AABBd seen;
     for (int k = 0; k < 100; ++k) {

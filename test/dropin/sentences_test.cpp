@@ -4,8 +4,10 @@
 // tolerances, short separations after an ignored contact, and the processor's modes.
 #include <immintrin.h>
 
+#include <algorithm>
 #include <cfenv>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <string>
@@ -268,6 +270,41 @@ TEST(PromiseSentences, RestingCostsAboutWhatStandingClearCosts) {
       EXPECT_LT(workOf(resting), 600 + 10 * workOf(clear)) << i;
     }
   }
+}
+
+/// A tube about z without ends, of n x 2 triangles as long as it is.
+GeometryPtr tube(double radius, double half, std::size_t n) {
+  std::vector<Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2 * 3.14159265358979 * static_cast<double>(i) / static_cast<double>(n);
+    for (const double z : {-half, half}) vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    const std::size_t next = (i + 1) % n;
+    triangles.emplace_back(2 * i, 2 * next, 2 * next + 1);
+    triangles.emplace_back(2 * i, 2 * next + 1, 2 * i + 1);
+  }
+  return mesh(vertices, triangles);
+}
+
+// Of bodies that are in each other at the start, some triangles that touch are enough. (All that do were divided down
+// to the finest interval: of crossing tubes a hundred times the work.)
+TEST(PromiseSentences, WhatIsInEachOtherAtTheStartIsContactWithoutMoreAdo) {
+  pairs::Random random(8);
+  const GeometryPtr one = tube(0.1, 0.7, 150), other = tube(0.1, 0.7, 150);
+  std::vector<std::uint64_t> work;
+  for (int i = 0; i < 60; ++i) {
+    const Isometry3d M = at(random.vector(0, 0.05), random.rotation());
+    const CertifiedPairResult result = slide(one, other, M, random.vector(0, 0.3), CertifiedRequest());
+    ASSERT_EQ(result.status, Status::contact) << i;
+    EXPECT_TRUE(result.certain) << i;
+    EXPECT_EQ(result.t_lower, 0) << i;
+    EXPECT_EQ(result.t_upper, 0) << i;
+    work.push_back(workOf(result));
+  }
+  std::sort(work.begin(), work.end());
+  std::printf("work: median %d, most %d\n", static_cast<int>(work[30]), static_cast<int>(work.back()));
+  EXPECT_LT(work[30], 10000u);  // 360,000, and 530,000 at most, when all of them were looked at
+  EXPECT_LT(work.back(), 100000u);
 }
 
 // A plate comes down on another one, a tile of it somewhat lower than the rest: both meet within one of the finest

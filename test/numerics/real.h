@@ -22,7 +22,7 @@ class Real {
     init();
     mpfr_set(x_, o.x_, MPFR_RNDN);
   }
-  Real& operator=(const Real& o) {
+  Real& operator=(const Real& o) {  // NOLINT(bugprone-unhandled-self-assignment): MPFR takes it
     mpfr_set(x_, o.x_, MPFR_RNDN);
     return *this;
   }

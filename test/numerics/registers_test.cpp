@@ -86,7 +86,7 @@ struct Case {
 
 template <typename T>
 bool sameBits(T a, T b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison): bits are meant
 }
 template <typename T>
 bool sameOrBothNaN(T a, T b) {

@@ -36,9 +36,9 @@ inline Joint makeJoint(const std::string& name, JointType type, const std::strin
   return joint;
 }
 
-inline std::shared_ptr<fcl::CollisionObjectd> object(std::shared_ptr<fcl::CollisionGeometryd> geometry,
+inline std::shared_ptr<fcl::CollisionObjectd> object(const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
                                                      const Eigen::Isometry3d& M = Eigen::Isometry3d::Identity()) {
-  return std::make_shared<fcl::CollisionObjectd>(std::move(geometry), M);
+  return std::make_shared<fcl::CollisionObjectd>(geometry, M);
 }
 inline std::shared_ptr<fcl::CollisionObjectd> ball(double radius, const Eigen::Vector3d& x = Eigen::Vector3d::Zero()) {
   return object(std::make_shared<fcl::Sphered>(radius), pose(x));

@@ -225,7 +225,7 @@ TEST(LinkPairs, AnswersCountAllowedPairsThatNothingProvesApart) {
   manager.allow("base", "hand");
   manager.allow("table", "base");
   manager.setup();
-  const auto unproven = [&](double elbow, CertifiedRequest request = any()) {
+  const auto unproven = [&](double elbow, const CertifiedRequest& request = any()) {
     return manager.continuousCollide(Vector2d(0, 0), Vector2d(0, elbow), request).unproven_allowed_pairs;
   };
   EXPECT_EQ(unproven(2), 2u);
@@ -276,9 +276,9 @@ TEST(LinkPairs, WithinASolidMeshIsContact) {
   auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   fcl::generateBVHModel(*mesh, fcl::Boxd(6, 6, 6), Isometry3d::Identity());
   const auto hand = std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(0.1));
-  const auto kindWith = [&](std::shared_ptr<fcl::CollisionGeometryd> geometry) {
+  const auto kindWith = [&](const std::shared_ptr<fcl::CollisionGeometryd>& geometry) {
     ArticulatedCollisionManager manager(tree);
-    manager.bind("base", std::make_shared<fcl::CollisionObjectd>(std::move(geometry)));
+    manager.bind("base", std::make_shared<fcl::CollisionObjectd>(geometry));
     manager.bind("hand", hand);
     return manager.classifyLinkPairs().pairs.at(0).kind;
   };

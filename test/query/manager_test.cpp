@@ -493,13 +493,13 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
   auto other = object(std::make_shared<fcl::Boxd>(1, 1, 1));
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.bind("hand", other.get()); }).find("'hand'"),
             std::string::npos);
-  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.bind(7, other.get()); }).find("7"), std::string::npos);
+  EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.bind(7, other.get()); }).find('7'), std::string::npos);
   EXPECT_NE(messageOf<std::invalid_argument>([&] { manager.unregisterObject(other.get()); }).find("not registered"),
             std::string::npos);
   EXPECT_NE(messageOf<std::invalid_argument>([&] { cart.run(0, std::nan("")); }).find("slide"), std::string::npos);
   EXPECT_NE(messageOf<std::invalid_argument>([&] {
               JointMotion::linear(*cart.tree, VectorXd::Zero(2), VectorXd::Zero(2));
-            }).find("2"),
+            }).find('2'),
             std::string::npos);
   CertifiedRequest request;
   request.tolerance_time = 0;

@@ -49,7 +49,7 @@ struct Asked {
   std::shared_ptr<fcl::CollisionObjectd> wall = object(std::make_shared<fcl::Boxd>(1, 1, 1), pose({9, 0, 0}));
   std::vector<std::shared_ptr<fcl::CollisionObjectd>> bodies;
   ArticulatedCollisionManager manager;
-  explicit Asked(std::shared_ptr<const KinematicTree> of) : tree(of), manager(of) {
+  explicit Asked(const std::shared_ptr<const KinematicTree>& of) : tree(of), manager(of) {
     for (LinkId link = 0; link < tree->numLinks(); ++link) {
       bodies.push_back(ball(0.1));
       manager.bind(link, bodies.back().get());
@@ -133,7 +133,7 @@ TEST(MotionTree, OtherJointsOfTheSameNumberAreRefused) {
         EXPECT_NO_THROW(asked.manager.continuousCollide(trajectory, {}, result));
       } else {
         EXPECT_THROW(asked.manager.continuousCollide(trajectory, {}, result), std::invalid_argument);
-        EXPECT_THROW(asked.manager.clearance(trajectory), std::invalid_argument);
+        EXPECT_THROW(static_cast<void>(asked.manager.clearance(trajectory)), std::invalid_argument);
       }
     }
   }
@@ -209,20 +209,20 @@ TEST(MotionTree, MovedFromIsRefused) {
   };
   JointMotion from = still(*robot), to = still(*arm());
   const JointMotion constructed = std::move(from);
-  refusedByAll(from);  // NOLINT(bugprone-use-after-move)
+  refusedByAll(from);  // NOLINT: what this is about
   EXPECT_TRUE(constructed.isOf(*robot));
   from = constructed;
   EXPECT_TRUE(from.isOf(*robot));
   to = std::move(from);
-  refusedByAll(from);  // NOLINT(bugprone-use-after-move)
+  refusedByAll(from);  // NOLINT: what this is about
   EXPECT_TRUE(to.isOf(*robot));
 
   JointTrajectory trajectory =
       JointTrajectory::linear(*robot, {3, 4}, {robot->neutralConfiguration(), robot->neutralConfiguration()});
   const JointTrajectory taken = std::move(trajectory);
   CertifiedResult result;
-  EXPECT_THROW(asked.manager.continuousCollide(trajectory, {}, result), std::invalid_argument);  // NOLINT
-  EXPECT_THROW(asked.manager.clearance(trajectory), std::invalid_argument);
+  EXPECT_THROW(asked.manager.continuousCollide(trajectory, {}, result), std::invalid_argument);  // NOLINT: likewise
+  EXPECT_THROW(static_cast<void>(asked.manager.clearance(trajectory)), std::invalid_argument);
   EXPECT_THROW(trajectory.beginTime(), std::out_of_range);
   EXPECT_THROW(trajectory.endTime(), std::out_of_range);
   EXPECT_THROW(trajectory.size(), std::out_of_range);

@@ -26,7 +26,7 @@ using Moving = fcl::ContinuousCollisionObjectd;
 using MovingPtr = std::shared_ptr<Moving>;
 constexpr double kPi = 3.14159265358979323846;
 
-MovingPtr slides(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Isometry3d& from, const Vector3d& to) {
+MovingPtr slides(const std::shared_ptr<fcl::CollisionGeometryd>& geometry, const Isometry3d& from, const Vector3d& to) {
   Isometry3d end = from;
   end.translation() = to;
   return std::make_shared<Moving>(geometry, std::make_shared<fcl::TranslationMotiond>(from, end));
@@ -34,7 +34,7 @@ MovingPtr slides(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Isomet
 MovingPtr slides(double radius, const Vector3d& from, const Vector3d& to) {
   return slides(std::make_shared<fcl::Sphered>(radius), pose(from), to);
 }
-MovingPtr goes(std::shared_ptr<fcl::CollisionGeometryd> geometry, const Isometry3d& from, const Isometry3d& to) {
+MovingPtr goes(const std::shared_ptr<fcl::CollisionGeometryd>& geometry, const Isometry3d& from, const Isometry3d& to) {
   return std::make_shared<Moving>(
       geometry, std::make_shared<fcl::InterpMotion<double>>(from.linear(), from.translation(), to.linear(),
                                                             to.translation(), Vector3d(0, 0, 0)));

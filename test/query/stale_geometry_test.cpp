@@ -319,7 +319,7 @@ TEST(StaleGeometry, BadGeometryThrowsAndChangesNothing) {
 }
 
 TEST(StaleGeometry, ManyObjects) {
-  const auto slides = [](Geometry geometry, const Vector3d& from, const Vector3d& to) {
+  const auto slides = [](const Geometry& geometry, const Vector3d& from, const Vector3d& to) {
     return std::make_unique<fcl::ContinuousCollisionObjectd>(
         geometry, std::make_shared<fcl::TranslationMotiond>(pose(from), pose(to)));
   };

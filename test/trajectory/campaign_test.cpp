@@ -82,12 +82,12 @@ struct Case {
     for (int i = 1; i <= links; ++i) {
       for (int j = i + 1; j <= links; ++j) {
         if ((i + j) % 4) allowed.allow("l" + std::to_string(i), "l" + std::to_string(j));
-        if ((i + j) % 4 == 0) watched.emplace_back(i - 1, j - 1);
+        if ((i + j) % 4 == 0) watched_.emplace_back(i - 1, j - 1);
       }
     }
     scene.ready().setAllowedCollisions(allowed);
     for (int i = 0; i < links; ++i) {
-      for (int o = 0; o < 3; ++o) watched.emplace_back(i, links + o);
+      for (int o = 0; o < 3; ++o) watched_.emplace_back(i, links + o);
     }
   }
 
@@ -123,7 +123,7 @@ struct Case {
     const auto pose = [&](const Body& b) {
       return b.link < 0 ? b.offset : M[static_cast<std::size_t>(b.link)] * b.offset;
     };
-    for (const auto& [i, j] : watched) {
+    for (const auto& [i, j] : watched_) {
       const Body &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
       if (near(scene.tree.get(), a.link, b.link)) continue;
       fcl::CollisionRequestd request;
@@ -149,7 +149,7 @@ struct Case {
     const bool siblings = tree->parentLink(a) == 0 && tree->parentLink(b) == 0;
     return siblings && (type(a) == JointType::fixed || type(b) == JointType::fixed) && !isFree(a) && !isFree(b);
   }
-  std::vector<std::pair<int, int>> watched;
+  std::vector<std::pair<int, int>> watched_;
 };
 
 TEST(TrajectoryCampaign, NoContactIsMissed) {

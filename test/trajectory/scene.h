@@ -62,16 +62,17 @@ struct Scene {
     tree->addJoint(joint_);
     return joint_;
   }
-  void bind(const std::string& link, std::shared_ptr<fcl::CollisionGeometryd> geometry,
+  void bind(const std::string& link, const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
             const Isometry3d& offset = Isometry3d::Identity()) {
-    objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(geometry)));
+    objects.push_back(std::make_unique<fcl::CollisionObjectd>(geometry));
     ready().bind(link, objects.back().get(), offset);
   }
   void ball(const std::string& link, double radius, const Vector3d& at = Vector3d::Zero()) {
     bind(link, std::make_shared<fcl::Sphered>(radius), translation(at));
   }
-  void obstacle(const std::string& name, std::shared_ptr<fcl::CollisionGeometryd> geometry, const Isometry3d& M) {
-    objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(geometry), M));
+  void obstacle(const std::string& name, const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
+                const Isometry3d& M) {
+    objects.push_back(std::make_unique<fcl::CollisionObjectd>(geometry, M));
     ready().registerObject(objects.back().get(), name);
   }
   template <class Motion>

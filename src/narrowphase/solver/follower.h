@@ -150,7 +150,11 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
       f.simplex = g.simplex;
       if (g.overlap) {
         Simplex nearest = g.simplex;
-        f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
+        if (unbounded(a) || unbounded(b)) {
+          f.apart = g.lower - radii;  // there is one direction
+        } else {
+          f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
+        }
         return false;
       }
       f.normal = g.n;

@@ -61,17 +61,24 @@ class PairSearch : PartOfSolver {
   }
   /// A lane takes the present pair so far that little can be said of its pieces before the lane is split; of its hulls
   /// can.
-  bool movesFar() const {
-    return motion_.amplitude() > kLongMotion * min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius);
-  }
+  bool movesFar() const { return motion_.amplitude() > kLongMotion * smallerRadius(); }
+  /// Of the present pair's bodies.
+  double smallerRadius() const { return min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius); }
 
   /// Points of both bodies are so near that no proof tells them from contact. (A direction along which little is proven
   /// says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow enough to
   /// prove such a gap.
   bool isNear(double apart) const { return apart <= max(0.5 * query().tolerance_distance, motion_.pad()); }
 
+  /// Of a window in which nothing is divided on.
+  double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
+
   Candidate candidateOf(const Entry& e, double start) const;
-  bool restsAtStart(int pair);
+  double restingGapOfHulls(int lane, GjkResult& g);
+  bool stayNear(const Candidate& f);
+  bool restsAt(int pair, double t);
+  bool touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t);
+  bool recordTouching(double t);
   void search(Buffer<Entry>& open, int begin, int end);
   void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
   void lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later);
@@ -91,6 +98,8 @@ class PairSearch : PartOfSolver {
   AnyContact& any_;
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
   Buffer<Candidate> leaves_;      ///< of a narrower lane
+  Buffer<Candidate> touching_;    ///< at one time
+  int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAt() is asked
 };
 
 /// What an entry stands for, to be followed from `start`.
@@ -162,31 +171,49 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
   return gap;
 }
 
-/// A pair whose hulls touch at t = 0 may rest there, as what stands on a table. Pieces about the hulls' witness are
-/// looked at by themselves: where contact of two of them at 0 is proven, or can't be told from it, no contact is
-/// earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to the finest
-/// lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
-/// @return false where others may touch earlier; the batch in motion_ is another then.
-inline bool PairSearch::restsAtStart(int pair) {
+/// The gap of two hulls, as GJK sees it; a negative one, where they rest on each other. Far below 0 where they are in
+/// each other by more than `shallow`.
+inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
+  gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
+  if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
+  return depthWithin(g.simplex) + radii > shallow ? -kFarApart : gapWhereTheyRest(hulls, g.simplex) - radii;
+}
+
+/// The same of the present pair, where a lane of the present batch begins. (In a wide lane the pose is off by what the
+/// quadratic leaves out.)
+inline double PairSearch::restingGapOfHulls(int lane, GjkResult& g) {
+  const Piece &a = *motion_.a().outer, &b = *motion_.b().outer;
+  ++statistics().gjk;
+  return restingGap(motion_.differenceAt(a, b, lane, -1), a.radius + b.radius + motion_.margin(),
+                    kShallow * smallerRadius(), g);
+}
+
+/// Whether hulls that were followed to f.t_lower are where bodies rest, and do not just pass there on their way into
+/// each other.
+inline bool PairSearch::stayNear(const Candidate& f) {
+  constexpr double kLater = 64;
+  const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
+  motion_.set(f.entry.pair, TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time)));
+  if (depthWithin(f.simplex) > kShallow * smallerRadius()) return false;
+  if (f.t_lower == 0 || !f.have_normal) return true;
+  DifferencePoint lowest;
+  motion_.differenceAt(*A.outer, *B.outer, 0).support(f.normal, lowest);
+  return isNear(-(dot(f.normal, lowest.w) - A.outer->radius - B.outer->radius - motion_.margin()));
+}
+
+/// A pair whose hulls touch at t, before which all is free, may rest there, as what stands on a table. Pieces about the
+/// hulls' witness are looked at by themselves: where contact of two of them at t is proven, or can't be told from it,
+/// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
+/// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
+/// @return false where others may touch earlier.
+inline bool PairSearch::restsAt(int pair, double t) {
   const PairParts parts = problem().parts(pair);
   const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
-  if (!A.outer || !B.outer || contacts_.watchFrom(pair) > 0) return false;
-  const double radii = A.outer->radius + B.outer->radius + motion_.margin();
-  const double shallow = kShallow * min(A.nodes[0].radius, B.nodes[0].radius);
-  const double finest = max(query().tolerance_time, kNarrowestLane);
+  if (contacts_.watchFrom(pair) > t) return false;
+  motion_.set(pair, TimeBatch::partsOf(t, finestWidth()));
   GjkResult g;
-  const auto hullsMayRest = [&](const TimeBatch& batch) {
-    motion_.set(pair, batch);
-    const DifferenceBody hulls = motion_.differenceAt(*A.outer, *B.outer, 0, -1);
-    g = GjkResult();
-    gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
-    ++statistics().gjk;
-    return g.overlap ? gapWhereTheyRest(hulls, g.simplex) - radii >= -shallow : g.lower - radii <= shallow;
-  };
-  // In the first batch's lanes, which are there already, the pose at 0 is off by what the quadratic leaves out: it only
-  // tells which hulls are deep in each other, as those of links that reach around each other, or apart.
-  if (!hullsMayRest(whole()) || !hullsMayRest(TimeBatch::partsOf(0, finest))) return false;
-  if (!g.overlap && !isNear(g.distance - radii)) return false;
+  if (restingGapOfHulls(0, g) < -kShallow * smallerRadius()) return false;
+  if (!g.overlap && !isNear(g.distance - (A.outer->radius + B.outer->radius + motion_.margin()))) return false;
   if (g.overlap && !originWeights(g.simplex)) return false;
   Vec3 x(0, 0, 0), y(0, 0, 0);  // the witness, in each body's own frame
   for (int i = 0; i < g.simplex.n; ++i) {
@@ -197,27 +224,59 @@ inline bool PairSearch::restsAtStart(int pair) {
   const double reach = max(query().tolerance_distance, motion_.pad());
   const int num_a = piecesAround(A, g.simplex, true, x, A.outer->radius + motion_.margin() + reach, near_a);
   const int num_b = piecesAround(B, g.simplex, false, y, B.outer->radius + motion_.margin() + reach, near_b);
-  Candidate resting = {};
-  int uncertain = 0;
-  for (int i = 0; i < num_a * num_b && uncertain < kMostAround; ++i) {
-    Candidate f = {};
-    f.entry = {pair, 0, 0, kAllLanes};
+  touching_.clear();
+  for (int i = 0; i < num_a * num_b; ++i) {
+    Candidate f = candidateOf({pair, 0, 0, kAllLanes}, t);
     f.target = Candidate::Target::leafPair;
     f.piece_a = near_a[i / num_b];
     f.piece_b = near_b[i % num_b];
-    f.apart = kFarApart;
-    const auto isOpen = [&] { return f.t_lower <= 0 && isNear(f.apart); };
-    if (follower_.followToRoot(f, finest, false)) continue;
-    if (!f.certain && (!isOpen() || follower_.decide(f, finest))) continue;
+    touching_.push(f);
+  }
+  return recordTouching(t);
+}
+
+/// Bodies that are in each other at t, before which all is free: the first leaves that touch there are the contact, and
+/// nobody needs to know how many others do. (Without it all of them are divided down to the finest lanes.)
+/// @param begin, end  entries of `open` that are left of one pair, those of this lane.
+/// @return false where others may touch earlier.
+inline bool PairSearch::touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t) {
+  const int pair = open[begin].pair, out_begin = open.size();
+  if (contacts_.watchFrom(pair) > t) return false;
+  const TimeBatch batch = TimeBatch::partsOf(t, finestWidth());
+  watch(batch);
+  motion_.set(pair, batch);
+  for (int i = begin; i < end && open.size() < out_begin + kMostAround; ++i) {
+    const Entry e = open[i];
+    if (e.mask >> lane & 1) traversal_.descend({pair, e.a, e.b, 1}, Aim::poses, open);
+  }
+  touching_.clear();
+  for (int i = out_begin; i < open.size() && touching_.size() < kMostAround; ++i) {
+    if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], t));
+  }
+  open.truncate(out_begin);
+  return recordTouching(t);
+}
+
+/// Of leaf pairs of `touching_`: whether one touches at t, as far as can be told. It is recorded.
+inline bool PairSearch::recordTouching(double t) {
+  const double stop = t + finestWidth();
+  Candidate resting = {};
+  int uncertain = 0;
+  for (int i = 0; i < touching_.size() && uncertain < kMostAround; ++i) {
+    Candidate& f = touching_[i];
+    f.target = Candidate::Target::leafPair;
+    const auto isOpen = [&] { return f.t_lower <= t && isNear(f.apart); };
+    if (follower_.followToRoot(f, stop, false)) continue;
+    if (!f.certain && (!isOpen() || follower_.decide(f, stop))) continue;
     if (f.certain) {
       follower_.record(f);
-      if (f.t_lower <= 0 || horizon_.isOver()) return true;
+      if (f.t_lower <= t || horizon_.isOver()) return true;
     } else if (isOpen() && uncertain++ == 0) {
       resting = f;
     }
   }
   if (uncertain == 0) return false;
-  horizon_.closeAt(query().tolerance_time);
+  horizon_.closeAt(t + query().tolerance_time);
   follower_.record(resting);
   return true;
 }
@@ -293,10 +352,17 @@ inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int en
     const Entry e = open[i];
     if (!e.mask) continue;
     motion_.set(e.pair, whole());
-    if (movesFar() && !e.within) {
-      open.push({e.pair, e.a, e.b, e.mask});
-    } else if (!(e.mask & 1) || !restsAtStart(e.pair)) {
+    bool whole_first = movesFar() && !e.within;
+    if (!whole_first && !e.within && !isLeafPair(e) && motion_.a().outer && motion_.b().outer) {
+      GjkResult g;
+      const double gap = abs(restingGapOfHulls(__builtin_ctz(e.mask), g)) / smallerRadius();
+      whole_first = gap <= kBarely;
+      if (!whole_first && gap <= kShallow && (e.mask & 1) && restsAt(e.pair, 0)) continue;
       motion_.set(e.pair, whole());
+    }
+    if (whole_first) {
+      open.push({e.pair, e.a, e.b, e.mask});
+    } else {
       traversal_.descend({e.pair, e.a, e.b, e.mask}, aim(), open);
     }
   }
@@ -332,6 +398,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
   using Target = Candidate::Target;
   candidates_.clear();
   const int roots = open.size();
+  const bool suspected = lane == 0 && horizon_.contactLane() == 1;  // in this lane
   for (int i = begin; i < end && !horizon_.isOver();) {
     // A run of entries of one pair.
     const int first = open.size(), pair_index = open[i].pair;
@@ -372,7 +439,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     if (f.t_lower >= horizon_.end()) break;
     if (f.isHulls()) {
       follower_.proveBelowHulls(f);
-      if (!f.certain && f.t_lower == 0 && restsAtStart(f.entry.pair)) continue;
+      if (!f.certain && stayNear(f) && restsAt(f.entry.pair, f.t_lower)) continue;
     }
     if (f.isLeafPair() && !f.certain && follower_.decide(f, stop)) continue;
     if (f.certain) {
@@ -380,6 +447,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
       continue;
     }
     horizon_.dropSuspicion();
+    splits_at_start_ = suspected ? 0 : 1;
     solvePieces(open, f, stop, lane);
   }
   open.truncate(roots);
@@ -455,7 +523,9 @@ inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double st
   if (leaves && (finest || count <= kFewLeaves)) {
     if (followLeaves(open, start, width, begin, end, lane, finest, &split) == Step::done) return Step::done;
   }
-  return split ? solveInterval(open, start, width, begin, end, lane) : Step::free;
+  if (!split) return Step::free;
+  if (start == 0 && splits_at_start_-- == 0 && touchesAt(open, begin, end, lane, 0)) return Step::done;
+  return solveInterval(open, start, width, begin, end, lane);
 }
 
 /// The leaf pairs that a lane leaves undecided, one by one: how far is each free, and is there contact?

@@ -27,6 +27,8 @@ constexpr int kMostPartOverlaps = 1;
 constexpr int kMostOpen = 512;
 /// The same of leaves at single poses that are neither proven apart nor in contact, as where bodies rest on each other.
 constexpr int kMostOpenAtPoses = 16;
+/// A body less deep in another one's hull, as part of its radius, may rest on it.
+constexpr double kBarely = 1e-6;
 /// GJK stops when it knows the gap to this part: enough for a direction.
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -232,7 +234,7 @@ inline bool Traversal::isWithin() {
     GjkResult g;
     gjk(body, body.pose.c, kWitnessAccuracy, a.radius + b.radius + motion_.margin(), 48, g);
     ++statistics().gjk;
-    return g.overlap;
+    return g.overlap && depthWithin(g.simplex) > kBarely * small.radius;
   }
   return false;
 }
