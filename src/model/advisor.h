@@ -40,6 +40,8 @@ struct Advisor {
   /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this motion. Asked when the pairs are come
   /// to, which contact with an obstacle may spare. Null: nothing is known. There until the solver returns.
   const std::uint8_t* (*freeParts)(void* self) = nullptr;
+  /// The same of one link pair, for what costs more to look up: asked of those that stage 1's own bounds leave.
+  unsigned (*freePartsOf)(void* self, std::int32_t link_pair) = nullptr;
   /// Asked between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
   /// `free_nodes`. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
   void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,

@@ -30,12 +30,17 @@ struct TableAdvice {
   engine::Advisor advisor() {
     engine::Advisor advisor;
     advisor.self = this;
-    if (!tables.empty() || !proven.empty()) {
+    if (!tables.empty()) {
+      advisor.freePartsOf = [](void* self, std::int32_t link_pair) {
+        const auto& of = *static_cast<TableAdvice*>(self);
+        return of.tables.freeParts(of.problem, of.motion, of.margins, link_pair);
+      };
+    }
+    if (!proven.empty()) {
       advisor.freeParts = [](void* self) -> const std::uint8_t* {
         const auto& of = *static_cast<TableAdvice*>(self);
         std::vector<std::uint8_t>& parts = of.workspace.link_free;
         parts.assign(static_cast<std::size_t>(of.problem.num_link_pairs), 0);
-        of.tables.addFreeParts(of.problem, of.motion, of.margins, parts);
         of.proven.addFreeParts(of.problem, of.motion, of.margins, parts);
         return parts.data();
       };

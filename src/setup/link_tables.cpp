@@ -11,37 +11,46 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
                        std::size_t num_self_pairs, const ProvenPairs& proven) {
   std::vector<Made> before;
   std::swap(made_, before);
-  tables_.clear();
+  tables_.assign(num_self_pairs, nullptr);
+  num_tables_ = 0;
   grids_.clear();
   ranges_.clear();
   likely_.clear();
   const KinematicTree& tree = *registry.tree();
   std::vector<std::size_t> pairs, unknown;  // unknown: into both
-  for (std::size_t i = 0; i < num_self_pairs; ++i) {
-    const engine::LinkPair& pair = problem.link_pairs[i];
-    const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
-    if (a.attached || b.attached || proven.proven(i)) continue;
-    Made made{PairMaking(tree, a, b), margins.ofLinkPair(i), nullptr, nullptr};
-    const auto known = std::find_if(before.begin(), before.end(),
-                                    [&](const Made& m) { return m.margin == made.margin && m.made.sameAs(made.made); });
-    if (known != before.end()) {
-      made.table = known->table;
-      made.grid = known->grid;
-    } else {
-      unknown.push_back(made_.size());
+  std::size_t next = 0;
+  while (next < num_self_pairs && num_tables_ < kMost) {
+    // Some pairs, then what is made of them on all cores: the same pairs get tables whatever was known before.
+    const std::size_t begin = made_.size();
+    unknown.clear();
+    for (; next < num_self_pairs && made_.size() < begin + kBlock; ++next) {
+      const engine::LinkPair& pair = problem.link_pairs[next];
+      const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
+      if (a.attached || b.attached || proven.proven(next)) continue;
+      Made made{PairMaking(tree, a, b), margins.ofLinkPair(next), nullptr, nullptr};
+      const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) {
+        return m.margin == made.margin && m.made.sameAs(made.made);
+      });
+      if (known != before.end()) {
+        made.table = known->table;
+        made.grid = known->grid;
+      } else {
+        unknown.push_back(made_.size());
+      }
+      pairs.push_back(next);
+      made_.push_back(std::move(made));
     }
-    pairs.push_back(i);
-    made_.push_back(std::move(made));
+    parallelFor(unknown.size(), 0, [&](std::size_t k) {
+      Made& made = made_[unknown[k]];
+      const engine::LinkPair& pair = problem.link_pairs[pairs[unknown[k]]];
+      const engine::SweepView& sweep = problem.sweeps[pair.sweep];
+      made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
+      made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
+    });
+    for (std::size_t k = begin; k < made_.size(); ++k) num_tables_ += made_[k].table != nullptr;
   }
-  parallelFor(unknown.size(), 0, [&](std::size_t k) {
-    Made& made = made_[unknown[k]];
-    const engine::LinkPair& pair = problem.link_pairs[pairs[unknown[k]]];
-    const engine::SweepView& sweep = problem.sweeps[pair.sweep];
-    made.table = PairTable::build(tree, sweep, problem.bodies, pair, made.margin);
-    made.grid = ContactGrid::build(tree, sweep, pair, problem.bodies);
-  });
   for (std::size_t k = 0; k < made_.size(); ++k) {
-    if (made_[k].table) tables_.emplace_back(pairs[k], made_[k].table);
+    tables_[pairs[k]] = made_[k].table;
     if (made_[k].grid) addGrid(tree, static_cast<std::int32_t>(pairs[k]), *made_[k].grid);
   }
 }
@@ -56,13 +65,12 @@ void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, cons
   }
 }
 
-void LinkTables::addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
-                              std::vector<std::uint8_t>& parts) const {
-  for (const auto& [pair, table] : tables_) {
-    const std::int32_t number = problem.linkPair(static_cast<std::int32_t>(pair));
-    if (margins.of(number) > table->margin()) continue;
-    parts[pair] |= static_cast<std::uint8_t>(table->freeParts(motion.variables()));
-  }
+unsigned LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion,
+                               const engine::Margins& margins, std::int32_t link_pair) const {
+  const auto pair = static_cast<std::size_t>(link_pair);
+  if (pair >= tables_.size() || !tables_[pair]) return 0;
+  const PairTable& table = *tables_[pair];
+  return margins.of(problem.linkPair(link_pair)) > table.margin() ? 0 : table.freeParts(motion.variables());
 }
 
 void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {

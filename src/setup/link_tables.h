@@ -21,24 +21,27 @@ namespace fcl_artic {
 
 class LinkTables {
  public:
-  /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.)
+  /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.) Of robots
+  /// that could have many thousands only about the first kMost pairs get one, those of the largest links: what tables
+  /// save is lost again where they don't fit in a cache.
   /// @param num_self_pairs  the first so many of the problem's link pairs.
   /// @param proven  pairs that need no table.
   void build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
              std::size_t num_self_pairs, const ProvenPairs& proven);
 
-  bool empty() const { return tables_.empty(); }
+  bool empty() const { return num_tables_ == 0; }
 
-  /// Marks what tables prove apart of a motion: those built for at least the margin that the pair has here.
-  /// @param[in,out] parts  of each link pair, as engine::Advisor::freeParts.
-  void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
-                    std::vector<std::uint8_t>& parts) const;
+  /// What its table proves apart of a motion, if it was built for at least the margin that the pair has here: bit k for
+  /// the part [k/8, (k+1)/8].
+  unsigned freeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
+                     std::int32_t link_pair) const;
 
   /// Where links are likely to touch, the motion's end first: a guess, as engine::Advisor::suggest. (None for robots of
   /// more than 64 variables.)
   void likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const;
 
  private:
+  static constexpr std::size_t kMost = 1000, kBlock = 128;
   /// The tables of two links, and what they were made from.
   struct Made {
     PairMaking made;
@@ -56,8 +59,9 @@ class LinkTables {
 
   void addGrid(const KinematicTree& tree, std::int32_t link_pair, const ContactGrid& grid);
 
-  std::vector<Made> made_;                                                        ///< of all pairs
-  std::vector<std::pair<std::size_t, std::shared_ptr<const PairTable>>> tables_;  ///< by link pair
+  std::vector<Made> made_;                                ///< of all pairs that were asked for
+  std::vector<std::shared_ptr<const PairTable>> tables_;  ///< by link pair; null: none
+  std::size_t num_tables_ = 0;
   std::vector<Grid> grids_;
   std::vector<bool> likely_;                           ///< of all grids' cells
   std::vector<std::pair<int, VariableRange>> ranges_;  ///< of the variables that grids are over

@@ -186,11 +186,13 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
   const bool look = looksForAny();
   const std::uint8_t* free[Query::kMostAdvisors];
-  int num_free = 0;
+  const engine::Advisor* advisors[Query::kMostAdvisors];  // those that are asked of single pairs
+  int num_free = 0, num_advisors = 0;
   for (int n = 0; n < query().num_advisors; ++n) {
     const engine::Advisor& advisor = query().advisors[n];
     const std::uint8_t* parts = advisor.freeParts ? advisor.freeParts(advisor.self) : nullptr;
     if (parts) free[num_free++] = parts;
+    if (advisor.freePartsOf) advisors[num_advisors++] = &advisor;
   }
   for (int p = 0; p < problem().num_link_pairs && !horizon_.isOver(); ++p) {
     const int pair = problem().linkPair(p);
@@ -199,13 +201,15 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (!mask) continue;
     const int mover_a = body(problem().link_pairs[p].a).mover, mover_b = body(problem().link_pairs[p].b).mover;
     mask &= ~boxesApart(mover_a, mover_b);
-    if (mask && task_.isLink(mover_a) && task_.isLink(mover_b)) {
-      const SweptLss &a = mover_lss_[mover_a], &b = mover_lss_[mover_b];
-      Lanes square;
-      mask &= ~certainlyApart(a, b, query().margins.of(pair), square);
-      if (mask && look) any_.considerLinks(pair, square, a.radius + b.radius);
+    const bool links = task_.isLink(mover_a) && task_.isLink(mover_b);
+    Lanes square;
+    if (mask && links) {
+      mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair), square);
     }
-    if (mask) open.push({pair, 0, 0, mask});
+    for (int n = 0; n < num_advisors && mask; ++n) mask &= ~advisors[n]->freePartsOf(advisors[n]->self, p);
+    if (!mask) continue;
+    if (links && look) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
+    open.push({pair, 0, 0, mask});
   }
 }
 
