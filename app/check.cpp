@@ -91,7 +91,7 @@ int run(const Options& options) {
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
-  const auto interpolation = options.interpolation == "cubic" ? Interpolation::cubic : Interpolation::linear;
+  const Interpolation interpolation = interpolationNamed(options.interpolation);
   std::vector<std::string> motion_notes;
   const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
     for (const std::string& note : tree.limitNotes(q)) motion_notes.push_back(where + ": " + note);
@@ -101,7 +101,7 @@ int run(const Options& options) {
   } else if (options.trajectory.empty()) {
     const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
     const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
-    motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+    motion = motionBetween(tree, q0, q1, interpolation, options.shortest);
     noteLimits(motion->configuration(0), "--from");
     noteLimits(motion->configuration(1), "--to");
   } else {
@@ -243,12 +243,13 @@ void addCheck(CLI::App& program, int& exit_status) {
           ->excludes(trajectory)
           ->group("Motion")
           ->type_name("FILE");
-  CLI::Option* interpolation = check
-                                   ->add_option("--interpolation", o.interpolation,
-                                                "Between waypoints: linear, or cubic (smooth, from rest to rest)")
-                                   ->check(CLI::IsMember({"linear", "cubic"}))
-                                   ->group("Motion")
-                                   ->capture_default_str();
+  check
+      ->add_option("--interpolation", o.interpolation,
+                   "linear; between waypoints also cubic (smooth, from rest to rest); tangent-half-angle: the tangent "
+                   "of half of each angle goes straight")
+      ->check(CLI::IsMember({"linear", "cubic", "tangent-half-angle"}))
+      ->group("Motion")
+      ->capture_default_str();
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   const auto number = [&](const std::string& name, double& value, const std::string& help) {
@@ -319,13 +320,16 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->type_name("AZ,EL");
 
   clearance->excludes(lines);
-  check->callback([options, from, to, trajectory, lines, interpolation, &exit_status] {
+  check->callback([options, from, to, trajectory, lines, &exit_status] {
     const bool waypoints = trajectory->count() > 0 || lines->count() > 0;
     for (const CLI::Option* end : {from, to}) {
       if (end->count() == 0 && !waypoints) throw CLI::RequiredError(end->get_name());
     }
-    if (interpolation->count() > 0 && !waypoints) {
-      throw CLI::RequiresError("--interpolation", "--trajectory or --lines");
+    if (options->interpolation == "cubic" && !waypoints) {
+      throw CLI::RequiresError("--interpolation cubic", "--trajectory or --lines");
+    }
+    if (options->interpolation == "tangent-half-angle" && options->shortest) {
+      throw CLI::ExcludesError("--shortest", "--interpolation tangent-half-angle");
     }
     try {
       exit_status = run(*options);

@@ -120,7 +120,7 @@ void read(const KinematicTree& tree, const std::string& text, const LinesOptions
   }
   const Eigen::VectorXd q0 = toConfiguration(tree, oneOf(line, "from", "start"), "from"),
                         q1 = toConfiguration(tree, oneOf(line, "to", "goal"), "to");
-  out.motion = options.shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+  out.motion = motionBetween(tree, q0, q1, options.interpolation, options.shortest);
   noteLimits(q0, "from");
   noteLimits(q1, "to");
 }

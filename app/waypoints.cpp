@@ -116,11 +116,23 @@ Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, co
   return out;
 }
 
+Interpolation interpolationNamed(const std::string& name) {
+  if (name == "cubic") return Interpolation::cubic;
+  return name == "tangent-half-angle" ? Interpolation::tangentHalfAngle : Interpolation::linear;
+}
+
+JointMotion motionBetween(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                          Interpolation interpolation, bool shortest) {
+  if (interpolation == Interpolation::tangentHalfAngle) return JointMotion::tangentHalfAngle(tree, q0, q1);
+  return shortest ? JointMotion::shortest(tree, q0, q1) : JointMotion::linear(tree, q0, q1);
+}
+
 JointTrajectory interpolate(const KinematicTree& tree, const Waypoints& waypoints, Interpolation interpolation,
                             bool shortest) {
   const std::vector<double>& t = waypoints.times;
   const std::vector<Eigen::VectorXd>& q = waypoints.configurations;
   const auto unwrap = shortest ? JointTrajectory::Unwrap::yes : JointTrajectory::Unwrap::no;
+  if (interpolation == Interpolation::tangentHalfAngle) return JointTrajectory::tangentHalfAngle(tree, t, q);
   if (interpolation == Interpolation::linear) return JointTrajectory::linear(tree, t, q, unwrap);
   std::vector<Eigen::VectorXd> slopes, velocities(q.size(), Eigen::VectorXd::Zero(tree.dof()));
   for (std::size_t k = 0; k + 1 < q.size(); ++k) {

@@ -9,7 +9,16 @@
 
 namespace fcl_artic::app {
 
-enum class Interpolation { linear, cubic };
+enum class Interpolation {
+  linear,
+  cubic,
+  tangentHalfAngle,  ///< angles go so that the tangent of their half goes straight (JointMotion::tangentHalfAngle())
+};
+/// Of an option's value.
+Interpolation interpolationNamed(const std::string& name);
+/// Of a motion from one configuration to another, of which `cubic` says nothing.
+JointMotion motionBetween(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                          Interpolation interpolation, bool shortest);
 
 /// Waypoints of a file: comma separated values, of which the first line names the columns: `time` (or `t`) and
 /// variables of the robot, in any order; those that are not named stay at 0 (a quaternion at no rotation). Empty lines

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,8 @@
 namespace fcl_artic {
 
 /// A motion in joint space over t in [0, 1]: every joint variable is a polynomial of t. The simplest case is linear,
-/// q(t) = q0 + t Δq (Redon 2004, Section 3).
+/// q(t) = q0 + t Δq (Redon 2004, Section 3). Angles may go by a tangent half-angle law instead: q* + 2 atan(s(t)) with
+/// s a polynomial, the straight lines of planners whose space is s (tangentHalfAngle()).
 ///
 /// The orientation of a floating or spherical joint is exp([w(t)]) R0, with R0 the orientation at t = 0 and the
 /// rotation vector w(t) a polynomial in the joint's frame, w(0) = 0.
@@ -43,19 +45,46 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// @throws std::invalid_argument for wrong sizes, values that are not finite, a column 0 that is no configuration, or
   ///   if the absolute coefficients of a joint, mimic joints too, sum to more than 1e5 rad or m.
   static JointMotion polynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients);
+  /// Moves every angle (of revolute, continuous and planar joints) so that the tangent of its half goes straight:
+  /// q(t) = q* + 2 atan(s(t)), s(t) = s0 + t (s1 - s0), s = tan((q - q*) / 2), the way through q*'s side. All poses are
+  /// rational in t then. It is the edge of planners in the tangent configuration space (Amice, Werner, Tedrake,
+  /// Certifying Bimanual RRT Motion Plans in a Second, 2024). Slides and quaternions move as in linear().
+  /// @param q0, q1  tree.dof() joint values each, rad or m; angles less than π from q*, by at least 2e-5.
+  /// @param reference  q*: tree.dof() values, of which those of angles count; empty: 0.
+  /// @throws std::invalid_argument as linear(), and for angles out of that reach, tangents whose absolute coefficients
+  ///   sum to more than 1e5, and references of a wrong size, not finite or beyond 1e5.
+  static JointMotion tangentHalfAngle(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1,
+                                      const Eigen::VectorXd& reference = {});
+  /// The same with polynomials of any degree up to the fifth.
+  /// @param coefficients  as polynomial() takes them, but the rows of angles hold those of s(t) = tan((q(t) - q*) / 2).
+  /// @param reference  as in tangentHalfAngle().
+  /// @throws std::invalid_argument as polynomial() and tangentHalfAngle().
+  static JointMotion tangentHalfAnglePolynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,
+                                                const Eigen::VectorXd& reference = {});
 
   /// Returns the configuration at t = 0, size() entries, with normalised quaternions.
   Eigen::VectorXd q0() const { return configuration(0); }
   /// Returns the coefficients of t, size() entries: for linear() q1 - q0, for a quaternion the rotation vector and 0.
-  Eigen::VectorXd dq() const { return variables_.col(1); }
+  /// @throws std::invalid_argument if a variable is no polynomial (isPolynomial()).
+  Eigen::VectorXd dq() const {
+    requirePolynomial("JointMotion::dq()");
+    return variables_.col(1);
+  }
   /// Returns the configuration at time t, size() entries, rad or m. t is not clamped to [0, 1].
   /// @throws std::invalid_argument if the motion was moved from.
   Eigen::VectorXd configuration(double t) const;
   /// Number of joint variables: dof() of the tree.
   Eigen::Index size() const { return variables_.rows(); }
-  /// Highest power of t that has a column of coefficients; at least 1.
+  /// Whether all variables are polynomials of t; otherwise angles go by a tangent half-angle law.
+  bool isPolynomial() const { return half_angles_.empty(); }
+  /// Checks that all variables are polynomials of t.
+  /// @param who  begins the message.
+  /// @throws std::invalid_argument if angles go by a tangent half-angle law.
+  void requirePolynomial(const char* who) const;
+  /// Highest power of t that has a column of coefficients; at least 1, with a tangent half-angle law at least 2.
   Eigen::Index degree() const { return variables_.cols() - 1; }
-  /// Returns the coefficients, size() by degree() + 1, as polynomial() takes them.
+  /// Returns the coefficients, size() by degree() + 1, as polynomial() takes them, or tangentHalfAnglePolynomial() if
+  /// not isPolynomial().
   Eigen::MatrixXd coefficients() const;
 
   /// Whether the motion is of the tree's joint variables.
@@ -73,15 +102,22 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// Orientations R0 at t = 0 of the joints that have a quaternion, in the order of the joints: nine numbers each, a
   /// rotation matrix by rows.
   const std::vector<double>& orientations() const { return orientations_; }
+  /// Per variable 1 where variables() are of the tangent of half an angle, else 0; empty if isPolynomial().
+  const std::vector<std::uint8_t>& halfAngles() const { return half_angles_; }
+  /// Reference angles q* of these variables, 0 for others; empty if isPolynomial().
+  const Eigen::VectorXd& references() const { return references_; }
 
  private:
   JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients);
+  void goByHalfAngles(const KinematicTree& tree, const Eigen::VectorXd& reference);
   [[noreturn]] void refuse(const KinematicTree& tree, const char* what) const;
 
   Fingerprint joint_space_;
   std::string tree_name_;  ///< for messages
   Eigen::MatrixXd variables_;
   std::vector<double> orientations_;
+  std::vector<std::uint8_t> half_angles_;
+  Eigen::VectorXd references_;
   struct Start {
     Eigen::Index row;
     double quaternion[4];  ///< x, y, z, w

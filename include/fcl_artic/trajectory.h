@@ -8,7 +8,8 @@
 
 namespace fcl_artic {
 
-/// A trajectory in joint space: motions one after the other, each a polynomial of time up to the fifth degree. Times
+/// A trajectory in joint space: motions one after the other, each a JointMotion: polynomials of time up to the fifth
+/// degree, or angles by a tangent half-angle law. Times
 /// are in any unit, mostly seconds; they are finite and increase, and the whole duration is finite.
 ///
 /// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. The end
@@ -43,6 +44,16 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   ///   to its waypoint, as JointMotion::shortest().
   static JointTrajectory linear(const KinematicTree& tree, const std::vector<double>& times,
                                 const std::vector<Eigen::VectorXd>& waypoints, Unwrap unwrap = Unwrap::no);
+
+  /// Makes a trajectory of JointMotion::tangentHalfAngle() from waypoint to waypoint: paths of planners in the tangent
+  /// configuration space.
+  /// @param times      one for each waypoint.
+  /// @param waypoints  at least two, of tree.dof() joint values each, rad or m.
+  /// @param reference  q*: tree.dof() values, of which those of angles count; empty: 0.
+  /// @throws std::invalid_argument, naming waypoint or piece: as JointMotion::tangentHalfAngle() and linear().
+  static JointTrajectory tangentHalfAngle(const KinematicTree& tree, const std::vector<double>& times,
+                                          const std::vector<Eigen::VectorXd>& waypoints,
+                                          const Eigen::VectorXd& reference = {});
 
   /// Makes a trajectory of cubic (Hermite) pieces through the waypoints, with given velocities there.
   /// @param times       one for each waypoint.

@@ -58,6 +58,9 @@ std::string motionText(const World& world, const Claim& claim) {
 
 Motion motionOf(const World& world, const JointMotion& motion, const TimePart& time) {
   Motion out;
+  if (!motion.isPolynomial()) {
+    out.missing = "angles go by a tangent half-angle law, which certificates cannot state";
+  }
   const Eigen::MatrixXd moving = world.moving.rows() == 0 || time.whole() ? world.moving : partOf(world.moving, time);
   const Eigen::MatrixXd& own = motion.variables();
   out.coefficients = Eigen::MatrixXd::Zero(own.rows() + moving.rows(), std::max(own.cols(), moving.cols()));
@@ -73,6 +76,9 @@ Motion motionOf(const World& world, const JointMotion& motion, const TimePart& t
 Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work) {
   Certificate certificate;
   certificate.missing = world.missing;
+  for (const Motion& piece : claim.pieces) {
+    if (certificate.missing.empty()) certificate.missing = piece.missing;
+  }
   if (!certificate.missing.empty()) return certificate;
   if (!(claim.pieces.back().until > 0)) {
     certificate.missing = "nothing is claimed: the bodies may touch from the beginning on";

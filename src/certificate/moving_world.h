@@ -24,7 +24,8 @@ struct Motion {
     double until;  ///< not checked before that time
   };
   std::vector<Ignored> ignored;
-  double until = 1;  ///< the claim is on [0, until]
+  double until = 1;     ///< the claim is on [0, until]
+  std::string missing;  ///< why the motion cannot be stated; empty: it can
 };
 
 struct Pose {

@@ -98,6 +98,7 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
                                 "' is not rigid");
   }
 
+  motion.requirePolynomial("FclLinkMotion");
   if (motion.degree() > 1) {
     throw std::invalid_argument("FclLinkMotion: the motion has degree " + std::to_string(motion.degree()) +
                                 ", FCL's bounds are made for joints at constant speed");

@@ -14,7 +14,7 @@
 namespace fcl_artic {
 namespace {
 
-/// Beyond this, rad or m, the error pads of the motion's bounds do not hold.
+/// Beyond this, rad or m, or as the tangent of half an angle, the error pads of the motion's bounds do not hold.
 constexpr double kLargestJointValue = 1e5;
 
 Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int v) {
@@ -51,6 +51,30 @@ void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::
     throw std::invalid_argument(what + ": the value " + shown(q[v]) + " of joint '" + tree.variableName(v) +
                                 "' is beyond 1e5");
   }
+}
+
+/// The references of a tangent half-angle law: those given, or 0.
+Eigen::VectorXd referencesOf(const KinematicTree& tree, const Eigen::VectorXd& reference) {
+  if (reference.size() == 0) return Eigen::VectorXd::Zero(tree.dof());
+  if (reference.size() != tree.dof()) {
+    throw std::invalid_argument("reference has " + std::to_string(reference.size()) + " entries, robot '" +
+                                tree.name() + "' has " + std::to_string(tree.dof()));
+  }
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (std::abs(reference[v]) <= kLargestJointValue) continue;
+    throw std::invalid_argument("reference: the value " + shown(reference[v]) + " of joint '" + tree.variableName(v) +
+                                "' is beyond 1e5 or not finite");
+  }
+  return reference;
+}
+
+/// tan(angle / 2) of an angle that is less than half a turn.
+double tangentOfHalf(const KinematicTree& tree, int v, double q, double reference, const char* what) {
+  const double angle = q - reference, s = std::tan(angle / 2);
+  if (std::abs(angle) < kTwoPi / 2 && std::abs(s) <= kLargestJointValue) return s;
+  throw std::invalid_argument(
+      std::string(what) + ": joint '" + tree.variableName(v) + "' at " + shown(q) + " is " + shown(angle) +
+      " rad from its reference: a tangent half-angle law reaches less than pi, " + "by at least 2e-5");
 }
 
 bool turnsForever(const KinematicTree& tree, int v) {
@@ -140,6 +164,57 @@ JointMotion JointMotion::polynomial(const KinematicTree& tree, const Eigen::Matr
   return {tree, coefficients};
 }
 
+JointMotion JointMotion::tangentHalfAngle(const KinematicTree& tree, const Eigen::VectorXd& q0,
+                                          const Eigen::VectorXd& q1, const Eigen::VectorXd& reference) {
+  JointMotion motion = linear(tree, q0, q1);
+  const Eigen::VectorXd references = referencesOf(tree, reference);
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (!tree.isAngle(v)) continue;
+    const double s0 = tangentOfHalf(tree, v, q0[v], references[v], "q0");
+    const double s1 = tangentOfHalf(tree, v, q1[v], references[v], "q1");
+    motion.variables_.row(v) << s0, s1 - s0;
+  }
+  motion.goByHalfAngles(tree, references);
+  return motion;
+}
+
+JointMotion JointMotion::tangentHalfAnglePolynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,
+                                                    const Eigen::VectorXd& reference) {
+  JointMotion motion = polynomial(tree, coefficients);
+  motion.goByHalfAngles(tree, referencesOf(tree, reference));
+  return motion;
+}
+
+/// What was checked of polynomials holds for mimic joints' angles too: these are within pi of the reference.
+void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorXd& reference) {
+  half_angles_.assign(static_cast<std::size_t>(tree.dof()), 0);
+  references_.setZero(tree.dof());
+  Eigen::VectorXd sizes = variables_.cwiseAbs().rowwise().sum();
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (!tree.isAngle(v)) continue;
+    if (!(sizes[v] <= kLargestJointValue)) {
+      throw std::invalid_argument("the coefficients of the tangent of half the angle of joint '" +
+                                  tree.variableName(v) + "' sum to " + shown(sizes[v]) + ", beyond 1e5");
+    }
+    half_angles_[static_cast<std::size_t>(v)] = 1;
+    references_[v] = reference[v];
+    sizes[v] = std::abs(reference[v]) + kTwoPi / 2;
+  }
+  requireSizes(tree, sizes, "reference");
+  // The bounds of such a law differ from time to time, as those of polynomials of the second degree on.
+  const Eigen::Index columns = variables_.cols();
+  if (columns < 3) {
+    variables_.conservativeResize(Eigen::NoChange, 3);
+    variables_.rightCols(3 - columns).setZero();
+  }
+}
+
+void JointMotion::requirePolynomial(const char* who) const {
+  if (isPolynomial()) return;
+  throw std::invalid_argument(std::string(who) + ": the motion's angles go by a tangent half-angle law, not by " +
+                              "polynomials of time");
+}
+
 void JointMotion::refuse(const KinematicTree& tree, const char* what) const {
   if (joint_space_.none()) throw std::invalid_argument(std::string(what) + " has been moved from");
   throw std::invalid_argument(std::string(what) + " was made for robot '" + tree_name_ + "', with " +
@@ -151,6 +226,10 @@ Eigen::VectorXd JointMotion::configuration(double t) const {
   if (joint_space_.none()) throw std::invalid_argument("JointMotion: the motion has been moved from");
   Eigen::VectorXd q = variables_.col(degree());
   for (Eigen::Index k = degree() - 1; k >= 0; --k) q = q * t + variables_.col(k);
+  for (std::size_t v = 0; v < half_angles_.size(); ++v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    if (half_angles_[v]) q[row] = references_[row] + 2 * std::atan(q[row]);
+  }
   for (const Start& start : starts_) {
     const Eigen::Quaterniond R0(Eigen::Vector4d::Map(start.quaternion));
     const Eigen::Vector3d w = q.segment<3>(start.row);

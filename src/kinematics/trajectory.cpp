@@ -193,6 +193,20 @@ JointTrajectory JointTrajectory::linear(const KinematicTree& tree, const std::ve
   return {tree, times, std::move(pieces)};
 }
 
+JointTrajectory JointTrajectory::tangentHalfAngle(const KinematicTree& tree, const std::vector<double>& times,
+                                                  const std::vector<VectorXd>& waypoints, const VectorXd& reference) {
+  requireWaypoints(tree, times, waypoints);
+  std::vector<JointMotion> pieces;
+  for (std::size_t k = 0; k + 1 < waypoints.size(); ++k) {
+    try {
+      pieces.push_back(JointMotion::tangentHalfAngle(tree, waypoints[k], waypoints[k + 1], reference));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("trajectory: piece " + number(k) + ": " + error.what());
+    }
+  }
+  return {tree, times, std::move(pieces)};
+}
+
 JointTrajectory JointTrajectory::cubic(const KinematicTree& tree, const std::vector<double>& times,
                                        const std::vector<VectorXd>& waypoints, const std::vector<VectorXd>& velocities,
                                        Unwrap unwrap) {

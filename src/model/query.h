@@ -13,10 +13,21 @@
 namespace fcl_artic {
 namespace engine {
 
+/// Which variables are angles that go by the tangent of their half: with s the variable's polynomial, the angle is
+/// reference + 2 atan(s). Of a motion with such a variable the degree is at least 2, as its bounds differ from time to
+/// time.
+struct HalfAngles {
+  const std::uint8_t* is = nullptr;   ///< per variable, the first `count` of them; the others are their polynomials
+  const double* reference = nullptr;  ///< per variable, rad
+  std::int32_t count = 0;
+  [[gnu::always_inline]] bool has(std::int32_t variable) const { return variable < count && is[variable] != 0; }
+};
+
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
   std::int32_t num_variables = 0, degree = 1;
+  HalfAngles half_angles;
   const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
   double tolerance_time = 1e-6, tolerance_distance = 1e-6;
   Margins margins;

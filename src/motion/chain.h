@@ -78,11 +78,11 @@ inline void evaluateSweep(const SweepView& sweep, const StepBounds* bounds, cons
     bool slides = true;
     switch (step.kind) {
       case StepKind::revolute:
-        turnAboutZ(evaluateVariable(variables, 0, tm, d), variables.degree > 1, g, axes, f);
+        turnAboutZ(evaluateOnly(variables, tm, d), variables.degree > 1, g, axes, f);
         slides = false;
         break;
       case StepKind::prismatic:
-        slide = slideAlongZ(evaluateVariable(variables, 0, tm, d), axes);
+        slide = slideAlongZ(evaluateOnly(variables, tm, d), axes);
         f.R = axes;
         break;
       case StepKind::slide: {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "model/add_fields.h"
+#include "motion/half_angles.h"
 #include "narrowphase/engine_workspace.h"
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
@@ -68,6 +69,7 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
   query.num_variables = static_cast<std::int32_t>(own.rows());
   query.degree = static_cast<std::int32_t>(own.cols()) - 1;
   query.orientations = motion.orientations().data();
+  query.half_angles = halfAnglesOf(motion);
   if (others.rows() == 0) return;
   const Eigen::Index columns = std::max(own.cols(), others.cols());
   memory.assign(static_cast<std::size_t>((own.rows() + others.rows()) * columns), 0);

@@ -12,6 +12,7 @@
 
 #include "interval/sine_cosine.h"
 #include "interval/turn_series.h"
+#include "numerics/arc_tangent.h"
 
 #define FCL_ARTIC_ISA interval_chain
 #define FCL_ARTIC_ISA_BITS 128
@@ -90,6 +91,14 @@ Variable evaluatePolynomial(const Interval* coefficients, int degree, Interval T
     if (k > 2) v.q2 += c[k] * power[k - 2] * static_cast<double>(k * (k - 1));
   }
   return v;
+}
+
+/// m (reference + 2 atan(s)) + o over a range of s and its derivatives: monotone in s.
+Variable angleOf(const Variable& s, Interval m, Interval offset) {
+  const Interval error = plusMinus(2 * kArcTangentError);
+  const Interval angle = hull(Interval(2 * arcTangent(s.q.lower())), Interval(2 * arcTangent(s.q.upper()))) + error;
+  const Interval g = Interval(2.0) / (Interval(1.0) + square(s.q)), rate = g * s.q1;
+  return {m * angle + offset, m * rate, m * (g * s.q2 - s.q * square(rate))};
 }
 
 /// A factor's own motion: rotation and slide, the slide's derivatives, angular velocity and acceleration.
@@ -192,6 +201,12 @@ void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
 struct StepMotion {
   Interval q[3][engine::kMaxDegree + 1];
   int degree = 0;
+  bool half_angle = false;    ///< q[0] is the tangent s of half an angle
+  Interval multiple, offset;  ///< of that angle
+  Variable only(Interval T) const {
+    const Variable x = evaluatePolynomial(q[0], degree, T);
+    return half_angle ? angleOf(x, multiple, offset) : x;
+  }
   /// A turn about one axis: q(t) = length axis t^power, the course of a free body; power -1: not so.
   int power = -1;
   IntervalVec3 axis;
@@ -245,6 +260,14 @@ void ChainBounds::Impl::reset() {
         ++powers;
       }
     }
+    s.half_angle = rows == 1 && query.half_angles.has(step.variable);
+    if (s.half_angle) {
+      for (int k = 0; k <= s.degree; ++k)
+        s.q[0][k] = Interval(query.coefficients[k * query.num_variables + step.variable]);
+      s.multiple = Interval(step.multiplier);
+      s.offset = Interval(query.half_angles.reference[step.variable]) * step.multiplier + Interval(step.offset);
+      continue;
+    }
     s.q[0][0] += Interval(step.offset);
     if (step.kind == StepKind::turn && powers == 1) {
       const IntervalVec3 q(s.q[0][last], s.q[1][last], s.q[2][last]);
@@ -280,7 +303,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
     switch (step.kind) {
       case StepKind::revolute: {
         slides = false;
-        const Variable q = evaluatePolynomial(s.q[0], s.degree, T);
+        const Variable q = s.only(T);
         Interval sine, cosine;
         encloseSineCosine(q.q, sine, cosine);
         for (int k = 0; k < 3; ++k) {
@@ -294,7 +317,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
       }
       case StepKind::prismatic: {
         turns = false;
-        const Variable q = evaluatePolynomial(s.q[0], s.degree, T);
+        const Variable q = s.only(T);
         factor.l = {Interval(0.0), Interval(0.0), q.q};
         factor.l1 = {Interval(0.0), Interval(0.0), q.q1};
         factor.l2 = {Interval(0.0), Interval(0.0), q.q2};

@@ -147,11 +147,12 @@ bool Run::choosePairs() {
 ///   which pairs touch.
 bool Run::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
-  w_.still.assign(2 * n, 0);
+  const std::int32_t degree = query_.half_angles.count > 0 ? 2 : 1;
+  w_.still.assign((static_cast<std::size_t>(degree) + 1) * n, 0);
   if (n) std::copy(query_.coefficients, query_.coefficients + n, w_.still.begin());
   Query still = query_;
   still.coefficients = w_.still.data();
-  still.degree = 1;
+  still.degree = degree;
   still.max_contacts = 1;
   still.progress = nullptr;
   still.describe_contacts = false;

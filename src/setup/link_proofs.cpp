@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+#include "motion/half_angles.h"
+#include "numerics/arc_tangent.h"
 #include "setup/neighbours.h"
 
 namespace fcl_artic {
@@ -12,7 +14,8 @@ namespace {
 
 /// Whether a variable keeps within a range over a whole motion. (Each power of t is within [0, 1]; 64 ulp of the
 /// coefficients' sizes are more than the rounding of their sums.)
-bool keepsWithin(const Eigen::MatrixXd& variables, int v, const ValueRange& range) {
+bool keepsWithin(const JointMotion& motion, int v, const ValueRange& range) {
+  const Eigen::MatrixXd& variables = motion.variables();
   double least = variables(v, 0), most = least, size = std::abs(least);
   for (Eigen::Index k = 1; k < variables.cols(); ++k) {
     const double c = variables(v, k);
@@ -21,7 +24,11 @@ bool keepsWithin(const Eigen::MatrixXd& variables, int v, const ValueRange& rang
     size += std::abs(c);
   }
   const double slack = 64 * 0x1p-52 * size;
-  return least - slack >= range.lower && most + slack <= range.upper;
+  least -= slack;
+  most += slack;
+  const engine::HalfAngles half_angles = halfAnglesOf(motion);
+  if (half_angles.has(v)) turnIntoAngles(half_angles.reference[v], least, most);
+  return least >= range.lower && most <= range.upper;
 }
 
 }  // namespace
@@ -107,7 +114,7 @@ void ProvenPairs::buildScene(const Registry& registry) {
 
 bool ProvenPairs::within(const std::vector<int>& variables, const JointMotion& motion) const {
   return std::all_of(variables.begin(), variables.end(),
-                     [&](int v) { return keepsWithin(motion.variables(), v, ranges_[static_cast<std::size_t>(v)]); });
+                     [&](int v) { return keepsWithin(motion, v, ranges_[static_cast<std::size_t>(v)]); });
 }
 
 void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion& motion,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "motion/half_angles.h"
+#include "numerics/arc_tangent.h"
 #include "setup/parallel.h"
 
 namespace fcl_artic {
@@ -70,12 +72,14 @@ unsigned LinkTables::freeParts(const engine::Problem& problem, const JointMotion
   const auto pair = static_cast<std::size_t>(link_pair);
   if (pair >= tables_.size() || !tables_[pair]) return 0;
   const PairTable& table = *tables_[pair];
-  return margins.of(problem.linkPair(link_pair)) > table.margin() ? 0 : table.freeParts(motion.variables());
+  if (margins.of(problem.linkPair(link_pair)) > table.margin()) return 0;
+  return table.freeParts(motion.variables(), halfAnglesOf(motion));
 }
 
 void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {
   found.clear();
   const Eigen::MatrixXd& variables = motion.variables();
+  const engine::HalfAngles half_angles = halfAnglesOf(motion);
   constexpr int kMost = 64, kParts = 8;
   double parts[kMost];
   if (grids_.empty() || variables.rows() > kMost) return;
@@ -85,6 +89,7 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
     for (const auto& [v, range] : ranges_) {
       double q = variables(v, variables.cols() - 1);
       for (Eigen::Index k = variables.cols() - 2; k >= 0; --k) q = q * t + variables(v, k);
+      if (half_angles.has(v)) q = half_angles.reference[v] + 2 * arcTangent(q);
       parts[v] = range.part(q);
     }
     for (const Grid& grid : grids_) {

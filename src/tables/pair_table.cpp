@@ -8,6 +8,7 @@
 #include "kinematics/angles.h"
 #include "motion/variable_reach.h"
 #include "narrowphase/engine_workspace.h"
+#include "numerics/arc_tangent.h"
 #include "numerics/assertion.h"
 
 namespace fcl_artic {
@@ -348,7 +349,7 @@ bool PairTable::free(const double* lower, const double* upper) const {
   return true;
 }
 
-unsigned PairTable::freeParts(const Eigen::MatrixXd& variables) const {
+unsigned PairTable::freeParts(const Eigen::MatrixXd& variables, const engine::HalfAngles& half_angles) const {
   constexpr int kParts = 8;
   const Eigen::Index degree = variables.cols() - 1;
   // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few dozen
@@ -365,6 +366,8 @@ unsigned PairTable::freeParts(const Eigen::MatrixXd& variables) const {
       for (Eigen::Index k = 1; k <= degree; ++k) way += std::abs(c[k]) * (power *= half);
       lower[a] = c[0] - way;
       upper[a] = c[0] + way;
+      const int v = cells_.axes[a].variable;
+      if (half_angles.has(v)) turnIntoAngles(half_angles.reference[v], lower[a], upper[a]);
     }
     return free(lower, upper);
   };

@@ -51,6 +51,21 @@ TEST_F(TrajectoryProgramTest, CubicStartsAndEndsAtRest) {
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 12, 1e-5);  // std::to_string has six digits
 }
 
+/// The contact's time is that of its tangent; a trajectory of one piece and a motion say the same.
+TEST_F(TrajectoryProgramTest, TangentHalfAngleGoesByTangents) {
+  const double wanted = std::tan(kContactAngle / 2) / std::tan(0.75);
+  const std::string law = "--interpolation tangent-half-angle";
+  for (const Outcome& run : {check("t,hinge\n0,0\n1,1.5\n", law + " --json"),
+                             this->run("check " + armAndBall() + " --from 0,0 --to 1.5,0 --json " + law)}) {
+    ASSERT_EQ(run.status, 1) << run.err;
+    EXPECT_NEAR(Json::parse(run.out).at("t_lower"), wanted, 2e-6);
+  }
+  EXPECT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 1,0 --shortest " + law).status, 2);
+  const Outcome beyond = this->run("check " + armAndBall() + " --from 0,0 --to 3.2,0 " + law);
+  EXPECT_EQ(beyond.status, 2);
+  EXPECT_NE(beyond.err.find("hinge"), std::string::npos) << beyond.err;
+}
+
 TEST_F(TrajectoryProgramTest, NotesWhatHasNoColumn) {
   const Outcome run = check("t,hinge\n0,0\n1,0.5\n");
   EXPECT_NE(run.out.find("has no column for rail"), std::string::npos) << run.out;

@@ -131,6 +131,55 @@ PairCase::PairCase(Random& random, int rounding) {
   in.query.num_variables = static_cast<std::int32_t>(q0.size());
 }
 
+std::vector<double> randomTangent(Random& random, int degree, double t) {
+  std::vector<double> s(static_cast<std::size_t>(degree) + 1, 0.0);
+  const int kind = random.below(6);
+  const double size = kind == 0 ? random.size(1e-6, 1) : kind == 1 ? random.size(10, 3e4) : random.size(0.1, 30);
+  for (int k = 1; k <= degree; ++k) s[static_cast<std::size_t>(k)] = size * random.in(-1, 1) / k;
+  if (random.chance(0.1)) std::fill(s.begin() + 1, s.end(), 0.0);
+  double way = 0, power = 1;
+  for (std::size_t k = 1; k < s.size(); ++k) way += s[k] * (power *= t);
+  switch (kind) {
+    case 2:
+      s[0] = -way;  // 0 at t
+      break;
+    case 3:
+      s[0] = (random.chance(0.5) ? 1 : std::sqrt(1.0 / 3)) * (random.chance(0.5) ? 1 : -1) - way;
+      break;
+    default:
+      s[0] = random.in(-1, 1) * size;
+  }
+  return s;
+}
+
+void PairCase::goByHalfAngles(Random& random) {
+  const std::size_t n = q0.size();
+  const int degree = random.chance(0.6) ? 2 : 3 + random.below(3);
+  half_angles.assign(n, 0);
+  references.assign(n, 0);
+  coefficients.resize(n * (static_cast<std::size_t>(degree) + 1), 0.0);
+  for (std::size_t v = 0; v < n; ++v) {
+    if (!tree.isAngle(static_cast<int>(v))) continue;
+    half_angles[v] = 1;
+    references[v] = random.chance(0.5) ? 0 : random.in(-3, 3);
+    const std::vector<double> s = randomTangent(random, random.chance(0.6) ? 1 : degree, in.tm[random.below(8)]);
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(degree); ++k) {
+      coefficients[k * n + v] = k < s.size() ? s[k] : 0;
+    }
+  }
+  in.query.coefficients = coefficients.data();
+  in.query.degree = degree;
+  in.query.half_angles = {half_angles.data(), references.data(), static_cast<std::int32_t>(n)};
+}
+
+Real PairCase::variable(std::size_t v, const Real& t) const {
+  if (half_angles.empty() || !half_angles[v]) return Real(q0[v]) + t * Real(dq[v]);
+  const std::size_t n = q0.size();
+  Real s;
+  for (int k = in.query.degree; k >= 0; --k) s = s * t + Real(coefficients[static_cast<std::size_t>(k) * n + v]);
+  return Real(references[v]) + Real(2.0) * atan(s);
+}
+
 RealRigid PairCase::pose(LinkId link, const Real& t) const {
   RealRigid M;  // of the link in its ancestors' frames, further and further up
   for (; tree.parentJoint(link) >= 0; link = tree.parentLink(link)) {
@@ -139,7 +188,7 @@ RealRigid PairCase::pose(LinkId link, const Real& t) const {
     RealRigid own = properly(joint.origin);
     if (joint.type != JointType::fixed) {
       const auto v = static_cast<std::size_t>(tree.jointVariable(id));
-      Real q = Real(q0[v]) + t * Real(dq[v]);
+      Real q = variable(v, t);
       if (joint.mimics) q = Real(joint.mimic.multiplier) * q + Real(joint.mimic.offset);
       const Real3 axis = unit(exactly(joint.axis));
       RealRigid move;

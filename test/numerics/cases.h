@@ -55,6 +55,10 @@ class ScopedRounding {
   int before_;
 };
 
+/// Coefficients of a tangent of half an angle, up to `degree`: small ones, large ones, such that cross 0 fast or touch
+/// it at `t`, or pass where the bounds of its angle's derivatives have their largest values.
+std::vector<double> randomTangent(Random& random, int degree, double t);
+
 /// Two bodies on a random robot (or one in the world) over eight neighbouring intervals.
 struct PairCase {
   KinematicTree tree;
@@ -66,9 +70,15 @@ struct PairCase {
   std::unique_ptr<FrameSweep> sweep;
   Carrier carrier;  ///< of link_b
   PairInput in;
+  std::vector<std::uint8_t> half_angles;  ///< per variable: whether it goes by the tangent of half its angle; or empty
+  std::vector<double> references;
 
   /// @param rounding  mode in which the sweep is set up.
   PairCase(Random& random, int rounding);
+  /// Lets all angles go by polynomials that are the tangents of their halves, and slides as before.
+  void goByHalfAngles(Random& random);
+  /// A joint variable, exact.
+  Real variable(std::size_t v, const Real& t) const;
   /// B's geometry in A's, exact.
   RealRigid relative(const Real& t) const;
   /// Pose of a link, exact.

@@ -48,6 +48,7 @@ class Real {
   friend Real sqrt(const Real& a) { return map(mpfr_sqrt, a); }
   friend Real sin(const Real& a) { return map(mpfr_sin, a); }
   friend Real cos(const Real& a) { return map(mpfr_cos, a); }
+  friend Real atan(const Real& a) { return map(mpfr_atan, a); }
   friend Real abs(const Real& a) { return a < Real(0.0) ? -a : a; }
   friend Real max(const Real& a, const Real& b) { return a < b ? b : a; }
 

@@ -94,6 +94,9 @@ struct Subject {
   bool (*certainlyWithin)(const TouchInput& in);
   /// A chord of A through B, a triangle, by any of the prism's tetrahedra.
   bool (*certainlyPierces)(const TouchInput& in);
+  void (*arcTangent)(const double* s, double* angle);
+  /// Bounds over [begin, end] of the step's variable and its first three derivatives.
+  void (*boundVariable)(const engine::SweepStep& step, const engine::Query& query, double begin, double end, double* m);
 };
 
 extern const Subject kSubjectPortable, kSubjectSse2, kSubjectAvx2, kSubjectAvx512;

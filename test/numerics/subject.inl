@@ -245,6 +245,20 @@ bool certainlyPiercesOf(const TouchInput& in) {
   return false;
 }
 
+void arcTangentOf(const double* s, double* angle) {
+  Lanes x;
+  for (int i = 0; i < kLanes; ++i) x.set(i, s[i]);
+  x = arcTangent(x);
+  for (int i = 0; i < kLanes; ++i) angle[i] = x[i];
+}
+
+void boundVariableOf(const SweepStep& step, const engine::Query& query, double begin, double end, double* m) {
+  FactorVariables variables;
+  VariableBounds bounds;
+  boundVariables(step, query, begin, end, variables, bounds);
+  for (int n = 0; n < 4; ++n) m[n] = bounds.m[n];
+}
+
 }  // namespace
 }  // namespace FCL_ARTIC_ISA
 
@@ -254,6 +268,6 @@ const Subject FCL_ARTIC_ISA_SUBJECT = {
     &FCL_ARTIC_ISA::certify,           &FCL_ARTIC_ISA::searchWholeLanes,    &FCL_ARTIC_ISA::sweepNodeOf,
     &FCL_ARTIC_ISA::boundLssOf,        &FCL_ARTIC_ISA::apartFromBox,        &FCL_ARTIC_ISA::apartFromLss,
     &FCL_ARTIC_ISA::positivePrefixOf,  &FCL_ARTIC_ISA::certainlyTouchingOf, &FCL_ARTIC_ISA::certainlyWithinOf,
-    &FCL_ARTIC_ISA::certainlyPiercesOf};
+    &FCL_ARTIC_ISA::certainlyPiercesOf, &FCL_ARTIC_ISA::arcTangentOf,       &FCL_ARTIC_ISA::boundVariableOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic
