@@ -99,6 +99,13 @@ void campaign(const char* name, int checks) {
 TEST(ChainBounds, HoldExactPosesOfRobots) {
   campaign<PairCase>("ChainBounds robots", 100000);
 }
+/// Robots whose angles go by the tangents of their halves.
+struct HalfAngleCase : PairCase {
+  HalfAngleCase(Random& random, int rounding) : PairCase(random, rounding) { goByHalfAngles(random); }
+};
+TEST(ChainBounds, HoldExactPosesOfRobotsThatGoByHalfAngles) {
+  campaign<HalfAngleCase>("ChainBounds half angles", 100000);
+}
 TEST(ChainBounds, HoldExactPosesOfBodies) {
   campaign<BodyCase>("ChainBounds bodies", 100000);
 }
