@@ -263,11 +263,20 @@ void boundVariableOf(const SweepStep& step, const engine::Query& query, double b
 }  // namespace FCL_ARTIC_ISA
 
 namespace numerics_test {
-const Subject FCL_ARTIC_ISA_SUBJECT = {
-    FCL_ARTIC_STRING(FCL_ARTIC_ISA),   &FCL_ARTIC_ISA::sineCosineOf,        &FCL_ARTIC_ISA::relate,
-    &FCL_ARTIC_ISA::certify,           &FCL_ARTIC_ISA::searchWholeLanes,    &FCL_ARTIC_ISA::sweepNodeOf,
-    &FCL_ARTIC_ISA::boundLssOf,        &FCL_ARTIC_ISA::apartFromBox,        &FCL_ARTIC_ISA::apartFromLss,
-    &FCL_ARTIC_ISA::positivePrefixOf,  &FCL_ARTIC_ISA::certainlyTouchingOf, &FCL_ARTIC_ISA::certainlyWithinOf,
-    &FCL_ARTIC_ISA::certainlyPiercesOf, &FCL_ARTIC_ISA::arcTangentOf,       &FCL_ARTIC_ISA::boundVariableOf};
+const Subject FCL_ARTIC_ISA_SUBJECT = {FCL_ARTIC_STRING(FCL_ARTIC_ISA),
+                                       &FCL_ARTIC_ISA::sineCosineOf,
+                                       &FCL_ARTIC_ISA::relate,
+                                       &FCL_ARTIC_ISA::certify,
+                                       &FCL_ARTIC_ISA::searchWholeLanes,
+                                       &FCL_ARTIC_ISA::sweepNodeOf,
+                                       &FCL_ARTIC_ISA::boundLssOf,
+                                       &FCL_ARTIC_ISA::apartFromBox,
+                                       &FCL_ARTIC_ISA::apartFromLss,
+                                       &FCL_ARTIC_ISA::positivePrefixOf,
+                                       &FCL_ARTIC_ISA::certainlyTouchingOf,
+                                       &FCL_ARTIC_ISA::certainlyWithinOf,
+                                       &FCL_ARTIC_ISA::certainlyPiercesOf,
+                                       &FCL_ARTIC_ISA::arcTangentOf,
+                                       &FCL_ARTIC_ISA::boundVariableOf};
 }  // namespace numerics_test
 }  // namespace fcl_artic
