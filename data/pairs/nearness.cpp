@@ -63,7 +63,8 @@ struct Placed {
       case Kind::triangle: {
         Vec<R> best = body.vertices[0].template cast<R>();
         for (const Vec3& v : body.vertices) {
-          const Vec<R> x = v.template cast<R>();
+          const Vec<R> x =
+              v.template cast<R>();  // NOLINT(performance-unnecessary-copy-initialization): of long doubles none
           if (x.dot(u) > best.dot(u)) best = x;
         }
         return best;

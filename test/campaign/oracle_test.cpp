@@ -182,7 +182,9 @@ TEST(Kinematics, NoPointIsFasterThanTheSpeedBound) {
     for (const auto& [a, b] : k.pairs()) {
       const double t = r.unit(), h = 1e-4;
       const Vec3 local = s.bodies[static_cast<std::size_t>(b)].geometry->surfacePoint(r.unit(), r.unit(), r.unit());
-      const auto seen = [&](double at) { return k.bodyPose(a, at).inverse() * (k.bodyPose(b, at) * local); };
+      const auto seen = [&, a = a, b = b](double at) {
+        return k.bodyPose(a, at).inverse() * (k.bodyPose(b, at) * local);
+      };
       // Speed seen from a turning body: its own turn carries the point along; so look from a's reach only.
       const double reach = (seen(t) - s.bodies[static_cast<std::size_t>(a)].geometry->centre()).norm();
       if (reach > s.bodies[static_cast<std::size_t>(a)].geometry->radius()) continue;

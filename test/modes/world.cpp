@@ -318,7 +318,8 @@ double World::distance(const Watched& pair, const std::vector<Isometry3d>& poses
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 8; ++i) {
     Isometry3d other = poses[pair.b];
-    other.translation() += (i / 2) * 1e-9 * Vector3d(1, -2, 3);
+    const int shifts = i / 2;
+    other.translation() += shifts * 1e-9 * Vector3d(1, -2, 3);
     fcl::DistanceRequestd request;
     fcl::DistanceResultd result;
     const double found = i % 2 ? fcl::distance(b.get(), other, a.get(), poses[pair.a], request, result)

@@ -39,15 +39,15 @@ class World {
  public:
   explicit World(std::shared_ptr<const KinematicTree> tree)
       : manager_(std::make_shared<ArticulatedCollisionManager>(std::move(tree))) {}
-  World& bind(const std::string& link, std::shared_ptr<fcl::CollisionGeometryd> shape,
+  World& bind(const std::string& link, const std::shared_ptr<fcl::CollisionGeometryd>& shape,
               const fcl::Transform3d& offset = fcl::Transform3d::Identity()) {
-    objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(shape)));
+    objects_.push_back(std::make_unique<fcl::CollisionObjectd>(shape));
     manager_->bind(link, objects_.back().get(), offset);
     return *this;
   }
-  World& obstacle(std::shared_ptr<fcl::CollisionGeometryd> shape, const fcl::Transform3d& pose,
+  World& obstacle(const std::shared_ptr<fcl::CollisionGeometryd>& shape, const fcl::Transform3d& pose,
                   const std::string& name = {}) {
-    objects_.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(shape), pose));
+    objects_.push_back(std::make_unique<fcl::CollisionObjectd>(shape, pose));
     manager_->registerObject(objects_.back().get(), name);
     return *this;
   }

@@ -34,7 +34,7 @@ CertifiedRequest paper() {
 /// Body 1 goes straight from tf1 to end1; body 2 stands still.
 CertifiedPairResult slide(const fcl::CollisionGeometryd& body1, const Isometry3d& begin1, const Isometry3d& end1,
                           const fcl::CollisionGeometryd& body2, const Isometry3d& tf2,
-                          CertifiedRequest request = paper()) {
+                          const CertifiedRequest& request = paper()) {
   CertifiedPairResult result;
   fcl_artic::continuousCollide(&body1, begin1, end1, &body2, tf2, tf2, fcl::CCDM_TRANS, request, result);
   return result;

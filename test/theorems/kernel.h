@@ -16,8 +16,8 @@
 #define FCL_ARTIC_ISA_BITS 0
 #define double ::recording::Recorded
 #define reinterpret_cast ::recording::as
-#define __builtin_sqrt ::recording::rootOf
-#define __builtin_fabs ::recording::absolute
+#define __builtin_sqrt ::recording::rootOf    // NOLINT(bugprone-reserved-identifier): what the kernel calls
+#define __builtin_fabs ::recording::absolute  // NOLINT(bugprone-reserved-identifier)
 #include "motion/chain.h"
 #include "narrowphase/certificate.h"
 #include "narrowphase/solver/swept_box.h"

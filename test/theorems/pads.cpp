@@ -56,7 +56,9 @@ static_assert(kProductUlps + kTurnAboutZUlps + kSinesUlps <= kernel::kStepUlps.v
 /// doubles end), so that S in [1, 2] is all.
 struct Slice {
   Real x[2], s[2], l[2] = {1, 1};
-  Real P() const { return (1 + 2.5 * x[0]) * (1 + 2.5 * x[0]); }
+  Real P() const {  // NOLINT(readability-identifier-naming): the theorems' letter
+    return (1 + 2.5 * x[0]) * (1 + 2.5 * x[0]);
+  }
 };
 
 struct Theorem {

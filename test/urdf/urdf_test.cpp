@@ -14,7 +14,7 @@
 #include "temp_folder.h"
 
 /// Readers leak on broken files: urdfdom where joints close a loop, assimp where it gives up. Not ours to mend.
-extern "C" const char* __lsan_default_suppressions() {
+extern "C" const char* __lsan_default_suppressions() {  // NOLINT: its name
   return "leak:liburdfdom_model\nleak:libassimp\n";
 }
 

@@ -94,6 +94,7 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
   apart_.visibility = VisibilityMode::off;  // it might leave to the clock which of two proofs is tried
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): kept, by the constructor that this one calls
 ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                      const CertifiedRequest& request)
     : ContinuousMotionValidator(si, manager, allJoints(si, manager), request) {}
@@ -194,6 +195,7 @@ CollisionStateValidityChecker::CollisionStateValidityChecker(const ob::SpaceInfo
       mapping_(ofManager(std::move(mapping), manager_)),
       request_(askedOfState(request)) {}
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): kept, by the constructor that this one calls
 CollisionStateValidityChecker::CollisionStateValidityChecker(const ob::SpaceInformationPtr& si, ManagerPtr manager,
                                                              const CertifiedRequest& request)
     : CollisionStateValidityChecker(si, manager, allJoints(si, manager), request) {}

@@ -205,6 +205,7 @@ PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager> m
   return setup;
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): kept by what is returned
 PlanningSetup setUpRigidBody(std::shared_ptr<fcl::CollisionGeometryd> body, const Scene& obstacles,
                              const SetupOptions& options, JointType freedom) {
   if (!body) throw std::invalid_argument("setUpRigidBody: the body is null");
