@@ -13,6 +13,9 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< 3 * width * height
 };
 
+/// The image as the content of a PNG file.
+/// @throws std::runtime_error naming the reason.
+std::string png(const Image& image);
 /// @throws std::runtime_error naming the file and the reason.
 void writePng(const std::string& path, const Image& image);
 

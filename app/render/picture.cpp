@@ -415,8 +415,8 @@ class Composer {
 
 void requirePictures() {}
 
-void writePicture(const std::string& path, const Robot& robot, const std::vector<Scene::Obstacle>& obstacles,
-                  const JointPath& motion, const CertifiedResult& result, const PictureOptions& options) {
+Image drawPicture(const Robot& robot, const std::vector<Scene::Obstacle>& obstacles, const JointPath& motion,
+                  const CertifiedResult& result, const PictureOptions& options) {
   const Composer composer(robot, obstacles, motion, result);
   Renderer renderer;
   const double aspect = static_cast<double>(options.width) / options.height;
@@ -424,7 +424,12 @@ void writePicture(const std::string& path, const Robot& robot, const std::vector
                                        : composer.chooseCamera(renderer, aspect);
   Image image = renderer.draw(composer.stageFor(camera), camera, options.width, options.height);
   drawTitle(image, options.title);
-  writePng(path, image);
+  return image;
+}
+
+void writePicture(const std::string& path, const Robot& robot, const std::vector<Scene::Obstacle>& obstacles,
+                  const JointPath& motion, const CertifiedResult& result, const PictureOptions& options) {
+  writePng(path, drawPicture(robot, obstacles, motion, result, options));
 }
 
 }  // namespace fcl_artic::render

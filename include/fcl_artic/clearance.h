@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "fcl_artic/result.h"
@@ -20,6 +21,9 @@ struct ClearanceRequest {
   bool check_self = true;   ///< Links, and the objects attached to them, against each other.
   /// Maximum number of node and leaf tests; after it the search ends with what is proven so far; 0: no limit.
   std::uint64_t work_budget = 0;
+  /// Called now and then, from the querying thread, with what is proven so far (Clearance). May be empty. If it returns
+  /// false, the search ends with that, and Clearance::within_tolerance is false.
+  std::function<bool(double lower, double upper)> progress;
 };
 
 /// The smallest distance of any checked pair over a whole motion: lower <= distance <= upper, both proven. It is found
@@ -36,7 +40,7 @@ struct Clearance {
   /// The pair to which `upper` belongs; without names if `upper` is infinite.
   BodyRef body1, body2;
   /// Whether upper - lower is within the tolerances, or nothing comes within ClearanceRequest::most. False if the work
-  /// budget ran out, or if a query could not be decided.
+  /// budget ran out, if `progress` ended the search, or if a query could not be decided.
   bool within_tolerance = false;
   /// Work of all queries together.
   QueryStatistics statistics;

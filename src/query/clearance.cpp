@@ -73,6 +73,7 @@ class Search {
     request.mode = ContactMode::any;
     request.check_scene = request_.check_scene;
     request.check_self = request_.check_self;
+    if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
     if (request_.work_budget) {
       const std::uint64_t used = countedWork(found_.statistics);

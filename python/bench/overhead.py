@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What Python adds to a query: the same motions asked from C++ and from Python, in one process, on one world.
+
+    PYTHONPATH=build/release/python python3 python/bench/overhead.py
+
+Prints the time of check() beside C++'s for free motions of the bundled arm, motions per second of check_many() beside
+C++'s on one and two threads, and the time that `import fcl_artic` takes. Passes alternate, and the fastest of each
+counts: other programs on the machine only slow down.
+"""
+import argparse
+import pathlib
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import _fcl_artic_bench as cpp
+import fcl_artic
+
+DATA = pathlib.Path(__file__).resolve().parents[2] / "data"
+
+
+def best(passes, *functions):
+    """The shortest time of each function, s."""
+    times = [[] for _ in functions]
+    for _ in range(passes):
+        for function, taken in zip(functions, times):
+            taken.append(function())
+    return [min(taken) for taken in times]
+
+
+def timed(function):
+    begin = time.perf_counter()
+    function()
+    return time.perf_counter() - begin
+
+
+def measure_check(world, q0, q1, passes):
+    """Time of a call of check(), from C++ and from Python, µs."""
+    pairs = list(zip(q0, q1))
+
+    def from_python():
+        check = world.check
+        begin = time.perf_counter()
+        for a, b in pairs:
+            check(a, b)
+        return time.perf_counter() - begin
+
+    a, b = best(passes, lambda: cpp.check_each(world, q0, q1), from_python)
+    return 1e6 * a / len(q0), 1e6 * b / len(q0)
+
+
+def measure_many(world, q0, q1, threads, passes):
+    """Motions per second, from C++ and from Python."""
+    a, b = best(
+        passes,
+        lambda: cpp.check_many(world, q0, q1, threads),
+        lambda: timed(lambda: world.check_many(q0, q1, threads=threads)),
+    )
+    return len(q0) / a, len(q0) / b
+
+
+def measure_import(passes):
+    """Time that the import takes, ms, NumPy's own left out."""
+    code = "import numpy, time; begin = time.perf_counter(); import fcl_artic; print(time.perf_counter() - begin)"
+    return 1e3 * min(
+        float(subprocess.run([sys.executable, "-c", code], capture_output=True, check=True).stdout) for _ in range(passes)
+    )
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--passes", type=int, default=9)
+    passes = parser.parse_args().passes
+    robot = fcl_artic.load_urdf(DATA / "puma560" / "puma560.urdf")
+    world = fcl_artic.World(robot, fcl_artic.load_scene(DATA / "pipes.obj"))
+    random = np.random.default_rng(3)
+    lower, upper = np.clip(robot.tree.limits, -np.pi, np.pi).T
+    q0 = random.uniform(lower, upper, (20000, robot.dof))
+    q1 = q0 + random.uniform(-0.1, 0.1, q0.shape)
+    answers = world.check_many(q0, q1)
+    free = answers.free
+    good = True
+
+    print(f"fcl_artic {fcl_artic.__version__}, Python {sys.version.split()[0]}, NumPy {np.__version__}")
+    print(f"{len(q0)} motions of {robot.name} by at most 0.1 rad: {answers}")
+    in_cpp, in_python = measure_check(world, q0[free][:2000], q1[free][:2000], passes)
+    good &= in_python - in_cpp <= 2
+    print(f"check, free        C++ {in_cpp:8.2f} us   Python {in_python:8.2f} us   more {in_python - in_cpp:6.2f} us (at most 2)")
+    still = np.repeat(q0[free][:1], 5000, axis=0)
+    in_cpp, in_python = measure_check(world, still, still, passes)
+    good &= in_python - in_cpp <= 2
+    print(f"check, standing    C++ {in_cpp:8.2f} us   Python {in_python:8.2f} us   more {in_python - in_cpp:6.2f} us (at most 2)")
+    for threads in (1, 2):
+        cpp_rate, python_rate = measure_many(world, q0, q1, threads, passes)
+        share = python_rate / cpp_rate
+        good &= share >= 0.95
+        print(f"check_many, {threads} thr.  C++ {cpp_rate:8.0f} /s   Python {python_rate:8.0f} /s   {100 * share:5.1f} % (at least 95)")
+    milliseconds = measure_import(passes)
+    good &= milliseconds < 100
+    print(f"import fcl_artic   {milliseconds:.1f} ms (below 100)")
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

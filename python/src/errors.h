@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Errors as Python has them. What the library throws arrives so: std::invalid_argument as ValueError, and what a file
+// is to blame for as FileNotFoundError or ValueError (guardFiles()).
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace fcl_artic::python {
+
+namespace py = pybind11;
+
+[[noreturn]] inline void typeError(const std::string& message) {
+  throw py::type_error(message);
+}
+
+[[noreturn]] inline void valueError(const std::string& message) {
+  throw py::value_error(message);
+}
+
+/// Raises FileNotFoundError as open() does: with errno, message and file name.
+[[noreturn]] inline void fileNotFound(const std::string& message, const std::string& path) {
+  PyErr_SetObject(PyExc_FileNotFoundError, py::make_tuple(ENOENT, message, path).ptr());
+  throw py::error_already_set();
+}
+
+/// Name of a value's type, for messages.
+inline std::string typeName(py::handle value) {
+  return Py_TYPE(value.ptr())->tp_name;
+}
+
+/// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
+/// else that is wrong with a file's content a ValueError. To be called with the GIL held.
+/// @param path  of the file that the caller named.
+template <class Read>
+auto guardFiles(const std::string& path, Read&& read) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) fileNotFound("no such file", path);
+  try {
+    py::gil_scoped_release release;
+    return read();
+  } catch (const std::runtime_error& problem) {
+    const std::string message = problem.what();
+    if (message.find("no such file") != std::string::npos || message.find("No such file") != std::string::npos ||
+        message.find("there is no package") != std::string::npos) {
+      fileNotFound(message, path);
+    }
+    valueError(message);
+  }
+}
+
+/// Looks up a name of the library's, for which it throws std::out_of_range: a ValueError here, since no index is wrong.
+template <class Look>
+auto named(Look&& look) -> decltype(look()) {
+  try {
+    return look();
+  } catch (const std::out_of_range& problem) {
+    valueError(problem.what());
+  }
+}
+
+}  // namespace fcl_artic::python

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Geometries in Python: FCL's, constant and shared.
+#pragma once
+
+#include <memory>
+
+#include <fcl/geometry/collision_geometry.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include "array.h"
+
+namespace fcl_artic::python {
+
+/// A geometry as Python holds it. It is not changed once it is made, so that threads may share it.
+struct Geometry {
+  std::shared_ptr<fcl::CollisionGeometryd> shape;
+};
+
+/// The geometry of a Geometry, or the mesh of what has `vertices` and `faces`, as trimesh's Trimesh.
+/// @throws py::type_error naming `what`.
+Geometry geometryOf(py::handle value, const char* what);
+
+/// An object of the geometry at a pose.
+std::shared_ptr<fcl::CollisionObjectd> objectOf(const Geometry& geometry, const Eigen::Isometry3d& pose);
+
+/// Builds from plain numbers and arrays what describes a geometry, and the geometry of that.
+py::tuple geometryState(const Geometry& geometry);
+Geometry geometryOfState(const py::tuple& state);
+
+void bindGeometry(py::module_& module);
+
+}  // namespace fcl_artic::python

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "kinematics.h"
+
+#include <pybind11/stl.h>
+
+#include <limits>
+
+#include "enums.h"
+#include "fcl_artic/in_between.h"
+#include "text/nearest_name.h"
+
+namespace fcl_artic::python {
+namespace {
+
+py::list names(int count, const std::function<const std::string&(int)>& name) {
+  py::list out;
+  for (int i = 0; i < count; ++i) out.append(name(i));
+  return out;
+}
+
+Joint makeJoint(JointType type, const std::string& name, const std::string& parent, const std::string& child,
+                py::handle axis, py::handle origin, double lower, double upper, py::handle mimic) {
+  Joint joint;
+  joint.type = type;
+  joint.name = name;
+  joint.parent = parent;
+  joint.child = child;
+  if (!axis.is_none()) joint.axis = vector3Of(axis, "axis");
+  joint.origin = poseOf(origin, "origin");
+  joint.lower = lower;
+  joint.upper = upper;
+  if (!mimic.is_none()) {
+    joint.mimics = true;
+    joint.mimic = py::cast<Mimic>(mimic);
+  }
+  return joint;
+}
+
+py::tuple jointState(const Joint& j) {
+  return py::make_tuple(memberOf(j.type), j.name, j.parent, j.child, arrayOf(Eigen::VectorXd(j.axis)),
+                        arrayOf(j.origin), j.lower, j.upper, j.mimics ? py::cast(j.mimic) : py::none());
+}
+
+Joint jointOfState(const py::tuple& s) {
+  return makeJoint(enumOf<JointType>(s[0], "type"), py::cast<std::string>(s[1]), py::cast<std::string>(s[2]),
+                   py::cast<std::string>(s[3]), s[4], s[5], py::cast<double>(s[6]), py::cast<double>(s[7]), s[8]);
+}
+
+void bindJoint(py::module_& module) {
+  py::class_<Mimic>(module, "Mimic", "How a joint follows another one: q = multiplier * q_master + offset.")
+      .def(py::init([](std::string master, double multiplier, double offset) {
+             return Mimic{std::move(master), multiplier, offset};
+           }),
+           py::arg("master"), py::arg("multiplier") = 1.0, py::arg("offset") = 0.0)
+      .def_readwrite("master", &Mimic::master)
+      .def_readwrite("multiplier", &Mimic::multiplier)
+      .def_readwrite("offset", &Mimic::offset)
+      .def("__repr__",
+           [](const Mimic& m) {
+             return py::str("Mimic({!r}, multiplier={}, offset={})").format(m.master, m.multiplier, m.offset);
+           })
+      .def(py::pickle([](const Mimic& m) { return py::make_tuple(m.master, m.multiplier, m.offset); },
+                      [](const py::tuple& s) {
+                        return Mimic{py::cast<std::string>(s[0]), py::cast<double>(s[1]), py::cast<double>(s[2])};
+                      }));
+
+  py::class_<Joint> joint(module, "Joint",
+                          "One joint, as in URDF: it carries the child link, whose frame is the joint's at q = 0.");
+  const auto withLimits = [&joint](const char* name, JointType type, const char* doc) {
+    joint.def_static(
+        name,
+        [type](const std::string& n, const std::string& parent, const std::string& child, py::handle axis,
+               py::handle origin, double lower, double upper,
+               py::handle mimic) { return makeJoint(type, n, parent, child, axis, origin, lower, upper, mimic); },
+        doc, py::arg("name"), py::arg("parent"), py::arg("child"), py::arg("axis"), py::arg("origin") = py::none(),
+        py::arg("lower") = 0.0, py::arg("upper") = 0.0, py::arg("mimic") = py::none());
+  };
+  withLimits("revolute", JointType::revolute,
+             "A joint that turns about `axis` by q rad, from `lower` to `upper`; both 0: without limits.");
+  withLimits("prismatic", JointType::prismatic,
+             "A joint that slides along `axis` by q m, from `lower` to `upper`; both 0: without limits.");
+  joint.def_static(
+      "continuous",
+      [](const std::string& name, const std::string& parent, const std::string& child, py::handle axis,
+         py::handle origin,
+         py::handle mimic) { return makeJoint(JointType::continuous, name, parent, child, axis, origin, 0, 0, mimic); },
+      "A joint that turns about `axis` without limits.", py::arg("name"), py::arg("parent"), py::arg("child"),
+      py::arg("axis"), py::arg("origin") = py::none(), py::arg("mimic") = py::none());
+  joint.def_static(
+      "planar",
+      [](const std::string& name, const std::string& parent, const std::string& child, py::handle normal,
+         py::handle origin) {
+        return makeJoint(JointType::planar, name, parent, child, normal, origin, 0, 0, py::none());
+      },
+      "A joint of x, y (m) and theta (rad) in the plane across `normal`.", py::arg("name"), py::arg("parent"),
+      py::arg("child"), py::arg("normal"), py::arg("origin") = py::none());
+  const auto withoutAxis = [&joint](const char* name, JointType type, const char* doc) {
+    joint.def_static(
+        name,
+        [type](const std::string& n, const std::string& parent, const std::string& child, py::handle origin) {
+          return makeJoint(type, n, parent, child, py::none(), origin, 0, 0, py::none());
+        },
+        doc, py::arg("name"), py::arg("parent"), py::arg("child"), py::arg("origin") = py::none());
+  };
+  withoutAxis("fixed", JointType::fixed, "A joint that does not move: the child stands at `origin`.");
+  withoutAxis("spherical", JointType::spherical, "A joint that turns freely: a quaternion x, y, z, w.");
+  withoutAxis("floating", JointType::floating, "A joint that moves freely: a position, then a quaternion x, y, z, w.");
+  joint.def_readonly("name", &Joint::name)
+      .def_property_readonly("type", [](const Joint& j) { return memberOf(j.type); })
+      .def_readonly("parent", &Joint::parent)
+      .def_readonly("child", &Joint::child)
+      .def_property_readonly("origin", [](const Joint& j) { return arrayOf(j.origin); })
+      .def_property_readonly("axis", [](const Joint& j) { return arrayOf(Eigen::VectorXd(j.axis)); })
+      .def_readonly("lower", &Joint::lower)
+      .def_readonly("upper", &Joint::upper)
+      .def_property_readonly("has_limits", [](const Joint& j) { return hasLimits(j); })
+      .def_property_readonly("mimic", [](const Joint& j) { return j.mimics ? py::cast(j.mimic) : py::none(); })
+      .def("__repr__",
+           [](const Joint& j) {
+             return py::str("<Joint {!r}: {}, {!r} carries {!r}>")
+                 .format(j.name, memberOf(j.type).attr("value"), j.parent, j.child);
+           })
+      .def(py::pickle(&jointState, &jointOfState));
+}
+
+py::tuple treeState(const Tree& t) {
+  const KinematicTree& tree = *t.tree;
+  py::list joints;
+  for (JointId j = 0; j < tree.numJoints(); ++j) joints.append(tree.joint(j));
+  return py::make_tuple(tree.name(),
+                        names(
+                            tree.numLinks(), [&](int i) -> auto& { return tree.linkName(i); }),
+                        joints, t.own == nullptr);
+}
+
+Tree treeOfState(const py::tuple& s) {
+  Tree tree = treeInBuilding(py::cast<std::string>(s[0]));
+  for (const py::handle link : py::list(s[1])) tree.own->addLink(py::cast<std::string>(link));
+  for (const py::handle joint : py::list(s[2])) tree.own->addJoint(py::cast<const Joint&>(joint));
+  if (py::cast<bool>(s[3])) tree.own = nullptr;
+  return tree;
+}
+
+KinematicTree& growing(Tree& t) {
+  if (!t.own) {
+    valueError("the tree of '" + t.tree->name() +
+               "' belongs to a robot and does not change; build a KinematicTree, then make a Robot of it");
+  }
+  return *t.own;
+}
+
+RowMajor limitsOf(const KinematicTree& tree) {
+  RowMajor limits(tree.dof(), 2);
+  limits.col(0).setConstant(-std::numeric_limits<double>::infinity());
+  limits.col(1).setConstant(std::numeric_limits<double>::infinity());
+  for (int v = 0; v < tree.dof(); ++v) {
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    if (!hasLimits(joint)) continue;
+    limits(v, 0) = joint.lower;
+    limits(v, 1) = joint.upper;
+  }
+  return limits;
+}
+
+void bindTree(py::module_& module) {
+  py::class_<Tree>(module, "KinematicTree", "A forest of links carried by joints: one robot or several.")
+      .def(py::init(&treeInBuilding), py::arg("name") = "robot")
+      .def(
+          "add_link", [](Tree& t, const std::string& name) { return growing(t).addLink(name); },
+          "Adds a link, which is a root until a joint carries it.", py::arg("name"))
+      .def(
+          "add_joint", [](Tree& t, const Joint& joint) { return growing(t).addJoint(joint); },
+          "Adds a joint between two links that were added before.", py::arg("joint"))
+      .def_property_readonly("name", [](const Tree& t) { return t.tree->name(); })
+      .def_property_readonly("dof", [](const Tree& t) { return t.tree->dof(); })
+      .def_property_readonly("links",
+                             [](const Tree& t) {
+                               return names(
+                                   t.tree->numLinks(), [&](int i) -> auto& { return t.tree->linkName(i); });
+                             })
+      .def_property_readonly("joints",
+                             [](const Tree& t) {
+                               py::list joints;
+                               for (JointId j = 0; j < t.tree->numJoints(); ++j) joints.append(t.tree->joint(j));
+                               return joints;
+                             })
+      .def_property_readonly("variables",
+                             [](const Tree& t) {
+                               return names(
+                                   t.tree->dof(), [&](int v) -> auto& { return t.tree->variableName(v); });
+                             })
+      .def_property_readonly("limits", [](const Tree& t) { return arrayOfRows(limitsOf(*t.tree)); })
+      .def_property_readonly("neutral", [](const Tree& t) { return arrayOf(t.tree->neutralConfiguration()); })
+      .def(
+          "joint", [](const Tree& t, const std::string& name) { return named([&] { return t.tree->joint(name); }); },
+          "The joint of this name.", py::arg("name"))
+      .def(
+          "parent",
+          [](const Tree& t, py::handle link) -> py::object {
+            const LinkId parent = t.tree->parentLink(linkOf(*t.tree, link));
+            return parent < 0 ? py::object(py::none()) : py::str(t.tree->linkName(parent));
+          },
+          "Name of a link's parent; None of a root.", py::arg("link"))
+      .def(
+          "is_angle", [](const Tree& t, int variable) { return t.tree->isAngle(variable); },
+          "Whether a joint variable, by its index, is an angle.", py::arg("variable"))
+      .def(
+          "joint_value",
+          [](const Tree& t, const std::string& joint, py::handle q) {
+            return named([&] { return t.tree->jointValue(t.tree->jointId(joint), vectorOf(q, "q")); });
+          },
+          "Value of a joint of at most one variable, with mimic applied.", py::arg("joint"), py::arg("q"))
+      .def(
+          "joint_pose",
+          [](const Tree& t, const std::string& joint, py::handle q) {
+            return arrayOf(named([&] { return t.tree->jointPose(t.tree->jointId(joint), vectorOf(q, "q")); }));
+          },
+          "Pose (4, 4) of the child link in the joint's frame.", py::arg("joint"), py::arg("q"))
+      .def(
+          "forward_kinematics",
+          [](const Tree& t, py::handle q) {
+            std::vector<Eigen::Isometry3d> M_0;
+            t.tree->forwardKinematics(vectorOf(q, "q"), M_0);
+            return arrayOf(M_0);
+          },
+          "Poses (L, 4, 4) of all links in the world, in the order of `links`.", py::arg("q"))
+      .def(
+          "link_pose",
+          [](const Tree& t, py::handle link, py::handle q) {
+            return arrayOf(t.tree->linkPose(linkOf(*t.tree, link), vectorOf(q, "q")));
+          },
+          "Pose (4, 4) of one link in the world.", py::arg("link"), py::arg("q"))
+      .def(
+          "limit_notes", [](const Tree& t, py::handle q) { return t.tree->limitNotes(vectorOf(q, "q")); },
+          "One line of text for each variable beyond its joint's limits.", py::arg("q"))
+      .def("__repr__",
+           [](const Tree& t) {
+             return py::str("<KinematicTree {!r}: {} links, {} variables>")
+                 .format(t.tree->name(), t.tree->numLinks(), t.tree->dof());
+           })
+      .def(py::pickle(&treeState, &treeOfState));
+}
+
+void bindMotions(py::module_& module) {
+  const auto of = [](JointMotion (*make)(const KinematicTree&, const Eigen::VectorXd&, const Eigen::VectorXd&)) {
+    return [make](py::handle tree, py::handle q0, py::handle q1) {
+      return make(*treeOf(tree), vectorOf(q0, "q0"), vectorOf(q1, "q1"));
+    };
+  };
+  py::class_<JointMotion>(module, "JointMotion",
+                          "A motion in joint space over t in [0, 1]: each variable is a polynomial of t.")
+      .def_static("linear", of(&JointMotion::linear), "Moves every variable straight from q0 to q1.", py::arg("tree"),
+                  py::arg("q0"), py::arg("q1"))
+      .def_static("shortest", of(&JointMotion::shortest),
+                  "As linear(), except that joints without limits take the shorter way round.", py::arg("tree"),
+                  py::arg("q0"), py::arg("q1"))
+      .def_static(
+          "still", [](py::handle tree, py::handle q) { return JointMotion::still(*treeOf(tree), vectorOf(q, "q")); },
+          "Stands still at q.", py::arg("tree"), py::arg("q"))
+      .def_static(
+          "polynomial",
+          [](py::handle tree, py::handle coefficients) {
+            return JointMotion::polynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows());
+          },
+          "Moves along polynomials up to the fifth degree: column k of the coefficients belongs to t**k.",
+          py::arg("tree"), py::arg("coefficients"))
+      .def_property_readonly("q0", [](const JointMotion& m) { return arrayOf(m.q0()); })
+      .def_property_readonly("dq", [](const JointMotion& m) { return arrayOf(m.dq()); })
+      .def_property_readonly("degree", &JointMotion::degree)
+      .def_property_readonly("coefficients",
+                             [](const JointMotion& m) { return arrayOfRows(RowMajor(m.coefficients())); })
+      .def(
+          "configuration", [](const JointMotion& m, double t) { return arrayOf(m.configuration(t)); },
+          "The configuration at time t.", py::arg("t"))
+      .def(
+          "is_of", [](const JointMotion& m, py::handle tree) { return m.isOf(*treeOf(tree)); },
+          "Whether the motion is of the tree's joint variables.", py::arg("tree"))
+      .def("__len__", &JointMotion::size)
+      .def("__repr__", [](const JointMotion& m) {
+        return py::str("<JointMotion of {} variables, degree {}>").format(m.size(), m.degree());
+      });
+
+  py::class_<JointTrajectory>(module, "JointTrajectory",
+                              "A trajectory in joint space: motions one after the other, in a time of its own.")
+      .def_static(
+          "linear",
+          [](py::handle tree, py::handle times, py::handle waypoints, bool unwrap) {
+            return trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::none(), unwrap);
+          },
+          "Goes straight from waypoint to waypoint.", py::arg("tree"), py::arg("times"), py::arg("waypoints"),
+          py::arg("unwrap") = false)
+      .def_static(
+          "cubic",
+          [](py::handle tree, py::handle times, py::handle waypoints, py::handle velocities, bool unwrap) {
+            return trajectoryThrough(*treeOf(tree), waypoints, times, velocities, py::none(), py::none(), unwrap);
+          },
+          "Cubic pieces with given velocities at the waypoints.", py::arg("tree"), py::arg("times"),
+          py::arg("waypoints"), py::arg("velocities"), py::arg("unwrap") = false)
+      .def_static(
+          "quintic",
+          [](py::handle tree, py::handle times, py::handle waypoints, py::handle velocities, py::handle accelerations,
+             bool unwrap) {
+            return trajectoryThrough(*treeOf(tree), waypoints, times, velocities, accelerations, py::none(), unwrap);
+          },
+          "Quintic pieces with given velocities and accelerations at the waypoints.", py::arg("tree"), py::arg("times"),
+          py::arg("waypoints"), py::arg("velocities"), py::arg("accelerations"), py::arg("unwrap") = false)
+      .def_static(
+          "parabolic_blends",
+          [](py::handle tree, py::handle times, py::handle waypoints, double blend, bool unwrap) {
+            return trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::float_(blend),
+                                     unwrap);
+          },
+          "Straight lines joined by parabolas over [t - blend, t + blend] around each inner waypoint.", py::arg("tree"),
+          py::arg("times"), py::arg("waypoints"), py::arg("blend"), py::arg("unwrap") = false)
+      .def_static(
+          "bspline",
+          [](py::handle tree, int degree, py::handle knots, py::handle control_points) {
+            const Eigen::VectorXd k = vectorOf(knots, "knots");
+            return JointTrajectory::bspline(*treeOf(tree), degree, {k.begin(), k.end()},
+                                            vectorsOf(control_points, "control_points"));
+          },
+          "Along a B-spline.", py::arg("tree"), py::arg("degree"), py::arg("knots"), py::arg("control_points"))
+      .def_static(
+          "piecewise",
+          [](py::handle tree, py::handle times, const py::sequence& coefficients) {
+            const Eigen::VectorXd t = vectorOf(times, "times");
+            std::vector<Eigen::MatrixXd> pieces;
+            for (const py::handle piece : coefficients) pieces.emplace_back(matrixOf(piece, "coefficients").rows());
+            return JointTrajectory::piecewise(*treeOf(tree), {t.begin(), t.end()}, pieces);
+          },
+          "Polynomials of t - times[k], one matrix of coefficients for each piece.", py::arg("tree"), py::arg("times"),
+          py::arg("coefficients"))
+      .def_property_readonly("begin_time", &JointTrajectory::beginTime)
+      .def_property_readonly("end_time", &JointTrajectory::endTime)
+      .def_property_readonly("times",
+                             [](const JointTrajectory& t) {
+                               return arrayOf(Eigen::Map<const Eigen::VectorXd>(
+                                   t.times().data(), static_cast<Eigen::Index>(t.times().size())));
+                             })
+      .def(
+          "configuration", [](const JointTrajectory& t, double time) { return arrayOf(t.configuration(time)); },
+          "The configuration at a time, which is clamped to the trajectory's.", py::arg("t"))
+      .def(
+          "piece",
+          [](const JointTrajectory& t, std::size_t k) {
+            if (k >= t.numPieces())
+              throw py::index_error("the trajectory has " + std::to_string(t.numPieces()) + " pieces");
+            return t.piece(k);
+          },
+          "Piece k as a motion over t in [0, 1].", py::arg("k"))
+      .def("__len__", &JointTrajectory::numPieces)
+      .def("__repr__", [](const JointTrajectory& t) {
+        return py::str("<JointTrajectory of {} pieces from {} to {}>")
+            .format(t.numPieces(), t.beginTime(), t.endTime());
+      });
+
+  module.def(
+      "in_between_tree", [](py::handle tree) { return treeOfRobot(inBetweenTree(*treeOf(tree))); },
+      "The tree on which in_between_motion() moves: each link floats in its parent's frame.", py::arg("tree"));
+  module.def(
+      "in_between_motion",
+      [](py::handle tree, py::handle begin, py::handle end) {
+        const auto poses = [](py::handle value, const char* what) {
+          std::vector<Eigen::Isometry3d> out;
+          for (const py::handle pose : value) out.push_back(poseOf(pose, what));
+          return out;
+        };
+        return inBetweenMotion(*treeOf(tree), poses(begin, "begin"), poses(end, "end"));
+      },
+      "The arbitrary in-between motion of Redon et al. (2004), Section 3, between two sets of link poses.",
+      py::arg("tree"), py::arg("begin"), py::arg("end"));
+}
+
+}  // namespace
+
+Tree treeInBuilding(std::string name) {
+  const auto tree = std::make_shared<KinematicTree>(std::move(name));
+  return {tree, tree};
+}
+
+std::shared_ptr<const KinematicTree> treeOf(py::handle value) {
+  if (py::isinstance<Tree>(value)) return py::cast<const Tree&>(value).tree;
+  const py::object tree = py::getattr(value, "tree", py::none());
+  if (py::isinstance<Tree>(tree)) return py::cast<const Tree&>(tree).tree;
+  typeError("tree is no KinematicTree, Robot or World but " + typeName(value));
+}
+
+LinkId linkOf(const KinematicTree& tree, py::handle link) {
+  if (PyLong_Check(link.ptr()) && !PyBool_Check(link.ptr())) {
+    const auto index = py::cast<LinkId>(link);
+    if (index < 0 || index >= tree.numLinks()) {
+      throw py::index_error("robot '" + tree.name() + "' has no link " + std::to_string(index));
+    }
+    return index;
+  }
+  if (!py::isinstance<py::str>(link)) typeError("link is no name but " + typeName(link));
+  return named([&] { return tree.linkId(py::cast<std::string>(link)); });
+}
+
+JointMotion linearMotion(const KinematicTree& tree, py::handle q0, py::handle q1) {
+  return JointMotion::linear(tree, vectorOf(q0, "q0"), vectorOf(q1, "q1"));
+}
+
+JointTrajectory trajectoryThrough(const KinematicTree& tree, py::handle waypoints, py::handle times,
+                                  py::handle velocities, py::handle accelerations, py::handle blend, bool unwrap) {
+  using Unwrap = JointTrajectory::Unwrap;
+  const std::vector<Eigen::VectorXd> points = vectorsOf(waypoints, "waypoints");
+  std::vector<double> at(points.size());
+  if (times.is_none()) {
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] = static_cast<double>(k);
+  } else {
+    const Eigen::VectorXd given = vectorOf(times, "times");
+    at.assign(given.begin(), given.end());
+  }
+  const Unwrap turns = unwrap ? Unwrap::yes : Unwrap::no;
+  if (!blend.is_none()) {
+    if (!velocities.is_none() || !accelerations.is_none()) valueError("blend goes without velocities");
+    return JointTrajectory::parabolicBlends(tree, at, points, numberOf(blend, "blend"), turns);
+  }
+  if (!accelerations.is_none()) {
+    if (velocities.is_none()) valueError("accelerations need velocities");
+    return JointTrajectory::quintic(tree, at, points, vectorsOf(velocities, "velocities"),
+                                    vectorsOf(accelerations, "accelerations"), turns);
+  }
+  if (!velocities.is_none()) {
+    return JointTrajectory::cubic(tree, at, points, vectorsOf(velocities, "velocities"), turns);
+  }
+  return JointTrajectory::linear(tree, at, points, turns);
+}
+
+void bindKinematics(py::module_& module) {
+  bindJoint(module);
+  bindTree(module);
+  bindMotions(module);
+}
+
+}  // namespace fcl_artic::python

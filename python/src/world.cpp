@@ -1,0 +1,421 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "world.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "enums.h"
+#include "fcl_artic/visibility/offscreen.h"
+#include "link_pairs.h"
+#include "options.h"
+#include "robot.h"
+#include "text/nearest_name.h"
+#include "watch.h"
+
+namespace fcl_artic::python {
+
+World::World(const Robot& robot, const Scene& scene) : robot_(robot), manager_(robot.tree) {
+  manager_.change([&](ArticulatedCollisionManager& manager) { robot_.addTo(manager); });
+  addScene(scene);
+}
+
+std::vector<std::string> World::names() const {
+  std::vector<std::string> names;
+  for (LinkId l = 0; l < robot_.tree->numLinks(); ++l) names.push_back(robot_.tree->linkName(l));
+  for (const Body& body : bodies_) names.push_back(body.name);
+  for (const Mover& mover : movers_) names.push_back(mover.name);
+  return names;
+}
+
+AllowedCollisionMatrix World::allowed() const {
+  return manager_.look([](const ArticulatedCollisionManager& manager) { return manager.allowedCollisions(); });
+}
+
+void World::addScene(const Scene& scene) {
+  std::vector<Body> added;
+  for (const Scene::Obstacle& o : scene.obstacles) {
+    const Geometry geometry{std::const_pointer_cast<fcl::CollisionGeometryd>(o.object->collisionGeometry())};
+    added.push_back({o.name, objectOf(geometry, Eigen::Isometry3d(o.object->getTransform()))});
+  }
+  manager_.change([&](ArticulatedCollisionManager& manager) {
+    std::size_t done = 0;
+    try {
+      for (; done < added.size(); ++done) manager.registerObject(added[done].object, added[done].name);
+    } catch (...) {
+      while (done > 0) manager.unregisterObject(added[--done].object);
+      throw;
+    }
+  });
+  bodies_.insert(bodies_.end(), added.begin(), added.end());
+}
+
+void World::add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose) {
+  if (name.empty()) valueError("an obstacle needs a name");
+  const Body body{name, objectOf(geometry, pose)};
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(body.object, name); });
+  bodies_.push_back(body);
+}
+
+void World::addMoving(const std::string& name, const Geometry& geometry, const Motion& motion) {
+  if (name.empty()) valueError("an obstacle needs a name");
+  const Mover mover{name,
+                    std::make_shared<fcl::ContinuousCollisionObjectd>(
+                        geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
+                    motion};
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(mover.object.get(), name); });
+  movers_.push_back(mover);
+}
+
+void World::remove(const std::string& name) {
+  const auto mover =
+      std::find_if(movers_.begin(), movers_.end(), [&](const Mover& other) { return other.name == name; });
+  if (mover != movers_.end()) {
+    const auto object = mover->object;
+    manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); });
+    movers_.erase(std::find_if(movers_.begin(), movers_.end(), [&](const Mover& m) { return m.object == object; }));
+    return;
+  }
+  const auto object = find(name)->object;
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); });
+  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == object; }));
+}
+
+void World::move(const std::string& name, const Eigen::Isometry3d& pose) {
+  const Body body = *find(name);
+  if (body.carrier >= 0) valueError("'" + name + "' is carried by a link; detach it at a pose");
+  manager_.change([&](ArticulatedCollisionManager& manager) {
+    const Eigen::Isometry3d before(body.object->getTransform());
+    body.object->setTransform(pose);
+    try {
+      manager.update(body.object);
+    } catch (...) {
+      body.object->setTransform(before);
+      throw;
+    }
+  });
+}
+
+void World::attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
+                   const std::vector<std::string>& touch_links) {
+  const auto object = find(name)->object;
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.attach(link, object, offset, touch_links); });
+  const auto body = find(name);
+  body->carrier = link;
+  body->offset = offset;
+}
+
+void World::detach(const std::string& name, const std::optional<Eigen::Isometry3d>& pose) {
+  const auto object = find(name)->object;
+  manager_.change([&](ArticulatedCollisionManager& manager) {
+    const Eigen::Isometry3d before(object->getTransform());
+    if (pose) object->setTransform(*pose);
+    try {
+      manager.detach(object);
+    } catch (...) {
+      object->setTransform(before);
+      throw;
+    }
+  });
+  find(name)->carrier = -1;
+}
+
+std::vector<World::Body>::iterator World::find(const std::string& name) {
+  const auto at = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.name == name; });
+  if (at == bodies_.end()) refuseName(name);
+  return at;
+}
+
+void World::refuseName(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Body& body : bodies_) names.push_back(body.name);
+  for (const Mover& mover : movers_) {
+    if (mover.name == name) valueError("'" + name + "' moves by itself");
+    names.push_back(mover.name);
+  }
+  valueError("the world has no obstacle '" + name + "'" + text::didYouMean(name, names));
+}
+
+Question questionOf(const World& world, py::handle motion, py::handle q1) {
+  if (!isMotion(motion)) {
+    if (q1.is_none()) typeError("q1 is missing, or the first argument is no JointMotion or JointTrajectory");
+    return linearMotion(*world.tree(), motion, q1);
+  }
+  if (!q1.is_none()) typeError("a motion and q1 are given; the motion has its end already");
+  if (py::isinstance<JointMotion>(motion)) return py::cast<const JointMotion&>(motion);
+  return py::cast<const JointTrajectory&>(motion);
+}
+
+/// Where a question's time begins, and how long it is.
+static std::pair<double, double> timeOf(const Question& question) {
+  const auto* trajectory = std::get_if<JointTrajectory>(&question);
+  if (!trajectory) return {0, 1};
+  return {trajectory->beginTime(), trajectory->endTime() - trajectory->beginTime()};
+}
+
+CertifiedResult answer(const World& world, const Question& question, Request request) {
+  Watch watch(std::move(request.progress));
+  const auto [begin, length] = timeOf(question);
+  const struct {
+    double begin, length;
+    Watch* watch;
+  } clock{begin, length, &watch};
+  request.request.progress = [&clock](double t) { return clock.watch->goOn((t - clock.begin) / clock.length); };
+  CertifiedResult result;
+  world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    std::visit([&](const auto& motion) { manager.continuousCollide(motion, request.request, result); }, question);
+  });
+  watch.finish();
+  return result;
+}
+
+namespace {
+
+CertifiedResult check(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+  return answer(world, questionOf(world, q0, q1), readRequest(options));
+}
+
+CertifiedResult checkTrajectory(const World& world, py::handle waypoints, py::handle times, py::handle velocities,
+                                py::handle accelerations, py::handle blend, bool unwrap, const py::kwargs& options) {
+  return answer(world, trajectoryThrough(*world.tree(), waypoints, times, velocities, accelerations, blend, unwrap),
+                readRequest(options));
+}
+
+bool isFree(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+  Request request = readRequest(options);
+  request.request.mode = ContactMode::any;
+  return answer(world, questionOf(world, q0, q1), std::move(request)).isFree();
+}
+
+CertifiedResult collide(const World& world, py::handle q, const py::kwargs& options) {
+  Request request = readRequest(options);
+  Watch watch(std::move(request.progress));
+  request.request.progress = [&watch](double t) { return watch.goOn(t); };
+  const Eigen::VectorXd at = vectorOf(q, "q");
+  CertifiedResult result;
+  world.manager().ask(
+      [&](const ArticulatedCollisionManager& manager) { manager.collide(at, request.request, result); });
+  watch.finish();
+  return result;
+}
+
+Clearance clearance(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+  py::object progress;
+  ClearanceRequest request = readClearanceRequest(options, progress);
+  const Question question = questionOf(world, q0, q1);
+  Watch watch(std::move(progress));
+  request.progress = [&watch](double lower, double upper) {
+    return watch.goOn(upper > 0 && std::isfinite(upper) ? lower / upper : 0);
+  };
+  const Clearance found = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    return std::visit([&](const auto& motion) { return manager.clearance(motion, request); }, question);
+  });
+  watch.finish();
+  return found;
+}
+
+std::shared_ptr<const VisibilityCuller> cullerOf(VisibilityExecutor executor, const VisibilityOptions& options) {
+  if (executor == VisibilityExecutor::cpu) return std::make_shared<const VisibilityCuller>(options);
+#ifdef FCL_ARTIC_HAS_OFFSCREEN
+  const bool egl = executor == VisibilityExecutor::egl;
+  return makeOffscreenCuller(egl ? OffscreenBackend::egl : OffscreenBackend::osmesa, options);
+#else
+  valueError("this module was built without the component visibility: there is only the executor 'cpu'");
+#endif
+}
+
+template <class Kind>
+py::list namesOf(const std::vector<Kind>& all, const std::function<bool(const Kind&)>& take) {
+  py::list names;
+  for (const Kind& one : all) {
+    if (take(one)) names.append(one.name);
+  }
+  return names;
+}
+
+std::unique_ptr<World> makeWorld(const Robot& robot, py::handle scene) {
+  if (scene.is_none()) return std::make_unique<World>(robot, Scene{});
+  if (py::isinstance<Scene>(scene)) return std::make_unique<World>(robot, py::cast<const Scene&>(scene));
+  typeError("scene is no Scene but " + typeName(scene) + "; load_scene() reads one from a file");
+}
+
+void bindChanges(py::class_<World>& world) {
+  world
+      .def(
+          "add",
+          [](World& w, const std::string& name, py::handle geometry, py::handle pose) {
+            w.add(name, geometryOf(geometry, "geometry"), poseOf(pose, "pose"));
+          },
+          "Adds an obstacle that stands still at a pose.", py::arg("name"), py::arg("geometry"),
+          py::arg("pose") = py::none())
+      .def("add_scene", &World::addScene, "Adds all obstacles of a scene, or none if one is refused.", py::arg("scene"))
+      .def(
+          "add_moving",
+          [](World& w, const std::string& name, py::handle geometry, const Motion& motion) {
+            w.addMoving(name, geometryOf(geometry, "geometry"), motion);
+          },
+          "Adds an obstacle that moves while the robot does, over the same time.", py::arg("name"), py::arg("geometry"),
+          py::arg("motion"), py::keep_alive<1, 4>())
+      .def("remove", &World::remove, "Removes an obstacle, also one that a link carries.", py::arg("name"))
+      .def(
+          "move", [](World& w, const std::string& name, py::handle pose) { w.move(name, poseOf(pose, "pose")); },
+          "Puts an obstacle at another pose.", py::arg("name"), py::arg("pose"))
+      .def(
+          "attach",
+          [](World& w, const std::string& name, py::handle link, py::handle offset,
+             const std::vector<std::string>& touch_links) {
+            w.attach(name, linkOf(*w.tree(), link), poseOf(offset, "offset"), touch_links);
+          },
+          "Has a link carry an obstacle; `offset` is its pose in the link's frame. It may touch that link and\n"
+          "`touch_links`, and is checked against all else.",
+          py::arg("name"), py::arg("link"), py::arg("offset") = py::none(),
+          py::arg("touch_links") = std::vector<std::string>())
+      .def(
+          "detach",
+          [](World& w, const std::string& name, py::handle pose) {
+            w.detach(name, pose.is_none() ? std::nullopt : std::optional(poseOf(pose, "pose")));
+          },
+          "Puts down what a link carries, at a pose in the world; None: where it was before attach().", py::arg("name"),
+          py::arg("pose") = py::none())
+      .def(
+          "allow",
+          [](World& w, const std::string& a, const std::string& b) {
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.allow(a, b); });
+          },
+          "Lets a pair touch: it is not checked any more.", py::arg("a"), py::arg("b"))
+      .def(
+          "disallow",
+          [](World& w, const std::string& a, const std::string& b) {
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.disallow(a, b); });
+          },
+          "Has a pair checked again.", py::arg("a"), py::arg("b"))
+      .def_property(
+          "allowed", [](const World& w) { return pairsOf(w.allowed()); },
+          [](World& w, py::handle pairs) {
+            const AllowedCollisionMatrix matrix = matrixOfPairs(pairs, "allowed");
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.setAllowedCollisions(matrix); });
+          },
+          "The pairs that may touch, but for neighbours.")
+      .def(
+          "set_margin",
+          [](World& w, const std::string& body, py::handle second, py::handle margin) {
+            const bool pair = !margin.is_none();
+            const double m = numberOf(pair ? margin : second, "margin");
+            const std::string other = pair ? py::cast<std::string>(second) : std::string();
+            w.manager().change([&](ArticulatedCollisionManager& manager) {
+              if (pair) {
+                manager.setMargin(body, other, m);
+              } else {
+                manager.setMargin(body, m);
+              }
+            });
+          },
+          "set_margin(body, margin) sets a body's own margin, set_margin(a, b, margin) a pair's, in m.",
+          py::arg("body"), py::arg("other_or_margin"), py::arg("margin") = py::none())
+      .def(
+          "reset_margins",
+          [](World& w) { w.manager().change([](ArticulatedCollisionManager& m) { m.resetMargins(); }); },
+          "Forgets all margins of bodies and pairs.")
+      .def(
+          "set_proofs",
+          [](World& w, const Proofs* proofs) {
+            const auto use = proofs ? proofs->proofs : nullptr;
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.setLinkPairProofs(use); });
+          },
+          "Uses proofs of pairs of links that never touch (LinkPairReport.proofs); None: none.", py::arg("proofs"))
+      .def(
+          "set_visibility",
+          [](World& w, py::handle executor, py::handle rule, int resolution) {
+            const auto culler = cullerOf(enumOf<VisibilityExecutor>(executor, "executor"),
+                                         {enumOf<VisibilityRule>(rule, "rule"), resolution});
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.setVisibility(culler); });
+          },
+          "Selects who culls by visibility in queries that ask for it (Request.visibility).",
+          py::arg("executor") = "cpu", py::kw_only(), py::arg("rule") = "intervals", py::arg("resolution") = 32)
+      .def(
+          "setup", [](const World& w) { w.manager().ask([](const ArticulatedCollisionManager&) {}); },
+          "Makes all changes effective now, and not at the next question.");
+}
+
+void bindQueries(py::class_<World>& world) {
+  world
+      .def("check", &check,
+           "Finds the first contact on the straight way from q0 to q1 in joint space, or proves that there is none.\n"
+           "In place of q0 and q1 a JointMotion or JointTrajectory is taken. Options are those of Request.",
+           py::arg("q0"), py::arg("q1") = py::none())
+      .def("check_trajectory", &checkTrajectory,
+           "Finds the first contact on the way through waypoints (N, n), in the unit of `times`; without times, in\n"
+           "numbers of waypoints. Straight from point to point, cubic with velocities, quintic with accelerations too.",
+           py::arg("waypoints"), py::arg("times") = py::none(), py::kw_only(), py::arg("velocities") = py::none(),
+           py::arg("accelerations") = py::none(), py::arg("blend") = py::none(), py::arg("unwrap") = false)
+      .def("is_free", &isFree,
+           "Whether the way is proven free: the fastest question. False also where that is not decided.", py::arg("q0"),
+           py::arg("q1") = py::none())
+      .def("collide", &collide, "Finds what touches at one configuration.", py::arg("q"))
+      .def("clearance", &clearance,
+           "The smallest distance of any checked pair on the whole way, proven from below and from above.",
+           py::arg("q0"), py::arg("q1") = py::none())
+      .def(
+          "checked_link_pairs",
+          [](const World& w) { return w.manager().ask([](const auto& m) { return m.checkedLinkPairs(); }); },
+          "The pairs of what links carry that are checked against each other.")
+      .def(
+          "classify_link_pairs",
+          [](const World& w, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
+             py::object progress) {
+            return classifyWatched(
+                only, margin, work, samples, threads, std::move(progress), [&](const LinkPairOptions& o) {
+                  return w.manager().askFreely([&](const auto& m) { return m.classifyLinkPairs(o); });
+                });
+          },
+          "Finds out which pairs of links never touch, proven; which always do; which do sometimes.", py::kw_only(),
+          py::arg("only") = py::none(), py::arg("margin") = 0.0, py::arg("work") = LinkPairOptions().work,
+          py::arg("samples") = LinkPairOptions().samples, py::arg("threads") = 0, py::arg("progress") = py::none());
+}
+
+}  // namespace
+
+void bindWorld(py::module_& module) {
+  py::class_<World> world(module, "World", "Robots and obstacles, ready to be asked. Threads may share it.");
+  world.def(py::init(&makeWorld), py::arg("robot"), py::arg("scene") = py::none())
+      .def_property_readonly("robot", [](const World& w) { return w.robot(); })
+      .def_property_readonly("tree", [](const World& w) { return treeOfRobot(w.tree()); })
+      .def_property_readonly("dof", [](const World& w) { return w.tree()->dof(); })
+      .def_property_readonly(
+          "obstacles",
+          [](const World& w) { return namesOf<World::Body>(w.bodies(), [](const auto& b) { return b.carrier < 0; }); })
+      .def_property_readonly(
+          "moving", [](const World& w) { return namesOf<World::Mover>(w.movers(), [](const auto&) { return true; }); })
+      .def_property_readonly("attached",
+                             [](const World& w) {
+                               py::dict attached;
+                               for (const World::Body& b : w.bodies()) {
+                                 if (b.carrier >= 0) attached[py::str(b.name)] = w.tree()->linkName(b.carrier);
+                               }
+                               return attached;
+                             })
+      .def_property_readonly("names", &World::names)
+      .def(
+          "pose",
+          [](const World& w, const std::string& name) {
+            for (const World::Body& b : w.bodies()) {
+              if (b.name == name)
+                return arrayOf(b.carrier < 0 ? Eigen::Isometry3d(b.object->getTransform()) : b.offset);
+            }
+            valueError("the world has no obstacle '" + name + "'" + text::didYouMean(name, w.names()));
+          },
+          "Pose (4, 4) of an obstacle in the world, or of what a link carries in the link's frame.", py::arg("name"))
+      .def("__repr__", [](const World& w) {
+        std::size_t carried = 0;
+        for (const World::Body& b : w.bodies()) carried += b.carrier >= 0;
+        return py::str("<World: robot {!r} with {} variables, {} obstacles, {} moving, {} attached>")
+            .format(w.tree()->name(), w.tree()->dof(), w.bodies().size() - carried, w.movers().size(), carried);
+      });
+  bindChanges(world);
+  bindQueries(world);
+  bindBatch(module, world);
+  bindPicture(module, world);
+}
+
+}  // namespace fcl_artic::python

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A world: robots and obstacles, ready to be asked: an ArticulatedCollisionManager that owns all that it checks, each
+// by its name.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "fcl_artic/manager.h"
+#include "fcl_artic/urdf/urdf.h"
+#include "geometry.h"
+#include "guarded.h"
+#include "motion.h"
+#include "options.h"
+
+namespace fcl_artic::python {
+
+/// A world. All members are to be called with the GIL held.
+class World {
+ public:
+  /// What stands still, or is carried by a link.
+  struct Body {
+    std::string name;
+    std::shared_ptr<fcl::CollisionObjectd> object;
+    LinkId carrier = -1;  ///< -1: an obstacle
+    Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
+  };
+  /// What moves by itself.
+  struct Mover {
+    std::string name;
+    std::shared_ptr<fcl::ContinuousCollisionObjectd> object;
+    Motion motion;
+  };
+
+  World(const Robot& robot, const Scene& scene);
+
+  const Robot& robot() const { return robot_; }
+  std::shared_ptr<const KinematicTree> tree() const { return robot_.tree; }
+  const std::vector<Body>& bodies() const { return bodies_; }
+  const std::vector<Mover>& movers() const { return movers_; }
+  /// Names of links, then of all else, in the order of their registration.
+  std::vector<std::string> names() const;
+  AllowedCollisionMatrix allowed() const;
+
+  /// Copies the geometry's reference, so that the scene may go and its objects stay as they are.
+  void addScene(const Scene& scene);
+  void add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose);
+  void addMoving(const std::string& name, const Geometry& geometry, const Motion& motion);
+  void remove(const std::string& name);
+  void move(const std::string& name, const Eigen::Isometry3d& pose);
+  void attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
+              const std::vector<std::string>& touch_links);
+  void detach(const std::string& name, const std::optional<Eigen::Isometry3d>& pose);
+
+  /// The manager. @see Guarded
+  Guarded<ArticulatedCollisionManager>& manager() { return manager_; }
+  const Guarded<ArticulatedCollisionManager>& manager() const { return manager_; }
+
+ private:
+  std::vector<Body>::iterator find(const std::string& name);
+  [[noreturn]] void refuseName(const std::string& name) const;
+
+  Robot robot_;
+  Guarded<ArticulatedCollisionManager> manager_;
+  // Read and written with the GIL held.
+  std::vector<Body> bodies_;
+  std::vector<Mover> movers_;
+};
+
+/// What moves: straight from q0 to q1, a motion, or a trajectory.
+using Question = std::variant<JointMotion, JointTrajectory>;
+/// @param q1  None where `motion` is a motion or trajectory itself.
+Question questionOf(const World& world, py::handle motion, py::handle q1);
+
+/// Asks, and tells `progress` of the request and Ctrl-C meanwhile.
+CertifiedResult answer(const World& world, const Question& question, Request request);
+
+void bindWorld(py::module_& module);
+void bindBatch(py::module_& module, py::class_<World>& world);
+void bindPicture(py::module_& module, py::class_<World>& world);
+
+}  // namespace fcl_artic::python

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What goes to another process comes back as it was."""
+import os
+import pickle
+import shutil
+
+import numpy as np
+import pytest
+
+import fcl_artic
+from conftest import random_motions
+from test_robot import SHAPES
+
+
+def copied(value):
+    return pickle.loads(pickle.dumps(value))
+
+
+def test_a_result_keeps_all_its_fields(shared_world, hit):
+    result = shared_world.check(*hit, mode="first_of_every_pair", certificate=True)
+    copy = copied(result)
+    assert repr(copy) == repr(result) and copy.statistics == result.statistics
+    for name in ("status", "t_lower", "t_upper", "certain", "pair", "unproven_allowed_pairs"):
+        assert getattr(copy, name) == getattr(result, name)
+    assert np.array_equal(copy.link_poses, result.link_poses)
+    assert len(copy.contacts) == len(result.contacts) > 1
+    for a, b in zip(copy.contacts, result.contacts):
+        assert repr(a) == repr(b) and np.array_equal(a.point, b.point) and np.array_equal(a.nearest2, b.nearest2)
+        assert (a.body1.link, a.piece1, a.feature, a.approach_speed) == (b.body1.link, b.piece1, b.feature, b.approach_speed)
+    assert copy.certificate.record() == result.certificate.record()
+
+
+def test_other_answers_keep_all_their_fields(shared_world, robot, miss):
+    clearance = shared_world.clearance(*miss)
+    copy = copied(clearance)
+    assert repr(copy) == repr(clearance) and copy.lower == clearance.lower and copy.pair == clearance.pair
+    answers = shared_world.check_many(*random_motions(robot, 20, angle=0.5))
+    copy = copied(answers)
+    assert np.array_equal(copy.status, answers.status) and np.array_equal(copy.pair, answers.pair)
+    assert copy.pair_names(0) == answers.pair_names(0)
+    ball = fcl_artic.sphere(0.5)
+    pair = fcl_artic.continuous_collide(ball, fcl_artic.Motion.translation([-5, 0, 0], [10, 0, 0]), ball, np.eye(4))
+    copy = copied(pair)
+    assert repr(copy) == repr(pair) and np.array_equal(copy.pose1_at_upper, pair.pose1_at_upper)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.kind)
+def test_a_shape_answers_as_before(shape):
+    copy = copied(shape)
+    assert copy.kind == shape.kind and repr(copy) == repr(shape) and copy.solid == shape.solid
+    down = fcl_artic.Motion.translation([0.05, 0.05, 10], [0, 0, -20])
+    before, after = (fcl_artic.continuous_collide(fcl_artic.sphere(0.2), down, s, np.eye(4)) for s in (shape, copy))
+    assert (before.status, before.t_lower, before.t_upper) == (after.status, after.t_lower, after.t_upper)
+
+
+def test_a_robot_answers_as_before_without_its_files(data, tmp_path, scene, hit):
+    folder = tmp_path / "puma560"
+    shutil.copytree(data / "puma560", folder)
+    robot = fcl_artic.load_urdf(folder / "puma560.urdf")
+    pickled = pickle.dumps(robot)
+    before = fcl_artic.World(robot, scene).check(*hit)
+    shutil.rmtree(folder)
+    copy = pickle.loads(pickled)
+    assert copy.tree.links == robot.tree.links and copy.notes == robot.notes
+    after = fcl_artic.World(copy, copied(scene)).check(*hit)
+    assert (after.status, after.pair) == (before.status, before.pair)
+    # Joints are made orthonormal again, which may move a last bit.
+    assert abs(after.t_lower - before.t_lower) <= 2e-6
+    # Motions of the one are taken by the other.
+    motion = fcl_artic.JointMotion.linear(robot, *hit)
+    assert motion.is_of(copy)
+
+
+def test_meshes_that_links_share_are_pickled_once():
+    tree = fcl_artic.KinematicTree()
+    tree.add_link("a")
+    random = np.random.default_rng(1)
+    mesh = fcl_artic.mesh(random.normal(size=(1000, 3)), random.integers(0, 1000, (2000, 3)))
+    one, two = fcl_artic.Robot(tree), fcl_artic.Robot(tree)
+    one.add_geometry("a", mesh)
+    for z in (0, 1):
+        two.add_geometry("a", mesh, [0, 0, z])
+    assert len(pickle.dumps(two)) < 1.1 * len(pickle.dumps(one))
+
+
+def test_allowed_pairs_go_along_and_proofs_are_left_out(data):
+    robot = fcl_artic.load_urdf(data / "puma560" / "puma560.urdf")
+    report = robot.classify_link_pairs(samples=50)
+    robot.allowed, robot.proofs = report.need_no_check, report.proofs
+    copy = copied(robot)
+    assert copy.allowed == robot.allowed
+
+
+def ask(arguments):
+    robot, scene, q0, q1 = arguments
+    return os.getpid(), fcl_artic.World(robot, scene).check(q0, q1)
+
+
+def test_a_pool_of_processes_asks(robot, scene, hit, miss):
+    import multiprocessing
+
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        answers = pool.map(ask, [(robot, scene, *hit), (robot, scene, *miss)])
+    assert [a.contact for _, a in answers] == [True, False]
+    assert answers[0][0] != os.getpid()
