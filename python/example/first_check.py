@@ -9,6 +9,6 @@ q1 = [-0.1, 0.3, -2.3, -1.0, 1.1, 0.0]
 result = world.check(q0, q1)
 
 print(result)  # "free: proven", or "contact within [t_lower, t_upper], proven"
-if result.contact:
+if result.first:
     print(result.pair, result.first.point)  # who and where
     world.picture(q0, q1, result=result).save("contact.png")
