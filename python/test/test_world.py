@@ -210,7 +210,7 @@ def test_obstacles_are_added_moved_and_removed(world, miss):
         world.remove("pipe")
     with pytest.raises(ValueError, match="pipes"):
         world.add("pipes", fcl_artic.sphere(0.05))
-    with pytest.raises(ValueError, match="rigid"):
+    with pytest.raises(ValueError, match="orthonormal"):
         world.move("pipes", np.diag([2.0, 1, 1, 1]))
     assert world.check(*miss).free
 
@@ -379,7 +379,7 @@ except KeyboardInterrupt:
         [__import__("sys").executable, "-c", script], capture_output=True, text=True, timeout=120
     )
     assert done.stdout.startswith("ended after"), done.stderr
-    assert float(done.stdout.split()[-1]) < 5  # 0.04 s on an idle machine
+    assert float(done.stdout.split()[-1]) < 30  # 0.04 s on an idle machine; all motions would take half an hour
 
 
 def test_eight_threads_on_one_world_answer_as_one(shared_world, robot):
