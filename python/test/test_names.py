@@ -171,9 +171,15 @@ MEMBERS = {
             "requireOf": "is_of",
             "variables": "coefficients",
             "orientations": "coefficients",
+            "halfAngles": "motions in tangents of half angles are not in Python yet",
+            "isPolynomial": "motions in tangents of half angles are not in Python yet",
+            "references": "motions in tangents of half angles are not in Python yet",
+            "requirePolynomial": "motions in tangents of half angles are not in Python yet",
+            "tangentHalfAngle": "motions in tangents of half angles are not in Python yet",
+            "tangentHalfAnglePolynomial": "motions in tangents of half angles are not in Python yet",
         },
     ),
-    "JointTrajectory": ("JointTrajectory", {"numPieces": "__len__", "size": "piece", "requireOf": "World.check refuses"}),
+    "JointTrajectory": ("JointTrajectory", {"numPieces": "__len__", "size": "piece", "requireOf": "World.check refuses", "tangentHalfAngle": "motions in tangents of half angles are not in Python yet"}),
 }
 
 
