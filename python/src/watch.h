@@ -18,9 +18,8 @@ namespace fcl_artic::python {
 /// Asks Python now and then whether to go on. Made and ended with the GIL held, asked without it.
 class Watch {
  public:
-  /// @param progress  None, or called with the part that is done, in [0, 1]; it ends the query by returning False
-  /// (None,
-  ///   and anything else that is true, goes on) or by raising an exception.
+  /// @param progress  None, or called with the part that is done, in [0, 1]. It ends the query by returning False, or
+  ///   by raising an exception; None, and anything else that is true, goes on.
   explicit Watch(py::object progress = py::none()) : progress_(std::move(progress)) {
     if (!progress_.is_none() && !PyCallable_Check(progress_.ptr())) {
       typeError("progress is no callable but " + typeName(progress_));

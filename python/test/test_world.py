@@ -376,10 +376,11 @@ except KeyboardInterrupt:
     print("ended after", time.perf_counter() - begin)
 """
     done = subprocess.run(
-        [__import__("sys").executable, "-c", script], capture_output=True, text=True, timeout=120
+        [__import__("sys").executable, "-c", script], capture_output=True, text=True, timeout=400
     )
     assert done.stdout.startswith("ended after"), done.stderr
-    assert float(done.stdout.split()[-1]) < 30  # 0.04 s on an idle machine; all motions would take half an hour
+    # 0.04 s on an idle machine, 30 s beside a dozen busy processes; all motions would take half an hour
+    assert float(done.stdout.split()[-1]) < 300
 
 
 def test_eight_threads_on_one_world_answer_as_one(shared_world, robot):

@@ -78,7 +78,7 @@ class PairSearch : PartOfSolver {
   bool stayNear(const Candidate& f);
   bool restsAt(int pair, double t);
   bool touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t);
-  bool recordTouching(double t);
+  bool recordTouching(double t, bool may_rest);
   void search(Buffer<Entry>& open, int begin, int end);
   void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
   void lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later);
@@ -232,11 +232,12 @@ inline bool PairSearch::restsAt(int pair, double t) {
     f.piece_b = near_b[i % num_b];
     touching_.push(f);
   }
-  return recordTouching(t);
+  return recordTouching(t, true);
 }
 
 /// Bodies that are in each other at t, before which all is free: the first leaves that touch there are the contact, and
-/// nobody needs to know how many others do. (Without it all of them are divided down to the finest lanes.)
+/// nobody needs to know how many others do. (Without it all of them are divided down to the finest lanes.) Where no
+/// contact of them is proven, one of all others may be.
 /// @param begin, end  entries of `open` that are left of one pair, those of this lane.
 /// @return false where others may touch earlier.
 inline bool PairSearch::touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t) {
@@ -245,24 +246,25 @@ inline bool PairSearch::touchesAt(Buffer<Entry>& open, int begin, int end, int l
   const TimeBatch batch = TimeBatch::partsOf(t, finestWidth());
   watch(batch);
   motion_.set(pair, batch);
-  for (int i = begin; i < end && open.size() < out_begin + kMostAround; ++i) {
+  for (int i = begin; i < end && open.size() < out_begin + kEnoughUncertain; ++i) {
     const Entry e = open[i];
     if (e.mask >> lane & 1) traversal_.descend({pair, e.a, e.b, 1}, Aim::poses, open);
   }
   touching_.clear();
-  for (int i = out_begin; i < open.size() && touching_.size() < kMostAround; ++i) {
+  for (int i = out_begin; i < open.size() && touching_.size() < kEnoughUncertain; ++i) {
     if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], t));
   }
   open.truncate(out_begin);
-  return recordTouching(t);
+  return recordTouching(t, false);
 }
 
-/// Of leaf pairs of `touching_`: whether one touches at t, as far as can be told. It is recorded.
-inline bool PairSearch::recordTouching(double t) {
+/// Of leaf pairs of `touching_`: whether one touches at t, which is recorded.
+/// @param may_rest  one that can't be told from contact will do.
+inline bool PairSearch::recordTouching(double t, bool may_rest) {
   const double stop = t + finestWidth();
   Candidate resting = {};
   int uncertain = 0;
-  for (int i = 0; i < touching_.size() && uncertain < kMostAround; ++i) {
+  for (int i = 0; i < touching_.size() && (!may_rest || uncertain < kMostAround); ++i) {
     Candidate& f = touching_[i];
     f.target = Candidate::Target::leafPair;
     const auto isOpen = [&] { return f.t_lower <= t && isNear(f.apart); };
@@ -275,7 +277,7 @@ inline bool PairSearch::recordTouching(double t) {
       resting = f;
     }
   }
-  if (uncertain == 0) return false;
+  if (uncertain == 0 || !may_rest) return false;
   horizon_.closeAt(t + query().tolerance_time);
   follower_.record(resting);
   return true;
