@@ -307,6 +307,60 @@ TEST(PromiseSentences, WhatIsInEachOtherAtTheStartIsContactWithoutMoreAdo) {
   EXPECT_LT(work.back(), 100000u);
 }
 
+/// The surface of a box, every face n x n squares of two triangles.
+GeometryPtr box(const Vector3d& lower, const Vector3d& upper, std::size_t n) {
+  std::vector<Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+  for (int k = 0; k < 3; ++k) {
+    for (const double end : {0.0, 1.0}) {
+      const std::size_t first = vertices.size();
+      for (std::size_t i = 0; i <= n; ++i) {
+        for (std::size_t j = 0; j <= n; ++j) {
+          Vector3d part;
+          part[k] = end;
+          part[(k + 1) % 3] = static_cast<double>(i) / static_cast<double>(n);
+          part[(k + 2) % 3] = static_cast<double>(j) / static_cast<double>(n);
+          vertices.push_back(lower + part.cwiseProduct(upper - lower));
+        }
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
+          const std::size_t a = first + i * (n + 1) + j, c = a + n + 1;
+          triangles.emplace_back(a, a + 1, c);
+          triangles.emplace_back(a + 1, c + 1, c);
+        }
+      }
+    }
+  }
+  return mesh(vertices, triangles);
+}
+
+// Boxes that are deep in each other, some of their faces in one plane: of the first triangles that touch none may be
+// proven to, and others are. (The first ones were the end of it: contact, not certain.)
+TEST(PromiseSentences, ContactOfDeepBodiesIsCertainThoughSomeOfTheirFacesAreInOnePlane) {
+  int asked = 0;
+  for (const std::size_t n : {1, 2}) {  // of finer ones a few are not certain, as no two of their triangles cross
+    const GeometryPtr still = box(Vector3d::Constant(-0.5), Vector3d::Constant(0.5), n);
+    for (const double bottom : {-0.5, -0.375}) {
+      for (const double top : {0.25, 0.5}) {
+        const GeometryPtr moving = box(Vector3d(-0.25, -0.25, bottom), Vector3d(0.75, 0.75, top), n);
+        for (const double speed : {0.0, 0.25}) {
+          for (const auto mode : {fcl_artic::ContactMode::first, fcl_artic::ContactMode::any}) {
+            CertifiedRequest request;
+            request.mode = mode;
+            const CertifiedPairResult result =
+                slide(still, moving, at(Vector3d::Zero()), Vector3d(speed, 0, 0), request);
+            EXPECT_EQ(result.status, Status::contact);
+            EXPECT_TRUE(result.certain) << n << ", " << bottom << " to " << top << ", " << speed;
+            ++asked;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(asked, 32);
+}
+
 // A plate comes down on another one, a tile of it somewhat lower than the rest: both meet within one of the finest
 // lanes. Of the many pairs that can't be decided some are enough, and the tile may not be among them: no contact is
 // late.
