@@ -38,7 +38,7 @@ class SolveTwice : public testing::Test {
       engine::CullCandidate pair = {0, 0, 0, 0xff, query.margins.of(0)};
       query.advisors[0].clear(query.advisors[0].self, problem_, links, &pair, 1);
     }
-    std::this_thread::sleep_for(std::chrono::microseconds(query.num_advisors ? 500 : 5000));
+    std::this_thread::sleep_for(std::chrono::microseconds(query.num_advisors ? 500 : 30000));
     for (const double t : {0.1, query.num_advisors ? 0.5 : 0.4, query.num_advisors ? 0.5 : 0.6}) {
       if (query.progress) query.progress(query.progress_context, t);
     }
