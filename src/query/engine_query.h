@@ -28,7 +28,7 @@ class Workspace {
   engine::Body bodies[2];                      ///< of a pair query: their trees, all else as it is at first
   FrameSweep sweep;                            ///< of a pair query
   std::vector<double> coefficients;            ///< of its variables
-  std::vector<std::uint8_t> link_free;         ///< of a manager's query: what tables say of link pairs
+  std::vector<std::uint8_t> link_free;         ///< of a manager's query: link pairs that are proven apart
   std::vector<engine::LikelyContact> likely;   ///< the same
   std::vector<engine::BoundedSource> sources;  ///< of its bounded motions
 

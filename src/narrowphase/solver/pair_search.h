@@ -77,7 +77,7 @@ class PairSearch : PartOfSolver {
   double restingGapOfHulls(int lane, GjkResult& g);
   bool stayNear(const Candidate& f);
   bool restsAt(int pair, double t);
-  bool touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t);
+  bool touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane);
   bool recordTouching(double t, bool may_rest);
   void search(Buffer<Entry>& open, int begin, int end);
   void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
@@ -99,7 +99,7 @@ class PairSearch : PartOfSolver {
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
-  int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAt() is asked
+  int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAtStart()
 };
 
 /// What an entry stands for, to be followed from `start`.
@@ -227,7 +227,6 @@ inline bool PairSearch::restsAt(int pair, double t) {
   touching_.clear();
   for (int i = 0; i < num_a * num_b; ++i) {
     Candidate f = candidateOf({pair, 0, 0, kAllLanes}, t);
-    f.target = Candidate::Target::leafPair;
     f.piece_a = near_a[i / num_b];
     f.piece_b = near_b[i % num_b];
     touching_.push(f);
@@ -235,15 +234,15 @@ inline bool PairSearch::restsAt(int pair, double t) {
   return recordTouching(t, true);
 }
 
-/// Bodies that are in each other at t, before which all is free: the first leaves that touch there are the contact, and
-/// nobody needs to know how many others do. (Without it all of them are divided down to the finest lanes.) Where no
-/// contact of them is proven, one of all others may be.
+/// Bodies that are in each other at t = 0: the first leaves that touch there are the contact, and nobody needs to know
+/// how many others do. (Without it all of them are divided down to the finest lanes.) Where no contact of them is
+/// proven, one of all others may be.
 /// @param begin, end  entries of `open` that are left of one pair, those of this lane.
 /// @return false where others may touch earlier.
-inline bool PairSearch::touchesAt(Buffer<Entry>& open, int begin, int end, int lane, double t) {
+inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane) {
   const int pair = open[begin].pair, out_begin = open.size();
-  if (contacts_.watchFrom(pair) > t) return false;
-  const TimeBatch batch = TimeBatch::partsOf(t, finestWidth());
+  if (contacts_.watchFrom(pair) > 0) return false;
+  const TimeBatch batch = TimeBatch::partsOf(0, finestWidth());
   watch(batch);
   motion_.set(pair, batch);
   for (int i = begin; i < end && open.size() < out_begin + kEnoughUncertain; ++i) {
@@ -252,10 +251,10 @@ inline bool PairSearch::touchesAt(Buffer<Entry>& open, int begin, int end, int l
   }
   touching_.clear();
   for (int i = out_begin; i < open.size() && touching_.size() < kEnoughUncertain; ++i) {
-    if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], t));
+    if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], 0));
   }
   open.truncate(out_begin);
-  return recordTouching(t, false);
+  return recordTouching(0, false);
 }
 
 /// Of leaf pairs of `touching_`: whether one touches at t, which is recorded.
@@ -526,7 +525,7 @@ inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double st
     if (followLeaves(open, start, width, begin, end, lane, finest, &split) == Step::done) return Step::done;
   }
   if (!split) return Step::free;
-  if (start == 0 && splits_at_start_-- == 0 && touchesAt(open, begin, end, lane, 0)) return Step::done;
+  if (start == 0 && splits_at_start_-- == 0 && touchesAtStart(open, begin, end, lane)) return Step::done;
   return solveInterval(open, start, width, begin, end, lane);
 }
 
