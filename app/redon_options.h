@@ -12,7 +12,7 @@
 
 namespace fcl_artic::app {
 
-/// Adds --enclosure, --refinement, --independent, --no-newton, --late-validity and --boxes-first.
+/// Adds --enclosure, --refinement, --independent, --no-newton, --late-validity, --boxes-first and --links-in-world.
 inline void addRedonOptions(CLI::App& verb, RedonOptions& o) {
   static const std::map<std::string, MotionEnclosure> kEnclosures{{"chain", MotionEnclosure::intervalChain},
                                                                   {"mean-value", MotionEnclosure::meanValue},
@@ -20,7 +20,7 @@ inline void addRedonOptions(CLI::App& verb, RedonOptions& o) {
   const std::string group = "Method redon2004";
   verb.add_option_function<std::string>(
           "--enclosure", [&o](const std::string& name) { o.enclosure = kEnclosures.at(name); },
-          "Bounds on motions: chain (interval matrix products, the paper's), mean-value or taylor")
+          "Bounds on motions: mean-value (the default), chain (interval matrix products, the paper's) or taylor")
       ->check(CLI::IsMember({"chain", "mean-value", "taylor"}))
       ->group(group);
   verb.add_option("--refinement", o.refinement_level,
@@ -41,6 +41,10 @@ inline void addRedonOptions(CLI::App& verb, RedonOptions& o) {
   verb.add_flag_callback(
           "--boxes-first", [&o] { o.in_time_order = false; },
           "All boxes over the whole motion, then all equations; else both in the order of time")
+      ->group(group);
+  verb.add_flag_callback(
+          "--links-in-world", [&o] { o.links_in_world = true; },
+          "Bound the boxes of two links in the world, as the paper does; else one seen from the other")
       ->group(group);
 }
 

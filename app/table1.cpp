@@ -162,7 +162,7 @@ std::vector<Variant> variantsOf(const Table1Options& o) {
     request.tolerance_time = o.tolerance;
     request.method = name == kStandard ? Method::standard : Method::redon2004;
     request.redon = o.redon;
-    if (name == kAsWritten) request.redon.early_validity = request.redon.in_time_order = false;
+    if (name == kAsWritten) request.redon = RedonOptions::asWritten();
     if (o.executor != kNoExecutor) {
       request.visibility = VisibilityMode::on;
       all.push_back({name, request});

@@ -217,6 +217,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. What was
   ///   read before is kept then, and what was set up stays in use.
   void setup();
+  /// Has setup(), this time and from now on, compute beforehand what the first query by this method would: for
+  /// Method::redon2004 each geometry's tree of oriented boxes. Needs setup().
+  void prepareFor(Method method);
   /// Makes all changes effective, also those that callers have made in place: does what setup() does.
   /// @throws std::invalid_argument as setup().
   void update();

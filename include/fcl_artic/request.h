@@ -40,11 +40,13 @@ enum class MotionEnclosure {
 };
 
 /// Options of Method::redon2004: each idea of the paper can be switched by itself (doc/REDON2004.md). The defaults are
-/// the paper's except for the last two; with both of these false the method is as the paper describes it. The promise
-/// is the same for all of them.
+/// the fastest that are known; RedonOptions::asWritten() are the paper's. The promise is the same for all of them.
 struct RedonOptions {
-  /// How a link's motion is bounded over a time interval.
-  MotionEnclosure enclosure = MotionEnclosure::intervalChain;
+  /// The options with which Method::redon2004 is the paper's, without what this library adds to it.
+  static RedonOptions asWritten();
+
+  /// How a link's motion is bounded over a time interval. The paper's is MotionEnclosure::intervalChain.
+  MotionEnclosure enclosure = MotionEnclosure::meanValue;
   /// Refinement level: a link's bounds are computed on 2^level parts of the motion (Section 5.1.1). -1: chosen by the
   /// link's motion; 0: the motion undivided. From -1 to 6; queries throw std::invalid_argument for other values.
   int refinement_level = -1;
@@ -58,7 +60,18 @@ struct RedonOptions {
   /// True: boxes and equations are processed together, sub-interval after sub-interval up to the first contact. False:
   /// all boxes over the whole motion first, as in the paper.
   bool in_time_order = true;
+  /// How the boxes of two links are bounded. False: B's motion seen from A, by the joints between them. True: both
+  /// motions in the world, by the maximum of the links' refinement levels, as in the paper (Section 5.1.1).
+  bool links_in_world = false;
 };
+
+inline RedonOptions RedonOptions::asWritten() {
+  RedonOptions options;
+  options.enclosure = MotionEnclosure::intervalChain;
+  options.early_validity = options.in_time_order = false;
+  options.links_in_world = true;
+  return options;
+}
 
 /// How near counts as contact, and how finely a query locates it in time. Queries throw std::invalid_argument, naming
 /// the value, for values outside the ranges given here.
@@ -85,7 +98,8 @@ struct Effort {
   Method method = Method::standard;
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
-  /// Maximum number of node and leaf tests, for Method::redon2004 also of box tests and evaluations; 0: no limit. When
+  /// Maximum number of node and leaf tests, for Method::redon2004 also of box tests, leaf pairs, equations and
+  /// evaluations; 0: no limit. When
   /// it is exceeded, the answer is `undecided` (its t_lower is the begin with `firstOfEveryPair`, and may be with
   /// ignore_initial_contact). It counts work, not time, so that the answer does not depend on the machine's speed. The
   /// pieces of a trajectory, and the pairs of a ContinuousCollisionManager, share one budget.

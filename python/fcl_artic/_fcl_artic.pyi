@@ -48,13 +48,17 @@ class RedonOptions:
         newton: bool = ...,
         early_validity: bool = ...,
         in_time_order: bool = ...,
+        links_in_world: bool = ...,
     ) -> None: ...
+    @staticmethod
+    def as_written() -> RedonOptions: ...
     enclosure: MotionEnclosure
     refinement_level: int
     simultaneous: bool
     newton: bool
     early_validity: bool
     in_time_order: bool
+    links_in_world: bool
 
 class Request:
     def __init__(
@@ -685,6 +689,7 @@ class World:
     def set_visibility(
         self, executor: VisibilityExecutor | str = ..., *, rule: VisibilityRule | str = ..., resolution: int = ...
     ) -> None: ...
+    def prepare_for(self, method: Method | str) -> None: ...
     def setup(self) -> None: ...
     @overload
     def check(

@@ -23,7 +23,8 @@ const std::vector<Option<RedonOptions>>& redonOptions() {
       {"simultaneous", [](O& o, py::handle v) { o.simultaneous = flagOf(v, "simultaneous"); }},
       {"newton", [](O& o, py::handle v) { o.newton = flagOf(v, "newton"); }},
       {"early_validity", [](O& o, py::handle v) { o.early_validity = flagOf(v, "early_validity"); }},
-      {"in_time_order", [](O& o, py::handle v) { o.in_time_order = flagOf(v, "in_time_order"); }}};
+      {"in_time_order", [](O& o, py::handle v) { o.in_time_order = flagOf(v, "in_time_order"); }},
+      {"links_in_world", [](O& o, py::handle v) { o.links_in_world = flagOf(v, "links_in_world"); }}};
   return options;
 }
 
@@ -107,6 +108,7 @@ py::dict valuesOf(const RedonOptions& o) {
   values["newton"] = o.newton;
   values["early_validity"] = o.early_validity;
   values["in_time_order"] = o.in_time_order;
+  values["links_in_world"] = o.links_in_world;
   return values;
 }
 
@@ -200,6 +202,8 @@ void bindRequest(py::module_& module) {
         setAll(out, redonOptions(), options);
         return out;
       }))
+      .def_static("as_written", &RedonOptions::asWritten,
+                  "The options of the paper, without what this library adds to it.")
       .def("__repr__",
            [](const RedonOptions& o) { return expression("RedonOptions", valuesOf(o), valuesOf(RedonOptions{})); });
   bindOptions(redon, redonOptions());

@@ -334,6 +334,13 @@ void bindChanges(py::class_<World>& world) {
           "Selects who culls by visibility in queries that ask for it (Request.visibility).",
           py::arg("executor") = "cpu", py::kw_only(), py::arg("rule") = "intervals", py::arg("resolution") = 32)
       .def(
+          "prepare_for",
+          [](World& w, py::handle method) {
+            const Method chosen = enumOf<Method>(method, "method");
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.prepareFor(chosen); });
+          },
+          "Has set-up compute beforehand what the first question by this method would.", py::arg("method"))
+      .def(
           "setup", [](const World& w) { w.manager().ask([](const ArticulatedCollisionManager&) {}); },
           "Makes all changes effective now, and not at the next question.");
 }

@@ -148,6 +148,10 @@ void ArticulatedCollisionManager::setup() {
   impl_->use(impl_->registry.readAgain());
 }
 
+void ArticulatedCollisionManager::prepareFor(Method method) {
+  if (method == Method::redon2004) impl_->setup.prepareObbTrees();
+}
+
 void ArticulatedCollisionManager::update() {
   impl_->use(impl_->registry.readAgain());
 }

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "redon/parts.h"
 
 namespace fcl_artic {
 namespace redon {
@@ -12,6 +15,8 @@ namespace {
 /// (doc/REDON2004.md).
 constexpr double kMotionPerSize = 0.125;
 constexpr int kCached = 2048;
+/// Between the whole motion and a link's own level: what meets no obstacle in an eighth is not divided further there.
+constexpr int kCoarse = 3;
 
 using engine::Body;
 using engine::Node;
@@ -26,34 +31,50 @@ void Culling::begin(const engine::Problem& problem, const engine::Query& query, 
   counts_ = &counts;
   cache_.resize(kCached);
   stamp_pair_ = -1;
-  motions_.resize(static_cast<std::size_t>(problem_->num_sweeps));
+  levels_.resize(static_cast<std::size_t>(problem_->num_sweeps));
   for (int i = 0; i < problem_->num_sweeps; ++i) {
-    auto& steps = motions_[static_cast<std::size_t>(i)];
-    steps.resize(static_cast<std::size_t>(problem_->sweeps[i].num_steps));
-    for (Motion& m : steps) m.level = -1;
+    levels_[static_cast<std::size_t>(i)].assign(static_cast<std::size_t>(problem_->sweeps[i].num_steps), -1);
   }
-  for (std::vector<bool>& set : chains_set_) std::fill(set.begin(), set.end(), false);
-  moverBoxes();
+  std::fill(std::begin(chains_set_), std::end(chains_set_), 0);
+  movers_.resize(static_cast<std::size_t>(problem_->num_movers));
+  for (std::size_t m = 0; m < movers_.size(); ++m) {
+    Mover& mover = movers_[m];
+    std::fill(std::begin(mover.made), std::end(mover.made), 0);
+    const Body& body = problem_->bodies[problem_->movers[m]];
+    mover.level = 0;
+    if (body.step < 0) continue;
+    double center[3], axis = 0;
+    for (int k = 0; k < 3; ++k) {
+      center[k] = 0.5 * (body.lss[k] + body.lss[3 + k]);
+      axis += (body.lss[3 + k] - body.lss[k]) * (body.lss[3 + k] - body.lss[k]);
+    }
+    mover.level = levelOf(0, body.step, center, body.lss[6] + 0.5 * std::sqrt(axis));
+  }
 }
 
-/// Bounds of a link's motion on 2^r equal parts; r from how far the ball (center, radius) in the step's frame moves.
-Culling::Motion& Culling::motionOf(int sweep, int step, const double* center, double radius) {
-  Motion& motion = motions_[static_cast<std::size_t>(sweep)][static_cast<std::size_t>(step)];
-  if (motion.level >= 0) return motion;
-  const auto chain = [&](int level, int k) -> SweepChains& {
-    chains_[level].resize(std::size_t{1} << level);
-    chains_set_[level].resize(std::size_t{1} << level, false);
-    SweepChains& chain = chains_[level][static_cast<std::size_t>(k)];
-    if (!chains_set_[level][static_cast<std::size_t>(k)]) {
-      chain.begin(*problem_, *query_, enclosureOf(*options_), false, *counts_);
-      chain.setInterval(timeOf(level, k), timeOf(level, k + 1), level ? Derivatives::none : Derivatives::first);
-      chains_set_[level][static_cast<std::size_t>(k)] = true;
-    }
-    return chain;
-  };
-  int level = options_->refinement_level;
+/// All sweeps over part k of 2^level.
+SweepChains& Culling::chainsOver(int level, int k) {
+  chains_[level].resize(std::size_t{1} << level);
+  SweepChains& chains = chains_[level][static_cast<std::size_t>(k)];
+  if (!(chains_set_[level] >> k & 1)) {
+    chains.begin(*problem_, *query_, enclosureOf(*options_), false, *counts_);
+    chains.setInterval(timeOf(level, k), timeOf(level, k + 1), level ? Derivatives::none : Derivatives::first);
+    chains_set_[level] |= 1ull << k;
+  }
+  return chains;
+}
+
+const IntervalTransform& Culling::poseOver(int level, int k, int sweep, int step) {
+  return chainsOver(level, k).frame(sweep, step).pose;
+}
+
+/// A link's r_i, from how far the ball (center, radius) in its step's frame moves.
+int Culling::levelOf(int sweep, int step, const double* center, double radius) {
+  int& level = levels_[static_cast<std::size_t>(sweep)][static_cast<std::size_t>(step)];
+  if (level >= 0) return level;
+  level = options_->refinement_level;
   if (level < 0) {
-    const FrameBounds& whole = chain(0, 0).frame(sweep, step);
+    const FrameBounds& whole = chainsOver(0, 0).frame(sweep, step);
     const IntervalVec3 v = whole.rate * center;
     double speed = 0, turn = 0;
     for (int k = 0; k < 3; ++k) speed += v[k].magnitude() * v[k].magnitude();
@@ -62,46 +83,59 @@ Culling::Motion& Culling::motionOf(int sweep, int step, const double* center, do
     level = 0;
     while (level < kFinest && moved > kMotionPerSize * radius * (1 << level)) ++level;
   }
-  level = std::min(level, kFinest);
-  motion.level = level;
-  motion.frames.clear();
-  for (int k = 0; k < 1 << level; ++k) motion.frames.push_back(chain(level, k).frame(sweep, step));
-  return motion;
+  return level;
 }
 
-/// Boxes in the world that hold a link's line swept sphere over each of its sub-intervals.
-void Culling::moverBoxes() {
-  const std::size_t n = static_cast<std::size_t>(problem_->num_movers);
-  mover_boxes_.resize(n);
-  mover_levels_.assign(n, 0);
-  for (std::size_t m = 0; m < n; ++m) {
-    const Body& body = problem_->bodies[problem_->movers[m]];
-    std::vector<Box>& boxes = mover_boxes_[m];
-    boxes.clear();
-    if (body.step < 0) {
-      Box box;
-      for (int k = 0; k < 3; ++k) box.lo[k] = body.lo[k], box.hi[k] = body.hi[k];
-      boxes.push_back(box);
-      continue;
-    }
-    double center[3], axis = 0;
-    for (int k = 0; k < 3; ++k) {
-      center[k] = 0.5 * (body.lss[k] + body.lss[3 + k]);
-      axis += (body.lss[3 + k] - body.lss[k]) * (body.lss[3 + k] - body.lss[k]);
-    }
-    const Motion& motion = motionOf(0, body.step, center, body.lss[6] + 0.5 * std::sqrt(axis));
-    mover_levels_[m] = motion.level;
-    for (const FrameBounds& frame : motion.frames) {
-      const IntervalVec3 ends = hull(frame.pose * body.lss, frame.pose * (body.lss + 3));
-      Box box;
-      for (int k = 0; k < 3; ++k) {
-        const Interval side = ends[k] + Interval(-body.lss[6], body.lss[6]);
-        box.lo[k] = side.lower();
-        box.hi[k] = side.upper();
-      }
-      boxes.push_back(box);
-    }
+/// Box in the world that holds a mover's line swept sphere over part k of 2^level.
+const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
+  Mover& mover = movers_[static_cast<std::size_t>(number)];
+  const Body& body = problem_->bodies[problem_->movers[number]];
+  if (body.step < 0) level = k = 0;
+  mover.boxes[level].resize(std::size_t{1} << level);
+  Box& box = mover.boxes[level][static_cast<std::size_t>(k)];
+  if (mover.made[level] >> k & 1) return box;
+  mover.made[level] |= 1ull << k;
+  if (body.step < 0) {
+    for (int i = 0; i < 3; ++i) box.lo[i] = body.lo[i], box.hi[i] = body.hi[i];
+    return box;
   }
+  const IntervalTransform& pose = poseOver(level, k, 0, body.step);
+  const IntervalVec3 ends = hull(pose * body.lss, pose * (body.lss + 3));
+  for (int i = 0; i < 3; ++i) {
+    const Interval side = ends[i] + Interval(-body.lss[6], body.lss[6]);
+    box.lo[i] = side.lower();
+    box.hi[i] = side.upper();
+  }
+  return box;
+}
+
+/// Of the parts of these 2^level, divided into 2^finer: those in which the mover's box meets this one.
+std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask, int finer, const double* lo,
+                              const double* hi) {
+  std::uint64_t out = 0;
+  for (std::uint64_t left = partsAt(finer, mask, level); left; left &= left - 1) {
+    if (!boxOf(mover, finer, __builtin_ctzll(left)).certainlyApart(lo, hi)) out |= left & (~left + 1);
+  }
+  return out;
+}
+
+/// Of 2^level parts, no fewer than either mover's own level asks for: those in which their boxes meet.
+std::uint64_t Culling::meetingParts(std::int32_t a, std::int32_t b, int level) {
+  const int own_a = movers_[static_cast<std::size_t>(a)].level, own_b = movers_[static_cast<std::size_t>(b)].level;
+  std::uint64_t mask = 1;
+  int at = 0;
+  for (const int finer : {0, std::min(kCoarse, level), level}) {
+    std::uint64_t met = 0;
+    for (std::uint64_t left = partsAt(finer, mask, at); left; left &= left - 1) {
+      const int k = __builtin_ctzll(left), level_a = std::min(finer, own_a), level_b = std::min(finer, own_b);
+      const Box& box = boxOf(b, level_b, partHolding(level_b, k, finer));
+      if (!boxOf(a, level_a, partHolding(level_a, k, finer)).certainlyApart(box.lo, box.hi)) met |= 1ull << k;
+    }
+    mask = met;
+    at = finer;
+    if (!mask) return 0;
+  }
+  return mask;
 }
 
 void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
@@ -120,31 +154,27 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
     out.push_back(pair);
   };
   if (query_->check_scene && problem_->obstacle_tree) {
-    std::vector<std::pair<std::int32_t, std::uint64_t>> stack;
-    for (int m = 0; m < problem_->num_scene_movers; ++m) {
-      const std::vector<Box>& boxes = mover_boxes_[static_cast<std::size_t>(m)];
-      const std::uint64_t all = boxes.size() == 64 ? ~0ull : (1ull << boxes.size()) - 1;
-      stack.assign(1, {0, all});
+    std::vector<std::int32_t> stack;
+    for (std::int32_t m = 0; m < problem_->num_scene_movers; ++m) {
+      const int level = movers_[static_cast<std::size_t>(m)].level;
+      stack.assign(1, 0);
       while (!stack.empty()) {
-        const auto [index, parents] = stack.back();
+        const Node& node = problem_->obstacle_tree[stack.back()];
         stack.pop_back();
-        const Node& node = problem_->obstacle_tree[index];
-        std::uint64_t mask = 0;
-        for (std::uint64_t left = parents; left; left &= left - 1) {
-          const Box& box = boxes[static_cast<std::size_t>(__builtin_ctzll(left))];
-          bool apart = false;
-          for (int k = 0; k < 3; ++k) apart = apart || box.lo[k] > node.hi[k] || box.hi[k] < node.lo[k];
-          if (!apart) mask |= left & (~left + 1);
-        }
-        if (!mask) continue;
+        double lo[3], hi[3];
+        for (int k = 0; k < 3; ++k) lo[k] = node.lo[k], hi[k] = node.hi[k];
+        if (boxOf(m, 0, 0).certainlyApart(lo, hi)) continue;
         if (!node.isLeaf()) {
-          stack.push_back({node.right(), mask});
-          stack.push_back({node.left(), mask});
+          stack.push_back(node.right());
+          stack.push_back(node.left());
           continue;
         }
         const std::int32_t pair = problem_->scenePair(m, node.piece());
-        if (problem_->isAllowed(pair)) continue;
-        if (wanted(pair)) add(pair, mover_levels_[static_cast<std::size_t>(m)], mask);
+        if (!wanted(pair)) continue;
+        const int coarse = std::min(kCoarse, level);
+        std::uint64_t mask = divide(m, 0, 1, coarse, lo, hi);
+        if (mask && coarse < level) mask = divide(m, coarse, mask, level, lo, hi);
+        if (mask) add(pair, level, mask);
       }
     }
   }
@@ -152,23 +182,25 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
   for (int p = 0; p < problem_->num_link_pairs; ++p) {
     const std::int32_t index = problem_->linkPair(p);
     if (!wanted(index)) continue;
-    if (problem_->num_movers) {
-      const engine::LinkPair& pair = problem_->link_pairs[p];
-      const std::size_t a = static_cast<std::size_t>(problem_->bodies[pair.a].mover);
-      const std::size_t b = static_cast<std::size_t>(problem_->bodies[pair.b].mover);
-      const int level = std::max(mover_levels_[a], mover_levels_[b]);
-      bool meet = false;
-      for (int k = 0; k < 1 << level && !meet; ++k) {
-        const Box& x = mover_boxes_[a][static_cast<std::size_t>(k >> (level - mover_levels_[a]))];
-        const Box& y = mover_boxes_[b][static_cast<std::size_t>(k >> (level - mover_levels_[b]))];
-        bool apart = false;
-        for (int i = 0; i < 3; ++i) apart = apart || x.lo[i] > y.hi[i] || x.hi[i] < y.lo[i];
-        meet = !apart;
-      }
-      if (!meet) continue;
+    if (!problem_->num_movers) {
+      add(index, 0, 1);
+      continue;
     }
-    add(index, 0, ~0ull);
+    const engine::LinkPair& pair = problem_->link_pairs[p];
+    const std::int32_t a = problem_->bodies[pair.a].mover, b = problem_->bodies[pair.b].mover;
+    const int level = std::max(movers_[static_cast<std::size_t>(a)].level, movers_[static_cast<std::size_t>(b)].level);
+    const std::uint64_t mask = meetingParts(a, b, level);
+    if (mask) add(index, level, mask);
   }
+}
+
+/// Two links that are both bounded in the world (Section 5.1.1).
+bool Culling::inWorld(const BodyPair& pair) const {
+  const auto isLink = [&](std::int32_t body) {
+    const std::int32_t mover = problem_->bodies[body].mover;
+    return mover >= 0 && mover < problem_->num_scene_movers;
+  };
+  return options_->links_in_world && !problem_->isScenePair(pair.index) && isLink(pair.parts.a) && isLink(pair.parts.b);
 }
 
 void Culling::start(const std::vector<BodyPair>& pairs) {
@@ -179,10 +211,14 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const BodyPair& pair = pairs[i];
     Traversal& t = traversals_[i];
-    t.level = 0;
-    t.relative.clear();
-    if (pair.parts.step_b < 0) {
-      t.relative.push_back(pair.inverse_a * pair.placement_b);
+    t.made = 0;
+    if (inWorld(pair)) {
+      const auto own = [&](std::int32_t body) {
+        return movers_[static_cast<std::size_t>(problem_->bodies[body].mover)].level;
+      };
+      t.level = std::max(own(pair.parts.a), own(pair.parts.b));
+    } else if (pair.parts.step_b < 0) {
+      t.level = 0;
     } else {
       const ObbNode& root = pair.b->nodes()[0];
       const engine::Placement& p = *pair.parts.placement_b;
@@ -192,17 +228,34 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
         for (int j = 0; j < 3; ++j) center[k] += p.R[3 * k + j] * root.center[j];
         radius += static_cast<double>(root.half[k]) * root.half[k];
       }
-      const Motion& motion = motionOf(pair.parts.sweep, pair.parts.step_b, center, std::sqrt(radius));
-      t.level = motion.level;
-      for (const FrameBounds& f : motion.frames) t.relative.push_back(relate(pair.inverse_a, f.pose, pair.placement_b));
+      t.level = levelOf(pair.parts.sweep, pair.parts.step_b, center, std::sqrt(radius));
     }
-    t.mask = pair.mask;
-    if (t.level < kFinest) t.mask &= (1ull << (1 << t.level)) - 1;
+    t.relative.resize(std::size_t{1} << t.level);
+    t.mask = partsAt(t.level, pair.mask, pair.level);
     finest_ = std::max(finest_, t.level);
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (traversals_[i].mask) wait({static_cast<std::int32_t>(i), 0, 0, traversals_[i].mask});
+    const bool free = pairs[i].free_nodes && pairs[i].free_nodes[0] & 1;
+    if (traversals_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, traversals_[i].mask});
   }
+}
+
+/// B's tree frame in A's over sub-interval k of the pair.
+const IntervalTransform& Culling::relativeOver(const BodyPair& pair, Traversal& t, int k) {
+  IntervalTransform& relative = t.relative[static_cast<std::size_t>(k)];
+  if (t.made >> k & 1) return relative;
+  t.made |= 1ull << k;
+  if (inWorld(pair)) {
+    const auto placed = [&](std::int32_t number) {
+      const Body& body = problem_->bodies[number];
+      const int level = movers_[static_cast<std::size_t>(body.mover)].level;
+      return poseOver(level, partHolding(level, k, t.level), 0, body.step) * enclose(body.placement);
+    };
+    relative = inverse(placed(pair.parts.a)) * placed(pair.parts.b);
+  } else {
+    relative = relate(pair.inverse_a, poseOver(t.level, k, pair.parts.sweep, pair.parts.step_b), pair.placement_b);
+  }
+  return relative;
 }
 
 /// Puts a pair of boxes where its first sub-interval begins.
@@ -221,7 +274,7 @@ const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
   if (s.node != e.b || s.stamp != stamp_) {
     s.node = e.b;
     s.stamp = stamp_;
-    sweep(traversals_[static_cast<std::size_t>(e.pair)].relative[static_cast<std::size_t>(k)],
+    sweep(relativeOver(pair, traversals_[static_cast<std::size_t>(e.pair)], k),
           pair.b->nodes()[static_cast<std::size_t>(e.b)], s.box);
   }
   return s.box;
@@ -236,8 +289,7 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   }
   const BoxBatch& lanes = boxBatch();
   if (n >= lanes.fewest) {
-    const Traversal& t = traversals_[static_cast<std::size_t>(entries[0].pair)];
-    return lanes.apart(t.relative[static_cast<std::size_t>(part)], a, b, n);
+    return lanes.apart(relativeOver(pair, traversals_[static_cast<std::size_t>(entries[0].pair)], part), a, b, n);
   }
   unsigned out = 0;
   for (int i = 0; i < n; ++i) {
@@ -274,6 +326,10 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
       if (query_->work_budget && workOf(*counts_) > query_->work_budget) return false;
       const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)],
                     &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
+      const auto push = [&](std::int32_t a, std::int32_t b) {
+        if (pair.free_nodes && pair.free_nodes[a >> 6] >> (a & 63) & 1) return;
+        stack.push_back({number, a, b, e.mask});
+      };
       if (x.isLeaf() && y.isLeaf()) {
         ++counts_->leaf_pairs;
         out.push_back(
@@ -281,8 +337,8 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
         e.mask &= e.mask - 1;
         if (e.mask && options_->in_time_order) wait(e);
       } else if (y.isLeaf() || (!x.isLeaf() && x.size() > y.size())) {
-        stack.push_back({number, x.child + 1, e.b, e.mask});
-        stack.push_back({number, x.child, e.b, e.mask});
+        push(x.child + 1, e.b);
+        push(x.child, e.b);
       } else {
         stack.push_back({number, e.a, y.child + 1, e.mask});
         stack.push_back({number, e.a, y.child, e.mask});

@@ -22,8 +22,10 @@ struct BodyPair {
   engine::PairParts parts;
   const ObbTree *a = nullptr, *b = nullptr;
   IntervalTransform inverse_a, placement_b;
-  int level = 0;               ///< of a link and an obstacle: their line swept spheres' boxes meet in these parts of
-  std::uint64_t mask = ~0ull;  ///< the 2^level that the time is in; two links: not asked
+  int level = 0;           ///< their line swept spheres' boxes meet in these parts
+  std::uint64_t mask = 1;  ///< of the 2^level that the time is in
+  /// Nodes of A's tree, a bit each, that are proven free of B all the time; null: none.
+  const std::uint64_t* free_nodes = nullptr;
 };
 
 /// Two triangles whose boxes meet in some sub-interval.
@@ -34,6 +36,7 @@ struct LeafPair {
 };
 
 /// Goes through the sub-intervals in the order of time, so that nothing is spent on boxes behind the first contact.
+/// Bounds are made when they are first asked for: what is far from everything is bounded over the whole motion only.
 class Culling {
  public:
   using TreeOf = std::function<const ObbTree*(std::int32_t body)>;
@@ -42,7 +45,7 @@ class Culling {
   /// Pairs of bodies that may touch, of those wanted.
   /// @param wanted  by index of the pair in the problem.
   void bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out);
-  /// To be called next: makes the bounds of their motions.
+  /// To be called next.
   void start(const std::vector<BodyPair>& pairs);
   /// The finest sub-intervals of all pairs: [0, 1] in so many equal parts.
   int numSlots() const { return 1 << finest_; }
@@ -54,10 +57,27 @@ class Culling {
 
  private:
   static constexpr int kFinest = 6;  ///< 2^6 sub-intervals: one bit each
-  /// One link's motion, on its own sub-intervals.
-  struct Motion {
-    int level = -1;  ///< the paper's r_i; -1: not bounded yet
-    std::vector<FrameBounds> frames;
+  struct Box {
+    double lo[3], hi[3];
+    bool certainlyApart(const double* other_lo, const double* other_hi) const {
+      for (int k = 0; k < 3; ++k) {
+        if (lo[k] > other_hi[k] || hi[k] < other_lo[k]) return true;
+      }
+      return false;
+    }
+  };
+  /// Boxes in the world that hold a body's line swept sphere over the parts of [0, 1], of each level by itself.
+  struct Mover {
+    int level = 0;  ///< the paper's r_i
+    std::uint64_t made[kFinest + 1] = {};
+    std::vector<Box> boxes[kFinest + 1];
+  };
+  /// B in A over the sub-intervals of a pair.
+  struct Traversal {
+    std::uint64_t mask;
+    int level;
+    std::uint64_t made;  ///< sub-intervals whose bounds are there
+    std::vector<IntervalTransform> relative;
   };
   struct Swept {
     std::int32_t node = -1;
@@ -68,14 +88,16 @@ class Culling {
     std::int32_t pair, a, b;
     std::uint64_t mask;  ///< of the pair's sub-intervals in which the boxes may meet
   };
-  struct Traversal {
-    std::uint64_t mask;
-    int level;
-    std::vector<IntervalTransform> relative;  ///< B in A, by sub-interval
-  };
-  Motion& motionOf(int sweep, int step, const double* center, double radius);
   static double timeOf(int level, int k) { return static_cast<double>(k) / (1 << level); }  // exact
-  void moverBoxes();
+  const IntervalTransform& poseOver(int level, int k, int sweep, int step);
+  SweepChains& chainsOver(int level, int k);
+  int levelOf(int sweep, int step, const double* center, double radius);
+  const Box& boxOf(std::int32_t mover, int level, int k);
+  std::uint64_t divide(std::int32_t mover, int level, std::uint64_t mask, int finer, const double* lo,
+                       const double* hi);
+  std::uint64_t meetingParts(std::int32_t mover_a, std::int32_t mover_b, int level);
+  bool inWorld(const BodyPair& pair) const;
+  const IntervalTransform& relativeOver(const BodyPair& pair, Traversal& traversal, int k);
   void wait(const Entry& e);
   const SweptObb& swept(const BodyPair& pair, const Entry& e, int k);
   unsigned apart(const BodyPair& pair, const Entry* entries, int n, int part);
@@ -85,13 +107,9 @@ class Culling {
   const Options* options_ = nullptr;
   Counts* counts_ = nullptr;
   std::vector<SweepChains> chains_[kFinest + 1];  ///< by level and sub-interval
-  std::vector<bool> chains_set_[kFinest + 1];
-  std::vector<std::vector<Motion>> motions_;  ///< by sweep and step
-  struct Box {
-    double lo[3], hi[3];
-  };
-  std::vector<std::vector<Box>> mover_boxes_;  ///< by mover and sub-interval
-  std::vector<int> mover_levels_;
+  std::uint64_t chains_set_[kFinest + 1] = {};
+  std::vector<std::vector<int>> levels_;  ///< by sweep and step; -1: not known yet
+  std::vector<Mover> movers_;
   std::vector<Traversal> traversals_;  ///< of the body pairs
   int finest_ = 0;
   std::vector<Entry> waiting_[1 << kFinest];  ///< by slot

@@ -139,10 +139,10 @@ void EquationSet::clear() {
   elements_.clear();
 }
 
-void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<LeafPair>& leaves) {
+void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, const LeafPair* end) {
   enum { vertex, edge, face };
-  for (std::size_t begin = 0; begin < leaves.size();) {
-    const std::int32_t number = leaves[begin].pair;
+  while (leaf < end) {
+    const std::int32_t number = leaf->pair;
     const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
     const ObbTree* trees[2] = {pair.a, pair.b};
     struct Used {
@@ -183,20 +183,18 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
       e.rate = IntervalVec3(Interval(0.0), Interval(0.0), Interval(0.0));
       return n;
     };
-    std::size_t i = begin;
-    for (; i < leaves.size() && leaves[i].pair == number; ++i) {
-      const LeafPair& leaf = leaves[i];
-      const ObbTriangle& x = trees[0]->triangles()[static_cast<std::size_t>(leaf.a)];
-      const ObbTriangle& y = trees[1]->triangles()[static_cast<std::size_t>(leaf.b)];
+    for (; leaf < end && leaf->pair == number; ++leaf) {
+      const ObbTriangle& x = trees[0]->triangles()[static_cast<std::size_t>(leaf->a)];
+      const ObbTriangle& y = trees[1]->triangles()[static_cast<std::size_t>(leaf->b)];
       Equation q;
       q.pair = number;
-      q.triangle_a = leaf.a;
-      q.triangle_b = leaf.b;
-      q.from = leaf.from;
+      q.triangle_a = leaf->a;
+      q.triangle_b = leaf->b;
+      q.from = leaf->from;
       for (int k = 0; k < 3; ++k) {
         if (y.owns_vertex >> k & 1) {
           q.kind = EquationKind::faceVertex;
-          const std::int32_t all[6] = {element(0, face, leaf.a),        element(0, vertex, x.vertex[0]),
+          const std::int32_t all[6] = {element(0, face, leaf->a),       element(0, vertex, x.vertex[0]),
                                        element(0, vertex, x.vertex[1]), element(0, vertex, x.vertex[2]),
                                        element(1, vertex, y.vertex[k]), -1};
           std::copy(all, all + 6, q.element);
@@ -204,7 +202,7 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
         }
         if (x.owns_vertex >> k & 1) {
           q.kind = EquationKind::vertexFace;
-          const std::int32_t all[6] = {element(0, vertex, x.vertex[k]), element(1, face, leaf.b),
+          const std::int32_t all[6] = {element(0, vertex, x.vertex[k]), element(1, face, leaf->b),
                                        element(1, vertex, y.vertex[0]), element(1, vertex, y.vertex[1]),
                                        element(1, vertex, y.vertex[2]), -1};
           std::copy(all, all + 6, q.element);
@@ -225,7 +223,6 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const std::vector<Leaf
       }
     }
     for (const Used& u : used) numbers_[u.body][u.kind][static_cast<std::size_t>(u.feature)] = -1;
-    begin = i;
   }
 }
 

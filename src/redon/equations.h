@@ -48,7 +48,7 @@ struct Element {
 class EquationSet {
  public:
   void clear();
-  void add(const std::vector<BodyPair>& pairs, const std::vector<LeafPair>& leaves);
+  void add(const std::vector<BodyPair>& pairs, const LeafPair* begin, const LeafPair* end);
   const std::vector<Equation>& equations() const { return equations_; }
   std::vector<Element>& elements() { return elements_; }
 

@@ -12,7 +12,7 @@ using Counts = RedonStatistics;
 
 /// What a work budget counts.
 inline std::uint64_t workOf(const Counts& counts) {
-  return counts.box_tests + counts.evaluations;
+  return counts.box_tests + counts.leaf_pairs + counts.equations + counts.evaluations;
 }
 
 }  // namespace redon

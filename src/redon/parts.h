@@ -6,6 +6,11 @@
 namespace fcl_artic {
 namespace redon {
 
+/// The part of 2^level that holds part k of 2^finer.
+inline int partHolding(int level, int k, int finer) {
+  return k >> (finer - level);
+}
+
 /// Parts k of 2^level as a set, from those of 2^from that they have time in common with, instants aside.
 inline std::uint64_t partsAt(int level, std::uint64_t parts, int from) {
   std::uint64_t out = 0;

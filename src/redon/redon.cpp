@@ -22,6 +22,9 @@ using engine::Problem;
 using engine::Query;
 using Clock = std::chrono::steady_clock;
 
+/// Their equations and elements take some 100 MB at most.
+constexpr std::size_t kMostLeaves = 1 << 15;
+
 /// Adds up the time of stages, where it is asked for.
 class StageClock {
  public:
@@ -98,6 +101,7 @@ class Run {
   void findPairs();
   Found search(const std::vector<BodyPair>& pairs, double limit);
   Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
+  Found solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
   void keepFirst(std::size_t begin, double bracket);
   void provenFree(std::int32_t pair, double until) {
     FCL_ARTIC_ASSERT(pair >= 0 && pair < numPairs() && until >= 0 && until <= 1);
@@ -208,6 +212,31 @@ void Run::findPairs() {
   }
 }
 
+/// First contact in [begin, end] of the leaf pairs at hand: all equations at once, but of no more than kMostLeaves
+/// pairs, so that memory is bounded.
+Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
+  Found all;
+  all.free_until = end;
+  for (std::size_t first = 0; first < w_.leaves.size(); first += kMostLeaves) {
+    const std::size_t last = std::min(first + kMostLeaves, w_.leaves.size());
+    w_.equations.clear();
+    w_.equations.add(pairs, w_.leaves.data() + first, w_.leaves.data() + last);
+    const bool more = last < w_.leaves.size();
+    const Found found =
+        w_.solver.solve(pairs, w_.equations, begin, end, limit, more ? begin : all.free_until, w_.contacts);
+    all.contact = all.contact || found.contact;
+    all.t_upper = std::min(all.t_upper, found.t_upper);
+    all.free_until = std::min(all.free_until, found.free_until);
+    all.out_of_budget = found.out_of_budget;
+    if (found.out_of_budget) {
+      if (more) all.free_until = begin;
+      return all;
+    }
+    if (found.contact) limit = std::min(limit, latestBegin(found, query_.tolerance_time));
+  }
+  return all;
+}
+
 /// First contact of these pairs: boxes, then the equations of the triangles whose boxes meet, one sub-interval after
 /// the other, from the first to that which holds `limit`.
 Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
@@ -223,9 +252,7 @@ Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
     clock.lap(counts_.boxes_us);
     if (found.out_of_budget) return found;
     if (!w_.leaves.empty()) {
-      w_.equations.clear();
-      w_.equations.add(pairs, w_.leaves);
-      found = w_.solver.solve(pairs, w_.equations, begin, end, limit, w_.contacts);
+      found = solveLeaves(pairs, begin, end, limit);
       clock.lap(counts_.equations_us);
       if (found.contact || found.free_until < end) return found;
       w_.leaves.erase(
@@ -252,9 +279,7 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   }
   clock.lap(counts_.boxes_us);
   if (found.out_of_budget) return found;
-  w_.equations.clear();
-  w_.equations.add(pairs, w_.leaves);
-  found = w_.solver.solve(pairs, w_.equations, 0, end, limit, w_.contacts);
+  found = solveLeaves(pairs, 0, end, limit);
   clock.lap(counts_.equations_us);
   return found;
 }
@@ -322,7 +347,7 @@ void Run::solve(Answer& answer) {
       w_.one.assign(1, w_.pairs[i]);
       const Found found = search(w_.one, 2);
       take(w_.one, found);
-      keepFirst(before, found.t_upper < 2 ? found.t_upper : found.free_until + query_.tolerance_time);
+      keepFirst(before, latestBegin(found, query_.tolerance_time));
     }
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());

@@ -87,9 +87,10 @@ bool Solver::mayHaveRoot(Active& active, double begin, double end, bool validity
 }
 
 Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end, double limit,
-                    std::vector<engine::LeafContact>& contacts) {
+                    double free_else, std::vector<engine::LeafContact>& contacts) {
   pairs_ = &pairs;
   set_ = &equations;
+  free_else_ = options_->simultaneous ? free_else : 0;  // an equation by itself says nothing of the others
   motions_.resize(pairs.size());
   motion_stamps_.assign(pairs.size(), -1);
   const std::size_t n = equations.equations().size();
@@ -118,7 +119,7 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
     if (!own.contact) continue;
     found.contact = true;
     found.t_upper = std::min(found.t_upper, own.t_upper);
-    limit = std::min(limit, own.t_upper < 2 ? own.t_upper : own.free_until + query_->tolerance_time);
+    limit = std::min(limit, latestBegin(own, query_->tolerance_time));
   }
   found.free_until = least;
   return found;
@@ -139,10 +140,9 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
       found.out_of_budget = true;
       return found;
     }
-    // An equation by itself says nothing of the others.
     if (query_->progress && (counts_->intervals & 255) == 0) {
       const RoundToNearest usual;  // for the caller's code
-      found.out_of_budget = !query_->progress(query_->progress_context, options_->simultaneous ? task.begin : 0);
+      found.out_of_budget = !query_->progress(query_->progress_context, std::min(task.begin, free_else_));
       if (found.out_of_budget) return found;
     }
     ++counts_->intervals;

@@ -19,14 +19,20 @@ struct Found {
   double t_upper = 2;     ///< 2: no contact is proven
 };
 
+/// What begins later than this is not the first contact, where this one is found.
+inline double latestBegin(const Found& found, double tolerance_time) {
+  return found.t_upper < 2 ? found.t_upper : found.free_until + tolerance_time;
+}
+
 class Solver {
  public:
   void begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
   /// First contact in [begin, end], which the pairs enter without contact.
   /// @param limit  what begins later does not matter, and is not looked at.
+  /// @param free_else  no contact of what is not among these equations before this time.
   /// @param[out] contacts  all valid roots of the time interval in which the first was found are appended.
   Found solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end, double limit,
-              std::vector<engine::LeafContact>& contacts);
+              double free_else, std::vector<engine::LeafContact>& contacts);
 
  private:
   /// An equation that may have a root in [lo, hi].
@@ -59,6 +65,7 @@ class Solver {
 
   SweepChains over_, middle_;  ///< of the present interval T, and of the middle of it
   double begin_ = 0, end_ = 0, mid_ = 0;
+  double free_else_ = 0;  ///< progress tells of no later time
   std::int32_t stamp_ = 0;
   std::vector<PairBounds> motions_;
   std::vector<std::int32_t> motion_stamps_;

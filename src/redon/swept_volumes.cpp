@@ -81,8 +81,13 @@ void SweptVolumes::refine(const engine::Problem& problem, const engine::Query& q
       }
     }
   }
+  free_nodes_.resize(candidates_.size());
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    pairs[i].mask &= partsAt(pairs[i].level, candidates_[i].lanes, kPartsLevel);
+    BodyPair& pair = pairs[i];
+    pair.mask &= partsAt(pair.level, candidates_[i].lanes, kPartsLevel);
+    if (!pair.mask || !candidates_[i].free_nodes) continue;
+    pair.a->nodesWithin(*problem.bodies[pair.parts.a].tree, candidates_[i].free_nodes, free_nodes_[i]);
+    pair.free_nodes = free_nodes_[i].data();
   }
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [](const BodyPair& pair) { return pair.mask == 0; }),
               pairs.end());

@@ -19,7 +19,8 @@ namespace redon {
 
 class SweptVolumes {
  public:
-  /// Takes pairs of links and still obstacles out that stage 2 proves free, and sub-intervals in which it does.
+  /// Takes pairs of links and still obstacles out that stage 2 proves free, sub-intervals in which it does, and nodes
+  /// of obstacles' trees (BodyPair::free_nodes, there until the next call).
   /// @param pairs  those of a link lie together, pairs of two links behind them: as Culling::bodyPairs() gives them.
   void refine(const engine::Problem& problem, const engine::Query& query, const Options& options,
               std::vector<BodyPair>& pairs, Counts& counts);
@@ -31,6 +32,7 @@ class SweptVolumes {
   SweepChains chains_;
   std::vector<engine::CullCandidate> candidates_;
   std::vector<engine::SweptLink> links_;
+  std::vector<std::vector<std::uint64_t>> free_nodes_;  ///< by candidate
 };
 
 }  // namespace redon

@@ -2,6 +2,7 @@
 #include "setup/setup.h"
 
 #include "geometry/solid_space.h"
+#include "setup/parallel.h"
 
 namespace fcl_artic {
 
@@ -19,6 +20,10 @@ void Setup::build(const Registry& registry) {
   if (!tables_ready_) {
     proven_.buildSelf(registry, problem(), margins_, num_self_pairs_);
     tables_.build(registry, problem(), margins_, num_self_pairs_, proven_);
+  }
+  if (obb_trees_) {
+    parallelFor(bodies_.size(), 0,
+                [&](std::size_t i) { registry.body(static_cast<std::int32_t>(i)).shape->obbTree(); });
   }
   tables_ready_ = ready_ = true;
 }

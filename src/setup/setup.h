@@ -24,6 +24,11 @@ class Setup {
   void robotChanged() { robot_ready_ = ready_ = false; }  ///< links, or what is allowed
   void obstaclesChanged() { ready_ = false; }
   void marginsChanged() { tables_ready_ = ready_ = false; }
+  /// From now on build() makes trees of oriented boxes, which else come when they are first asked for.
+  void prepareObbTrees() {
+    obb_trees_ = true;
+    ready_ = false;
+  }
   bool ready() const { return ready_; }
   /// Whether it was made for the tree as the tree is now: its owner may have added a joint.
   bool isOf(const KinematicTree& tree) const { return tree_.sameAs(tree.content()); }
@@ -58,6 +63,7 @@ class Setup {
   void buildObstacles(const Registry& registry);
   void allowScenePairs(const Registry& registry);
 
+  bool obb_trees_ = false;
   std::vector<FrameSweep> sweeps_;  ///< of the links first, then one from each moving obstacle
   std::vector<engine::SweepView> sweep_views_;
   std::vector<engine::Body> bodies_;  ///< as the registry's: links, moving obstacles, the others

@@ -4,6 +4,7 @@
 // program asks for is counted.
 #include <atomic>
 #include <cstdlib>
+#include <utility>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/geometric_shape_to_BVH_model.h>
@@ -110,6 +111,34 @@ TEST(Allocation, WarmQueriesHaveTheirMemory) {
     // The joint values at t_lower, for the poses there.
     EXPECT_LE(allocationsOf(arm, q0, hit, request, Status::contact), 1) << "mode " << static_cast<int>(mode);
   }
+}
+
+/// Allocations of a manager's first and second query by the paper's method.
+std::pair<long, long> firstAndSecond(bool prepared) {
+  const Arm arm;
+  if (prepared) {
+    arm.manager->prepareFor(Method::redon2004);
+    arm.manager->setup();
+  }
+  const JointMotion motion = JointMotion::linear(*arm.tree, Vector3d(0.6, 0.2, 0), Vector3d(0.7, 0.5, 1));
+  CertifiedRequest request;
+  request.method = Method::redon2004;
+  CertifiedResult result;
+  long counts[2];
+  for (long& counted : counts) {
+    const long before = allocations;
+    arm.manager->continuousCollide(motion, request, result);
+    counted = allocations - before;
+  }
+  return {counts[0], counts[1]};
+}
+
+TEST(Allocation, PreparedTreesAreNotMadeByTheFirstQuery) {
+  firstAndSecond(false);  // the thread's own memory
+  const auto [late, warm] = firstAndSecond(false);
+  EXPECT_GT(late, warm) << "nothing is made: this says nothing";
+  const auto [prepared, after] = firstAndSecond(true);
+  EXPECT_EQ(prepared, after);
 }
 
 }  // namespace

@@ -136,6 +136,59 @@ TEST(BoxBatch, TellsApartWhatItsTwinDoes) {
   EXPECT_LT(lost, checks);
 }
 
+/// Eq. (12) as it stands, in long double: the axes of the fifteen along which two boxes in one frame are apart, and by
+/// how much the best of them are.
+unsigned separatingAxes(const ObbNode& a, const ObbNode& b, const Eigen::Matrix3d& R, const Eigen::Vector3d& t,
+                        long double room) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  Vector e[3], f[3], c_a, c_b;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3f own(b.axis[i][0], b.axis[i][1], b.axis[i][2]);
+    e[i] = Eigen::Vector3f(a.axis[i][0], a.axis[i][1], a.axis[i][2]).cast<long double>();
+    f[i] = R.cast<long double>() * own.cast<long double>();
+  }
+  c_a = Eigen::Vector3f(a.center[0], a.center[1], a.center[2]).cast<long double>();
+  c_b = R.cast<long double>() * Eigen::Vector3f(b.center[0], b.center[1], b.center[2]).cast<long double>() +
+        t.cast<long double>();
+  unsigned out = 0;
+  for (int axis = 0; axis < 15; ++axis) {
+    const Vector n = axis < 3 ? e[axis] : axis < 6 ? f[axis - 3] : Vector(e[(axis - 6) / 3].cross(f[(axis - 6) % 3]));
+    if (n.norm() < 0.1L) continue;  // nearly parallel edges
+    long double gap = std::abs(n.dot(c_b - c_a));
+    for (int i = 0; i < 3; ++i) gap -= a.half[i] * std::abs(n.dot(e[i])) + b.half[i] * std::abs(n.dot(f[i]));
+    if (gap > 0) out |= 1u << axis;
+    if (gap > 0 && gap < room) return 0;  // not telling
+  }
+  return out;
+}
+
+TEST(BoxBatch, EachOfTheFifteenAxesTellsBoxesApartThatNoOtherDoes) {
+  Random random(seedOf("Axes"));
+  long told[15] = {};
+  for (int round = 0; round < scaled(100000) * 4; ++round) {
+    Case c(random);
+    c.a[0] = randomBox(random, 0.2);
+    c.b[0] = randomBox(random, 0.2);
+    for (int i = 0; i < 3; ++i) {
+      c.M.t[i] = Interval(c.t[i]);
+      for (int j = 0; j < 3; ++j) c.M.R(i, j) = Interval(c.R(i, j));
+    }
+    const unsigned axes = separatingAxes(c.a[0], c.b[0], c.R, c.t, 1e-5L);
+    if (__builtin_popcount(axes) != 1) continue;
+    const int axis = __builtin_ctz(axes);
+    if (told[axis] >= 200) continue;
+    ++told[axis];
+    ASSERT_TRUE(twinOf(c, 0)) << "axis " << axis;
+    for (const BoxBatch* batch : batches()) {
+      ASSERT_TRUE(batch->apart(c.M, c.first, c.second, 1) & 1) << "axis " << axis << " " << batch->name;
+    }
+  }
+  for (int axis = 0; axis < 15; ++axis) {
+    std::printf("axis %d alone: %ld pairs\n", axis, told[axis]);
+    EXPECT_GE(told[axis], 20) << "axis " << axis;
+  }
+}
+
 /// Boxes that share a point, at the transform in the middle: of A a random point or corner, of B one that comes to lie
 /// on it. Exact but for the rounding of a few sums, which the grown half sizes pay for.
 TEST(BoxBatch, KeepsBoxesThatShareAPoint) {

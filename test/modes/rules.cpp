@@ -39,7 +39,7 @@ std::string describe(const Asked& asked) {
   if (q.method == Method::redon2004) {
     out << "(enclosure " << static_cast<int>(q.redon.enclosure) << (q.redon.simultaneous ? "" : " one-by-one")
         << (q.redon.newton ? "" : " no-newton") << (q.redon.early_validity ? "" : " late-validity")
-        << (q.redon.in_time_order ? "" : " boxes-first") << ")";
+        << (q.redon.in_time_order ? "" : " boxes-first") << (q.redon.links_in_world ? " links-in-world" : "") << ")";
   }
   out << (q.check_scene ? "" : " no-scene") << (q.check_self ? "" : " no-self")
       << (q.ignore_initial_contact ? " ignore" : "") << " margin " << q.margin << " tolerances " << q.tolerance_time
@@ -304,6 +304,7 @@ std::vector<Asked> randomQueries(Random& random, int count) {
       q.redon.newton = random.chance(0.7);
       q.redon.early_validity = random.chance(0.7);
       q.redon.in_time_order = true;
+      q.redon.links_in_world = random.chance(0.3);
       if (q.mode == ContactMode::firstOfEveryPair) q.work_budget = 0;
       q.tolerance_time = std::max(q.tolerance_time, 1e-6);
     }

@@ -46,6 +46,7 @@ CertifiedRequest anyWay(const CertifiedRequest& base, campaign::Random& random) 
   request.redon.newton = random.chance(0.5);
   request.redon.early_validity = random.chance(0.7);
   request.redon.in_time_order = random.chance(0.4);
+  request.redon.links_in_world = random.chance(0.4);
   if (random.chance(0.15)) {  // stage 2, which a budget switches off
     request.visibility = fcl_artic::VisibilityMode::on;
     request.work_budget = 0;
@@ -60,7 +61,8 @@ std::string describe(const CertifiedRequest& r, const CertifiedResult& a) {
   out << (r.method == Method::standard ? "standard" : "paper") << " mode " << static_cast<int>(r.mode) << " contacts "
       << r.max_contacts << " budget " << r.work_budget << " level " << r.redon.refinement_level << " together "
       << r.redon.simultaneous << " newton " << r.redon.newton << " early " << r.redon.early_validity << " ordered "
-      << r.redon.in_time_order << " visibility " << static_cast<int>(r.visibility) << ": "
+      << r.redon.in_time_order << " in world " << r.redon.links_in_world << " visibility "
+      << static_cast<int>(r.visibility) << ": "
       << (a.status == Status::free      ? "free"
           : a.status == Status::contact ? "contact"
                                         : "undecided")
