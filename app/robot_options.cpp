@@ -121,9 +121,8 @@ UrdfOptions urdfOptions(const RobotOptions& options) {
   return out;
 }
 
-SceneOptions sceneOptions(const RobotOptions& options, bool unknown_cells) {
+SceneOptions sceneOptions(const RobotOptions& options) {
   SceneOptions out;
-  out.unknown_cells = unknown_cells;
   out.solid_meshes = options.solid_meshes;
   out.collada_up_axis = options.collada_up_axis;
   out.packages = packagesOf(options);

@@ -32,7 +32,8 @@ void addAttachOption(CLI::App& verb, RobotOptions& options);
 
 UrdfOptions urdfOptions(const RobotOptions& options);
 /// For scenes and what is carried, whose URDF files look for the same packages.
-SceneOptions sceneOptions(const RobotOptions& options, bool unknown_cells);
+/// (Those of WorldOptions are the caller's to add.)
+SceneOptions sceneOptions(const RobotOptions& options);
 
 /// The robot, its allowed pairs and its notes. @throws as loadUrdf() and loadSrdf().
 Robot readRobot(const RobotOptions& options);

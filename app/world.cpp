@@ -65,7 +65,9 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o) {
       ->group("Robot and scene")
       ->type_name("FILE")
       ->excludes(srdf);
-  verb.add_option("--scene", o.scenes, "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot; may be repeated")
+  verb.add_option("--scene", o.scenes,
+                  "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot, points .pcd "
+                  ".ply .xyz; may be repeated")
       ->check(requireInput)
       ->group("Robot and scene")
       ->type_name("FILE...");
@@ -79,6 +81,10 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o) {
       ->group("Robot and scene");
   verb.add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
+  verb.add_option("--point-radius", o.point_radius, "Radius of the points of point clouds, m, whatever the scale")
+      ->check(requirePositive)
+      ->group("Robot and scene")
+      ->type_name("RADIUS");
   verb.add_flag("--solid-meshes", o.robot.solid_meshes,
                 "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
@@ -111,6 +117,7 @@ std::string shellArguments(const WorldOptions& o) {
   if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
   addFlag("--collada-up-axis", o.robot.collada_up_axis);
   addFlag("--unknown-cells", o.unknown_cells);
+  if (o.point_radius > 0) add("--point-radius", fmt::format("{}", o.point_radius));
   addFlag("--solid-meshes", o.robot.solid_meshes);
   addAll("--solid", o.solids);
   addAll("--attach", o.robot.attached);
@@ -150,7 +157,9 @@ LinkPairReport World::provePairs() {
 void World::readScene() {
   const KinematicTree& tree = *robot.tree;
   std::vector<Scene> scenes;
-  const SceneOptions carried_options = sceneOptions(options_.robot, options_.unknown_cells);
+  SceneOptions carried_options = sceneOptions(options_.robot);
+  carried_options.unknown_cells = options_.unknown_cells;
+  carried_options.point_radius = options_.point_radius;
   SceneOptions scene_options = carried_options;
   scene_options.scale = options_.scale;
   for (const std::string& path : options_.scenes) scenes.push_back(loadScene(path, scene_options));

@@ -19,11 +19,12 @@ struct WorldOptions {
   std::string auto_srdf;                    ///< file to write; empty: none
   std::vector<std::string> scenes, solids;  ///< files; names of links and obstacles
   bool unknown_cells = false;
-  double scale = 1;  ///< of the scenes
+  double scale = 1;         ///< of the scenes
+  double point_radius = 0;  ///< of point clouds, m; 0: none is given
 };
 
 /// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
-/// --unknown-cells, --solid-meshes, --solid and --attach.
+/// --unknown-cells, --point-radius, --solid-meshes, --solid and --attach.
 void addWorldOptions(CLI::App& verb, WorldOptions& options);
 
 /// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "triangles.h"
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@
 #include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
+#include "fcl_artic/point_cloud.h"
 #if FCL_HAVE_OCTOMAP
 #include <fcl/geometry/octree/octree.h>
 #endif
@@ -55,6 +57,24 @@ void addBox(Triangles& out, const Vector3d& center, const Vector3d& size) {
     out.faces.push_back({base + q[0], base + q[1], base + q[2]});
     out.faces.push_back({base + q[0], base + q[2], base + q[3]});
   }
+}
+
+/// Of each point as much as a few pixels show.
+Triangles octahedra(const PointCloud& cloud) {
+  Triangles out;
+  for (std::size_t i = 0; i < cloud.points().size(); ++i) {
+    const int base = static_cast<int>(out.vertices.size());
+    for (int k = 0; k < 3; ++k) {
+      for (const double sign : {-1.0, 1.0})
+        out.vertices.push_back(cloud.points()[i] + sign * cloud.radius(i) * Vector3d::Unit(k));
+    }
+    for (int octant = 0; octant < 8; ++octant) {
+      const std::array<int, 3> face{base + (octant & 1), base + 2 + (octant >> 1 & 1), base + 4 + (octant >> 2 & 1)};
+      const bool inside_out = (octant & 1) + (octant >> 1 & 1) + (octant >> 2 & 1) != 1 && octant != 7;
+      out.faces.push_back(inside_out ? std::array<int, 3>{face[0], face[2], face[1]} : face);
+    }
+  }
+  return out;
 }
 
 /// A point of a profile that is turned about the z axis.
@@ -191,6 +211,7 @@ Triangles triangulate(const fcl::CollisionGeometryd& geometry) {
     }
 #endif
     default:
+      if (const auto* cloud = dynamic_cast<const PointCloud*>(&geometry)) return octahedra(*cloud);
       break;
   }
   throw std::invalid_argument("can't draw a geometry of FCL's node type " +

@@ -15,6 +15,7 @@
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/manager.h"
 #include "fcl_artic/pair_result.h"
+#include "fcl_artic/point_cloud.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/solid_mesh.h"

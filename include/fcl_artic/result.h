@@ -55,10 +55,10 @@ struct CertifiedContact {
   /// Geometry of body 2; the caller's.
   const fcl::CollisionGeometryd* o2 = nullptr;
   /// The pieces of the bodies that touch: index of a mesh's triangle, id of an OcTree's cell
-  /// (OcTree::getNodeByQueryCellId), fcl::Contactd::NONE (-1) for a shape. -1 for a mesh too if no triangle is known:
-  /// with ContactMode::any where contact is proven by what closed meshes enclose (`point` lies within both bodies
-  /// then), and where one body lies within the other, a SolidMesh, at t = 0 (`normal` is roughly the shortest way out
-  /// then).
+  /// (OcTree::getNodeByQueryCellId), number of a PointCloud's point, fcl::Contactd::NONE (-1) for a shape. -1 for a
+  /// mesh too if no triangle is known: with ContactMode::any where contact is proven by what closed meshes enclose
+  /// (`point` lies within both bodies then), and where one body lies within the other, a SolidMesh, at t = 0 (`normal`
+  /// is roughly the shortest way out then).
   std::intptr_t b1 = -1, b2 = -1;
   /// The kinds of features that meet, body 1's first.
   FeatureKind feature = FeatureKind::volume;

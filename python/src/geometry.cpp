@@ -18,6 +18,7 @@
 #include <fcl/geometry/shape/triangle_p.h>
 #include <octomap/OcTree.h>
 
+#include "fcl_artic/point_cloud.h"
 #include "fcl_artic/solid_mesh.h"
 #include "hull.h"
 #include "options.h"
@@ -159,6 +160,24 @@ Geometry octree(py::handle points, py::handle resolution) {
   return make<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
 }
 
+Geometry points(py::handle points, py::handle radius) {
+  const Rows rows = matrixOf(points, "points", 3).rows();
+  std::vector<Vector3d> places(static_cast<std::size_t>(rows.rows()));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) places[static_cast<std::size_t>(i)] = rows.row(i).transpose();
+  std::vector<double> radii;
+  if (PySequence_Check(radius.ptr())) {
+    const Eigen::VectorXd each = vectorOf(radius, "radius");
+    radii.assign(each.data(), each.data() + each.size());
+    if (radii.size() != places.size()) {
+      valueError("there are " + std::to_string(places.size()) + " points and " + std::to_string(radii.size()) +
+                 " radii");
+    }
+  } else {
+    radii.push_back(lengthOf(radius, "radius"));
+  }
+  return make<PointCloud>(std::move(places), std::move(radii));
+}
+
 /// What OctoMap's readData() reads of a node: its log-odds, then a bit for each of its eight children, then these.
 /// Probabilities are not kept, only which cells are occupied: FCL's thresholds can't be read to the last bit.
 void writeNode(const fcl::OcTreed& tree, const octomap::OcTreeNode* node, std::ostream& out) {
@@ -237,6 +256,11 @@ py::tuple geometryState(const Geometry& geometry) {
     default:
       break;
   }
+  if (const auto* cloud = dynamic_cast<const PointCloud*>(&g)) {
+    const std::vector<double>& radii = cloud->radii();
+    return py::make_tuple("points", arrayOfRows(rowsOf(cloud->points().data(), cloud->points().size())),
+                          py::array_t<double>(static_cast<py::ssize_t>(radii.size()), radii.data()));
+  }
   const auto* model = asMesh(g);
   if (!model) valueError("this kind of geometry has no description");
   return py::make_tuple("mesh", arrayOfRows(rowsOf(model->vertices, static_cast<std::size_t>(model->num_vertices))),
@@ -255,6 +279,7 @@ Geometry geometryOfState(const py::tuple& s) {
   if (kind == "triangle") return triangle(s[1], s[2], s[3]);
   if (kind == "convex") return convex(s[1], py::none());
   if (kind == "mesh") return mesh(s[1], s[2], py::cast<bool>(s[3]));
+  if (kind == "points") return points(s[1], py::len(s[2]) == 1 ? py::object(s[2][py::int_(0)]) : py::object(s[2]));
   if (kind == "octree") return octreeOfState(py::cast<double>(s[1]), py::cast<std::string>(s[2]));
   // Not through the constructor, which would divide by the length, not 1 to the last bit, of the normal.
   if (kind == "halfspace") {
@@ -322,6 +347,7 @@ void bindGeometry(py::module_& module) {
              }
              const py::tuple state = geometryState(g);
              const std::string kind = py::str(state[0]);
+             if (kind == "points") return "<Geometry: " + std::to_string(py::len(state[1])) + " points>";
              if (kind == "octree") return "<Geometry: octree, cells of " + std::string(py::str(state[1])) + " m>";
              std::string text = "<Geometry: " + kind;
              if (kind == "convex") return text + ", " + std::to_string(py::len(state[1])) + " vertices>";
@@ -358,6 +384,8 @@ void bindGeometry(py::module_& module) {
       py::arg("vertices"), py::arg("faces") = py::none(), py::arg("solid") = false);
   module.def("octree", &octree, "The cells, cubes of this edge length, that hold one of the points (N, 3) or more.",
              py::arg("points"), py::arg("resolution"));
+  module.def("points", &points, "Points (N, 3), each a ball of this radius, or of one radius each (N,).",
+             py::arg("points"), py::arg("radius"));
 }
 
 }  // namespace fcl_artic::python

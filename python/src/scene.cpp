@@ -13,13 +13,14 @@ namespace fcl_artic::python {
 namespace {
 
 Scene load(py::handle path, bool unknown_cells, bool solid_meshes, bool collada_up_axis, double scale,
-           py::handle packages) {
+           double point_radius, py::handle packages) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
   SceneOptions options;
   options.unknown_cells = unknown_cells;
   options.solid_meshes = solid_meshes;
   options.collada_up_axis = collada_up_axis;
   options.scale = scale;
+  options.point_radius = point_radius;
   options.packages = packagesOf(packages);
   return guardFiles(file, [&] { return loadScene(file, options); });
 }
@@ -102,10 +103,13 @@ void bindScene(py::module_& module) {
       .def("__repr__", [](const Scene& s) { return py::str("<Scene: {} obstacles>").format(s.obstacles.size()); })
       .def(py::pickle(&state, &sceneOfState));
 
-  module.def("load_scene", &load,
-             "Reads a scene: a mesh in any format that assimp reads, URDF, MoveIt's .scene, OctoMap's .bt and .ot.",
-             py::arg("path"), py::kw_only(), py::arg("unknown_cells") = false, py::arg("solid_meshes") = false,
-             py::arg("collada_up_axis") = false, py::arg("scale") = 1.0, py::arg("packages") = py::none());
+  module.def(
+      "load_scene", &load,
+      "Reads a scene: a mesh in any format that assimp reads, URDF, MoveIt's .scene, OctoMap's .bt and .ot, points\n"
+      "(.pcd, .xyz, .ply without faces), each a ball of `point_radius`.",
+      py::arg("path"), py::kw_only(), py::arg("unknown_cells") = false, py::arg("solid_meshes") = false,
+      py::arg("collada_up_axis") = false, py::arg("scale") = 1.0, py::arg("point_radius") = 0.0,
+      py::arg("packages") = py::none());
   module.def(
       "load_mesh",
       [](py::handle path, py::handle scale, bool solid, bool collada_up_axis) {
@@ -116,6 +120,13 @@ void bindScene(py::module_& module) {
       },
       "Reads a mesh in any format that assimp reads; `scale` has a factor for each axis.", py::arg("path"),
       py::kw_only(), py::arg("scale") = py::none(), py::arg("solid") = false, py::arg("collada_up_axis") = false);
+  module.def(
+      "load_points",
+      [](py::handle path, double radius) {
+        const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+        return Geometry{guardFiles(file, [&] { return loadPointCloud(file, radius); })};
+      },
+      "Reads a point cloud (.pcd, .ply, .xyz): each point a ball of this radius.", py::arg("path"), py::arg("radius"));
   module.def(
       "combine_scenes",
       [](const std::vector<Scene>& scenes, py::handle tree) { return combineScenes(scenes, *treeOf(tree)); },

@@ -67,6 +67,8 @@ REACHABLE = {
     "BoundedMotion": "Motion.bounded",
     "FclLinkMotion": "Motion.of_link",
     "SolidMesh": "mesh",  # solid=True
+    "PointCloud": "points",
+    "loadPointCloud": "load_points",
     "SolidMark": "Geometry.solid",
     "makeSolid": "Geometry.as_solid",
     # visibility.h, visibility/offscreen.h

@@ -172,6 +172,8 @@ SHAPES = [
     fcl_artic.convex(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])),
     fcl_artic.mesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])),
     fcl_artic.octree(np.array([[0, 0, 0], [0.5, 0, 0]]), 0.1),
+    fcl_artic.points(np.array([[0, 0, 0], [0.5, 0, 0]]), 0.1),
+    fcl_artic.points(np.array([[0.0, 0, 0], [0.5, 0, 0]]), [0.1, 0.2]),
 ]
 
 
@@ -241,6 +243,10 @@ def test_a_mesh_is_taken_from_what_has_vertices_and_faces():
         (lambda: fcl_artic.octree([[0, 0, 1e9]], 0.1), ValueError, r"points\[0\]"),
         (lambda: fcl_artic.octree([[0, 0, math.nan]], 0.1), ValueError, r"points\[0\]"),
         (lambda: fcl_artic.octree(np.zeros((0, 3)), 0.1), ValueError, "no row"),
+        (lambda: fcl_artic.points(np.zeros((0, 3)), 0.1), ValueError, "no point"),
+        (lambda: fcl_artic.points([[0, 0, math.nan]], 0.1), ValueError, "point 0"),
+        (lambda: fcl_artic.points([[0, 0, 0]], 0), ValueError, "radius"),
+        (lambda: fcl_artic.points([[0, 0, 0]], [0.1, 0.2]), ValueError, "1 points and 2 radii"),
     ],
 )
 def test_a_shape_that_is_none_is_refused_by_name(make, error, text):

@@ -295,7 +295,19 @@ std::string elementText(const Element& element) {
          "\n";
 }
 
+/// Balls anywhere: a form of text and a verifier that have no list of them cannot state it.
+bool isCloud(const Geometry& geometry) {
+  const TreeView& tree = geometry.shape->view();
+  return tree.num_pieces > 0 && tree.pieces[0].kind == PieceKind::point &&
+         (tree.num_pieces > 1 || !Eigen::Vector3d::Map(tree.pieces[0].center).isZero(0));
+}
+
 void Builder::write() {
+  for (const Geometry& geometry : world.geometries) {
+    if (!isCloud(geometry)) continue;
+    world.missing = "a body is a point cloud, which certificates cannot state";
+    return;
+  }
   std::string text = "fcl_artic world 1\n";
   for (const std::string& variable : world.variables) text += "variable " + word(variable) + "\n";
   for (std::size_t f = 1; f < world.frames.size(); ++f) {

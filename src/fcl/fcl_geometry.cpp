@@ -22,6 +22,7 @@
 #include <fcl/geometry/shape/triangle_p.h>
 
 #include "fcl/mesh_cache.h"
+#include "fcl_artic/point_cloud.h"
 #include "fcl_artic/solid_mesh.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
@@ -194,6 +195,24 @@ class CellReader {
 };
 #endif
 
+/// FCL has no type of node for them.
+template <class S>
+const PointCloud* asCloud(const fcl::CollisionGeometry<S>& geometry) {
+  if constexpr (std::is_same<S, double>::value) return dynamic_cast<const PointCloud*>(&geometry);
+  return nullptr;
+}
+
+std::shared_ptr<const ShapeTree> readCloud(const PointCloud& cloud) {
+  std::vector<Piece> balls(cloud.points().size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    balls[i].kind = PieceKind::point;
+    balls[i].primitive = static_cast<std::int32_t>(i);
+    balls[i].radius = cloud.radius(i);
+    Eigen::Vector3d::Map(balls[i].center) = cloud.points()[i];
+  }
+  return ShapeTree::fromPieces(std::move(balls));
+}
+
 template <class S>
 std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry, bool cached) {
   Mesh<S> mesh;
@@ -272,6 +291,7 @@ std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry,
       return CellReader<S>(static_cast<const fcl::OcTree<S>&>(geometry)).read();
 #endif
     default:
+      if (const PointCloud* cloud = asCloud(geometry)) return readCloud(*cloud);
       throw std::invalid_argument("this type of geometry is not supported");
   }
   return ShapeTree::fromPiece(piece);
@@ -325,6 +345,11 @@ void visitContent(const fcl::CollisionGeometryd& geometry, const Add& add) {
           .forEach([&](const Eigen::Vector3d& center, double half) { return vector(center) && numbers(&half, 1); });
 #endif
     default: {
+      if (const PointCloud* cloud = asCloud(geometry)) {
+        const std::size_t counts[] = {cloud->points().size(), cloud->radii().size()};
+        return (void)(add(counts, sizeof counts) && add(cloud->points().data(), counts[0] * sizeof(Eigen::Vector3d)) &&
+                      numbers(cloud->radii().data(), counts[1]));
+      }
       Mesh<double> mesh;
       if (!asMesh(geometry, mesh)) return;
       const std::size_t counts[] = {mesh.num_vertices, mesh.num_triangles, mesh.solid};
@@ -439,7 +464,7 @@ const char* geometryName(const fcl::CollisionGeometry<S>& geometry) {
     case fcl::GEOM_ELLIPSOID:
       return "Ellipsoid";
     default:
-      return "unknown geometry";
+      return asCloud(geometry) ? "PointCloud" : "unknown geometry";
   }
 }
 

@@ -113,6 +113,14 @@ TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
   const std::string still = "check --robot " + robot + " --scene " + cells + " --from " + at + " --to " + at;
   EXPECT_EQ(this->run(still).status, 0);
   EXPECT_EQ(this->run(still + " --unknown-cells").status, 1);
+  // A point 0.15 beyond the ball's surface: a ball of 0.1 itself is free, one of 0.2 touches.
+  const std::string scan = write("scan.xyz", "-0.25 0.5 -0.5\n");
+  const std::string beside = "check --robot " + robot + " --scene " + scan + " --from " + at + " --to " + at;
+  EXPECT_EQ(this->run(beside + " --point-radius 0.1").status, 0);
+  EXPECT_EQ(this->run(beside + " --point-radius 0.2").status, 1);
+  const Outcome no_radius = this->run(beside);
+  EXPECT_EQ(no_radius.status, 2);
+  EXPECT_NE(no_radius.err.find("--point-radius"), std::string::npos) << no_radius.err;
   const Outcome flat = this->run("check --robot " + robot + " --from base/rot_x=1 --to base/rot_x=1");
   EXPECT_EQ(flat.status, 2);
   EXPECT_NE(flat.err.find("quaternion of joint 'base'"), std::string::npos) << flat.err;

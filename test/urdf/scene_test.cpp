@@ -6,7 +6,10 @@
 #include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 
+#include <algorithm>
+#include <charconv>
 #include <limits>
+#include <map>
 
 #include "fcl_artic/urdf/urdf.h"
 #include "temp_folder.h"
@@ -68,6 +71,170 @@ std::vector<std::string> namesOf(const Scene& scene) {
   std::vector<std::string> names;
   for (const Scene::Obstacle& obstacle : scene.obstacles) names.push_back(obstacle.name);
   return names;
+}
+
+// ---- point clouds
+
+std::string shortest(double value) {
+  char text[40];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Bytes of numbers, as a file has them.
+template <class T>
+void append(std::string& out, T value, bool swap = false) {
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  if (swap) std::reverse(bytes.begin(), bytes.end());
+  out += bytes;
+}
+/// LZF: what came before is copied where it repeats, all else stands as it is.
+std::string compress(const std::string& in) {
+  std::string out;
+  std::size_t literal = 0;
+  const auto flush = [&](std::size_t end) {
+    while (literal < end) {
+      const std::size_t n = std::min<std::size_t>(32, end - literal);
+      out += static_cast<char>(n - 1);
+      out += in.substr(literal, n);
+      literal += n;
+    }
+  };
+  for (std::size_t i = 0; i < in.size();) {
+    std::size_t best = 0, back = 0;
+    for (std::size_t b = 1; b <= std::min<std::size_t>(i, 8192); ++b) {
+      std::size_t n = 0;
+      while (i + n < in.size() && n < 264 && in[i + n] == in[i + n - b]) ++n;
+      if (n > best) best = n, back = b;
+    }
+    if (best < 4) {
+      ++i;
+      continue;
+    }
+    flush(i);
+    const std::size_t length = best - 2, offset = back - 1;
+    out += static_cast<char>((length < 7 ? length : 7) << 5 | offset >> 8);
+    if (length >= 7) out += static_cast<char>(length - 7);
+    out += static_cast<char>(offset & 255);
+    literal = i += best;
+  }
+  flush(in.size());
+  return out;
+}
+
+/// Files of the same three points, all with other numbers between the coordinates.
+std::map<std::string, std::string> filesOf(const Points& points) {
+  std::string pcd =
+      "# .PCD\nVERSION 0.7\nFIELDS rgb x y normal z\nSIZE 4 4 8 4 4\nTYPE U F F F F\nCOUNT 1 1 1 3 1\nWIDTH " +
+      std::to_string(points.size()) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points.size()) +
+      "\nDATA ";
+  std::string ascii, rows, columns, xyz = "# scan\n\n", little, big, ply_ascii;
+  for (const Eigen::Vector3d& p : points) {
+    const std::string x = shortest(p[0]), y = shortest(p[1]), z = shortest(p[2]);
+    ascii += "255 " + x + " " + y + " 0 0 1 " + z + "\n";
+    xyz += x + ", " + y + "\t" + z + " 17\r\n";
+    ply_ascii += x + " " + y + " 9 " + z + "\n";
+    append(rows, std::uint32_t{255}), append(rows, static_cast<float>(p[0])), append(rows, p[1]);
+    for (int k = 0; k < 3; ++k) append(rows, 1.0f);
+    append(rows, static_cast<float>(p[2]));
+    for (const bool swap : {false, true}) {
+      std::string& out = swap ? big : little;
+      append(out, p[0], swap), append(out, p[1], swap), append(out, std::uint8_t{9}),
+          append(out, static_cast<float>(p[2]), swap);
+    }
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) append(columns, std::uint32_t{255});
+  for (const auto& p : points) append(columns, static_cast<float>(p[0]));
+  for (const auto& p : points) append(columns, p[1]);
+  for (std::size_t i = 0; i < 3 * points.size(); ++i) append(columns, 1.0f);
+  for (const auto& p : points) append(columns, static_cast<float>(p[2]));
+  std::string packed = compress(columns), sizes;
+  append(sizes, static_cast<std::uint32_t>(packed.size())), append(sizes, static_cast<std::uint32_t>(columns.size()));
+  const auto ply = [&](const std::string& format, const std::string& body) {
+    return "ply\nformat " + format + " 1.0\ncomment a scan\nelement vertex " + std::to_string(points.size()) +
+           "\nproperty double x\nproperty double y\nproperty uchar red\nproperty float z\nend_header\n" + body;
+  };
+  return {{"ascii.pcd", pcd + "ascii\n" + ascii},
+          {"binary.pcd", pcd + "binary\n" + rows},
+          {"compressed.pcd", pcd + "binary_compressed\n" + sizes + packed},
+          {"lines.xyz", xyz},
+          {"ascii.ply", ply("ascii", ply_ascii)},
+          {"little.ply", ply("binary_little_endian", little)},
+          {"big.ply", ply("binary_big_endian", big)}};
+}
+
+TEST_F(SceneTest, PointsAreReadFromEveryKindOfFile) {
+  const Points points{{0.5, -1.25, 2}, {0.5, 0.0625, -3}, {1e-3f, 100, 0.5}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}};
+  for (const auto& [name, content] : filesOf(points)) {
+    SceneOptions options;
+    options.point_radius = 0.01;
+    const Scene scene = loadScene(write(name, content), options);
+    ASSERT_EQ(scene.obstacles.size(), 1u) << name;
+    const auto& cloud = geometryOf<PointCloud>(scene.obstacles[0]);
+    ASSERT_EQ(cloud.points().size(), points.size()) << name;
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(cloud.points()[i], points[i]) << name << " " << i;
+    EXPECT_EQ(cloud.radii(), std::vector<double>{0.01});
+    EXPECT_TRUE(scene.notes.empty()) << scene.notes[0];
+    options.scale = 0.5;
+    const Scene half = loadScene(write(name, content), options);
+    EXPECT_EQ(geometryOf<PointCloud>(half.obstacles[0]).points()[1], 0.5 * points[1]) << name;
+    EXPECT_EQ(geometryOf<PointCloud>(half.obstacles[0]).radius(0), 0.01);
+    expectContains(errorOf(name, content), "--point-radius");
+  }
+}
+
+/// Wherever a file ends too early it is refused, or has no more points than it shows; nothing crashes.
+TEST_F(SceneTest, PointFilesThatAreCutShortAreRefused) {
+  const Points points{{0.5, -1.25, 2}, {0.5, 0.0625, -3}, {1, 100, 0.5}};
+  int refused = 0, read = 0;
+  for (const auto& [name, content] : filesOf(points)) {
+    for (std::size_t n = 0; n < content.size(); ++n) {
+      try {
+        const auto cloud = loadPointCloud(write(name, content.substr(0, n)), 0.01);
+        // Lines of numbers may end anywhere; elsewhere only the last digits of the last number can be missing.
+        if (name != "lines.xyz") {
+          EXPECT_EQ(cloud->points().size(), points.size()) << name << " " << n;
+        }
+        ++read;
+      } catch (const std::runtime_error& e) {
+        expectContains(e.what(), name);
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GE(refused, 1000);
+  EXPECT_LE(read, 200);
+}
+
+TEST_F(SceneTest, PointsThatWereNotMeasuredAreLeftOutWithANote) {
+  std::vector<std::string> notes;
+  const auto cloud = loadPointCloud(write("scan.xyz", "1 2 3\nnan nan nan\n4 5 inf\n7 8 9\n"), 0.1, &notes);
+  EXPECT_EQ(cloud->points().size(), 2u);
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "2 of 4 points are not finite");
+  expectContains(messageOf([&] { loadPointCloud(write("none.xyz", "nan nan nan\n"), 0.1); }), "has no point");
+  expectContains(messageOf([&] { loadPointCloud(write("bad.xyz", "1 2 3\n1 2 x\n"), 0.1); }), "line 2");
+  expectContains(messageOf([&] { loadPointCloud(write("far.xyz", "1 2 3e12\n"), 0.1); }), "point 0");
+  const std::string head = "VERSION .7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n1 2\n";
+  expectContains(messageOf([&] { loadPointCloud(write("flat.pcd", head), 0.1); }), "no field z");
+  expectContains(messageOf([&] {
+                   loadPointCloud(
+                       write("huge.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 999999999999\nDATA binary\nabc"),
+                       0.1);
+                 }),
+                 "999999999999");
+}
+
+TEST_F(SceneTest, APlyFileWithFacesIsAMesh) {
+  SceneOptions options;
+  options.point_radius = 0.01;
+  const Scene scene = loadScene(write("mesh.ply",
+                                      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                      "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                      "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+                                options);
+  EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(scene.obstacles[0]).num_tris, 1);
 }
 
 TEST_F(SceneTest, NamesAreGivenOnce) {

@@ -9,6 +9,7 @@
 #include <fcl/narrowphase/collision_object.h>
 
 #include "fcl_artic/manager.h"
+#include "fcl_artic/point_cloud.h"
 
 namespace fcl_artic {
 
@@ -157,13 +158,15 @@ struct SceneOptions {
   bool collada_up_axis = false;  ///< Whether a COLLADA file's up axis counts, as UrdfOptions::collada_up_axis.
   /// Factor by which all lengths of the scene, positions too, are multiplied: 0.001 for a file in millimetres. Above 0.
   double scale = 1;
+  /// Radius of a point cloud's points, in m, whatever the scale. Above 0 for files of points; 0: they are refused.
+  double point_radius = 0;
   std::map<std::string, std::string> packages;  ///< For URDF files, as UrdfOptions::packages.
 };
 
 /// Reads a scene. The file's ending decides how: meshes in any format that assimp reads (.obj .stl .ply .dae ...), one
 /// obstacle a file; URDF (.urdf), all links in the neutral configuration as obstacles; MoveIt's scene text (.scene);
-/// OctoMap (.bt .ot), occupied cells as boxes. Names are made unique: further shapes of an object become NAME#2 and so
-/// on.
+/// OctoMap (.bt .ot), occupied cells as boxes; point clouds (.pcd .xyz, .ply without faces), balls. Names are made
+/// unique: further shapes of an object become NAME#2 and so on.
 /// @throws std::invalid_argument for a scale that is not above 0 and finite; std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
@@ -177,6 +180,16 @@ FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const Kin
 /// robot that slides or floats without limits, nor of unbounded obstacles.
 /// @return one line each, naming obstacle, both lengths in m and the cure; none if all is as usual.
 FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene);
+
+/// Reads a point cloud: PCD (.pcd: ascii, binary, binary_compressed), PLY (.ply, its vertices), lines that begin with
+/// three numbers (.xyz). Points that are not finite, as of rays without an echo, are left out. A PCD file's VIEWPOINT
+/// is not applied.
+/// @param radius  of all points, in m.
+/// @param notes   what was accepted though unusual is appended, one line each; may be null.
+/// @throws std::invalid_argument for a radius that is not above 0 and finite; std::runtime_error naming file and
+/// reason.
+FCL_ARTIC_EXPORT std::shared_ptr<PointCloud> loadPointCloud(const std::string& path, double radius,
+                                                            std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle mesh by assimp, all parts of the file in one BVHModel<OBBRSSd>.
 /// @param scale  factor for each axis, finite, not 0.

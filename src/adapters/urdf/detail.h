@@ -45,6 +45,9 @@ GeometryPtr scaledGeometry(const GeometryPtr& geometry, double scale, const std:
 /// @param ending  of the file's name, in lower case, such as ".stl". @throws std::runtime_error naming `where`.
 void requireWholeMesh(std::string_view content, const std::string& ending, const std::string& where);
 
+/// Whether a file is a PLY file of points and no faces.
+bool isPlyWithoutFaces(std::string_view content);
+
 /// The ending of a file's name, in lower case, such as ".stl".
 std::string endingOf(const std::string& path);
 

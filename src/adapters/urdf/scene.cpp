@@ -405,6 +405,14 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
     MoveItSceneReader(path, builder).read();
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
+  } else if (ending == ".pcd" || ending == ".xyz" ||
+             (ending == ".ply" && detail::isPlyWithoutFaces(files::read(path)))) {
+    if (!(options.point_radius > 0)) {
+      fail("'" + path + "'",
+           "is a point cloud: say how large its points are (--point-radius, SceneOptions::point_radius)");
+    }
+    builder.add(fs::path(path).stem().string(), loadPointCloud(path, options.point_radius, &builder.scene.notes),
+                Eigen::Isometry3d::Identity());
   } else {
     builder.add(
         fs::path(path).stem().string(),

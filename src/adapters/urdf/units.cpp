@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "detail.h"
+#include "fcl_artic/point_cloud.h"
 #include "fcl_artic/solid_mesh.h"
 #include "fcl_artic/urdf/urdf.h"
 
@@ -39,6 +40,11 @@ GeometryPtr scaledGeometry(const GeometryPtr& geometry, double scale, const std:
     for (Eigen::Vector3d& x : vertices) x *= scale;
     const std::vector<fcl::Triangle> triangles(mesh->tri_indices, mesh->tri_indices + mesh->num_tris);
     return makeMesh(vertices, triangles, where, nullptr, dynamic_cast<const SolidMark*>(geometry.get()) != nullptr);
+  }
+  if (const auto* cloud = dynamic_cast<const PointCloud*>(geometry.get())) {
+    std::vector<Eigen::Vector3d> points = cloud->points();
+    for (Eigen::Vector3d& x : points) x *= scale;
+    return std::make_shared<PointCloud>(std::move(points), cloud->radii());  // radii are in metres always
   }
   fail(where, "has a geometry that can't be scaled");
 }

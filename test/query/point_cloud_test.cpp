@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clouds of points: what as many balls say one by one, in every place where geometry goes.
+#include "fcl_artic/point_cloud.h"
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <string>
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/motion/translation_motion.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
+#include <gtest/gtest.h>
+
+#include "fcl_artic/fcl_artic.h"
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using namespace fcl_artic;
+
+std::mt19937_64 random_engine(5);
+double uniform(double lower, double upper) {
+  return std::uniform_real_distribution<double>(lower, upper)(random_engine);
+}
+Isometry3d at(const Vector3d& x) {
+  return Isometry3d(Eigen::Translation3d(x));
+}
+std::shared_ptr<fcl::CollisionObjectd> object(const std::shared_ptr<fcl::CollisionGeometryd>& geometry,
+                                              const Isometry3d& pose = Isometry3d::Identity()) {
+  return std::make_shared<fcl::CollisionObjectd>(geometry, pose);
+}
+
+/// Two hinges and a slide, each with a box.
+std::shared_ptr<KinematicTree> armTree() {
+  auto tree = std::make_shared<KinematicTree>("arm");
+  for (const char* link : {"base", "upper", "lower", "tool"}) tree->addLink(link);
+  tree->addJoint(Joint::revolute("j1", "base", "upper", Vector3d::UnitZ()));
+  tree->addJoint(Joint::revolute("j2", "upper", "lower", Vector3d::UnitY(), at({0.5, 0, 0})));
+  Joint slide;
+  slide.name = "j3", slide.type = JointType::prismatic, slide.parent = "lower", slide.child = "tool";
+  slide.axis = Vector3d::UnitX();
+  slide.origin = at({0.5, 0, 0});
+  tree->addJoint(slide);
+  return tree;
+}
+void bindBoxes(ArticulatedCollisionManager& manager) {
+  const auto box = std::make_shared<fcl::Boxd>(0.3, 0.08, 0.06);
+  for (const char* link : {"upper", "lower", "tool"}) manager.bind(link, object(box), at({0.25, 0, 0}));
+}
+
+struct Cloud {
+  std::vector<Vector3d> points;
+  std::vector<double> radii;
+};
+Cloud randomCloud(int n, double spread, bool one_radius) {
+  Cloud cloud;
+  while (static_cast<int>(cloud.points.size()) < n) {
+    cloud.points.emplace_back(uniform(-spread, spread), uniform(-spread, spread), uniform(-spread, spread));
+    cloud.radii.push_back(one_radius ? 0.01 : std::pow(10, uniform(-3, -1.3)));
+  }
+  if (one_radius) cloud.radii.assign(1, 0.01);
+  return cloud;
+}
+
+/// Many motions amid a cloud and amid the same balls one by one; and the distance of each point at samples.
+TEST(PointCloud, SaysWhatItsBallsSayOneByOne) {
+  int contacts = 0, free = 0, sampled = 0;
+  for (int scene = 0; scene < 24; ++scene) {
+    const auto tree = armTree();
+    const Cloud cloud = randomCloud(scene % 6 == 0 ? 1 : 200, 1.3, scene % 2 == 0);
+    const Isometry3d pose = at({0.1, -0.2, 0.05}) * Eigen::AngleAxisd(0.3 * scene, Vector3d(1, 2, 3).normalized());
+    const PointCloud geometry(cloud.points, cloud.radii);
+    ArticulatedCollisionManager whole(tree), single(tree);
+    bindBoxes(whole);
+    bindBoxes(single);
+    whole.registerObject(object(std::make_shared<PointCloud>(geometry), pose), "cloud");
+    std::vector<std::shared_ptr<fcl::CollisionObjectd>> balls;
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      balls.push_back(object(std::make_shared<fcl::Sphered>(geometry.radius(i)), pose * at(cloud.points[i])));
+      single.registerObject(balls.back(), std::to_string(i));
+    }
+    whole.setup();
+    single.setup();
+    for (int i = 0; i < 40; ++i) {
+      Vector3d q0(uniform(-3, 3), uniform(-1.5, 1.5), uniform(0, 0.2)),
+          dq(uniform(-1, 1), uniform(-1, 1), uniform(-0.2, 0.2));
+      const JointMotion motion = JointMotion::linear(*tree, q0, q0 + dq);
+      for (const Method method : {Method::standard, Method::redon2004}) {
+        CertifiedRequest request;
+        request.method = method;
+        CertifiedResult a, b;
+        whole.continuousCollide(motion, request, a);
+        single.continuousCollide(motion, request, b);
+        ASSERT_EQ(a.status, b.status) << scene << " " << i;
+        ++(a.isFree() ? free : contacts);
+        if (a.isFree()) continue;
+        EXPECT_NEAR(a.t_lower, b.t_lower, 3e-6) << scene << " " << i;
+        ASSERT_FALSE(a.contacts.empty());
+        const CertifiedContact& contact = a.contacts[0];
+        EXPECT_EQ(contact.body2.name, "cloud");
+        ASSERT_GE(contact.b2, 0);
+        ASSERT_LT(static_cast<std::size_t>(contact.b2), cloud.points.size());
+        const auto ball = static_cast<std::size_t>(contact.b2);
+        if (a.t_lower == 0) continue;  // in each other already
+        EXPECT_NEAR((contact.point - pose * cloud.points[ball]).norm(), geometry.radius(ball), 1e-3);
+        CertifiedRequest any = request;
+        any.mode = ContactMode::any;
+        whole.continuousCollide(motion, any, b);
+        EXPECT_EQ(b.status, Status::contact);
+      }
+      CertifiedResult answer;
+      whole.continuousCollide(motion, CertifiedRequest(), answer);
+      std::vector<Isometry3d> M_0;
+      for (double t = 0; t <= 1; t += 0.02) {
+        tree->forwardKinematics(motion.configuration(t), M_0);
+        bool touches = false;
+        for (const char* link : {"upper", "lower", "tool"}) {
+          const Isometry3d box = M_0[static_cast<std::size_t>(tree->linkId(link))] * at({0.25, 0, 0});
+          for (std::size_t k = 0; k < cloud.points.size(); ++k) {
+            const Vector3d x = box.inverse() * (pose * cloud.points[k]);
+            const Vector3d outside = (x.cwiseAbs() - 0.5 * Vector3d(0.3, 0.08, 0.06)).cwiseMax(0);
+            touches = touches || outside.norm() < geometry.radius(k) - 1e-12;
+          }
+        }
+        if (!touches) continue;
+        ++sampled;
+        ASSERT_EQ(answer.status, Status::contact) << scene << " " << i << " at " << t;
+        EXPECT_LE(answer.t_lower, t);
+        break;
+      }
+    }
+  }
+  std::cout << contacts << " contacts, " << free << " free, " << sampled << " sampled contacts\n";
+  EXPECT_GE(contacts, 200);
+  EXPECT_GE(free, 200);
+  EXPECT_GE(sampled, 80);
+}
+
+/// A ball of 0.1 m that comes down 1 m onto a point of 0.05 m at the origin: its centre is 0.15 m above at t = 0.35.
+TEST(PointCloud, GoesWhereGeometryGoes) {
+  const auto cloud =
+      std::make_shared<PointCloud>(std::vector<Vector3d>{{0, 0, 0}, {3, 0, 0}}, std::vector<double>{0.05, 1});
+  const auto ball = std::make_shared<fcl::Sphered>(0.1);
+  auto tree = std::make_shared<KinematicTree>("slide");
+  tree->addLink("base");
+  tree->addLink("link");
+  Joint joint;
+  joint.name = "j", joint.type = JointType::prismatic, joint.parent = "base", joint.child = "link";
+  joint.axis = -Vector3d::UnitZ();
+  tree->addJoint(joint);
+  const auto ask = [&](ArticulatedCollisionManager& manager, double margin = 0) {
+    manager.setup();
+    CertifiedRequest request;
+    request.margin = margin;
+    CertifiedResult result;
+    manager.continuousCollide(JointMotion::linear(*tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)), request,
+                              result);
+    EXPECT_EQ(result.status, Status::contact);
+    EXPECT_TRUE(result.certain);
+    return result.t_lower;
+  };
+  {
+    ArticulatedCollisionManager manager(tree);  // an obstacle
+    manager.bind("link", object(ball), at({0, 0, 0.5}));
+    manager.registerObject(object(cloud));
+    EXPECT_NEAR(ask(manager), 0.35, 2e-6);
+    EXPECT_NEAR(ask(manager, 0.05), 0.3, 2e-6);
+  }
+  {
+    ArticulatedCollisionManager manager(tree);  // on a link
+    manager.bind("link", object(cloud), at({0, 0, 0.5}));
+    manager.registerObject(object(ball));
+    EXPECT_NEAR(ask(manager), 0.35, 2e-6);
+  }
+  {
+    ArticulatedCollisionManager manager(tree);  // that moves up as the link comes down
+    manager.bind("link", object(ball), at({0, 0, 0.5}));
+    const auto up = std::make_shared<fcl::TranslationMotiond>(at({0, 0, -0.5}), at({0, 0, 0}));
+    const fcl::ContinuousCollisionObjectd carried(cloud, up);
+    manager.registerObject(&carried);
+    EXPECT_NEAR(ask(manager), 0.85 / 1.5, 4e-6);
+  }
+  const fcl::TranslationMotiond down(at({0, 0, 0.5}), at({0, 0, -0.5})), still(at({0, 0, 0}), at({0, 0, 0}));
+  CertifiedPairResult pair;
+  continuousCollide(ball.get(), &down, static_cast<const fcl::CollisionGeometryd*>(cloud.get()), &still,
+                    CertifiedPairRequest(), pair);
+  EXPECT_EQ(pair.status, Status::contact);
+  EXPECT_NEAR(pair.t_lower, 0.35, 2e-6);
+}
+
+TEST(PointCloud, CertificatesSayThatTheyCannotStateIt) {
+  const auto tree = armTree();
+  ArticulatedCollisionManager manager(tree);
+  bindBoxes(manager);
+  manager.registerObject(object(std::make_shared<PointCloud>(std::vector<Vector3d>{{5, 0, 0}}, 0.1)));
+  manager.setup();
+  CertifiedRequest request;
+  request.certificate = true;
+  CertifiedResult result;
+  manager.continuousCollide(JointMotion::linear(*tree, Vector3d(0, 0, 0), Vector3d(1, 0, 0)), request, result);
+  EXPECT_TRUE(result.isFree());
+  ASSERT_NE(result.certificate, nullptr);
+  EXPECT_FALSE(*result.certificate);
+  EXPECT_NE(result.certificate->missing.find("point cloud"), std::string::npos) << result.certificate->missing;
+}
+
+/// Stage 2 proves of a cloud what it proves of the balls.
+TEST(PointCloud, IsCulledByVisibility) {
+  const auto tree = armTree();
+  ArticulatedCollisionManager manager(tree);
+  bindBoxes(manager);
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 4000; ++i) {
+    const double turn = uniform(-3, 3);
+    points.emplace_back(0.75 * std::cos(turn), 0.75 * std::sin(turn), uniform(0.1, 0.4));
+  }
+  manager.registerObject(object(std::make_shared<PointCloud>(points, 0.005)));
+  manager.setup();
+  std::uint64_t pairs = 0, free = 0, contacts = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d q0(uniform(-3, 3), uniform(-0.3, 0.1), 0),
+        q1 = q0 + Vector3d(uniform(-1, 1), uniform(-0.6, 0.3), 0.1);
+    CertifiedRequest request;
+    CertifiedResult off, on;
+    const JointMotion motion = JointMotion::linear(*tree, q0, q1);
+    manager.continuousCollide(motion, request, off);
+    request.visibility = VisibilityMode::on;
+    manager.continuousCollide(motion, request, on);
+    ASSERT_EQ(on.status, off.status);
+    ASSERT_EQ(on.t_lower, off.t_lower);
+    pairs += on.statistics.visibility.culled + on.statistics.visibility.nodes;
+    ++(off.isFree() ? free : contacts);
+  }
+  EXPECT_GE(pairs, 10u);
+  EXPECT_GE(free, 5u);
+  EXPECT_GE(contacts, 5u);
+}
+
+std::string messageOf(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "nothing thrown";
+}
+
+TEST(PointCloud, WhatIsNoCloudIsRefused) {
+  const auto contains = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure() << text;
+  };
+  const std::vector<Vector3d> two{{0, 0, 0}, {1, 0, 0}};
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud(std::vector<Vector3d>(), 0.1); }), "no point"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud(two, 0); }), "radius is 0"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud(two, std::nan("")); }), "radius is nan"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud(two, {0.1, -1}); }), "radius of point 1"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud(two, {0.1, 0.1, 0.1}); }), "2 points and 3 radii"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud({{0, 0, 0}, {0, std::nan(""), 0}}, 0.1); }), "point 1"));
+  EXPECT_TRUE(contains(messageOf([&] { PointCloud({{0, 0, 2e9}}, 0.1); }), "point 0"));
+}
+
+}  // namespace
