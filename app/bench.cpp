@@ -14,6 +14,7 @@ void addBench(CLI::App& program, int& exit_status) {
   bench->require_subcommand(1);
   addRobotBench(*bench, exit_status);
   addTable1(*bench, exit_status);
+  addIdeas(*bench, exit_status);
   addDepth(*bench, exit_status);
   auto options = std::make_shared<PlanningBenchOptions>();
   PlanningBenchOptions& o = *options;

@@ -36,6 +36,8 @@ constexpr double kEarly = 1e-3;      ///< in t
 constexpr double kNear = 1e-4;       ///< m
 constexpr double kRounding = 1e-12;  ///< m
 
+constexpr const char* kOurs = "fcl_artic";  ///< how the names of this library's ways begin
+
 struct Options {
   std::size_t queries = 200;
   std::uint64_t seed = 20040401;
@@ -89,15 +91,27 @@ TaskResult dropIn(const PairQuery& q, const fcl::MotionBased& m1, const fcl::Mot
   return answered(result.is_collide, result.time_of_contact);
 }
 
-TaskResult certified(const PairQuery& q, const fcl::MotionBased& m1, const fcl::MotionBased& m2) {
+TaskResult certified(const PairQuery& q, const fcl::MotionBased& m1, const fcl::MotionBased& m2,
+                     const CertifiedPairRequest& request) {
   CertifiedPairResult result;
-  fcl_artic::continuousCollide(q.body1->geometry.get(), &m1, q.body2->geometry.get(), &m2, CertifiedRequest(), result);
+  fcl_artic::continuousCollide(q.body1->geometry.get(), &m1, q.body2->geometry.get(), &m2, request, result);
   TaskResult r = answered(result.status != Status::free, result.t_lower);
   r.upper = result.t_upper;
   r.certain = result.certain;
   return r;
 }
 
+TaskResult standard(const PairQuery& q, const fcl::MotionBased& m1, const fcl::MotionBased& m2) {
+  return certified(q, m1, m2, {});
+}
+
+TaskResult redon2004(const PairQuery& q, const fcl::MotionBased& m1, const fcl::MotionBased& m2) {
+  CertifiedPairRequest request;
+  request.method = Method::redon2004;
+  return certified(q, m1, m2, request);
+}
+
+/// FCL's ways, then this library's.
 std::vector<Way> waysFor(Bodies bodies) {
   fcl::ContinuousCollisionRequestd naive(1000), advance;
   advance.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
@@ -113,7 +127,9 @@ std::vector<Way> waysFor(Bodies bodies) {
     advance.gjk_solver_type = fcl::GST_INDEP;
     ways.push_back(publicEntry("FCL conservative adv., indep", kRss, advance));
   }
-  ways.push_back({"fcl_artic", kRss, dropIn});
+  ways.push_back({kOurs, kRss, dropIn});
+  // Curved shapes the paper's method leaves to the library's own.
+  if (bodies == Bodies::meshes) ways.push_back({kOurs + std::string(", method redon2004"), kRss, redon2004});
   return ways;
 }
 
@@ -203,7 +219,7 @@ SetReport compareSet(const std::string& name, Bodies bodies, const Options& opti
   }
   std::vector<PairQuery> obbrss;
   for (const PairQuery& q : queries) obbrss.push_back(pairs::withVolume(q, pairs::Volume::obbrss));
-  const auto brackets = runWay({"", pairs::Volume::rss, certified}, queries, options.limit_s, {});
+  const auto brackets = runWay({"", pairs::Volume::rss, standard}, queries, options.limit_s, {});
   std::vector<Known> known;
   for (std::size_t i = 0; i < queries.size(); ++i, show(1, i)) {
     known.push_back(know(queries[i], brackets[i], report.added));
@@ -284,7 +300,9 @@ int run(const Options& options) {
   bool good = true;
   Json all{{"seed", options.seed}, {"sets", Json::array()}};
   for (const SetReport& r : reports) {
-    good = good && r.scores.back().count[right] == r.queries;
+    for (const Score& s : r.scores) {
+      if (s.way.rfind(kOurs, 0) == 0) good = good && s.count[right] == r.queries;
+    }
     all["sets"].push_back(jsonOf(r));
     if (!options.json) fmt::print("{}\n", textOf(r));
   }

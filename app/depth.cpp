@@ -20,6 +20,8 @@
 namespace fcl_artic::app {
 namespace {
 
+constexpr std::size_t kTriangles = 10000;
+
 struct DepthOptions {
   std::vector<int> joints{2, 4, 6, 10, 15, 20, 30};
   std::size_t queries = 10;
@@ -68,7 +70,7 @@ Snake makeSnake(int joints) {
   }
   const generator::NamedMesh hand = generator::puma560Meshes().back();
   s.tip = modelOf(hand.mesh, Eigen::Vector3d::Zero(), 1);
-  s.pipes = modelOf(generator::pipes(10000, 2), Eigen::Vector3d::Zero(), 1);
+  s.pipes = modelOf(generator::pipes(kTriangles, 2), Eigen::Vector3d::Zero(), 1);
   s.tip_object = std::make_unique<fcl::CollisionObjectd>(s.tip);
   s.pipes_object = std::make_unique<fcl::CollisionObjectd>(s.pipes);
   s.manager = std::make_unique<ArticulatedCollisionManager>(s.tree);
@@ -132,7 +134,11 @@ int runDepth(const DepthOptions& o) {
                                 : fmt::format("{:.1f}", series.values.back() / chart.series[0].values.back())});
     }
   }
-  fmt::print("{}", textOf(table, 2));
+  fmt::print(
+      "An arm of 1.2 m whose last link carries a hand, in Pipes of {} triangles:\n"
+      "{} colliding steps for each chain, 10 degrees shared among its joints, the\n"
+      "fastest of {} runs each. Counts and ms, of the equations alone: means.\n\n{}",
+      kTriangles, o.queries, o.passes, textOf(table, 2));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) files::write(o.csv, csvOf(table));
   if (!o.svg.empty()) files::write(o.svg, toSvg({chart}));

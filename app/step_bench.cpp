@@ -28,7 +28,8 @@ StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::ve
       manager.continuousCollide(motion, request, result);
       if (result.statistics.total_us < best.total_us) best = result.statistics;
     }
-    differ += (result.status == Status::contact) != contact;
+    sum.undecided += result.status == Status::undecided;
+    differ += result.status == (contact ? Status::free : Status::contact);
     const double sv = paper && stage2 ? best.redon.visibility_us : best.visibility.us;
     const double bvh = paper ? best.redon.culling_us : best.culling_us;
     sum.bvh += bvh;

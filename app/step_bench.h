@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What `bench table1` and `bench depth` share: random steps, their mean times and counts, tables as text and as CSV.
+// What `bench table1`, `bench ideas` and `bench depth` share: mean times and counts of steps, tables as text and as
+// CSV.
 #pragma once
 
 #include <cstdint>
@@ -33,9 +34,10 @@ struct StepCosts {
   double sv_pairs = 0, sv_culled = 0;
   double box_tests = 0, leaf_pairs = 0, equations = 0, intervals = 0, evaluations = 0, steps = 0;
   double median = 0, p95 = 0;  ///< of totals
+  std::size_t undecided = 0;   ///< queries that ended by their budget
 };
 
-/// @param[out] differ  queries whose verdict is not `contact`.
+/// @param[in,out] differ  grows by the queries whose verdict is the other one than `contact` says.
 StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
                        CertifiedRequest request, int passes, bool contact, std::size_t& differ);
 

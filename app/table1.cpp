@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "table1.h"
 
-#include <array>
-#include <cstdint>
-#include <filesystem>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
 #include "bars.h"
 #include "exit_status.h"
-#include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
-#include "generator.h"
+#include "pipe_steps.h"
 #include "progress.h"
 #include "redon_options.h"
+#include "render/picture.h"
 #include "step_bench.h"
+#include "usage.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
 #endif
@@ -49,80 +44,10 @@ const double* printedAt(double degrees, bool colliding) {
   return nullptr;
 }
 
-/// A robot and a scene, ready for queries.
-struct Scenery {
-  Robot robot;
-  std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> mesh;
-  std::unique_ptr<fcl::CollisionObjectd> obstacle;
-  std::unique_ptr<ArticulatedCollisionManager> manager;
-};
-
-Robot makePuma() {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / fmt::format("fcl_artic_puma560_{}", std::random_device()());
-  generator::writePuma560(folder.string());
-  struct Remove {
-    std::filesystem::path folder;
-    ~Remove() {
-      std::error_code ignored;
-      std::filesystem::remove_all(folder, ignored);
-    }
-  } remove{folder};
-  return loadUrdf((folder / "puma560.urdf").string());
-}
-
-std::unique_ptr<Scenery> pumaInPipes(std::size_t triangles, std::uint64_t seed) {
-  auto s = std::make_unique<Scenery>();
-  s->robot = makePuma();
-  const generator::Mesh pipes = generator::pipes(triangles, seed);
-  s->mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  s->mesh->beginModel(static_cast<int>(pipes.triangles.size()), static_cast<int>(pipes.vertices.size()));
-  std::vector<fcl::Triangle> faces;
-  for (const auto& t : pipes.triangles) faces.emplace_back(t[0], t[1], t[2]);
-  s->mesh->addSubModel(pipes.vertices, faces);
-  s->mesh->endModel();
-  s->obstacle = std::make_unique<fcl::CollisionObjectd>(s->mesh);
-  s->manager = std::make_unique<ArticulatedCollisionManager>(s->robot.tree);
-  s->robot.addTo(*s->manager);
-  s->manager->registerObject(s->obstacle.get(), "pipes");
-  s->manager->setup();
-  return s;
-}
-
-/// Random steps from free configurations within the joints' limits: every joint by the angle, up or down.
-/// @return colliding ones, free ones.
-std::array<std::vector<JointMotion>, 2> makeSteps(const Scenery& s, double angle, std::size_t count,
-                                                  std::uint64_t seed) {
-  const KinematicTree& tree = *s.robot.tree;
-  Random random(seed);
-  std::array<std::vector<JointMotion>, 2> sets;
-  CertifiedRequest request;
-  CertifiedResult result;
-  for (std::uint64_t tries = 0; sets[0].size() < count || sets[1].size() < count; ++tries) {
-    if (tries > 20000000) throw std::runtime_error("table1: no colliding steps are found in this scene");
-    Eigen::VectorXd q0(tree.dof()), q1(tree.dof());
-    for (int v = 0; v < tree.dof(); ++v) {
-      const Joint& joint = tree.joint(tree.variableJoint(v));
-      const bool limited = joint.lower < joint.upper;
-      q0[v] = random.uniform(limited ? joint.lower : -3.14, limited ? joint.upper : 3.14);
-      q1[v] = q0[v] + random.sign() * angle;
-    }
-    const JointMotion motion = JointMotion::linear(tree, q0, q1);
-    s.manager->continuousCollide(motion, request, result);
-    if (result.status == Status::contact && result.t_lower == 0) continue;
-    auto& set = sets[result.status == Status::contact ? 0 : 1];
-    if (set.size() < count) set.push_back(motion);
-  }
-  return sets;
-}
-
 constexpr const char* kNoExecutor = "none";
 constexpr const char *kAsWritten = "redon2004-as-written", *kRedon = "redon2004", *kStandard = "standard";
 
-struct Table1Options {
-  std::vector<double> angles{1, 5, 15, 30};
-  std::size_t queries = 20, triangles = 100000;
-  std::uint64_t seed = 1;
+struct Table1Options : PipeOptions {
   int passes = 3;
   double tolerance = 1e-6;
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
@@ -132,7 +57,7 @@ struct Table1Options {
 #endif
   std::vector<std::string> methods{kAsWritten, kRedon, kStandard};
   RedonOptions redon;
-  std::string csv, svg;
+  std::string csv, svg, image;
 };
 
 /// Stage 2 by this executor, or by what takes its place.
@@ -177,12 +102,12 @@ std::vector<Variant> variantsOf(const Table1Options& o) {
 struct Group {
   double degrees;
   bool colliding;
-  std::vector<StepCosts> costs;  ///< by variant
+  std::vector<StepCosts> costs;  ///< By variant; empty: the steps are refused.
 };
 
 /// Total of a method without stage 2, us; 0: it was not asked for.
 double totalOf(const Group& group, const std::vector<Variant>& variants, const std::string& name) {
-  for (std::size_t v = 0; v < variants.size(); ++v) {
+  for (std::size_t v = 0; v < group.costs.size(); ++v) {
     if (variants[v].name == name && variants[v].request.visibility == VisibilityMode::off) return group.costs[v].total;
   }
   return 0;
@@ -219,7 +144,14 @@ Table tableOf(const std::vector<Group>& groups, const std::vector<Variant>& vari
       row.resize(table.columns.size());
       table.rows.push_back(row);
     }
-    for (std::size_t v = 0; v < variants.size(); ++v) {
+    if (group.costs.empty()) {
+      std::vector<std::string> row{angle, kind, "refused"};
+      for (const Column& column : table.columns) {
+        if (row.size() < table.columns.size()) row.push_back(column.key == "leaf_pairs" ? "0.0" : "");
+      }
+      table.rows.push_back(row);
+    }
+    for (std::size_t v = 0; v < group.costs.size(); ++v) {
       const StepCosts& c = group.costs[v];
       const auto ms = [](double us) { return us < 0 ? std::string() : fmt::format("{:.4f}", us * 1e-3); };
       std::vector<std::string> row{angle, kind, variants[v].name};
@@ -258,44 +190,59 @@ std::string svgOf(const std::vector<Group>& groups, const std::vector<Variant>& 
   return toSvg({chart});
 }
 
+/// The robot on its way into a pipe, in a step of the largest angle.
+void drawStep(const PumaInPipes& scenery, const CloseSteps& steps, const std::string& path) {
+  const JointMotion& step = steps.colliding.front();
+  const CertifiedResult result = scenery.manager->continuousCollide(step);
+  render::PictureOptions picture;
+  picture.title = fmt::format("A step of {:g} degrees: free until t = {:.4f}", steps.degrees, result.t_lower);
+  render::writePicture(
+      path, scenery.robot, scenery.pipes.obstacles, [&](double t) { return step.configuration(t); }, result, picture);
+}
+
 int runTable1(const Table1Options& o) {
-  const auto scenery = pumaInPipes(o.triangles, o.seed);
+  if (!o.image.empty()) render::requirePictures();
+  const PumaInPipes scenery = pumaInPipes(o);
   const auto culler = makeCuller(o.executor);
-  scenery->manager->setVisibility(culler);
+  scenery.manager->setVisibility(culler);
   const bool stage2 = o.executor != kNoExecutor;
   const std::string executor = stage2 ? culler->executor() : kNoExecutor;  // ready before times are taken
   const std::vector<Variant> variants = variantsOf(o);
   std::vector<Group> groups;
+  std::vector<std::string> refusals;
+  std::string sets;
   std::size_t differ = 0;
   {
     ProgressBar bar;
     for (std::size_t i = 0; i < o.angles.size(); ++i) {
-      const auto sets = makeSteps(*scenery, o.angles[i] * kRadiansPerDegree, o.queries, o.seed + 100 * i);
+      const CloseSteps steps = closeSteps(scenery, o, i);
+      sets += steps.summary();
+      if (!steps.refusal().empty()) refusals.push_back(steps.refusal());
       for (const bool colliding : {true, false}) {
         Group group{o.angles[i], colliding, {}};
         for (const Variant& variant : variants) {
+          if (!colliding && !steps.refusal().empty()) break;
           bar.show(static_cast<double>(groups.size() * variants.size() + group.costs.size()) /
                    static_cast<double>(2 * o.angles.size() * variants.size()));
-          group.costs.push_back(
-              measureSteps(*scenery->manager, sets[colliding ? 0 : 1], variant.request, o.passes, colliding, differ));
+          group.costs.push_back(measureSteps(*scenery.manager, colliding ? steps.colliding : steps.free,
+                                             variant.request, o.passes, colliding, differ));
         }
         groups.push_back(group);
       }
+      if (!o.image.empty() && i + 1 == o.angles.size()) drawStep(scenery, steps, o.image);
     }
   }
   const Table table = tableOf(groups, variants);
   fmt::print(
-      "PUMA 560 in Pipes of {} triangles, every joint by the angle up or down;\n"
-      "{} colliding and {} free steps each, the fastest of {} runs. The paper's own scene of\n"
-      "that name is another one; its size isn't known.\n"
-      "SV: culling by visibility, executor {}{}.\n"
+      "{}SV: culling by visibility, executor {}{}.\n"
       "printed : and written : are the factors by which a total is below the printed one\n"
-      "and below that of redon2004-as-written without SV.\n\n{}",
-      o.triangles, o.queries, o.queries, o.passes, executor,
-      executor == o.executor ? "" : fmt::format("\n({})", culler->fallbackReason()), textOf(table, 3));
+      "and below that of redon2004-as-written without SV.\n{}\n{}",
+      description(scenery, o, o.passes), executor,
+      executor == o.executor ? "" : fmt::format("\n({})", culler->fallbackReason()), sets, textOf(table, 3));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) files::write(o.csv, csvOf(table));
   if (!o.svg.empty()) files::write(o.svg, svgOf(groups, variants, o));
+  if (!refusals.empty()) throw std::runtime_error(fmt::format("refused: {}", fmt::join(refusals, "; ")));
   return differ ? kExitContact : kExitFree;
 }
 
@@ -306,17 +253,12 @@ void addTable1(CLI::App& bench, int& exit_status) {
   Table1Options& o = *options;
   CLI::App* verb = bench.add_subcommand(
       "table1", "Table 1 of Redon et al. 2004: the paper's method, and the library's own, beside the printed times");
-  verb->footer("Exit status: 0 both methods agree on all verdicts, 1 they don't, 2 error.");
-  verb->add_option("--angles", o.angles, "Angle by which every joint moves, degrees")
-      ->capture_default_str()
-      ->type_name("DEG...");
-  verb->add_option("--queries", o.queries, "Colliding steps and free steps for each angle")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option("--triangles", o.triangles, "Triangles of the pipes")
-      ->check(CLI::Range(1000, 1000000))
-      ->capture_default_str();
-  verb->add_option("--seed", o.seed, "The same seed asks the same queries")->capture_default_str();
+  verb->footer(
+      "A row of free steps in none of which triangles are compared is refused, with exit status 2: it would not "
+      "measure\n"
+      "exact contact. A smaller --closeness mends it.\n"
+      "Exit status: 0 all methods agree on all verdicts, 1 they don't, 2 error.");
+  addPipeOptions(*verb, o);
   verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -331,6 +273,9 @@ void addTable1(CLI::App& bench, int& exit_status) {
       ->capture_default_str();
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->add_option("--svg", o.svg, "Draw the totals")->type_name("FILE");
+  verb->add_option("--image", o.image, "Draw a colliding step of the last angle, robot, sweep and contact, as PNG")
+      ->check(requirePng)
+      ->type_name("FILE");
   addRedonOptions(*verb, o.redon);  // as written, boxes come first and validity late, whatever is given
   verb->callback([options, &exit_status] { exit_status = runTable1(*options); });
 }

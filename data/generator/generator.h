@@ -28,6 +28,8 @@ constexpr std::size_t kMinPipeTriangles = 1000, kMaxPipeTriangles = 1000000;
 /// @param triangles  wanted size; the mesh has it to within 1 %.
 /// @throws std::invalid_argument when triangles is not in [kMinPipeTriangles, kMaxPipeTriangles].
 Mesh pipes(std::size_t triangles, std::uint64_t seed);
+/// The same pipes, each a mesh of its own; pipes() has their vertices and triangles in this order.
+std::vector<Mesh> separatePipes(std::size_t triangles, std::uint64_t seed);
 /// Writes pipes(triangles, seed) as OBJ. @throws std::runtime_error naming the file when it can't be written.
 void writePipes(std::size_t triangles, std::uint64_t seed, const std::string& obj_path);
 

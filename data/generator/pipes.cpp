@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "files/files.h"
 #include "loft.h"
@@ -86,8 +87,7 @@ Eigen::Vector3d centreOf(const Cell& c) {
 /// 2 `sides` triangles (an open tube's rings less one, and its two ends), so that a size is met exactly.
 class Pen {
  public:
-  Pen(Mesh& mesh, const Detail& detail, int budget)
-      : mesh_(mesh), detail_(detail), circle_(unitCircle(detail.sides)), left_(budget) {}
+  Pen(const Detail& detail, int budget) : detail_(detail), circle_(unitCircle(detail.sides)), left_(budget) {}
 
   int ringsLeft() const { return left_; }
   /// More than any one step costs.
@@ -152,6 +152,8 @@ class Pen {
     addLoft(mesh_, rings_);
     rings_.clear();
   }
+  /// What was drawn since the last call.
+  Mesh take() { return std::exchange(mesh_, {}); }
 
  private:
   Ring crossSection(const Eigen::Vector3d& at, const Eigen::Vector3d& u, const Eigen::Vector3d& v, double r) const {
@@ -164,7 +166,7 @@ class Pen {
     --left_;
   }
 
-  Mesh& mesh_;
+  Mesh mesh_;
   Detail detail_;
   std::vector<Eigen::Vector2d> circle_;
   std::vector<Ring> rings_;  // of the tube being drawn
@@ -187,7 +189,7 @@ std::vector<Cell> waysOut(const Grid& grid, const Cell& cell) {
 
 }  // namespace
 
-Mesh pipes(std::size_t triangles, std::uint64_t seed) {
+std::vector<Mesh> separatePipes(std::size_t triangles, std::uint64_t seed) {
   if (triangles < kMinPipeTriangles || triangles > kMaxPipeTriangles) {
     throw std::invalid_argument("a scene of " + std::to_string(triangles) + " triangles was asked for, between " +
                                 std::to_string(kMinPipeTriangles) + " and " + std::to_string(kMaxPipeTriangles) +
@@ -195,10 +197,10 @@ Mesh pipes(std::size_t triangles, std::uint64_t seed) {
   }
   const Detail detail = detailFor(triangles);
   const int ring = 2 * detail.sides;
-  Mesh mesh;
+  std::vector<Mesh> pipes;
   Grid grid;
   Random random(seed);
-  Pen pen(mesh, detail, (static_cast<int>(triangles) + ring / 2) / ring);
+  Pen pen(detail, (static_cast<int>(triangles) + ring / 2) / ring);
 
   while (pen.ringsLeft() > 0) {
     Cell cell;
@@ -242,9 +244,20 @@ Mesh pipes(std::size_t triangles, std::uint64_t seed) {
         pen.bend(to);
       }
     }
+    pipes.push_back(pen.take());
+    snap(pipes.back());
   }
-  snap(mesh);
-  return mesh;
+  return pipes;
+}
+
+Mesh pipes(std::size_t triangles, std::uint64_t seed) {
+  Mesh all;
+  for (const Mesh& pipe : separatePipes(triangles, seed)) {
+    const int first = static_cast<int>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), pipe.vertices.begin(), pipe.vertices.end());
+    for (const auto& t : pipe.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return all;
 }
 
 void writePipes(std::size_t triangles, std::uint64_t seed, const std::string& obj_path) {

@@ -117,6 +117,25 @@ TEST(Pipes, AreClosedAndLeaveTheMiddleFree) {
   }
 }
 
+TEST(Pipes, SeparatePipesAreClosedAndMakeUpTheScene) {
+  const Mesh all = pipes(10000, 2);
+  const std::vector<Mesh> separate = separatePipes(10000, 2);
+  EXPECT_GT(separate.size(), 5u);
+  std::size_t vertex = 0, triangle = 0;
+  for (const Mesh& pipe : separate) {
+    expectClosed(pipe, "a pipe");
+    ASSERT_LE(vertex + pipe.vertices.size(), all.vertices.size());
+    ASSERT_LE(triangle + pipe.triangles.size(), all.triangles.size());
+    const int first = static_cast<int>(vertex);
+    for (const auto& v : pipe.vertices) EXPECT_EQ(v, all.vertices[vertex++]);
+    for (const auto& t : pipe.triangles) {
+      EXPECT_EQ((std::array<int, 3>{first + t[0], first + t[1], first + t[2]}), all.triangles[triangle++]);
+    }
+  }
+  EXPECT_EQ(vertex, all.vertices.size());
+  EXPECT_EQ(triangle, all.triangles.size());
+}
+
 TEST(Pipes, SameSeedSameSceneOtherSeedAnotherScene) {
   const Mesh a = pipes(2000, 5), b = pipes(2000, 5), c = pipes(2000, 6);
   EXPECT_EQ(a.vertices, b.vertices);
