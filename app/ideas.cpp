@@ -80,8 +80,7 @@ std::string textOf(const std::vector<Row>& rows, const Figure& figure) {
       table.columns.push_back({fmt::format("{:g} {}", row.degrees, row.colliding ? "COL" : "FREE"), ""});
     }
     if (table.rows.empty() || table.rows.back()[0] != row.option) table.rows.push_back({row.option});
-    const double x = figure.of(row.costs);
-    table.rows.back().push_back(row.costs.undecided ? "" : fmt::format("{:.{}f}", x, x < 10 ? 3 : x < 100 ? 2 : 0));
+    table.rows.back().push_back(row.costs.undecided ? "" : fourDigits(figure.of(row.costs)));
   }
   return fmt::format("{}\n{}", figure.title, textOf(table, 1));
 }

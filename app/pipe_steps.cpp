@@ -169,8 +169,8 @@ std::string description(const PumaInPipes& scenery, const PipeOptions& o, int pa
       "that name is another one; its size isn't known.) Steps of straight trajectories\n"
       "from random free configurations, the joint that moves most by the angle: {} that\n"
       "hit a pipe and {} free ones within {:g} mm of a pipe, the fastest of {} runs each.\n",
-      o.triangles, o.one_mesh ? "one mesh" : fmt::format("{} obstacles", pipes), o.queries, o.queries,
-      1e3 * o.closeness, passes);
+      o.triangles, o.one_mesh ? "one mesh" : fmt::format("{} obstacle{}", pipes, pipes == 1 ? "" : "s"), o.queries,
+      o.queries, 1e3 * o.closeness, passes);
 }
 
 }  // namespace fcl_artic::app

@@ -96,6 +96,10 @@ std::string partOf(const Table& table, std::size_t names, std::size_t begin, std
 
 }  // namespace
 
+std::string fourDigits(double x) {
+  return fmt::format("{:.{}f}", x, x < 10 ? 4 : x < 100 ? 2 : x < 1000 ? 1 : 0);
+}
+
 std::string textOf(const Table& table, std::size_t names) {
   std::size_t before = 0;
   for (std::size_t c = 0; c < names; ++c) before += widthOf(table, c) + (c + 1 < names ? kGap : 0);

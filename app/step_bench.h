@@ -41,6 +41,9 @@ struct StepCosts {
 StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
                        CertifiedRequest request, int passes, bool contact, std::size_t& differ);
 
+/// At least four digits, as few characters as that takes: 0.0123, 1.2346, 12.35, 123.5, 1235.
+std::string fourDigits(double x);
+
 /// A column's name in the text and in the CSV.
 struct Column {
   std::string title, key;

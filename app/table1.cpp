@@ -45,7 +45,7 @@ const double* printedAt(double degrees, bool colliding) {
 }
 
 constexpr const char* kNoExecutor = "none";
-constexpr const char *kAsWritten = "redon2004-as-written", *kRedon = "redon2004", *kStandard = "standard";
+constexpr const char *kAsWritten = "as-written", *kRedon = "redon2004", *kStandard = "standard";
 
 struct Table1Options : PipeOptions {
   int passes = 3;
@@ -124,9 +124,9 @@ Table tableOf(const std::vector<Group>& groups, const std::vector<Variant>& vari
                    {"exact ms", "exact_ms"},
                    {"total ms", "total_ms"},
                    {"median", "median_ms"},
-                   {"p95", "p95_ms"},
-                   {"printed :", "printed_by_this"},
+                   {"factor", "printed_by_this"},
                    {"written :", "as_written_by_this"},
+                   {"p95 ms", "p95_ms"},
                    {"SV pairs", "sv_pairs"},
                    {"SV culled", "sv_culled"},
                    {"box tests", "box_tests"},
@@ -140,7 +140,7 @@ Table tableOf(const std::vector<Group>& groups, const std::vector<Variant>& vari
     const double* printed = printedAt(group.degrees, group.colliding);
     if (printed) {
       std::vector<std::string> row{angle, kind, "printed"};
-      for (int i = 0; i < 4; ++i) row.push_back(fmt::format("{:.4f}", printed[i]));
+      for (int i = 0; i < 4; ++i) row.push_back(fourDigits(printed[i]));
       row.resize(table.columns.size());
       table.rows.push_back(row);
     }
@@ -153,12 +153,13 @@ Table tableOf(const std::vector<Group>& groups, const std::vector<Variant>& vari
     }
     for (std::size_t v = 0; v < group.costs.size(); ++v) {
       const StepCosts& c = group.costs[v];
-      const auto ms = [](double us) { return us < 0 ? std::string() : fmt::format("{:.4f}", us * 1e-3); };
-      std::vector<std::string> row{angle, kind, variants[v].name};
-      for (const double us : {c.bvh, c.sv, c.exact, c.total, c.median, c.p95}) row.push_back(ms(us));
+      const auto ms = [](double us) { return us < 0 ? std::string() : fourDigits(us * 1e-3); };
+      std::vector<std::string> row{angle, kind, variants[v].name + (c.sv < 0 ? "" : " +SV")};
+      for (const double us : {c.bvh, c.sv, c.exact, c.total, c.median}) row.push_back(ms(us));
       row.push_back(printed ? fmt::format("{:.1f}", 1e3 * printed[3] / c.total) : "");
       const double written = totalOf(group, variants, kAsWritten);
       row.push_back(written > 0 ? fmt::format("{:.1f}", written / c.total) : "");
+      row.push_back(ms(c.p95));
       for (const double count : {c.sv_pairs, c.sv_culled}) row.push_back(c.sv < 0 ? "" : fmt::format("{:.1f}", count));
       for (const double count : {c.box_tests, c.leaf_pairs, c.equations, c.intervals, c.evaluations, c.steps}) {
         row.push_back(variants[v].request.method == Method::redon2004 ? fmt::format("{:.1f}", count) : "");
@@ -234,11 +235,13 @@ int runTable1(const Table1Options& o) {
   }
   const Table table = tableOf(groups, variants);
   fmt::print(
-      "{}SV: culling by visibility, executor {}{}.\n"
-      "printed : and written : are the factors by which a total is below the printed one\n"
-      "and below that of redon2004-as-written without SV.\n{}\n{}",
-      description(scenery, o, o.passes), executor,
-      executor == o.executor ? "" : fmt::format("\n({})", culler->fallbackReason()), sets, textOf(table, 3));
+      "{}{}Times are means but for median and p95; the factors are those by which a mean total\n"
+      "is below the printed one (factor) and below that of as-written (written :).\n{}\n{}",
+      description(scenery, o, o.passes),
+      !stage2 ? ""
+              : fmt::format("+SV: with culling by visibility, executor {}{}.\n", executor,
+                            executor == o.executor ? "" : fmt::format("\n({})", culler->fallbackReason())),
+      sets, textOf(table, 3));
   if (differ) fmt::print("{} verdicts differ from one another\n", differ);
   if (!o.csv.empty()) files::write(o.csv, csvOf(table));
   if (!o.svg.empty()) files::write(o.svg, svgOf(groups, variants, o));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verbs `bench table1` and `bench depth`, on a few steps, and `bench planning`, on a single problem.
+// The verbs `bench table1`, `bench ideas` and `bench depth`, on a few steps, and `bench planning`, on a single problem.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -13,21 +13,81 @@
 
 namespace {
 
+// Free steps this close to pipes this coarse compare triangles.
+const std::string kFewSteps = " --queries 2 --passes 1 --angles 5 --triangles 2000 --closeness 0.002";
+
 TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
-  const Outcome run = this->run("bench table1 --queries 2 --passes 1 --angles 5 --triangles 2000 --csv " +
-                                path("table1.csv") + " --svg " + path("table1.svg"));
+  const Outcome run =
+      this->run("bench table1" + kFewSteps + " --csv " + path("table1.csv") + " --svg " + path("table1.svg"));
   EXPECT_EQ(run.status, 0) << run.out << run.err;  // the verdicts agree
-  expectContains(run.out, "32.3713");              // Redon 2004, Table 1: 5 degrees, colliding, total
+  expectContains(run.out, "32.37");                // Redon 2004, Table 1: 5 degrees, colliding, total
   expectContains(run.out, "8.0184");
-  expectContains(run.out, "redon2004-as-written");
-  expectContains(run.out, "standard");
+  for (const char* method : {"as-written", "redon2004", "standard"}) expectContains(run.out, method);
   std::ifstream csv(path("table1.csv"));
-  int rows = 0;
-  for (std::string line; std::getline(csv, line); ++rows) {
-    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 18) << line;
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(csv, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line + ",");
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+    ASSERT_EQ(rows.back().size(), 19u) << line;
   }
-  EXPECT_EQ(rows, 15);  // head; twice the printed row, and three methods with stage 2 and without
+  ASSERT_EQ(rows.size(), 15u);  // head; twice the printed row, and three methods with stage 2 and without
+  const auto column = [&](const std::string& key) {
+    return static_cast<std::size_t>(std::find(rows[0].begin(), rows[0].end(), key) - rows[0].begin());
+  };
+  int compared = 0;
+  for (const auto& row : rows) {
+    if (row[column("method")] != "redon2004") continue;
+    EXPECT_GT(std::stod(row[column("leaf_pairs")]), 0) << row[column("steps")];
+    EXPECT_GT(std::stod(row[column("median_ms")]), 0);
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);  // colliding and free
   EXPECT_TRUE(std::filesystem::exists(path("table1.svg")));
+}
+
+TEST_F(ProgramTest, BenchTable1RefusesStepsThatCompareNoTriangles) {
+  // Steps of 0.01 degrees at any distance.
+  const Outcome run = this->run(
+      "bench table1 --queries 2 --passes 1 --angles 0.01 --triangles 1000 --closeness 5 --executor none --csv " +
+      path("table1.csv"));
+  EXPECT_EQ(run.status, 2) << run.out;
+  expectContains(run.err, "the free steps of 0.01 degrees have no leaf pairs");
+  expectContains(read(path("table1.csv")), "0.01,NO-COL,refused,");
+  expectContains(read(path("table1.csv")), "0.01,COL,standard,");
+}
+
+TEST_F(ProgramTest, BenchTable1TakesPipesAsOneMeshToo) {
+  const std::string command =
+      "bench table1 --queries 2 --passes 1 --angles 5 --triangles 10000 --closeness 0.002 --executor none";
+  const Outcome apart = this->run(command), one = this->run(command + " --one-mesh");
+  EXPECT_EQ(apart.status, 0) << apart.err;
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_TRUE(std::regex_search(apart.out, std::regex("10000 triangles, [2-9][0-9]* obstacles"))) << apart.out;
+  expectContains(one.out, "10000 triangles, one mesh");
+}
+
+TEST_F(ProgramTest, BenchIdeasHasARowForEachOption) {
+  const Outcome run = this->run("bench ideas" + kFewSteps + " --csv " + path("ideas.csv"));
+  EXPECT_EQ(run.status, 0) << run.out << run.err;
+  const std::string csv = read(path("ideas.csv"));
+  for (const char* option :
+       {"defaults", "--refinement 0", "--no-newton", "--late-validity", "--boxes-first", "--independent"}) {
+    expectContains(run.out, std::string("\n") + option + " ");
+    expectContains(csv, std::string("\n") + option + ",5,COL,0,");
+    expectContains(csv, std::string("\n") + option + ",5,NO-COL,0,");
+  }
+  // One by one there are as many intervals as evaluations; all at once, few.
+  std::smatch all, single;
+  const std::string number = "([0-9.]+)", counts = ",5,COL,0(?:,[0-9.]+){5}," + number + "," + number + "\n";
+  ASSERT_TRUE(std::regex_search(csv, all, std::regex("\ndefaults" + counts)));
+  ASSERT_TRUE(std::regex_search(csv, single, std::regex("\n--independent" + counts)));
+  EXPECT_LT(std::stod(all[1]), std::stod(all[2]));
+  EXPECT_EQ(single[1], single[2]);
+
+  const Outcome short_of_work = this->run("bench ideas" + kFewSteps + " --budget 10 --csv " + path("ideas.csv"));
+  EXPECT_EQ(short_of_work.status, 0) << short_of_work.err;
+  expectContains(read(path("ideas.csv")), "\ndefaults,5,COL,2,");  // both undecided
 }
 
 TEST_F(ProgramTest, BenchDepthSolvesBothWays) {
