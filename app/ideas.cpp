@@ -42,9 +42,10 @@ std::vector<Idea> ideas() {
   late.early_validity = late.newton = false;
   add("--boxes-first").in_time_order = false;
   add("--independent").simultaneous = false;
+  add("--links-in-world").links_in_world = true;
   add("--enclosure chain").enclosure = MotionEnclosure::intervalChain;
-  add("--enclosure mean-value").enclosure = MotionEnclosure::meanValue;
   add("--enclosure taylor").enclosure = MotionEnclosure::taylor;
+  all.push_back({"as written", RedonOptions::asWritten()});
   return all;
 }
 
@@ -111,6 +112,7 @@ int runIdeas(const IdeasOptions& o) {
       request.method = Method::redon2004;
       request.redon = idea.options;
       request.work_budget = o.budget;
+      request.check_self = o.self;
       for (const CloseSteps& set : sets) {
         for (const bool colliding : {true, false}) {
           bar.show(static_cast<double>(rows.size()) / static_cast<double>(2 * all.size() * sets.size()));

@@ -22,9 +22,10 @@ struct PipeOptions {
   std::vector<double> angles{1, 5, 15, 30};  ///< degrees
   std::size_t queries = 20;
   double closeness = 0.01;  ///< m
+  bool self = false;        ///< Links against links too; else, as in the paper's Section 5, against obstacles only.
   std::uint64_t seed = 1;
 };
-/// Adds --triangles, --one-mesh, --angles, --queries, --closeness and --seed.
+/// Adds --triangles, --one-mesh, --angles, --queries, --closeness, --self and --seed.
 void addPipeOptions(CLI::App& verb, PipeOptions& o);
 
 /// A robot and pipes, ready for queries.

@@ -85,6 +85,7 @@ std::vector<Variant> variantsOf(const Table1Options& o) {
   for (const std::string& name : o.methods) {
     CertifiedRequest request;
     request.tolerance_time = o.tolerance;
+    request.check_self = o.self;
     request.method = name == kStandard ? Method::standard : Method::redon2004;
     request.redon = o.redon;
     if (name == kAsWritten) request.redon = RedonOptions::asWritten();

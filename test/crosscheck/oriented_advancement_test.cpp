@@ -139,11 +139,9 @@ struct CertifiedWay {
 
 /// The library's own, and the paper's with what the library adds to it and without.
 std::vector<CertifiedWay> ways() {
-  RedonOptions as_written;
-  as_written.early_validity = as_written.in_time_order = false;
   return {{"standard", Method::standard, {}, 1},
           {"redon2004", Method::redon2004, {}, 1},
-          {"redon2004 as written", Method::redon2004, as_written, 5}};
+          {"redon2004 as written", Method::redon2004, RedonOptions::asWritten(), 5}};
 }
 
 std::unique_ptr<ArticulatedCollisionManager> makeManager(const Query& query) {
