@@ -19,7 +19,7 @@ namespace {
 
 struct IdeasOptions : PipeOptions {
   int passes = 2;
-  std::uint64_t budget = 1000000;
+  std::uint64_t budget = 10000000;
   std::string csv;
 };
 
@@ -106,7 +106,7 @@ int runIdeas(const IdeasOptions& o) {
   {
     ProgressBar bar;
     std::vector<CloseSteps> sets;
-    for (std::size_t i = 0; i < o.angles.size(); ++i) sets.push_back(closeSteps(scenery, o, i));
+    for (const double degrees : o.angles) sets.push_back(closeSteps(scenery, o, degrees));
     for (const Idea& idea : all) {
       CertifiedRequest request;
       request.method = Method::redon2004;

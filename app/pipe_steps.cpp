@@ -121,12 +121,12 @@ std::string CloseSteps::refusal() const {
   return fmt::format("the free steps of {:g} degrees have no leaf pairs, so they measure no exact contact", degrees);
 }
 
-CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, std::size_t angle_index) {
+CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, double degrees) {
   const KinematicTree& tree = *scenery.robot.tree;
   CloseSteps steps;
-  steps.degrees = o.angles[angle_index];
-  const double angle = steps.degrees * kRadiansPerDegree;
-  Space space(tree, o.seed + 100 * angle_index);
+  steps.degrees = degrees;
+  const double angle = degrees * kRadiansPerDegree;
+  Space space(tree, 100000 * o.seed + static_cast<std::uint64_t>(1000 * degrees));
   CertifiedRequest verdict, near;
   near.mode = ContactMode::any;
   near.check_self = false;

@@ -53,9 +53,9 @@ struct CloseSteps {
 /// Takes steps from trajectories: each goes straight through joint space from a random free configuration in a random
 /// direction, in steps in which the joint that moves most moves by the angle, until a step hits something or would
 /// leave the joints' limits.
-/// @param angle_index  into o.angles.
+/// The same angle has the same steps, whatever other angles are asked for.
 /// @throws std::runtime_error when the scene has no such steps.
-CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, std::size_t angle_index);
+CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, double degrees);
 
 /// "PUMA 560 in ...": scene and steps in words, several lines.
 std::string description(const PumaInPipes& scenery, const PipeOptions& o, int passes);

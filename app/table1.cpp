@@ -217,7 +217,7 @@ int runTable1(const Table1Options& o) {
   {
     ProgressBar bar;
     for (std::size_t i = 0; i < o.angles.size(); ++i) {
-      const CloseSteps steps = closeSteps(scenery, o, i);
+      const CloseSteps steps = closeSteps(scenery, o, o.angles[i]);
       sets += steps.summary();
       if (!steps.refusal().empty()) refusals.push_back(steps.refusal());
       for (const bool colliding : {true, false}) {
