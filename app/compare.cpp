@@ -329,7 +329,7 @@ void addCompare(CLI::App& program, int& exit_status) {
       "  late, early, missed, false   otherwise\n"
       "  refused    FCL returned -1, or something was thrown\n"
       "Times are of the answered queries, the lesser one of two runs each.\n"
-      "Exit status: 0 fcl_artic was right throughout, 1 it was not, 2 error.");
+      "Exit status: 0 fcl_artic was right throughout, by either method, 1 it was not, 2 error.");
   compare->add_option("--queries", o.queries, "Queries of each set")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
