@@ -17,11 +17,16 @@ enum class ContactMode {
 };
 
 /// Whether stage 2, culling by visibility (doc/VISIBILITY.md), takes part in a query of an ArticulatedCollisionManager.
-/// It looks at links against obstacles that stand still. Answers do not depend on it. A work budget turns it off.
+/// It looks at links against obstacles that stand still. With `off`, `on` and `automatic` answers are the same bits; a
+/// work budget turns the stage off there.
 enum class VisibilityMode {
   off,        ///< Never.
-  on,         ///< Always.
-  automatic,  ///< When it saves time, as measured on the manager's own queries.
+  on,         ///< Always. A query that does not end as plainly free is solved again without the stage.
+  automatic,  ///< As `on` when that saves time, as measured on the manager's own queries; else as `off`.
+  /// Always, and a query is solved once, with what the stage has proven free left out. The answer keeps the whole
+  /// promise, but a contact's bracket, its point and which of several contacts is reported may be others than with
+  /// `off`, and may depend on the executor. A work budget counts what the solver does; it does not turn the stage off.
+  atOnce,
 };
 
 /// The method that solves a query. Both make the same promise (doc/PROMISE.md).

@@ -26,11 +26,14 @@ class ContactMode(enum.Enum):
 
 
 class VisibilityMode(enum.Enum):
-    """Whether culling by visibility takes part in a query. Answers do not depend on it."""
+    """Whether culling by visibility takes part in a query. Answers are the same bits but with ``AT_ONCE``."""
 
     OFF = "off"
     ON = "on"
     AUTOMATIC = "automatic"
+    """When it saves time, as measured on the world's own queries."""
+    AT_ONCE = "at_once"
+    """What it proves is used for contacts too: the same promise, but a contact's last digits may be others."""
 
 
 class VisibilityRule(enum.Enum):

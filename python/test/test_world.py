@@ -453,6 +453,10 @@ def test_visibility_does_not_change_answers(world, hit, miss):
         alone = world.check(q0, q1)
         culled = world.check(q0, q1, visibility="on")
         assert (alone.status, alone.t_lower, alone.pair) == (culled.status, culled.t_lower, culled.pair)
+        at_once = world.check(q0, q1, visibility="at_once")
+        assert at_once.status == alone.status
+        assert at_once.t_lower <= alone.t_upper and alone.t_lower <= at_once.t_upper
+        assert at_once.statistics["visibility"]["repeated"] == 0
     world.set_visibility("cpu", resolution=16)
     assert world.check(*miss, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
     with pytest.raises(ValueError, match="resolution"):

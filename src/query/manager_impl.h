@@ -24,8 +24,8 @@ namespace fcl_artic {
 struct Stage2 {
   explicit Stage2(std::shared_ptr<const VisibilityCuller> by)
       : culler(std::move(by)),
-        standard(visibility::ExecutorLoan::firstUse(*culler)),
-        redon(visibility::ExecutorLoan::firstUse(*culler)) {}
+        standard(visibility::ExecutorLoan::makingCost(*culler)),
+        redon(visibility::ExecutorLoan::makingCost(*culler)) {}
   std::shared_ptr<const VisibilityCuller> culler;
   visibility::Choice standard, redon;
 };

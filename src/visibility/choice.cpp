@@ -2,35 +2,86 @@
 #include "visibility/choice.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// Of all queries' time, for trials.
-constexpr double kTrialShare = 0.01;
 /// How fast old trials are forgotten; the least advantage that counts (the second of two runs finds its data in the
-/// caches).
+/// caches); trials before anything is chosen.
 constexpr double kForget = 0.9, kAdvantage = 0.8;
+constexpr int kLeastTrials = 3;
+/// The least time that drawing by OpenGL and reading back takes, us. (On a processor it takes 30 and more.)
+constexpr double kLeastDrawing = 20;
+/// The part of the share that is left to trials of cpu while time is saved for making another executor.
+constexpr double kWhileSaving = 0.5;
 
 }  // namespace
 
-bool Choice::mayTry() {
-  const double all_us = 1e-3 * static_cast<double>(query_ns_.load(std::memory_order_relaxed));
-  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
-  if (!lock || spent_us_ + trial_us_ > kTrialShare * all_us) return false;
-  spent_us_ += trial_us_;  // taken now, so that other threads see it
-  return true;
+double steadyMicroseconds() {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void Choice::addTrial(double extra_us, double on_us, double off_us, bool telling) {
+bool Choice::Known::pays() const {
+  return trials >= kLeastTrials && on_us < kAdvantage * off_us;
+}
+
+/// Would the culler's own executor save time if it drew as fast as any?
+bool Choice::ownMayPay() const {
+  return cpu_.trials >= kLeastTrials && cpu_.off_us - (cpu_.on_us - cpu_.stage_us) > kLeastDrawing * cpu_.n;
+}
+
+void Choice::addQueries(double us, double queries, double stand_for) {
+  all_ns_.fetch_add(static_cast<std::uint64_t>(1e3 * us * stand_for), std::memory_order_relaxed);
+  queries_.fetch_add(static_cast<std::uint64_t>(queries * stand_for), std::memory_order_relaxed);
+}
+
+Leave Choice::mayTry(bool own_is_made, double queries) {
+  const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+  if (!lock) return {};
+  const double all_us = 1e-3 * static_cast<double>(all_ns_.load(std::memory_order_relaxed));
+  const auto asked = static_cast<double>(queries_.load(std::memory_order_relaxed));
+  const double one_us = asked > 0 ? all_us / asked : 0;  // a trial takes about as long as a query
+  const auto costOf = [&](const Known& known) { return queries * std::max(known.cost_us, one_us); };
+  const auto fits = [&](double cost_us, double share) { return spent_us_ + cost_us <= share * all_us; };
+  const auto leave = [&](Way way, double cost_us) {
+    spent_us_ += cost_us;  // taken now, so that other threads see it
+    return Leave{way, cost_us};
+  };
+  double share = kShare;
+  if (making_us_ >= 0) {
+    const bool own = own_is_made ? !cpu_is_next_ : ownMayPay();
+    const double cost_us = costOf(own_) + (own_is_made ? 0 : making_us_);
+    if (own && fits(cost_us, kShare)) {
+      cpu_is_next_ = true;
+      return leave(Way::own, cost_us);
+    }
+    if (own && own_is_made) return {};
+    if (own) share *= kWhileSaving;
+  }
+  if (!fits(costOf(cpu_), share)) return {};
+  cpu_is_next_ = false;
+  return leave(Way::cpu, costOf(cpu_));
+}
+
+void Choice::addTrial(const Leave& leave, const Trial& trial, double queries) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  spent_us_ += extra_us - trial_us_;
-  trial_us_ = std::max(extra_us, kForget * trial_us_);
-  if (!telling) return;
-  on_us_ = kForget * on_us_ + on_us;
-  off_us_ = kForget * off_us_ + off_us;
-  pays_.store(on_us_ < kAdvantage * off_us_, std::memory_order_relaxed);
+  Known& known = leave.way == Way::own ? own_ : cpu_;
+  spent_us_ += trial.extra_us - leave.reserved_us;
+  known.cost_us =
+      std::max(std::min(trial.extra_us, trial.with_us + trial.without_us) / queries, kForget * known.cost_us);
+  if (!trial.telling) return;
+  for (double* sum : {&known.on_us, &known.off_us, &known.stage_us, &known.n}) *sum *= kForget;
+  known.on_us += trial.with_us;
+  known.off_us += trial.without_us;
+  known.stage_us += trial.stage_us;
+  known.n += queries;
+  ++known.trials;
+  // The one that takes the smaller part of the time without it.
+  Way best = cpu_.pays() ? Way::cpu : Way::without;
+  if (own_.pays() && (!cpu_.pays() || own_.on_us * cpu_.off_us < cpu_.on_us * own_.off_us)) best = Way::own;
+  best_.store(best, std::memory_order_relaxed);
 }
 
 }  // namespace visibility

@@ -1,38 +1,81 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether stage 2 pays (doc/VISIBILITY.md, "Automatic"): by what queries cost with it and without. Time only: no answer
-// depends on it.
+// Whether stage 2 pays, and by which executor (doc/VISIBILITY.md, "Automatic"): by what queries cost with it and
+// without. Time only: no answer depends on it. It has no clock: who asks it tells it times.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 
 namespace fcl_artic {
 namespace visibility {
 
-/// One for each manager, shared by its threads.
+/// A clock, µs since some time of its own.
+using Microseconds = std::function<double()>;
+/// The machine's steady clock.
+double steadyMicroseconds();
+
+/// Who does stage 2: nobody, the executor cpu, or a culler's own executor, which draws by OpenGL.
+enum class Way { without, cpu, own };
+
+/// Leave to answer a query both ways.
+struct Leave {
+  Way way = Way::without;  ///< to compare with going without; `without`: no leave
+  double reserved_us = 0;
+  bool given() const { return way != Way::without; }
+};
+
+/// What a query cost both ways, µs; or several queries together.
+struct Trial {
+  double with_us, without_us;  ///< with: the second solve included, where it takes one; making an executor is not
+  double stage_us;             ///< of with_us, what the stage itself took
+  double extra_us;             ///< beyond the way that was chosen anyway, all included
+  bool telling;                ///< the stage had something to do
+};
+
+/// One for each manager and solver, shared by its threads.
 class Choice {
  public:
-  /// @param first_trial_us  what a first trial may cost.
-  explicit Choice(double first_trial_us) : trial_us_(first_trial_us) {}
+  /// @param making_us  what making the culler's own executor may take; below 0: there is none but cpu.
+  explicit Choice(double making_us = -1) : making_us_(making_us) {}
 
-  bool pays() const { return pays_.load(std::memory_order_relaxed); }
-  /// Time for a trial, a query that is answered both ways: trials take at most 1 % of all queries' time, the present
-  /// one's own included.
-  bool mayTry();
-  /// Adds a query's time, of a trial that of the way chosen.
-  void addQuery(double us) { query_ns_.fetch_add(static_cast<std::uint64_t>(1e3 * us), std::memory_order_relaxed); }
-  /// Adds what a trial took beyond that, and what both ways took.
-  /// @param telling  the stage had something to do.
-  void addTrial(double extra_us, double on_us, double off_us, bool telling);
+  /// The way that takes the least time as far as trials have shown; `without` until they have shown another one.
+  Way best() const { return best_.load(std::memory_order_relaxed); }
+  /// Whether to measure the time of what is asked next, one query of kMeasured: clocks take time too.
+  bool measuresNext() { return counter_.fetch_add(1, std::memory_order_relaxed) % kMeasured == 0; }
+  /// Adds the time of queries that were measured, of a trial that of the way chosen.
+  /// @param stand_for  how many times as many they stand for.
+  void addQueries(double us, double queries = 1, double stand_for = kMeasured);
+  /// Leave for a trial: trials take at most kShare of the time of all queries, the one at hand included.
+  /// @param own_is_made  an executor of the culler's own is ready. Before, it is tried only where the trials of cpu
+  /// show that enough would be saved if drawing took no time.
+  Leave mayTry(bool own_is_made, double queries = 1);
+  /// Adds what a trial has shown. One that ended in an exception is not added: its time stays reserved.
+  void addTrial(const Leave& leave, const Trial& trial, double queries = 1);
+
+  static constexpr std::uint32_t kMeasured = 8;
+  static constexpr double kShare = 0.02;
 
  private:
-  std::atomic<bool> pays_{false};
-  std::atomic<std::uint64_t> query_ns_{0};
+  /// Of one way.
+  struct Known {
+    double cost_us;                                     ///< that a query's trial is expected to take
+    double on_us = 0, off_us = 0, stage_us = 0, n = 0;  ///< sums over trials; old ones are forgotten
+    int trials = 0;                                     ///< telling ones
+    bool pays() const;
+  };
+  bool ownMayPay() const;
+
+  std::atomic<Way> best_{Way::without};
+  std::atomic<std::uint32_t> counter_{0};
+  std::atomic<std::uint64_t> queries_{0}, all_ns_{0};
+  const double making_us_;
   std::mutex mutex_;
-  double spent_us_ = 0, trial_us_;  ///< all trials; what one takes
-  double on_us_ = 0, off_us_ = 0;   ///< sums that forget
+  double spent_us_ = 0;  ///< by all trials
+  Known cpu_{200}, own_{1000};
+  bool cpu_is_next_ = true;
 };
 
 }  // namespace visibility

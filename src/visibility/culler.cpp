@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "visibility/culler.h"
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <utility>
@@ -25,7 +26,8 @@ struct VisibilityCuller::Impl {
   void fallBack(const std::string& why) {
     const std::lock_guard<std::mutex> lock(mutex);
     if (reason.empty()) reason = why.empty() ? "unknown" : why;
-    idle.clear();
+    const auto own = [&](const std::unique_ptr<visibility::Slot>& slot) { return slot->own; };
+    idle.erase(std::remove_if(idle.begin(), idle.end(), own), idle.end());
   }
 };
 
@@ -50,20 +52,30 @@ void requireSoundness(Executor& executor, Slot& slot, const VisibilityOptions& o
 
 }  // namespace
 
-ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler) : culler_(*culler.impl_) {
-  {
-    const std::lock_guard<std::mutex> lock(culler_.mutex);
-    if (!culler_.idle.empty()) {
-      slot_ = std::move(culler_.idle.back());
-      culler_.idle.pop_back();
-      return;
-    }
+/// One that is idle, of the culler's own kind or cpu; null: there is none.
+std::unique_ptr<Slot> ExecutorLoan::takeIdle(bool own) {
+  const std::lock_guard<std::mutex> lock(culler_.mutex);
+  for (std::unique_ptr<Slot>& slot : culler_.idle) {
+    if (slot->own != own) continue;
+    std::swap(slot, culler_.idle.back());
+    std::unique_ptr<Slot> taken = std::move(culler_.idle.back());
+    culler_.idle.pop_back();
+    return taken;
   }
+  return nullptr;
+}
+
+ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler, Way way) : culler_(*culler.impl_) {
+  const bool own = way == Way::own && culler_.useFactory();
+  slot_ = takeIdle(own);
+  if (slot_) return;
+  made_ = true;
   slot_ = std::make_unique<Slot>();
-  if (culler_.useFactory()) {
+  if (own) {
     try {
       slot_->executor = culler_.factory();
       slot_->name = culler_.name;
+      slot_->own = true;
       requireSoundness(*slot_->executor, *slot_, culler_.options);
       return;
     } catch (const std::exception& e) {
@@ -72,22 +84,29 @@ ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler) : culler_(*culler.imp
   }
   slot_->executor = std::make_unique<CpuExecutor>();
   slot_->name = "cpu";
+  slot_->own = false;
 }
 
 ExecutorLoan::~ExecutorLoan() {
   const std::lock_guard<std::mutex> lock(culler_.mutex);
-  const bool fallen = culler_.factory && !culler_.reason.empty();
-  if (slot_ && !(fallen && slot_->name == culler_.name)) culler_.idle.push_back(std::move(slot_));
+  if (slot_ && !(slot_->own && !culler_.reason.empty())) culler_.idle.push_back(std::move(slot_));
 }
 
 void ExecutorLoan::giveUp(const std::string& reason) {
   culler_.fallBack(slot_->name + ": " + reason);
   slot_->executor = std::make_unique<CpuExecutor>();
   slot_->name = "cpu";
+  slot_->own = false;
 }
 
-double ExecutorLoan::firstUse(const VisibilityCuller& culler) {
-  return culler.impl_->factory ? 2e5 : 1e3;
+double ExecutorLoan::makingCost(const VisibilityCuller& culler) {
+  return culler.impl_->useFactory() ? 2e5 : -1;
+}
+
+bool ExecutorLoan::isMade(const VisibilityCuller& culler) {
+  const std::lock_guard<std::mutex> lock(culler.impl_->mutex);
+  const auto& idle = culler.impl_->idle;
+  return std::any_of(idle.begin(), idle.end(), [](const std::unique_ptr<Slot>& slot) { return slot->own; });
 }
 
 }  // namespace visibility

@@ -2,7 +2,6 @@
 #include "visibility/solve.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "model/add_fields.h"
 #include "visibility/stage.h"
@@ -10,12 +9,6 @@
 namespace fcl_artic {
 namespace visibility {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-}
 
 /// Passes progress on. A second solve begins at 0 again; what is proven stays proven. Who has said no is asked no more.
 struct Progress {
@@ -33,9 +26,9 @@ struct Progress {
 
 /// With the stage.
 /// @return whether this is the answer without it too: the motion is free, or nothing was taken out.
-bool solveShortened(const VisibilityCuller& culler, const Solver& solver, const engine::Query& query,
-                    engine::Answer& answer, Report& report) {
-  Stage stage(culler, query.tolerance_distance);
+bool solveShortened(const VisibilityCuller& culler, Way way, const Solver& solver, const engine::Query& query,
+                    engine::Answer& answer, Report& report, const Microseconds& now) {
+  Stage stage(culler, way, query.tolerance_distance, now);
   engine::Query advised = query;
   advised.ask(stage.advisor());
   solver(advised, answer);
@@ -44,24 +37,42 @@ bool solveShortened(const VisibilityCuller& culler, const Solver& solver, const 
   report.nodes = stage.nodes;
   report.pieces = stage.pieces;
   report.elapsed_us = stage.elapsed_us;
+  report.making_us = stage.making_us;
   report.executor = stage.executor;
   report.fallback = culler.fallbackReason();
-  const bool free = answer.isFree() && answer.num_ignored == 0;
-  return free || (stage.culled == 0 && stage.nodes == 0);
+  return isPlainlyFree(answer) || (stage.culled == 0 && stage.nodes == 0);
 }
 
 }  // namespace
 
+bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine::Query& query) {
+  if (mode == VisibilityMode::off || !query.check_scene || problem.num_obstacles == 0) return false;
+  return mode == VisibilityMode::atOnce || query.work_budget == 0;
+}
+
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
-           const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report) {
-  const bool nothing = !query.check_scene || problem.num_obstacles == 0;
-  if (mode == VisibilityMode::off || nothing || query.work_budget) {
+           const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,
+           const Microseconds& now) {
+  if (!takesPart(mode, problem, query)) {
     solver(query, answer);
     return;
   }
-  const bool automatic = mode == VisibilityMode::automatic;
-  const bool on = !automatic || choice.pays();
-  const bool trial = automatic && choice.mayTry();  // answered both ways
+  if (mode == VisibilityMode::atOnce) {
+    solveShortened(culler, Way::own, solver, query, answer, report, now);
+    return;
+  }
+  const bool automatic = mode == VisibilityMode::automatic, measured = automatic && choice.measuresNext();
+  Way way = automatic ? choice.best() : Way::own;
+  // A second context saves no time: contexts take turns.
+  if (automatic && way == Way::own && !ExecutorLoan::isMade(culler)) way = Way::without;
+  Leave trial;
+  if (measured) trial = choice.mayTry(ExecutorLoan::isMade(culler));
+  if (!trial.given() && way == Way::without && !measured) {
+    solver(query, answer);
+    return;
+  }
+  const bool on = way != Way::without;
+  if (trial.given()) way = trial.way;
   Progress progress{query.progress, query.progress_context};
   if (query.progress) {
     query.progress = &Progress::update;
@@ -71,29 +82,31 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
   double with_us = 0, without_us = 0;
   bool stands = false;
   engine::Statistics first;
-  if (on || trial) {
-    const Clock::time_point begin = Clock::now();
-    stands = solveShortened(culler, solver, query, answer, report);
-    with_us = since(begin);
+  if (way != Way::without) {
+    const double begin = now();
+    stands = solveShortened(culler, way, solver, query, answer, report, now);
+    with_us = now() - begin - report.making_us;
     first = answer.statistics;
   }
-  const bool again = (!stands || trial) && !progress.ended;
+  const bool again = (!stands || trial.given()) && !progress.ended;
   if (again) {
-    const Clock::time_point begin = Clock::now();
+    const double begin = now();
     solver(query, answer);
-    without_us = since(begin);
+    without_us = now() - begin;
     engine::addFields<StandardStatistics>(first, answer.statistics);
   }
   query.progress = progress.tell;
   query.progress_context = progress.context;
   report.repeated = on && !stands && again;
-  report.trials = trial && again;
+  report.trials = trial.given() && again;
 
-  if (!automatic || progress.ended) return;
+  if (!measured || progress.ended) return;
   const double on_us = stands ? with_us : with_us + without_us;  // with the second solve, where it takes one
   const double own_us = on ? on_us : without_us;
-  choice.addQuery(own_us);
-  if (trial) choice.addTrial(with_us + without_us - own_us, on_us, without_us, report.pairs > 0);
+  choice.addQueries(own_us);
+  if (!trial.given()) return;
+  const double extra_us = with_us + report.making_us + without_us - own_us;
+  choice.addTrial(trial, {on_us, without_us, report.elapsed_us, extra_us, report.pairs > 0});
 }
 
 }  // namespace visibility

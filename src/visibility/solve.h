@@ -18,7 +18,7 @@ namespace visibility {
 /// What stage 2 did in a query.
 struct Report {
   std::uint64_t pairs = 0, culled = 0, nodes = 0, pieces = 0, trials = 0, repeated = 0;
-  double elapsed_us = 0;
+  double elapsed_us = 0, making_us = 0;  ///< the latter: making an executor
   std::string executor;
   std::string fallback;
 };
@@ -26,12 +26,22 @@ struct Report {
 /// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Advisor).
 using Solver = std::function<void(const engine::Query& query, engine::Answer& answer)>;
 
-/// The solver's answer, bit for bit the one without stage 2. The stage only shortens proofs that a motion is free:
-/// where it has taken something out and the answer is another one, the query is solved again without. What a work
-/// budget is enough for would depend on it, so that a query with one is solved without.
+/// No contact, no doubt, nothing ignored: an answer that does not depend on what was taken out.
+inline bool isPlainlyFree(const engine::Answer& answer) {
+  return answer.isFree() && answer.num_ignored == 0;
+}
+
+/// Whether stage 2 has anything to do with such a query.
+bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine::Query& query);
+
+/// The solver's answer; with all modes but `atOnce` bit for bit the one without stage 2. There the stage only shortens
+/// proofs that a motion is free: where it has taken something out and the answer is another one, the query is solved
+/// again without. What a work budget is enough for would depend on it, so that a query with one is solved without. With
+/// `atOnce` the answer is the first one.
 /// @param choice  of this solver: what stage 2 is worth depends on it.
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
-           const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report);
+           const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,
+           const Microseconds& now = steadyMicroseconds);
 
 }  // namespace visibility
 }  // namespace fcl_artic

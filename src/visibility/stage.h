@@ -6,20 +6,24 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "model/query.h"
+#include "visibility/choice.h"
 #include "visibility/culler.h"
+#include "visibility/query_volumes.h"
 
 namespace fcl_artic {
 namespace visibility {
 
+/// An empty batch by the culler's options, of which only groups are asked.
+void beginBatch(const VisibilityCuller& culler, Batch& batch);
+
 class Stage {
  public:
-  /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
-  /// contact.
-  Stage(const VisibilityCuller& culler, double tolerance_distance)
-      : culler_(culler), tolerance_distance_(tolerance_distance) {}
+  /// @param way  by the culler's own executor, or by cpu.
+  /// @param tolerance_distance  of the query, m: see QueryVolumes::add().
+  Stage(const VisibilityCuller& culler, Way way, double tolerance_distance, const Microseconds& now)
+      : culler_(culler), way_(way), tolerance_distance_(tolerance_distance), now_(now) {}
 
   /// The solver's advisor that asks this stage.
   engine::Advisor advisor() {
@@ -31,9 +35,9 @@ class Stage {
 
   // What it did.
   std::uint64_t pairs = 0, culled = 0, nodes = 0, pieces = 0;
-  double elapsed_us = 0;
-  std::string executor;  ///< empty: nothing was asked of one
-  std::string failure;   ///< it gave up in the midst of its work
+  double elapsed_us = 0;  ///< without the making
+  double making_us = 0;   ///< of an executor
+  std::string executor;   ///< empty: nothing was asked of one
 
  private:
   static void clear(void* stage, const engine::Problem& problem, const engine::SweptLink* links,
@@ -41,8 +45,10 @@ class Stage {
   void run(const engine::Problem& problem, const engine::SweptLink* links, engine::CullCandidate* pairs,
            std::int32_t num_pairs, ExecutorLoan& loan);
   const VisibilityCuller& culler_;
+  Way way_;
   double tolerance_distance_;
-  std::vector<std::uint64_t> free_nodes_;  ///< CullCandidate::free_nodes, one after the other
+  const Microseconds& now_;
+  QueryVolumes volumes_;
 };
 
 }  // namespace visibility

@@ -140,8 +140,8 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
   return volume;
 }
 
-bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::size_t most,
-                     std::int32_t window, std::int32_t pair, Collection& to, Bounds& reach) const {
+bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
+                     std::int32_t pair, Collection& to, Bounds& reach) const {
   Batch& batch = to.batch;
   const engine::TreeView& tree = *body_.tree;
   if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
@@ -167,7 +167,7 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, do
     const bool small = static_cast<double>(node.radius) < least;
     const auto openCluster = [&] {
       if (top.group >= 0) return;
-      top.group = static_cast<std::int32_t>(to.clusters.size());
+      top.group = to.nextGroup();
       to.clusters.push_back({pair, top.node});
     };
     if (!node.isLeaf() && !small) {
@@ -182,7 +182,7 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, do
       stack[open++] = {node.left(), mask, top.group};
       continue;
     }
-    if (batch.objects.size() >= most) return false;
+    if (batch.objects.size() >= to.most) return false;
     const std::size_t points = batch.points.size();
     const Volume volume = small ? ballAround(node, batch) : volumeOf(tree.pieces[node.piece()], batch);
     const Bounds bounds = visibility::boundsOf(batch.points.data() + points, volume.count, volume.radius);

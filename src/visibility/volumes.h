@@ -43,8 +43,11 @@ struct Cluster {
 /// What is collected from the obstacles of a query.
 struct Collection {
   Batch& batch;
-  std::vector<Cluster> clusters;  ///< of each group
-  std::vector<Cluster> free;      ///< proven free without being drawn
+  std::int32_t first_group;        ///< the query's, in the batch
+  std::size_t most;                ///< objects of the batch, all included
+  std::vector<Cluster>& clusters;  ///< of each group of the query
+  std::vector<Cluster>& free;      ///< proven free without being drawn
+  std::int32_t nextGroup() const { return first_group + static_cast<std::int32_t>(clusters.size()); }
 };
 
 /// Pieces of a still body, in the world.
@@ -56,11 +59,10 @@ class BodyPieces {
   /// as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make groups.
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
-  /// @param most  of all objects of the batch.
   /// @param[in,out] reach  joined with the bounds of what is added.
-  /// @return false where that was too few, or the body is unbounded: nothing is known, lanes are as they were.
-  bool add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::size_t most,
-           std::int32_t window, std::int32_t pair, Collection& to, Bounds& reach) const;
+  /// @return false where to.most was too few, or the body is unbounded: nothing is known, lanes are as they were.
+  bool add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
+           std::int32_t pair, Collection& to, Bounds& reach) const;
 
  private:
   Bounds boundsOf(const engine::Node& node) const;

@@ -93,10 +93,13 @@ Question prepare(const Scene& scene) {
   return question;
 }
 
-Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how) {
+Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how,
+           const std::shared_ptr<const fcl_artic::VisibilityCuller>& culler) {
   Question question = prepare(scene);
   question.request.method = how.method;
   question.request.redon = how.redon;
+  question.request.visibility = how.visibility;
+  question.manager->setVisibility(culler);
   const fcl_artic::JointMotion motion = motionOf(scene, *question.tree);
   Answer answer;
   const auto start = std::chrono::steady_clock::now();

@@ -30,8 +30,10 @@ struct Question {
 Question prepare(const Scene& scene);
 
 /// Asks the library through its public interface. The only place of the campaign that links to it.
-/// @param how  its method and that one's options.
-Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how = {});
+/// @param how  its method and that one's options, and whether stage 2 takes part.
+/// @param culler  who does stage 2; null: the executor cpu.
+Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how = {},
+           const std::shared_ptr<const fcl_artic::VisibilityCuller>& culler = nullptr);
 
 /// The tree and motion of a scene, in the library's types.
 std::shared_ptr<const fcl_artic::KinematicTree> treeOf(const Scene& scene);

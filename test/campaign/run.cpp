@@ -38,7 +38,7 @@ void runOne(const std::string& family, std::uint64_t seed, const Options& option
   const auto judged = Clock::now();
   Answer answer;
   try {
-    answer = ask(scene, options.how);
+    answer = ask(scene, options.how, options.culler);
   } catch (const std::exception& e) {
     findings.push_back({Fault::fields, std::string("threw: ") + e.what()});
     ++tally.queries;

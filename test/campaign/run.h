@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,10 @@ struct Options {
   std::uint64_t queries = 20000;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string family;                        ///< only this class; empty: all, in their shares
-  fcl_artic::CertifiedRequest how;           ///< method and its options
-  Corruption corruption = Corruption::none;  ///< spoils the answers before they are examined
+  std::string family;                                         ///< only this class; empty: all, in their shares
+  fcl_artic::CertifiedRequest how;                            ///< method and its options, stage 2
+  std::shared_ptr<const fcl_artic::VisibilityCuller> culler;  ///< who does stage 2; null: the executor cpu
+  Corruption corruption = Corruption::none;                   ///< spoils the answers before they are examined
   bool try_corruptions = false;  ///< besides, spoils a copy of each answer in each way, and counts what is seen
   std::function<void(std::uint64_t done)> progress;  ///< called from any thread
 };

@@ -62,10 +62,11 @@ TEST(BodyPieces, NodesHoldTheirPieces) {
       expected += meets(asked, boundsOf(corners[0].data(), 3, margin));
     }
     Batch batch;
-    Collection collection{batch, {}, {}};
+    std::vector<Cluster> clusters, free;
+    Collection collection{batch, 0, 100000, clusters, free};
     Bounds reach = Bounds::none();
     std::uint32_t lanes = asked;
-    ASSERT_TRUE(BodyPieces(body, margin).add(parts, lanes, 0, 0.3, 100000, 0, 0, collection, reach));
+    ASSERT_TRUE(BodyPieces(body, margin).add(parts, lanes, 0, 0.3, 0, 0, collection, reach));
     EXPECT_EQ(batch.objects.size(), expected) << trial;
     found += expected;
   }
