@@ -22,6 +22,7 @@
 #include "render/picture.h"
 #include "report.h"
 #include "usage.h"
+#include "visibility_options.h"
 #include "waypoints.h"
 #include "world.h"
 
@@ -37,6 +38,7 @@ struct Options {
   std::vector<std::string> from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
+  VisibilityChoice visibility;
   std::optional<std::size_t> max_contacts;
   bool every_pair = false, no_self = false, no_scene = false;
   bool shortest = false, json = false, clearance = false;
@@ -83,6 +85,7 @@ int exitStatus(Status status) {
 
 int run(const Options& options) {
   if (!options.image.empty()) render::requirePictures();
+  (void)makeCuller(options.visibility.executor);  // refused before files are read
   World world(options.world);
   world.readRobot();
   const bool check_allowed = !options.world.robot.srdf.empty() && !options.no_self;
@@ -120,9 +123,11 @@ int run(const Options& options) {
     }
   }
   world.readScene();
-  const ArticulatedCollisionManager manager = world.makeManager();
+  ArticulatedCollisionManager manager = world.makeManager();
+  useVisibility(options.visibility, manager);
 
   CertifiedRequest request = options.request;
+  request.visibility = options.visibility.mode;
   request.check_self = !options.no_self;
   request.check_scene = !options.no_scene;
   request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
@@ -292,6 +297,7 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->check(CLI::IsMember({"standard", "redon2004"}))
       ->group("Query");
   addRedonOptions(*check, request.redon);
+  addVisibilityOptions(*check, o.visibility);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   check

@@ -175,6 +175,7 @@ class Answers {
     for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts"}) out[key] = all.at(key);
     if (result_.status != Status::free) out["q_at_t_lower"] = all.at("q_at_t_lower");
     if (all.contains("certificate")) out["certificate"] = all.at("certificate");
+    if (!all.at("visibility").is_null()) out["visibility"] = all.at("visibility");
     if (!question.notes.empty()) out["notes"] = question.notes;
     if (result_.certificate) certificates_.add(*result_.certificate);
     return out;

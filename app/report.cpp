@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "visibility_options.h"
+
 namespace fcl_artic::app {
 namespace {
 
@@ -256,6 +258,7 @@ std::string textReport(const Report& r) {
     text += entry("ignored", fmt::format("'{}' and '{}' touch at t = {:g} and may separate", a.name, b.name, r.begin));
   }
   for (const std::string& note : r.notes) text += entry("note", note);
+  if (r.request.visibility != VisibilityMode::off) text += entry("stage 2", visibilityText(result.statistics));
   return text + entry("work", statisticsText(result.statistics));
 }
 
@@ -291,6 +294,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
             {"max_contacts", r.request.max_contacts},
             {"budget", r.request.work_budget},
             {"ignore_initial_contact", r.request.ignore_initial_contact}}},
+          {"visibility", visibilityJson(r.request.visibility, result.statistics)},
           {"statistics", statisticsJson(r)},
           {"notes", r.notes}};
 }

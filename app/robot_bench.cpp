@@ -28,6 +28,7 @@
 #include "random_motions.h"
 #include "step_bench.h"
 #include "usage.h"
+#include "visibility_options.h"
 #include "world.h"
 
 namespace fcl_artic::app {
@@ -43,6 +44,7 @@ constexpr std::size_t kContradictionsShown = 10;
 
 struct Options {
   WorldOptions world;
+  VisibilityChoice visibility;
   double angle = 5;  ///< degrees
   std::size_t motions = 1000;
   std::uint64_t seed = 1;
@@ -75,7 +77,9 @@ std::size_t numTriangles(const fcl::CollisionObjectd& object) {
 /// Measures a motion in all ways: the manager's queries, and FCL's check of states.
 class Asked {
  public:
-  explicit Asked(const WorldOptions& options) : world_(options) {
+  Asked(const WorldOptions& options, const VisibilityChoice& visibility) : world_(options) {
+    request_.visibility = visibility.mode;
+    (void)makeCuller(visibility.executor);             // refused before files are read
     auto measured = [last = Clock::now()]() mutable {  // ms since it was last called
       const auto now = Clock::now();
       return std::chrono::duration<double, std::milli>(now - std::exchange(last, now)).count();
@@ -88,12 +92,16 @@ class Asked {
     setup_.proofs_ms = measured();
     manager_.emplace(world_.makeManager());
     setup_.setup_ms = measured();
+    useVisibility(visibility, *manager_);
     if (const std::optional<double> after = residentKilobytes()) setup_.setup_kilobytes = *after - before.value_or(0);
     allowed_for_fcl_ = options.robot.srdf.empty() ? report.needNoCheck() : world_.robot.allowed;
     count(report, !options.robot.srdf.empty());
   }
 
   const Setup& setup() const { return setup_; }
+  VisibilityMode visibility() const { return request_.visibility; }
+  /// What stage 2 did in all of the manager's queries for first or any contacts.
+  const QueryStatistics& stage2() const { return stage2_; }
   const World& world() const { return world_; }
   const KinematicTree& tree() const { return *world_.robot.tree; }
 
@@ -102,6 +110,7 @@ class Asked {
     out.collide = [this](const MotionEnds& ends, ContactMode mode, CertifiedResult& result) {
       request_.mode = mode;
       manager_->continuousCollide(JointMotion::linear(tree(), ends.from, ends.to), request_, result);
+      addStage2(result.statistics);
     };
     out.clearance = [this](const MotionEnds& ends) {
       (void)manager_->clearance(JointMotion::linear(tree(), ends.from, ends.to));
@@ -114,6 +123,13 @@ class Asked {
   }
 
  private:
+  void addStage2(const QueryStatistics& s) {
+    VisibilityStatistics::forEachField(
+        [&](const char*, auto field) { stage2_.visibility.*field += s.visibility.*field; });
+    if (!s.visibility_executor.empty()) stage2_.visibility_executor = s.visibility_executor;
+    if (!s.visibility_fallback.empty()) stage2_.visibility_fallback = s.visibility_fallback;
+  }
+
   void count(const LinkPairReport& report, bool with_srdf) {
     const Robot& robot = world_.robot;
     std::set<LinkId> links;
@@ -170,6 +186,7 @@ class Asked {
   std::optional<ArticulatedCollisionManager> manager_;
   std::optional<FclStateCheck> state_check_;
   CertifiedRequest request_;
+  QueryStatistics stage2_;
 };
 
 /// All that one run found out.
@@ -264,6 +281,9 @@ std::string textOf(const Outcome& o) {
     out += fmt::format("slowest: {:.2f} us, {}, {}:\n{}\n", row->slowest(), row->motions, row->question,
                        o.commandOf(o.slowestOf(*row)));
   }
+  if (o.asked.visibility() != VisibilityMode::off) {
+    out += fmt::format("stage 2, {}: {}\n", nameOf(o.asked.visibility()), visibilityText(o.asked.stage2()));
+  }
   for (const std::string& note : o.asked.world().notes()) out += fmt::format("note: {}\n", note);
   return out;
 }
@@ -327,6 +347,7 @@ Json jsonOf(const Outcome& o) {
                                      {"to", values(c.motion.to)},
                                      {"command", o.commandOf(c.motion)}});
   }
+  out["visibility"] = visibilityJson(o.asked.visibility(), o.asked.stage2());
   out["notes"] = world.notes();
   return out;
 }
@@ -350,7 +371,7 @@ std::string plotOf(const Outcome& o) {
 }
 
 int run(const Options& options) {
-  Asked asked(options.world);
+  Asked asked(options.world, options.visibility);
   RandomMotions random(asked.tree(), options.angle * kRadiansPerDegree, options.seed);
   const Questions questions = asked.questions(!options.no_fcl);
   Outcome outcome{options, asked, {}, {}, {}};
@@ -402,6 +423,7 @@ void addRobotBench(CLI::App& bench, int& exit_status) {
       "Exit status: 0, 1 when answers contradict each other (first and any, or a state in contact for FCL on a motion\n"
       "that is proven free), 2 error.");
   addWorldOptions(*verb, o.world);
+  addVisibilityOptions(*verb, o.visibility);
   verb->add_option("--angle", o.angle,
                    "Each joint moves by at most this, in degrees, either way; a length by the same part of its range\n"
                    "as this is of 360")

@@ -17,9 +17,7 @@
 #include "render/picture.h"
 #include "step_bench.h"
 #include "usage.h"
-#ifdef FCL_ARTIC_HAS_OFFSCREEN
-#include "fcl_artic/visibility/offscreen.h"
-#endif
+#include "visibility_options.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -59,18 +57,6 @@ struct Table1Options : PipeOptions {
   RedonOptions redon;
   std::string csv, svg, image;
 };
-
-/// Stage 2 by this executor, or by what takes its place.
-std::shared_ptr<const VisibilityCuller> makeCuller(const std::string& executor) {
-#ifdef FCL_ARTIC_HAS_OFFSCREEN
-  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa);
-  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl);
-#else
-  if (executor == "osmesa" || executor == "egl")
-    throw std::invalid_argument("this program was built without the executor " + executor);
-#endif
-  return std::make_shared<VisibilityCuller>();
-}
 
 /// A row for each of these and each kind of steps.
 struct Variant {
@@ -205,9 +191,9 @@ void drawStep(const PumaInPipes& scenery, const CloseSteps& steps, const std::st
 int runTable1(const Table1Options& o) {
   if (!o.image.empty()) render::requirePictures();
   const PumaInPipes scenery = pumaInPipes(o);
-  const auto culler = makeCuller(o.executor);
-  scenery.manager->setVisibility(culler);
   const bool stage2 = o.executor != kNoExecutor;
+  const auto culler = makeCuller(stage2 ? o.executor : "cpu");
+  scenery.manager->setVisibility(culler);
   const std::string executor = stage2 ? culler->executor() : kNoExecutor;  // ready before times are taken
   const std::vector<Variant> variants = variantsOf(o);
   std::vector<Group> groups;

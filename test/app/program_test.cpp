@@ -370,7 +370,9 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
                              "--camera",
                              "--trajectory",
                              "--clearance",
-                             "--unknown-cells"}) {
+                             "--unknown-cells",
+                             "--visibility",
+                             "--executor"}) {
     EXPECT_NE(help.out.find(option), std::string::npos) << option;
   }
   const Outcome unknown = this->run("chek --robot " + arm());

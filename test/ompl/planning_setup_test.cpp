@@ -10,6 +10,7 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
 
+#include "../../src/visibility/batch.h"
 #include "../urdf/temp_folder.h"
 #include "slide.h"
 
@@ -122,6 +123,37 @@ TEST_F(PlanningSetupTest, FromFilesToAnswers) {
   EXPECT_NEAR(last.second, 0.5, 3 * 0x1p-12);
   EXPECT_LT(last.second, 0.5);
   EXPECT_THROW(setup.setState(s1.get(), {1}), std::invalid_argument);
+}
+
+/// Stage 2 in what validator and checker ask, by the culler of the options.
+TEST_F(PlanningSetupTest, CullingByVisibilityIsDoneByTheCullerGiven) {
+  int made = 0;
+  SetupOptions options;
+  options.visibility = std::make_shared<VisibilityCuller>(VisibilityOptions(), "mine",
+                                                          [&made]() -> std::unique_ptr<visibility::Executor> {
+                                                            ++made;
+                                                            throw std::runtime_error("no driver");
+                                                          });
+  for (const VisibilityMode mode : {VisibilityMode::off, VisibilityMode::on, VisibilityMode::atOnce}) {
+    made = 0;
+    options.request.visibility = mode;
+    const PlanningSetup setup = setUpPlanning(urdf_, srdf_, scene_, "chain", options);
+    ob::ScopedState<> s1(setup.space), s2(setup.space);
+    setup.setState(s1.get(), {0, 2.5});
+    setup.setState(s2.get(), {1.9, 2.5});
+    EXPECT_TRUE(setup.si->checkMotion(s1.get(), s2.get()));
+    setup.setState(s2.get(), {4, -2.5});
+    std::pair<ob::State*, double> last{nullptr, 2};
+    EXPECT_FALSE(setup.si->checkMotion(s1.get(), s2.get(), last));
+    EXPECT_NEAR(last.second, 0.5, 3 * 0x1p-12);
+    EXPECT_LT(last.second, 0.5);
+    if (mode == VisibilityMode::off) {
+      EXPECT_EQ(made, 0);
+      EXPECT_EQ(options.visibility->fallbackReason(), "");
+    } else {
+      EXPECT_EQ(options.visibility->fallbackReason(), "mine: no driver");
+    }
+  }
 }
 
 /// What a link may touch says nothing of an obstacle with the name of the other link.

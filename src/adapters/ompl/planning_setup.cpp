@@ -148,10 +148,11 @@ struct World {
   Robot robot;
   Scene scene;
   ArticulatedCollisionManager manager;
-  World(Robot r, Scene s) : robot(std::move(r)), scene(std::move(s)), manager(robot.tree) {
+  World(Robot r, Scene s, const SetupOptions& options) : robot(std::move(r)), scene(std::move(s)), manager(robot.tree) {
     robot.addTo(manager);
     scene.addTo(manager);
     manager.setup();
+    if (options.visibility) manager.setVisibility(options.visibility);
   }
 };
 
@@ -228,7 +229,7 @@ PlanningSetup setUpRigidBody(std::shared_ptr<fcl::CollisionGeometryd> body, cons
                             std::make_shared<fcl::CollisionObjectd>(std::move(body)), "body"});
   Scene scene = combineScenes({obstacles}, *tree);
   std::vector<std::string> notes = scene.notes;
-  const auto world = std::make_shared<const World>(std::move(robot), std::move(scene));
+  const auto world = std::make_shared<const World>(std::move(robot), std::move(scene), options);
   SetupOptions own = options;
   own.fixed.clear();
   PlanningSetup setup =
@@ -245,7 +246,7 @@ PlanningSetup setUpPlanning(const std::string& urdf, const std::string& srdf, co
   std::vector<Scene> scenes;
   if (!scene.empty()) scenes.push_back(loadScene(scene, options.scene));
   Scene obstacles = combineScenes(scenes, *robot.tree);
-  const auto world = std::make_shared<const World>(std::move(robot), std::move(obstacles));
+  const auto world = std::make_shared<const World>(std::move(robot), std::move(obstacles), options);
   PlanningSetup setup =
       setUpPlanning(std::shared_ptr<const ArticulatedCollisionManager>(world, &world->manager), joints, options);
   for (const auto& notes : {world->robot.notes, world->scene.notes, unitNotes(world->robot, world->scene)}) {
