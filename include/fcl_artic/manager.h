@@ -296,7 +296,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
 
   /// Finds the first contacts of many motions on several threads. Result i is what motion i gets by itself, bit for
-  /// bit, except for measured times and what VisibilityMode::automatic chose.
+  /// bit, except for measured times, the work of stage 2 and what VisibilityMode::automatic chose; with
+  /// VisibilityMode::atOnce it is so with the executor cpu, and the others keep the promise.
+  ///
+  /// Where stage 2 takes part, with Method::standard, it draws hundreds of these motions in one pass.
   /// @param request  `progress` is not called.
   /// @param[out] results  resized to the number of motions; its memory is used again.
   /// @param threads  maximum number of threads; 0: as many as the machine runs at once.
@@ -354,6 +357,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
  private:
   struct Impl;
   struct Aspects;
+  class Some;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const Aspects& aspects,
                      CertifiedResult& result) const;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fcl_artic/manager.h"
+#include "model/advisor.h"
 #include "model/answer.h"
 #include "motion/part_of_motion.h"
 
@@ -24,6 +25,8 @@ struct ArticulatedCollisionManager::Aspects {
     std::optional<engine::LeafContact> contact;  ///< proven, the first one
   };
   Details* details = nullptr;  ///< out
+  /// Advises the solver in place of the request's stage 2, with Method::standard; null: the request's.
+  const engine::Advisor* stage2 = nullptr;
 };
 
 }  // namespace fcl_artic

@@ -25,9 +25,10 @@ struct Stage2 {
   explicit Stage2(std::shared_ptr<const VisibilityCuller> by)
       : culler(std::move(by)),
         standard(visibility::ExecutorLoan::makingCost(*culler)),
-        redon(visibility::ExecutorLoan::makingCost(*culler)) {}
+        redon(visibility::ExecutorLoan::makingCost(*culler)),
+        together(visibility::ExecutorLoan::makingCost(*culler)) {}
   std::shared_ptr<const VisibilityCuller> culler;
-  visibility::Choice standard, redon;
+  visibility::Choice standard, redon, together;  ///< together: batches, by Method::standard
 };
 
 struct ArticulatedCollisionManager::Impl {
@@ -52,6 +53,11 @@ struct ArticulatedCollisionManager::Impl {
   /// @param time  the part of the obstacles' time that it takes.
   void add(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request, const Bracket& answer,
            const Aspects::Details& details, certificate::Claim& claim) const;
+
+  /// What an answer has beyond the solver's: its certificate, allowed pairs, no more contacts than asked for.
+  /// @param details  of the answer; read where the request asks for a certificate.
+  void complete(const JointMotion& motion, const CertifiedRequest& request, const Aspects::Details& details,
+                CertifiedResult& result) const;
 
   /// @throws std::logic_error where what queries read is not up to date.
   void requireReady() const {

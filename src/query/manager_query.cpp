@@ -100,9 +100,14 @@ struct Solved {
   RedonStatistics redon;
 };
 
-void solve(const Registry& registry, Stage2& stage2, const CertifiedRequest& request, const engine::Problem& problem,
-           engine::Query& query, Workspace& workspace, Solved& solved) {
-  if (request.method == Method::redon2004) {
+/// @param advisor  takes the place of stage 2; null: the request's.
+void solve(const Registry& registry, Stage2& stage2, const engine::Advisor* advisor, const CertifiedRequest& request,
+           const engine::Problem& problem, engine::Query& query, Workspace& workspace, Solved& solved) {
+  if (advisor) {
+    FCL_ARTIC_ASSERT(request.method == Method::standard);
+    query.ask(*advisor);
+    workspace.engine.solve(problem, query, solved.answer);
+  } else if (request.method == Method::redon2004) {
     const auto treeOf = [&](std::int32_t body) { return registry.body(body).shape->obbTree(); };
     const auto method = [&](const engine::Query& asked, engine::Answer& out) {
       RedonStatistics work;
@@ -185,6 +190,19 @@ void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const Tim
   claim.pieces.push_back(std::move(stated));
 }
 
+void ArticulatedCollisionManager::Impl::complete(const JointMotion& motion, const CertifiedRequest& request,
+                                                 const Aspects::Details& details, CertifiedResult& result) const {
+  const JointMotion* const motions[] = {&motion};
+  result.unproven_allowed_pairs = unprovenAllowed(motions, 1, request);
+  result.certificate.reset();
+  if (request.certificate) {
+    certificate::Claim claim;
+    add(motion, TimePart(), request, result, details, claim);
+    result.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*world(), claim));
+  }
+  if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
+}
+
 void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, const CertifiedRequest& request,
                                                     CertifiedResult& result) const {
   answerOrClaimNothing(result, 0, 1, [&] { collideMotion(motion, request, result); });
@@ -196,15 +214,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   Aspects::Details details;
   if (request.certificate) aspects.details = &details;
   collideMotion(motion, request, aspects, result);
-  const JointMotion* const motions[] = {&motion};
-  result.unproven_allowed_pairs = impl_->unprovenAllowed(motions, 1, request);
-  result.certificate.reset();
-  if (request.certificate) {
-    certificate::Claim claim;
-    impl_->add(motion, TimePart(), request, result, details, claim);
-    result.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));
-  }
-  if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
+  impl_->complete(motion, request, details, result);
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
@@ -236,7 +246,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   query.check_self = problem.num_link_pairs > 0;
   Solved solved;
-  solve(registry, *impl_->stage2, request, problem, query, *workspace, solved);
+  solve(registry, *impl_->stage2, aspects.stage2, request, problem, query, *workspace, solved);
   const engine::Answer& answer = solved.answer;
   const Clock::time_point end = request.measure_times ? Clock::now() : Clock::time_point();
 

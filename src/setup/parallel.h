@@ -21,12 +21,17 @@
 
 namespace fcl_artic {
 
+/// The number of threads that a caller's number stands for; 0: as many as the machine runs at once.
+inline std::size_t threadsFor(int most_threads) {
+  if (most_threads > 0) return static_cast<std::size_t>(most_threads);
+  return std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
 /// Calls f(i) for i in [0, n), over so many threads at most (0: as many as the machine runs at once); what a call
 /// throws comes out once all have ended.
 template <class F>
 void parallelFor(std::size_t n, int most_threads, const F& f) {
-  const int threads =
-      most_threads > 0 ? most_threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const auto threads = static_cast<int>(threadsFor(most_threads));
   if (threads == 1 || n < 2) {
     for (std::size_t i = 0; i < n; ++i) f(i);
     return;

@@ -74,7 +74,7 @@ class Choice {
   const double making_us_;
   std::mutex mutex_;
   double spent_us_ = 0;  ///< by all trials
-  Known cpu_{200}, own_{1000};
+  Known cpu_{100}, own_{1000};
   bool cpu_is_next_ = true;
 };
 

@@ -161,7 +161,7 @@ TEST(Choice, AnExecutorThatIsReadyIsTriedAtOnce) {
 /// Time is taken when leave is given, so that threads do not take it twice.
 TEST(Choice, ReservedTimeIsSpent) {
   Choice choice;
-  choice.addQueries(200 / Choice::kShare, 200, 1);
+  choice.addQueries(100 / Choice::kShare, 200, 1);
   EXPECT_TRUE(choice.mayTry(false).given());
   EXPECT_FALSE(choice.mayTry(false).given());
 }
@@ -169,10 +169,10 @@ TEST(Choice, ReservedTimeIsSpent) {
 /// A batch of queries is tried as one.
 TEST(Choice, QueriesOfABatchCountEach) {
   Choice choice;
-  choice.addQueries(64 * 200 / Choice::kShare, 10000, 1);
+  choice.addQueries(64 * 100 / Choice::kShare, 10000, 1);
   const Leave leave = choice.mayTry(false, 64);
   ASSERT_TRUE(leave.given());
-  EXPECT_NEAR(leave.reserved_us, 64 * 200, 1e-6);
+  EXPECT_NEAR(leave.reserved_us, 64 * 100, 1e-6);
   EXPECT_FALSE(choice.mayTry(false, 1).given());
 }
 

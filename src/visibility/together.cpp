@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "visibility/together.h"
+
+#include <exception>
+
+#include "visibility/stage.h"
+
+namespace fcl_artic {
+namespace visibility {
+
+void Together::begin(std::size_t n) {
+  beginBatch(culler_, loan_->batch);
+  if (queries_.size() < n) queries_.resize(n);
+  num_queries_ = n;
+  drawing_us_ = 0;
+  for (std::size_t i = 0; i < n; ++i) queries_[i].asked = queries_[i].asked_again = queries_[i].drawn = false;
+}
+
+engine::Advisor Together::assume(std::size_t i, double tolerance_distance) {
+  One& one = queries_[i];
+  one.owner = this;
+  one.tolerance_distance = tolerance_distance;
+  engine::Advisor advisor;
+  advisor.self = &one;
+  advisor.clear = &Together::take;
+  return advisor;
+}
+
+void Together::take(void* self, const engine::Problem& problem, const engine::SweptLink* links,
+                    engine::CullCandidate* pairs, std::int32_t num_pairs) {
+  One& one = *static_cast<One*>(self);
+  const double begin = steadyMicroseconds();
+  one.asked_again = one.asked;
+  if (!one.asked) {
+    one.asked = true;
+    one.candidates.assign(pairs, pairs + num_pairs);
+    one.volumes.add(problem, links, pairs, num_pairs, one.tolerance_distance, one.owner->loan_->batch);
+  }
+  for (std::int32_t i = 0; i < num_pairs; ++i) pairs[i].lanes = 0;
+  one.collecting_us = steadyMicroseconds() - begin;
+}
+
+void Together::draw() {
+  Batch& batch = loan_->batch;
+  const double begin = steadyMicroseconds();
+  try {
+    loan_->executor->run(batch, loan_->may);
+  } catch (const std::exception& e) {
+    loan_.giveUp(e.what());
+    return;  // nothing is drawn
+  }
+  for (std::size_t i = 0; i < num_queries_; ++i) {
+    One& one = queries_[i];
+    if (!one.asked) continue;
+    one.volumes.conclude(batch, loan_->may);
+    one.volumes.apply(one.candidates.data());
+    one.drawn = true;
+  }
+  drawing_us_ = steadyMicroseconds() - begin;
+}
+
+double Together::drawingMicroseconds(std::size_t i) const {
+  const One& one = queries_[i];
+  if (!one.drawn || numObjects() == 0) return 0;
+  return drawing_us_ * static_cast<double>(one.volumes.pieces()) / static_cast<double>(numObjects());
+}
+
+engine::Advisor Together::advise(std::size_t i) {
+  engine::Advisor advisor;
+  advisor.self = &queries_[i];
+  advisor.clear = &Together::repeat;
+  return advisor;
+}
+
+/// What is proven of a pair holds for the query's whole motion.
+void Together::repeat(void* self, const engine::Problem& /*problem*/, const engine::SweptLink* /*links*/,
+                      engine::CullCandidate* pairs, std::int32_t num_pairs) {
+  const One& one = *static_cast<const One*>(self);
+  if (!one.drawn) return;
+  std::size_t next = 0;  // they come in the same order
+  for (std::int32_t i = 0; i < num_pairs; ++i) {
+    while (next < one.candidates.size() && one.candidates[next].pair != pairs[i].pair) ++next;
+    if (next == one.candidates.size()) return;
+    if (one.candidates[next].lanes == 0) pairs[i].lanes = 0;
+    pairs[i].free_nodes = one.candidates[next].free_nodes;
+  }
+}
+
+}  // namespace visibility
+}  // namespace fcl_artic
