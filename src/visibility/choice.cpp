@@ -14,8 +14,10 @@ constexpr double kForget = 0.9, kAdvantage = 0.8;
 constexpr int kLeastTrials = 3;
 /// The least time that drawing by OpenGL and reading back takes, us. (On a processor it takes 30 and more.)
 constexpr double kLeastDrawing = 20;
-/// The part of the share that is left to trials of cpu while time is saved for making another executor.
-constexpr double kWhileSaving = 0.5;
+/// Trials with twice the time and more: far from paying. Then they get this part of the share.
+constexpr double kFar = 2, kWhenFar = 0.25;
+/// The part of the share for trials of the culler's own executor, where that may pay, its making included.
+constexpr double kForOwn = 0.75;
 
 }  // namespace
 
@@ -25,6 +27,10 @@ double steadyMicroseconds() {
 
 bool Choice::Known::pays() const {
   return trials >= kLeastTrials && on_us < kAdvantage * off_us;
+}
+
+bool Choice::Known::isFarFromPaying() const {
+  return trials >= kLeastTrials && on_us > kFar * off_us;
 }
 
 /// Would the culler's own executor save time if it drew as fast as any?
@@ -43,32 +49,25 @@ Leave Choice::mayTry(bool own_is_made, double queries) {
   const double all_us = 1e-3 * static_cast<double>(all_ns_.load(std::memory_order_relaxed));
   const auto asked = static_cast<double>(queries_.load(std::memory_order_relaxed));
   const double one_us = asked > 0 ? all_us / asked : 0;  // a trial takes about as long as a query
-  const auto costOf = [&](const Known& known) { return queries * std::max(known.cost_us, one_us); };
-  const auto fits = [&](double cost_us, double share) { return spent_us_ + cost_us <= share * all_us; };
-  const auto leave = [&](Way way, double cost_us) {
-    spent_us_ += cost_us;  // taken now, so that other threads see it
-    return Leave{way, cost_us};
-  };
-  double share = kShare;
-  if (making_us_ >= 0) {
-    const bool own = own_is_made ? !cpu_is_next_ : ownMayPay();
-    const double cost_us = costOf(own_) + (own_is_made ? 0 : making_us_);
-    if (own && fits(cost_us, kShare)) {
-      cpu_is_next_ = true;
-      return leave(Way::own, cost_us);
+  const auto leave = [&](Way way, Known& known, double part, double making_us) -> Leave {
+    const double cost_us = queries * std::max(known.cost_us, one_us) + making_us;
+    const double share = part * (known.isFarFromPaying() ? kWhenFar : 1) * kShare;
+    if (known.spent_us + cost_us > share * all_us || cpu_.spent_us + own_.spent_us + cost_us > kShare * all_us) {
+      return {};
     }
-    if (own && own_is_made) return {};
-    if (own) share *= kWhileSaving;
-  }
-  if (!fits(costOf(cpu_), share)) return {};
-  cpu_is_next_ = false;
-  return leave(Way::cpu, costOf(cpu_));
+    known.spent_us += cost_us;  // taken now, so that other threads see it
+    return {way, cost_us};
+  };
+  const bool has_own = making_us_ >= 0 && (own_is_made || ownMayPay());
+  const double of_own = has_own ? kForOwn : 0;
+  const Leave own = has_own ? leave(Way::own, own_, of_own, own_is_made ? 0 : making_us_) : Leave();
+  return own.given() ? own : leave(Way::cpu, cpu_, 1 - of_own, 0);
 }
 
 void Choice::addTrial(const Leave& leave, const Trial& trial, double queries) {
   const std::lock_guard<std::mutex> lock(mutex_);
   Known& known = leave.way == Way::own ? own_ : cpu_;
-  spent_us_ += trial.extra_us - leave.reserved_us;
+  known.spent_us += trial.extra_us - leave.reserved_us;
   known.cost_us =
       std::max(std::min(trial.extra_us, trial.with_us + trial.without_us) / queries, kForget * known.cost_us);
   if (!trial.telling) return;

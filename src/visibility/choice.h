@@ -48,23 +48,26 @@ class Choice {
   /// Adds the time of queries that were measured, of a trial that of the way chosen.
   /// @param stand_for  how many times as many they stand for.
   void addQueries(double us, double queries = 1, double stand_for = kMeasured);
-  /// Leave for a trial: trials take at most kShare of the time of all queries, the one at hand included.
+  /// Leave for a trial: trials take at most kShare of the time of all queries, the one at hand included, and less where
+  /// they have shown that the stage is far from paying.
   /// @param own_is_made  an executor of the culler's own is ready. Before, it is tried only where the trials of cpu
   /// show that enough would be saved if drawing took no time.
   Leave mayTry(bool own_is_made, double queries = 1);
   /// Adds what a trial has shown. One that ended in an exception is not added: its time stays reserved.
   void addTrial(const Leave& leave, const Trial& trial, double queries = 1);
 
-  static constexpr std::uint32_t kMeasured = 8;
+  static constexpr std::uint32_t kMeasured = 32;
   static constexpr double kShare = 0.02;
 
  private:
   /// Of one way.
   struct Known {
     double cost_us;                                     ///< that a query's trial is expected to take
+    double spent_us = 0;                                ///< by trials
     double on_us = 0, off_us = 0, stage_us = 0, n = 0;  ///< sums over trials; old ones are forgotten
     int trials = 0;                                     ///< telling ones
     bool pays() const;
+    bool isFarFromPaying() const;
   };
   bool ownMayPay() const;
 
@@ -73,9 +76,7 @@ class Choice {
   std::atomic<std::uint64_t> queries_{0}, all_ns_{0};
   const double making_us_;
   std::mutex mutex_;
-  double spent_us_ = 0;  ///< by all trials
   Known cpu_{100}, own_{1000};
-  bool cpu_is_next_ = true;
 };
 
 }  // namespace visibility
