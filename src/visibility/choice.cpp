@@ -11,7 +11,7 @@ namespace {
 /// How fast old trials are forgotten; the least advantage that counts (the second of two runs finds its data in the
 /// caches); trials before anything is chosen.
 constexpr double kForget = 0.9, kAdvantage = 0.8;
-constexpr int kLeastTrials = 3;
+constexpr int kLeastTrials = 6;
 /// The least time that drawing by OpenGL and reading back takes, us. (On a processor it takes 30 and more.)
 constexpr double kLeastDrawing = 20;
 /// Trials with twice the time and more: far from paying. Then they get this part of the share.

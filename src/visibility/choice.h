@@ -43,7 +43,8 @@ class Choice {
 
   /// The way that takes the least time as far as trials have shown; `without` until they have shown another one.
   Way best() const { return best_.load(std::memory_order_relaxed); }
-  /// Whether to measure the time of what is asked next, one query of kMeasured: clocks take time too.
+  /// Whether to measure the time of what is asked next, one query of kMeasured: clocks take time too. (A prime: callers
+  /// may ask in turns.)
   bool measuresNext() { return counter_.fetch_add(1, std::memory_order_relaxed) % kMeasured == 0; }
   /// Adds the time of queries that were measured, of a trial that of the way chosen.
   /// @param stand_for  how many times as many they stand for.
@@ -56,7 +57,7 @@ class Choice {
   /// Adds what a trial has shown. One that ended in an exception is not added: its time stays reserved.
   void addTrial(const Leave& leave, const Trial& trial, double queries = 1);
 
-  static constexpr std::uint32_t kMeasured = 32;
+  static constexpr std::uint32_t kMeasured = 31;
   static constexpr double kShare = 0.02;
 
  private:

@@ -13,6 +13,9 @@ using engine::SweptLink;
 constexpr int kParts = 8;
 /// Objects of a query: some tens of milliseconds of work. What does not go in stays as it is.
 constexpr std::size_t kMostObjects = 20000;
+/// Objects of a pair. Where more are left after the 13 directions they seldom all go, and drawing them costs more than
+/// the solver's search: measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
+constexpr std::size_t kMostOfPair = 64;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 /// Size of clusters, as a part of the longest side of what is swept.
@@ -50,7 +53,7 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
   clusters_.clear();
   free_.clear();
   num_words_.clear();
-  Collection collection{batch, first_group_, first_object_ + kMostObjects, clusters_, free_};
+  Collection collection{batch, first_group_, 0, clusters_, free_};
   std::int32_t end = 0;
   for (std::int32_t begin = 0; begin < n; begin = end) {
     const std::int32_t mover = candidates[begin].mover;
@@ -73,12 +76,16 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
     lanes = 0;
     for (std::int32_t i = begin; i < end; ++i) {
       const CullCandidate& c = candidates[i];
-      const std::size_t objects = batch.objects.size(), groups = clusters_.size();
+      const std::size_t objects = batch.objects.size(), points = batch.points.size(), groups = clusters_.size();
+      const Bounds reached = reach;
+      collection.most = std::min(first_object_ + kMostObjects, objects + kMostOfPair);
       std::uint32_t met = c.lanes;
       if (!BodyPieces(problem.bodies[c.obstacle], c.margin + tolerance_distance)
                .add(parts, met, least, kCluster * size, window, i, collection, reach)) {
         batch.objects.resize(objects);
+        batch.points.resize(points);
         clusters_.resize(groups);
+        reach = reached;
         batch.objects.push_back({Volume(), window, collection.nextGroup()});  // without a point: unusable
         clusters_.push_back({i, 0});
       }

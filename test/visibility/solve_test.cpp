@@ -173,10 +173,10 @@ TEST_F(SolveTwice, AutomaticCountsBothSolves) {
 }
 
 TEST_F(SolveTwice, AutomaticTakesTheStageForFreeMotions) {
-  for (int trial = 0; trial < 3; ++trial) {
+  for (int trial = 0; trial < 6; ++trial) {
     EXPECT_EQ(choice_.best(), Way::without);
     report_.trials = 0;
-    for (int asked = 0; asked < 500 && !report_.trials; ++asked) solve(VisibilityMode::automatic);
+    for (int asked = 0; asked < 3000 && !report_.trials; ++asked) solve(VisibilityMode::automatic);
     ASSERT_EQ(report_.trials, 1u);
     EXPECT_EQ(refined_, Calls({true, false}));
     EXPECT_EQ(report_.repeated, 0u);

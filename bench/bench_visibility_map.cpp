@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where stage 2, culling by visibility, pays: a map over kinds and sizes of scenes, lengths of motions, numbers of
+// links, executors, and batches. Each cell is the time of a set of queries with the stage beside that without it.
+//
+// Scenes, all about an arm of meshes (1,000 triangles a link) with a reach of 0.95 m:
+//   room     a bumpy closed surface around the arm, near enough to touch, as a scan of a cell is: one mesh
+//   bushes   150 balls of random small triangles within reach, as clutter or a point cloud with triangles for points:
+//   one
+//            mesh, or each an object
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "arm_scene.h"
+#include "fcl_artic/manager.h"
+#include "options.h"
+#ifdef FCL_ARTIC_HAS_OFFSCREEN
+#include "fcl_artic/visibility/offscreen.h"
+#endif
+
+using namespace fcl_artic;
+using namespace fcl_artic::bench;
+
+namespace {
+
+constexpr double kReach = 0.95;
+/// A block of queries takes at least this, us: they are asked again and again.
+constexpr double kLeastBlock = 4000;
+/// Time that `automatic` is given to learn, us.
+constexpr double kLearning = 4e5;
+
+/// Of this thread, us: other programs on the machine do not count. (main() has OpenGL draw in it.)
+double processorTime() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+TriangleMesh makeRoom(int triangles) {
+  BumpyEllipsoid room;
+  room.half = {0.9, 0.8, 0.75};
+  room.bump = 0.12;
+  const int bands = std::max(4, static_cast<int>(std::lround(std::sqrt(triangles) / 2)));
+  return room.mesh(2 * bands, bands + 1);
+}
+
+std::vector<TriangleMesh> makeBushes(int triangles) {
+  constexpr int kBushes = 150;
+  Random random(23);
+  const auto inBall = [&]() -> fcl::Vector3d {
+    for (;;) {
+      const fcl::Vector3d v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      if (v.norm() < 1) return v;
+    }
+  };
+  std::vector<TriangleMesh> bushes;
+  while (bushes.size() < kBushes) {
+    const fcl::Vector3d centre = kReach * inBall();
+    if (centre.norm() < 0.25) continue;
+    const double radius = random.uniform(0.02, 0.07);
+    const int count = triangles / kBushes;
+    const double size = radius / std::cbrt(count);
+    TriangleMesh mesh;
+    for (int i = 0; i < count; ++i) {
+      const fcl::Vector3d at = centre + radius * inBall();
+      for (int k = 0; k < 3; ++k) mesh.vertices.push_back(at + size * inBall());
+      mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    bushes.push_back(std::move(mesh));
+  }
+  return bushes;
+}
+
+/// A kind of scene; its obstacles for a number of triangles.
+struct Kind {
+  std::string name;
+  std::function<std::vector<TriangleMesh>(int triangles)> make;
+};
+std::vector<Kind> kinds() {
+  return {{"room", [](int n) { return std::vector<TriangleMesh>{makeRoom(n)}; }},
+          {"bushes, one mesh", [](int n) { return std::vector<TriangleMesh>{merge(makeBushes(n))}; }},
+          {"bushes", makeBushes}};
+}
+
+/// An arm and obstacles in a manager.
+class Place {
+ public:
+  Place(int links, const std::vector<TriangleMesh>& obstacles) : random_(5), arm_(makeArm(links)), manager_(arm_.tree) {
+    for (const ArmLink& link : arm_.links) {
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(link.mesh)));
+      manager_.bind(link.link, objects_.back().get(), link.offset);
+    }
+    for (const TriangleMesh& mesh : obstacles) {
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(mesh)));
+      manager_.registerObject(objects_.back().get());
+      triangles_ += mesh.triangles.size();
+    }
+    manager_.setup();
+  }
+  ArticulatedCollisionManager& manager() { return manager_; }
+  std::size_t triangles() const { return triangles_; }
+
+  /// Random motions of which nothing is nearer than 5 mm at the start; each joint turns by at most `step`, rad.
+  /// @param set  those that are "free", those in "contact", or "any".
+  /// @return fewer than `count` where they are rare.
+  std::vector<JointMotion> motions(double step, const std::string& set, std::size_t count) {
+    CertifiedRequest clear, query;
+    clear.check_self = query.check_self = false;
+    clear.margin = 0.005;
+    const auto n = static_cast<Eigen::Index>(arm_.tree->dof());
+    Eigen::VectorXd q(n), dq(n);
+    std::vector<JointMotion> found;
+    for (std::size_t tried = 0; found.size() < count && tried < 400 * count; ++tried) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        q[i] = random_.uniform(-kPi, kPi);
+        dq[i] = random_.uniform(-1, 1) * step;
+      }
+      if (!manager_.isFree(q, q, clear)) continue;
+      JointMotion motion = JointMotion::linear(*arm_.tree, q, q + dq);
+      if (set == "any" || manager_.isFree(motion, query) == (set == "free")) found.push_back(std::move(motion));
+    }
+    return found;
+  }
+
+ private:
+  static ArmScene makeArm(int links) {
+    ArmSceneOptions options;
+    options.spheres = 1;
+    options.scene_triangles = 100;
+    if (links != 6) {
+      Random random(11);
+      options.rows = randomRows(links, kReach, random);
+      options.first_link = 1;
+      options.thickness = std::clamp(0.25 * kReach / links, 0.015, 0.055);
+    }
+    return makeArmScene(options);
+  }
+  Random random_;
+  ArmScene arm_;
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+  ArticulatedCollisionManager manager_;
+  std::size_t triangles_ = 0;
+};
+
+/// How the queries are asked.
+struct Way {
+  std::string executor;
+  VisibilityMode mode;
+  std::size_t batch;  ///< motions at a time; 1: one query after the other
+};
+
+std::string nameOf(VisibilityMode mode) {
+  switch (mode) {
+    case VisibilityMode::off:
+      return "off";
+    case VisibilityMode::on:
+      return "on";
+    case VisibilityMode::automatic:
+      return "automatic";
+    case VisibilityMode::atOnce:
+      return "at once";
+  }
+  return {};
+}
+
+/// One cell of the map.
+struct Cell {
+  std::string scene;
+  std::size_t triangles;
+  int links;
+  double degrees;
+  std::string set;  ///< "free", "contact" or "any"
+  Way way;
+  std::size_t queries;
+  double off_us, us, ratio;  ///< a query; the ratio is the median of those of blocks taken in turns
+  double culled;             ///< of the pairs that the stage saw
+  double drawn;              ///< pieces a query
+};
+
+class Asker {
+ public:
+  Asker(Place& place, const std::vector<JointMotion>& motions, ContactMode mode) : place_(place), motions_(motions) {
+    request_.check_self = false;
+    request_.mode = mode;
+    request_.tolerance_time = 0x1p-13;
+  }
+  /// Mean time of all queries together, us.
+  double askForAWhile(const Way& way) {
+    double sum = 0;
+    int n = 0;
+    for (; sum < kLeastBlock; ++n) sum += ask(way);
+    return sum / n;
+  }
+  /// Time of all queries, us.
+  double ask(const Way& way) {
+    request_.visibility = way.mode;
+    results_.resize(motions_.size());
+    const double begin = processorTime();
+    if (way.batch <= 1) {
+      for (std::size_t i = 0; i < motions_.size(); ++i) {
+        place_.manager().continuousCollide(motions_[i], request_, results_[i]);
+      }
+    } else {
+      std::vector<CertifiedResult> some;
+      for (std::size_t i = 0; i < motions_.size(); i += way.batch) {
+        const std::vector<JointMotion> part(
+            motions_.begin() + static_cast<std::ptrdiff_t>(i),
+            motions_.begin() + static_cast<std::ptrdiff_t>(std::min(motions_.size(), i + way.batch)));
+        place_.manager().continuousCollide(part, request_, some, 1);
+        std::copy(some.begin(), some.end(), results_.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    return processorTime() - begin;
+  }
+  const std::vector<CertifiedResult>& results() const { return results_; }
+
+ private:
+  Place& place_;
+  const std::vector<JointMotion>& motions_;
+  CertifiedRequest request_;
+  std::vector<CertifiedResult> results_;
+};
+
+double median(std::vector<double> all) {
+  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+  return all[all.size() / 2];
+}
+
+/// Red where the stage costs, green where it saves; the number is the time with it as a multiple of that without.
+std::string colourOf(double ratio) {
+  const double x = std::clamp(std::log2(ratio) / 3, -1.0, 1.0);  // eight times as much is as red as it gets
+  const int red = static_cast<int>(x > 0 ? 255 : 255 * (1 + x)), green = static_cast<int>(x < 0 ? 255 : 255 * (1 - x));
+  return fmt::format("#{:02x}{:02x}{:02x}", std::max(red, 90), std::max(green, 90), 110);
+}
+
+/// A row for each way, scene by scene; a column for each set and step.
+std::string mapOf(const std::vector<Cell>& cells) {
+  std::vector<std::string> rows, columns;
+  std::map<std::pair<std::string, std::string>, double> values;
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const Cell& c : cells) {
+    const std::string row = fmt::format("{}, {:.0e} triangles, {} links: {} {}{}", c.scene,
+                                        static_cast<double>(c.triangles), c.links, c.way.executor, nameOf(c.way.mode),
+                                        c.way.batch > 1 ? fmt::format(", {} at a time", c.way.batch) : "");
+    const std::string column = fmt::format("{} {:g}°", c.set, c.degrees);
+    add(rows, row);
+    add(columns, column);
+    values[{row, column}] = c.ratio;
+  }
+  constexpr int kLeft = 460, kTop = 60, kWidth = 74, kHeight = 17;
+  const int width = kLeft + kWidth * static_cast<int>(columns.size()) + 20,
+            height = kTop + kHeight * static_cast<int>(rows.size()) + 20;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
+      "<text x=\"10\" y=\"20\">Time of a query with stage 2, as a multiple of that without it. Below 1 (green) it pays."
+      "</text>\n",
+      width, height);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                       kLeft + kWidth * static_cast<int>(k) + kWidth / 2, kTop - 8, columns[k]);
+  }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const int y = kTop + kHeight * static_cast<int>(r);
+    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLeft - 8, y + 13, rows[r]);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const auto found = values.find({rows[r], columns[k]});
+      if (found == values.end()) continue;
+      const int x = kLeft + kWidth * static_cast<int>(k);
+      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", x + 1, y + 1, kWidth - 2,
+                         kHeight - 2, colourOf(found->second));
+      svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{:.2f}</text>\n", x + kWidth / 2, y + 13,
+                         found->second);
+    }
+  }
+  return svg + "</svg>\n";
+}
+
+std::string csvOf(const std::vector<Cell>& cells) {
+  std::string csv = "scene,triangles,links,degrees,set,executor,mode,batch,queries,off_us,with_us,ratio,culled,drawn\n";
+  for (const Cell& c : cells) {
+    csv += fmt::format("\"{}\",{},{},{:g},{},{},{},{},{},{:.2f},{:.2f},{:.3f},{:.3f},{:.0f}\n", c.scene, c.triangles,
+                       c.links, c.degrees, c.set, c.way.executor, nameOf(c.way.mode), c.way.batch, c.queries, c.off_us,
+                       c.us, c.ratio, c.culled, c.drawn);
+  }
+  return csv;
+}
+
+std::shared_ptr<const VisibilityCuller> cullerOf(const std::string& executor) {
+  if (executor == "cpu") return std::make_shared<const VisibilityCuller>();
+#ifdef FCL_ARTIC_HAS_OFFSCREEN
+  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa);
+  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl);
+#endif
+  throw std::runtime_error("no executor '" + executor + "'");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Report report("bench_visibility_map");
+  CLI::App app("Where culling by visibility pays: a map");
+  std::size_t count = 60;
+  int blocks = 5;
+  std::vector<int> sizes = {100000, 1000000}, links = {6, 20};
+  std::vector<double> steps = {5, 20, 60, 180};
+  std::vector<std::size_t> batches = {1, 16, 256, 4096};
+  std::vector<std::string> executors = {"cpu", "osmesa"}, scenes;
+  for (const Kind& kind : kinds()) scenes.push_back(kind.name);
+  std::vector<std::string> modes = {"on", "at once", "automatic"};
+  std::string name = "bench_visibility_map";
+  bool any = false;
+  app.add_option("--queries", count, "motions of each set")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--blocks", blocks, "times that each way is asked, in turns with `off`")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--triangles", sizes, "of a scene")->capture_default_str();
+  app.add_option("--links", links, "of the arm")->capture_default_str();
+  app.add_option("--steps", steps, "degrees that a joint turns by at most")->capture_default_str();
+  app.add_option("--batches", batches, "motions at a time; more than --queries repeat these")->capture_default_str();
+  app.add_option("--executors", executors, "cpu, osmesa, egl")->capture_default_str();
+  app.add_option("--scenes", scenes, "kinds of scenes")->capture_default_str();
+  app.add_option("--modes", modes, "ways of the stage")->capture_default_str();
+  app.add_option("--name", name, "of the files of results")->capture_default_str();
+  app.add_flag("--any", any, "ask for any contact, as planners do, not for the first");
+  if (const auto status = readOptions(app, report, argc, argv)) return *status;
+  setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe draws in the thread that asks
+
+  std::map<std::string, std::shared_ptr<const VisibilityCuller>> cullers;
+  for (const std::string& executor : executors) {
+    cullers[executor] = cullerOf(executor);
+    if (cullers[executor]->executor() != executor) throw std::runtime_error(cullers[executor]->fallbackReason());
+  }
+  std::vector<Cell> cells;
+  std::size_t differ = 0;
+  fmt::print("{:<18} {:>8} {:>5} {:>4} {:<8} {:<9} {:<9} {:>5} {:>9} {:>9} {:>7} {:>7} {:>8}\n", "scene", "triangles",
+             "links", "deg", "set", "executor", "mode", "batch", "off us", "with us", "ratio", "culled", "drawn");
+  for (const Kind& kind : kinds()) {
+    if (std::find(scenes.begin(), scenes.end(), kind.name) == scenes.end()) continue;
+    for (const int size : sizes) {
+      const std::vector<TriangleMesh> obstacles = kind.make(size);
+      for (const int n : links) {
+        Place place(n, obstacles);
+        for (const double degrees : steps) {
+          for (const std::string set : {"free", "contact", "any"}) {
+            const std::vector<JointMotion> motions = place.motions(degrees * kPi / 180, set, count);
+            if (motions.size() < 8) continue;
+            for (const std::size_t batch : batches) {
+              std::vector<JointMotion> asked = motions;
+              while (asked.size() < batch) asked.push_back(motions[asked.size() % motions.size()]);
+              Asker with(place, asked, any ? ContactMode::any : ContactMode::first), without = with;
+              for (const std::string& executor : executors) {
+                place.manager().setVisibility(cullers[executor]);
+                for (const VisibilityMode mode :
+                     {VisibilityMode::on, VisibilityMode::atOnce, VisibilityMode::automatic}) {
+                  if (std::find(modes.begin(), modes.end(), nameOf(mode)) == modes.end()) continue;
+                  if (mode == VisibilityMode::on && set == "contact") continue;  // two solves: it can't pay
+                  const Way way{executor, mode, batch}, off{"", VisibilityMode::off, batch};
+                  std::vector<double> ratios;
+                  double off_us = HUGE_VAL, us = HUGE_VAL;
+                  const int turns = batch > 256 ? 1 : blocks;
+                  if (mode == VisibilityMode::automatic) {  // until it knows
+                    for (double spent_us = 0; spent_us < kLearning;) spent_us += with.ask(way);
+                  }
+                  for (int i = 0; i < turns; ++i) {
+                    const double a = without.askForAWhile(off), b = with.askForAWhile(way);
+                    ratios.push_back(b / a);
+                    off_us = std::min(off_us, a);
+                    us = std::min(us, b);
+                  }
+                  const auto number = static_cast<double>(asked.size());
+                  double pairs = 0, culled = 0, pieces = 0;
+                  for (std::size_t i = 0; i < asked.size(); ++i) {
+                    const VisibilityStatistics& s = with.results()[i].statistics.visibility;
+                    pairs += static_cast<double>(s.pairs);
+                    culled += static_cast<double>(s.culled);
+                    pieces += static_cast<double>(s.pieces);
+                    differ += with.results()[i].status != without.results()[i].status;
+                  }
+                  cells.push_back({kind.name, place.triangles(), n, degrees, set, way, asked.size(), off_us / number,
+                                   us / number, median(ratios), pairs > 0 ? culled / pairs : 0, pieces / number});
+                  const Cell& c = cells.back();
+                  fmt::print(
+                      "{:<18} {:>8} {:>5} {:>4g} {:<8} {:<9} {:<9} {:>5} {:>9.1f} {:>9.1f} {:>7.2f} {:>6.1f}% "
+                      "{:>8.0f}\n",
+                      c.scene, c.triangles, c.links, c.degrees, c.set, c.way.executor, nameOf(c.way.mode), c.way.batch,
+                      c.off_us, c.us, c.ratio, 100 * c.culled, c.drawn);
+                  std::cout.flush();
+                }
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+  report.write(name + ".csv", csvOf(cells));
+  report.write(name + ".svg", mapOf(cells));
+  if (differ) fmt::print("{} verdicts differ\n", differ);
+  return differ ? 1 : 0;
+}
