@@ -18,14 +18,15 @@ void Stage::run(const engine::Problem& problem, const engine::SweptLink* links, 
                 std::int32_t n, ExecutorLoan& loan) {
   Batch& batch = loan->batch;
   beginBatch(culler_, batch);
-  volumes_.add(problem, links, candidates, n, tolerance_distance_, batch);
+  QueryVolumes& volumes = volumes_.emplace_back();
+  volumes.add(problem, links, candidates, n, tolerance_distance_, batch);
   pieces += batch.objects.size();
   executor = loan->name;
   loan->executor->run(batch, loan->may);
-  volumes_.conclude(batch, loan->may);
-  volumes_.apply(candidates);  // from here on nothing fails
-  culled += volumes_.culled();
-  nodes += volumes_.nodes();
+  volumes.conclude(batch, loan->may);
+  volumes.apply(candidates);  // from here on nothing fails
+  culled += volumes.culled();
+  nodes += volumes.nodes();
 }
 
 void Stage::clear(void* context, const engine::Problem& problem, const engine::SweptLink* links,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <string>
 
 #include "model/query.h"
@@ -48,7 +49,7 @@ class Stage {
   Way way_;
   double tolerance_distance_;
   const Microseconds& now_;
-  QueryVolumes volumes_;
+  std::deque<QueryVolumes> volumes_;  ///< of each call: free nodes are to be there until the solver returns
 };
 
 }  // namespace visibility

@@ -120,7 +120,9 @@ TEST(AtOnce, AgreesWithOffAndSolvesOnce) {
     culled += s.culled;
     nodes += s.nodes;
     more += on.statistics.visibility.repeated && on.statistics.node_tests > at_once.statistics.node_tests;
-    if (off.certain || off.status == Status::free) ASSERT_EQ(at_once.status, off.status) << seed;
+    if (off.certain || off.status == Status::free) {
+      ASSERT_EQ(at_once.status, off.status) << seed;
+    }
     if (off.status != Status::contact || at_once.status != Status::contact) continue;
     ++contacts;
     const double late = off.certain ? off.t_upper : 1, late_at_once = at_once.certain ? at_once.t_upper : 1;

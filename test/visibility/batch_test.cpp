@@ -181,7 +181,9 @@ TEST_F(Batches, AnswersAreThoseOfOneAfterTheOther) {
       EXPECT_EQ(executor.culler->fallbackReason(), "");
       EXPECT_GT(static_cast<double>(counts.culled), 0.3 * static_cast<double>(counts.pairs));
       EXPECT_GT(static_cast<double>(counts.whole), 0.05 * n);
-      if (mode == VisibilityMode::atOnce) EXPECT_EQ(counts.repeated, 0u);
+      if (mode == VisibilityMode::atOnce) {
+        EXPECT_EQ(counts.repeated, 0u);
+      }
     }
   }
 }
@@ -216,9 +218,13 @@ TEST_F(Batches, AllRequestsAreAnsweredAsOneByOne) {
         } else {
           manager_.continuousCollide(all[i], request, alone);
           ASSERT_TRUE(sameBits(alone, batch[i])) << k << " " << i;
-          if (request.work_budget == 0) ASSERT_TRUE(agree(off, batch[i])) << k << " " << i;
+          if (request.work_budget == 0) {
+            ASSERT_TRUE(agree(off, batch[i])) << k << " " << i;
+          }
         }
-        if (request.certificate) ASSERT_TRUE(batch[i].certificate) << i;
+        if (request.certificate) {
+          ASSERT_TRUE(batch[i].certificate) << i;
+        }
       }
     }
   }
