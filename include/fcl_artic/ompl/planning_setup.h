@@ -27,8 +27,8 @@ struct SetupOptions {
   /// needed otherwise.
   Eigen::Vector3d position_lower = Eigen::Vector3d::Zero(), position_upper = Eigen::Vector3d::Zero();
   CertifiedRequest request = planningRequest();  ///< What validator and checker ask the manager with.
-  /// Who culls by visibility where `request.visibility` asks for it; null: the executor cpu. Not used for a manager that
-  /// is set up already, which has its own (ArticulatedCollisionManager::setVisibility()).
+  /// Who culls by visibility where `request.visibility` asks for it; null: the executor cpu. Not used for a manager
+  /// that is set up already, which has its own (ArticulatedCollisionManager::setVisibility()).
   std::shared_ptr<const VisibilityCuller> visibility;
 };
 
