@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What is installed beside the program: headers, libraries, CMake package with its components, pkg-config files,
-# licence and data. Each component has an export set of its own, so that the package knows what it has.
+# licence and data. Each component has an export set of its own, so that the package knows what it has. What is installed
+# together with what (COMPONENT): library, development, program, python, documentation.
 include(CMakePackageConfigHelpers)
 set(fcl_artic_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/fcl_artic")
 
-install(TARGETS fcl_artic EXPORT fcl_articTargets)
-install(EXPORT fcl_articTargets NAMESPACE fcl_artic:: DESTINATION "${fcl_artic_cmake_dir}")
+function(fcl_artic_install_library target)
+  install(TARGETS ${target} EXPORT ${target}Targets
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT development
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
+  install(EXPORT ${target}Targets NAMESPACE fcl_artic:: DESTINATION "${fcl_artic_cmake_dir}" COMPONENT development)
+endfunction()
+fcl_artic_install_library(fcl_artic)
 set(absent_headers)
 foreach(component urdf ompl visibility)
   if(TARGET fcl_artic_${component})
-    install(TARGETS fcl_artic_${component} EXPORT fcl_artic_${component}Targets)
-    install(EXPORT fcl_artic_${component}Targets NAMESPACE fcl_artic:: DESTINATION "${fcl_artic_cmake_dir}")
+    fcl_artic_install_library(fcl_artic_${component})
   else()
     list(APPEND absent_headers PATTERN ${component} EXCLUDE)
   endif()
 endforeach()
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/fcl_artic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" ${absent_headers})
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/fcl_artic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development
+  ${absent_headers})
 if(TARGET fcl_artic_ompl)
-  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FclArticOmpl.cmake" DESTINATION "${fcl_artic_cmake_dir}")
+  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FclArticOmpl.cmake" DESTINATION "${fcl_artic_cmake_dir}" COMPONENT development)
 endif()
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fcl_articConfig.cmake.in"
@@ -25,7 +31,7 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fcl_articConfig.cmake
 # Before 1.0 a new minor version may break callers.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" "${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake"
-  DESTINATION "${fcl_artic_cmake_dir}")
+  DESTINATION "${fcl_artic_cmake_dir}" COMPONENT development)
 
 # Relative to the .pc file, so that a moved tree works; absolute install folders stay as they are.
 if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}" OR IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
@@ -40,14 +46,17 @@ else()
   set(fcl_artic_pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
 configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic.pc" @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/fcl_artic.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+install(FILES "${PROJECT_BINARY_DIR}/fcl_artic.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+  COMPONENT development)
 if(TARGET fcl_artic_urdf)
   configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic_urdf.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic_urdf.pc" @ONLY)
-  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_urdf.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_urdf.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+    COMPONENT development)
 endif()
 if(TARGET fcl_artic_visibility)
   configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic_visibility.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic_visibility.pc" @ONLY)
-  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_visibility.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_visibility.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+    COMPONENT development)
 endif()
 if(TARGET fcl_artic_ompl)
   set(fcl_artic_pc_ompl_target fcl_artic::ompl_library)
@@ -57,18 +66,23 @@ if(TARGET fcl_artic_ompl)
   get_target_property(fcl_artic_pc_ompl_include ${fcl_artic_pc_ompl_target} INTERFACE_INCLUDE_DIRECTORIES)
   list(GET fcl_artic_pc_ompl_include 0 fcl_artic_pc_ompl_include)
   configure_file("${PROJECT_SOURCE_DIR}/cmake/fcl_artic_ompl.pc.in" "${PROJECT_BINARY_DIR}/fcl_artic_ompl.pc" @ONLY)
-  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_ompl.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${PROJECT_BINARY_DIR}/fcl_artic_ompl.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+    COMPONENT development)
 endif()
 
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/puma560" DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic")
-install(FILES "${PROJECT_SOURCE_DIR}/data/pipes.obj" "${PROJECT_SOURCE_DIR}/package.xml"
-  DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/puma560" DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic" COMPONENT program)
+install(FILES "${PROJECT_SOURCE_DIR}/data/pipes.obj" DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic" COMPONENT program)
+install(FILES "${PROJECT_SOURCE_DIR}/package.xml" DESTINATION "${CMAKE_INSTALL_DATADIR}/fcl_artic" COMPONENT development)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/CHANGELOG.md"
-  DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 # What the README and the pages it names link to, as it lies in the repository.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/doc" "${PROJECT_SOURCE_DIR}/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-  PATTERN man EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}/python")
-install(FILES "${PROJECT_SOURCE_DIR}/data/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/data")
-install(FILES "${PROJECT_SOURCE_DIR}/bench/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/bench")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/results" DESTINATION "${CMAKE_INSTALL_DOCDIR}/bench")
+  COMPONENT documentation PATTERN man EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"
+  COMPONENT documentation)
+foreach(folder data bench)
+  install(FILES "${PROJECT_SOURCE_DIR}/${folder}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}"
+    COMPONENT documentation)
+endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/bench/results" DESTINATION "${CMAKE_INSTALL_DOCDIR}/bench"
+  COMPONENT documentation)
