@@ -77,7 +77,7 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" 
   DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
 # What the README and the pages it names link to, as it lies in the repository.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/doc" "${PROJECT_SOURCE_DIR}/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-  COMPONENT documentation PATTERN man EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+  COMPONENT documentation PATTERN man EXCLUDE PATTERN manual EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"
   COMPONENT documentation)
 foreach(folder data bench)

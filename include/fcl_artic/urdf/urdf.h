@@ -45,7 +45,7 @@ struct Robot {
 /// Options of loadUrdf().
 struct UrdfOptions {
   /// Folders that stand for "package://NAME/" (or "package:///NAME/"): from name to folder. A package that isn't named
-  /// here is looked for in the URDF's folder and its parents, by folder name and by the <name> in a package.xml; then,
+  /// here is looked for in the URDF's folder and its parents, by folder name and by the `name` in a package.xml; then,
   /// as ROS does, in and below the folders of the environment's ROS_PACKAGE_PATH; then at share/NAME in those of
   /// AMENT_PREFIX_PATH. The first folder that has the file is taken.
   std::map<std::string, std::string> packages;
