@@ -45,8 +45,9 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     tag = f"{python}-{python}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
     wheel = f"{name}-{version}-{tag}.whl"
     info = f"{name}-{version}.dist-info"
+    build = ROOT / "build" / f"wheel-{python}"  # kept, so that the next one compiles only what has changed
     with tempfile.TemporaryDirectory() as folder:
-        build, tree = pathlib.Path(folder, "build"), pathlib.Path(folder, "tree")
+        tree = pathlib.Path(folder)
         parts = [f"-DFCL_ARTIC_BUILD_{part}=OFF" for part in ("TESTS", "BENCH", "APP", "EXAMPLES", "VERIFIER")]
         subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DFCL_ARTIC_WHEEL=ON",
                         f"-DPython_EXECUTABLE={sys.executable}", *parts], check=True)

@@ -83,7 +83,7 @@ by_header(pathlib.Path(os.environ["FCL_ARTIC_DOXYGEN_XML"]))
 
 
 def stubs():
-    """The functions and properties of _fcl_artic.pyi by their names: (parameters, result), the first of overloads."""
+    """The functions and properties of _fcl_artic.pyi by their names, the first of overloads."""
     found = {}
 
     def visit(prefix, body):
@@ -91,27 +91,17 @@ def stubs():
             if isinstance(node, ast.ClassDef):
                 visit(f"{prefix}.{node.name}", node.body)
             elif isinstance(node, ast.FunctionDef):
-                names = [name.arg for name in node.args.kwonlyargs]
-                if "request" in names:  # the options of a query are those of Request
-                    options = set(names) & REQUEST
-                    keep = [i for i, name in enumerate(names) if name not in options]
-                    node.args.kwonlyargs = [node.args.kwonlyargs[i] for i in keep]
-                    node.args.kw_defaults = [node.args.kw_defaults[i] for i in keep]
-                    node.args.kwarg = ast.arg("options")
-                node.args.args = [a for a in node.args.args if a.arg != "self"]
-                result = ast.unparse(node.returns) if node.returns else ""
-                found.setdefault(f"{prefix}.{node.name}", (ast.unparse(node.args), result))
+                found.setdefault(f"{prefix}.{node.name}", node)
 
-    tree = ast.parse((ROOT / "python" / "fcl_artic" / "_fcl_artic.pyi").read_text())
-    request = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Request")
-    REQUEST = {node.target.id for node in request.body if isinstance(node, ast.AnnAssign)} | {"request"}
-    visit("fcl_artic", tree.body)
+    visit("fcl_artic", ast.parse((ROOT / "python" / "fcl_artic" / "_fcl_artic.pyi").read_text()).body)
     return found
 
 
 STUBS = stubs()
-SHORT = {"npt.ArrayLike": "array", "_Doubles": "array of float", "_Pose": "pose", "_Path": "path", "_Pair": "(str, str)",
-         "_HasTree": "KinematicTree | Robot | World", "_Shape": "Geometry | mesh", "_Progress": "callable"}
+REQUEST = {argument.arg for argument in STUBS["fcl_artic.Request.__init__"].args.kwonlyargs} | {"request"}
+SHORT = {"npt.ArrayLike": "array", "_Doubles": "array of float", "_Pose": "pose", "_Path": "path",
+         "_Pair": "tuple[str, str]", "_HasTree": "KinematicTree | Robot | World", "_Shape": "Geometry | mesh",
+         "_Progress": "callable"}
 
 
 def readable(text):
@@ -120,21 +110,41 @@ def readable(text):
     return re.sub(r"npt\.ArrayLike|\b_[A-Z]\w+", lambda name: SHORT[name[0]], text)
 
 
+def shown_parameters(stub, docstring):
+    """The stub's parameters with the values that they have if they are left out, which pybind11's signature names."""
+    values = dict(re.findall(r"(\w+): [^=,()]+ = (\([^)]*\)|\[[^\]]*\]|[^,)]+)", docstring.split("\n", 1)[0]))
+    shown, options = [], False
+    given = stub.args.args[1:] if stub.args.args[:1] and stub.args.args[0].arg == "self" else stub.args.args
+    optional = len(given) - len(stub.args.defaults)
+    is_query = "request" in {argument.arg for argument in stub.args.kwonlyargs}
+    for i, argument in enumerate(given + stub.args.kwonlyargs):
+        if i == len(given):
+            shown.append("*")
+        if is_query and argument.arg in REQUEST:  # the options of a query are the fields of Request
+            options = True
+            continue
+        text = ast.unparse(argument)
+        shown.append(f"{text} = {values.get(argument.arg, '...')}" if i >= optional else text)
+    if options:
+        shown = [text for i, text in enumerate(shown) if text != "*" or i + 1 < len(shown)] + ["**options"]
+    return readable(", ".join(shown))
+
+
 def signature(app, what, name, thing, options, parameters, result):
     """The stubs' signature in place of pybind11's, which knows no types of arrays."""
-    key = f"{name}.__init__" if what == "class" else name
-    if key not in STUBS:
-        return ("", "") if what == "class" else None
-    parameters, result = STUBS[key]
-    return f"({readable(parameters)})", "" if what == "class" else readable(result)
+    if what == "class":
+        stub = STUBS.get(f"{name}.__init__")
+        return (f"({shown_parameters(stub, thing.__init__.__doc__ or '')})", "") if stub else ("", "")
+    if name not in STUBS:
+        return None
+    stub = STUBS[name]
+    return f"({shown_parameters(stub, thing.__doc__ or '')})", readable(ast.unparse(stub.returns))
 
 
 def without_signature(app, what, name, thing, options, lines):
-    """Drops the signature that pybind11 puts before a text; properties get their type."""
+    """Drops the signature that pybind11 puts before a text."""
     if lines and re.match(rf"{name.rsplit('.', 1)[-1]}\(", lines[0]):
         del lines[0]
-    if what == "property" and name in STUBS:
-        lines[:0] = [f"*{readable(STUBS[name][1])}*", ""] if not lines else []
 
 
 class ManPage(SphinxDirective):
@@ -145,7 +155,7 @@ class ManPage(SphinxDirective):
     def run(self):
         page = ROOT / "doc" / "man" / self.arguments[0]
         self.env.note_dependency(str(page))
-        text = subprocess.run(["groff", "-man", "-Tutf8", "-P-cbou", "-rLL=96n", page], check=True, capture_output=True,
+        text = subprocess.run(["groff", "-man", "-Tutf8", "-P-cbou", "-rLL=80n", page], check=True, capture_output=True,
                               text=True).stdout
         return [nodes.literal_block(text, text.strip("\n"), language="text")]
 

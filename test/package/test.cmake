@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Run by ctest: cmake -DCASE=... -DSOURCE=<repository> -DBUILD=<build folder> -DWORK=<scratch folder> ... -P test.cmake
+cmake_policy(VERSION 3.22)
 set(stage "${BUILD}/stage")
 
 # Runs a command; `EXPECT_FAILURE` turns what is right round. Its whole output is left in `output`.
@@ -29,8 +30,10 @@ file(MAKE_DIRECTORY "${WORK}")
 set(configure "${CMAKE_COMMAND}" -G "${GENERATOR}" "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_BUILD_TYPE=Release")
 
 if(CASE STREQUAL "install")
-  file(REMOVE_RECURSE "${stage}")
-  run(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${stage}")
+  # What all other cases use has been moved after it was installed.
+  file(REMOVE_RECURSE "${stage}" "${WORK}/first")
+  run(COMMAND "${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${WORK}/first")
+  file(RENAME "${WORK}/first" "${stage}")
   foreach(file IN ITEMS include/fcl_artic/fcl_artic.h share/fcl_artic/puma560/puma560.urdf share/fcl_artic/pipes.obj
           share/fcl_artic/package.xml share/doc/fcl_artic/LICENSE)
     if(NOT EXISTS "${stage}/${file}")
@@ -80,6 +83,15 @@ elseif(CASE STREQUAL "cmake")
   endif()
   if(WITH_VISIBILITY)
     run(COMMAND "${WORK}/build/culler")
+  endif()
+  if(WITH_URDF)  # the project that the manual shows
+    file(COPY "${SOURCE}/doc/manual/snippets/project/CMakeLists.txt" DESTINATION "${WORK}/project")
+    file(COPY_FILE "${SOURCE}/example/first_check.cpp" "${WORK}/project/main.cpp")
+    run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+        -S "${WORK}/project" -B "${WORK}/project/build")
+    run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/project/build")
+    run(COMMAND "${CMAKE_COMMAND}" -E chdir "${SOURCE}" "${WORK}/project/build/my_checker")
+    expect_output("wrist_roll and pipes")
   endif()
 
 elseif(CASE STREQUAL "missing_component")
@@ -135,6 +147,104 @@ elseif(CASE STREQUAL "subproject")
   expect_output("fcl_artic is a STATIC_LIBRARY")
   run(COMMAND ${configure} -B "${WORK}/shared" -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=RelWithDebInfo)
   expect_output("fcl_artic is a SHARED_LIBRARY")
+
+elseif(CASE STREQUAL "static")
+  # The whole of it as static libraries, used as installed.
+  run(COMMAND ${configure} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}" -DBUILD_SHARED_LIBS=OFF -DFCL_ARTIC_BUILD_TESTS=OFF
+      -DFCL_ARTIC_BUILD_BENCH=OFF -DFCL_ARTIC_BUILD_EXAMPLES=OFF -S "${SOURCE}" -B "${WORK}/library")
+  run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/library")
+  run(COMMAND "${CMAKE_COMMAND}" --install "${WORK}/library" --prefix "${WORK}/stage")
+  run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${WORK}/stage" "-DWITH_URDF=${WITH_URDF}" "-DWITH_OMPL=${WITH_OMPL}"
+      "-DWITH_VISIBILITY=${WITH_VISIBILITY}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+      -S "${SOURCE}/test/consumer" -B "${WORK}/build")
+  run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/build")
+  run(COMMAND "${WORK}/build/core")
+  foreach(program robot planner culler)
+    if(EXISTS "${WORK}/build/${program}")
+      run(COMMAND "${WORK}/build/${program}" "${WORK}/stage/share/fcl_artic")
+    endif()
+  endforeach()
+  file(GLOB core "${WORK}/stage/${LIBDIR}/libfcl_artic.*")
+  if(NOT core STREQUAL "${WORK}/stage/${LIBDIR}/libfcl_artic.a")
+    message(FATAL_ERROR "not a static library: ${core}")
+  endif()
+
+elseif(CASE STREQUAL "within")
+  # As part of a project that takes it in by add_subdirectory or by FetchContent: built, linked and run.
+  foreach(way IN ITEMS add_subdirectory FetchContent)
+    file(WRITE "${WORK}/${way}/CMakeLists.txt" "cmake_minimum_required(VERSION 3.22)\nproject(parent LANGUAGES CXX)\n")
+    if(way STREQUAL "FetchContent")
+      file(APPEND "${WORK}/${way}/CMakeLists.txt" "include(FetchContent)\n"
+        "FetchContent_Declare(fcl_artic SOURCE_DIR \"${SOURCE}\")\nFetchContent_MakeAvailable(fcl_artic)\n")
+    else()
+      file(APPEND "${WORK}/${way}/CMakeLists.txt" "add_subdirectory(\"${SOURCE}\" fcl_artic)\n")
+    endif()
+    file(APPEND "${WORK}/${way}/CMakeLists.txt" "add_executable(core \"${SOURCE}/test/consumer/core.cpp\")\n"
+      "target_link_libraries(core PRIVATE fcl_artic::fcl_artic)\n")
+    run(COMMAND ${configure} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}" -S "${WORK}/${way}" -B "${WORK}/${way}/build")
+    run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/${way}/build" --target core)
+    run(COMMAND "${WORK}/${way}/build/core")
+  endforeach()
+
+elseif(CASE STREQUAL "wheel")
+  # pip builds a wheel without a network; in a fresh environment it is imported, asked, and removed without a trace.
+  run(COMMAND "${PYTHON}" -m venv --system-site-packages "${WORK}/env")
+  file(GLOB_RECURSE before "${WORK}/env/*")
+  run(COMMAND "${WORK}/env/bin/python" -m pip install --no-index "${SOURCE}")
+  run(COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH "${CMAKE_COMMAND}" -E chdir "${SOURCE}"
+      "${WORK}/env/bin/python" -B -c "import fcl_artic
+robot = fcl_artic.load_urdf('data/puma560/puma560.urdf')
+print(fcl_artic.__file__, fcl_artic.World(robot).check([0] * 6, [0.1] * 6))")
+  expect_output("${WORK}/env/")
+  expect_output("free: proven")
+  run(COMMAND "${WORK}/env/bin/python" -m pip uninstall -y fcl_artic)
+  file(GLOB_RECURSE after "${WORK}/env/*")
+  list(FILTER after EXCLUDE REGEX "/__pycache__/")
+  list(FILTER before EXCLUDE REGEX "/__pycache__/")
+  if(NOT after STREQUAL before)
+    list(REMOVE_ITEM after ${before})
+    message(FATAL_ERROR "left by pip uninstall: ${after}")
+  endif()
+
+elseif(CASE STREQUAL "ros")
+  # package.xml says what scripts/setup installs, in rosdep's names, and the project's version.
+  set(names eigen=libeigen3-dev libfcl-dev=libfcl-dev libccd-dev=libccd-dev liboctomap-dev=liboctomap-dev tbb=libtbb-dev
+    liburdfdom-dev=liburdfdom-dev liburdfdom-headers-dev=liburdfdom-headers-dev assimp=libassimp-dev
+    tinyxml2=libtinyxml2-dev ompl=libompl-dev opengl=libgl-dev libosmesa6-dev=libosmesa6-dev cli11=libcli11-dev
+    nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev libgmp=libgmp-dev mpfr=libmpfr-dev
+    pybind11-dev=pybind11-dev python3-dev=python3-dev python3-numpy=python3-numpy gtest=libgtest-dev
+    benchmark=libbenchmark-dev python3-pytest=python3-pytest python3-mypy=mypy python3-tqdm=python3-tqdm
+    doxygen=doxygen python3-sphinx=python3-sphinx python3-breathe=python3-breathe cmake=cmake pkg-config=pkg-config)
+  file(READ "${SOURCE}/package.xml" xml)
+  if(NOT xml MATCHES "<version>${VERSION}</version>")
+    message(FATAL_ERROR "package.xml has another version than ${VERSION}")
+  endif()
+  string(REGEX MATCHALL "depend>[a-z0-9-]+</" keys "${xml}")
+  list(TRANSFORM keys REPLACE "depend>(.*)</" "\\1")
+  file(READ "${SOURCE}/scripts/setup" setup)
+  string(REGEX MATCH "packages=\\(.*\n\\)\n" setup "${setup}")
+  string(REGEX REPLACE "#[^\n]*" "" setup "${setup}")
+  string(REGEX MATCHALL "[a-z0-9.+-]+" installed "${setup}")
+  set(covered)
+  foreach(key IN LISTS keys)
+    set(package)
+    foreach(name IN LISTS names)
+      if(name MATCHES "^${key}=(.*)$")
+        set(package ${CMAKE_MATCH_1})
+      endif()
+    endforeach()
+    if(NOT package OR NOT package IN_LIST installed)
+      message(FATAL_ERROR "package.xml asks for ${key}, which scripts/setup does not install")
+    endif()
+    list(APPEND covered ${package})
+  endforeach()
+  list(FILTER installed INCLUDE REGEX "-dev$")
+  list(REMOVE_ITEM installed dpkg-dev libegl-dev)  # the one is for Debian's packages only, the other comes with opengl
+  foreach(package IN LISTS installed)
+    if(NOT package IN_LIST covered)
+      message(FATAL_ERROR "package.xml lacks ${package}, which scripts/setup installs")
+    endif()
+  endforeach()
 
 elseif(CASE STREQUAL "fast_math")
   foreach(flag IN ITEMS -ffast-math -Ofast -funsafe-math-optimizations)
