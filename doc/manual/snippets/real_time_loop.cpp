@@ -33,21 +33,23 @@ int main() {
   start << -2.1, 1.0, -1.0, -0.1, -0.1, 0.0;
   towards << -0.1, 0.3, -2.3, -1.0, 1.1, 0.0;
 
-  // [loop]
+  // [before]
   CertifiedRequest request;
   request.mode = ContactMode::any;  // the verdict is enough
   request.work_budget = 20000;      // tests; a query that needs more is undecided
   CertifiedResult result;           // its memory is used again
-  JointMotion motion = JointMotion::linear(*robot.tree, start, towards);
+  const JointMotion motion = JointMotion::linear(*robot.tree, start, towards);
+  manager.continuousCollide(motion, request, result);  // warms up, with a contact
+  // [before ends]
 
-  manager.continuousCollide(motion, request, result);  // warm up, with a contact
   int stops = 0;
   const long before = allocations;
   for (int cycle = 0; cycle < 1000; ++cycle) {
+    // [cycle]
     manager.continuousCollide(motion, request, result);
     if (!result.isFree()) ++stops;  // contact or undecided: stop before result.t_lower
+    // [cycle ends]
   }
-  // [end]
   const long made = allocations - before;
   std::cout << made << " allocations, " << stops << " of 1000 cycles stop\n";
   return made == 0 && before > 0 && stops == 1000 ? 0 : 1;
