@@ -44,13 +44,13 @@ copybutton_here_doc_delimiter = "END"
 
 html_theme = "furo"
 html_title = f"fcl_artic {release}"
-html_static_path = ["theme"]
+html_static_path = ["static"]
 html_css_files = ["manual.css"]
 html_copy_source = False
 html_show_sourcelink = False
 html_show_sphinx = False
 html_additional_pages = {"index": "to_manual.html"}
-templates_path = ["theme"]
+templates_path = ["templates"]
 
 
 def by_header(folder):
