@@ -34,6 +34,7 @@ breathe_show_include = False
 cpp_id_attributes = ["FCL_ARTIC_EXPORT"]
 primary_domain = None
 highlight_language = "text"
+smartquotes = False  # primes of the proofs stay primes
 
 autodoc_member_order = "groupwise"
 autodoc_typehints = "none"

@@ -103,6 +103,16 @@ def test_the_reference_names_everything():
     assert set(re.findall(r"\{doxygenfile\} (\S+)", pages)) == headers - {"fcl_artic.h", "export.h", "fcl_names.h"}
 
 
+def test_no_line_of_a_formula_is_taken_for_a_list():
+    """A paragraph's line that begins with "- " or "+ " becomes a list's item: the operator belongs before the break."""
+    pages = [*(ROOT / "doc").glob("*.md"), *PAGES]
+    for page in pages:
+        lines = FENCE.sub(lambda block: "\n" * block[0].count("\n"), page.read_text()).split("\n")
+        for i in range(1, len(lines)):
+            begins_list = re.match(r"[-+*] ", lines[i]) and re.match(r"\w|\(", lines[i - 1])
+            assert not begins_list or lines[i - 1].endswith((".", ":")), f"{page.relative_to(ROOT)}:{i + 1}: {lines[i]}"
+
+
 def test_every_page_is_in_a_table_of_contents():
     listed = set()
     for page in PAGES:
