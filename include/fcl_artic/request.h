@@ -132,9 +132,9 @@ struct CertifiedPairRequest : Tolerances, Effort {
   /// apart, and watched from its start on. Shorter separations are not looked for.
   bool ignore_initial_contact = false;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
-  /// `firstOfEveryPair` the motion's or piece's begin). May be empty. If it returns false, the query ends with
-  /// `undecided`: for a planner's clock, or a stop button. Queries of many motions, and those of a
-  /// ContinuousCollisionManager, do not call it.
+  /// `firstOfEveryPair` the motion's or piece's begin, after the first contact its t_lower). May be empty. If it
+  /// returns false, the query ends with `undecided`: for a planner's clock, or a stop button. Queries of many motions,
+  /// and those of a ContinuousCollisionManager, do not call it.
   std::function<bool(double t_lower)> progress;
   /// Whether the result carries its proof (Certificate). It takes about a millisecond for an arm in a small scene;
   /// queries that don't ask take no longer. A ContinuousCollisionManager has none to give and refuses.

@@ -77,12 +77,13 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     CertifiedRequest own = request;
     own.tolerance_time = std::min(1.0, std::max(request.tolerance_time / clock.duration(), 0x1p-1000));
     own.ignore_initial_contact = k == 0 ? request.ignore_initial_contact : !in_contact.empty();
-    if (request.progress) own.progress = [&](double s) { return request.progress(clock.lower(s)); };
+    // With every pair asked for, pieces after the first contact are searched too: they prove nothing more of it all.
+    const auto provenUntil = [&](double t) { return contact_found ? sum.t_lower : t; };
+    if (request.progress) own.progress = [&](double s) { return request.progress(provenUntil(clock.lower(s))); };
     const std::uint64_t used = countedWork(sum.statistics);
     // A piece may be free without a single test: between pieces, too, the budget is looked at and the caller is asked.
     const bool spent = request.work_budget && used >= request.work_budget;
-    const double proven_until = contact_found ? sum.t_lower : clock.begin();
-    if (spent || (k > 0 && request.progress && !request.progress(proven_until))) {
+    if (spent || (k > 0 && request.progress && !request.progress(provenUntil(clock.begin())))) {
       sum.status = Status::undecided;
       sum.certain = false;
       if (contact_found) break;  // not of every pair

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -25,9 +26,15 @@ std::string written(int file, int from, const std::function<void()>& draw) {
   dup2(saved, STDERR_FILENO);
   close(saved);
   fcntl(from, F_SETFL, O_NONBLOCK);
-  std::string text(1000, ' ');
-  const ssize_t length = read(from, text.data(), text.size());
-  text.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
+  // A terminal hands on what was written a little later.
+  std::string text;
+  pollfd more{from, POLLIN, 0};
+  char part[1000];
+  while (poll(&more, 1, 300) == 1) {
+    const ssize_t length = read(from, part, sizeof part);
+    if (length <= 0) break;
+    text.append(part, static_cast<std::size_t>(length));
+  }
   return text;
 }
 

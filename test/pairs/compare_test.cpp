@@ -71,8 +71,13 @@ TEST_F(CompareTest, FclArticIsRightAndFclIsNot) {
         sum += way.at(grade).get<int>();
       EXPECT_EQ(sum, 30) << way;
     }
-    EXPECT_EQ(set.at("ways").back().at("way"), "fcl_artic");
-    EXPECT_EQ(set.at("ways").back().at("right"), 30);
+    int ours = 0;
+    for (const auto& way : set.at("ways")) {
+      if (way.at("way").get<std::string>().rfind("fcl_artic", 0) != 0) continue;
+      ++ours;
+      EXPECT_EQ(way.at("right"), 30) << way;
+    }
+    EXPECT_GE(ours, set == all.at("sets").at(0) ? 2 : 1) << "both methods where both bodies are meshes";
     EXPECT_LT(set.at("ways").front().at("right"), 30);
   }
   // What FCL is known for: its public advancement loses mesh contacts and crashes where a shape comes before a mesh.

@@ -101,6 +101,29 @@ TEST(Trajectory, FirstContactIsInTheTimeOfTheTrajectory) {
   EXPECT_TRUE(free.M_0_at_lower.empty());
 }
 
+/// The wall is touched at 0.4 in the second piece, and again in pieces after it.
+TEST(Trajectory, ProgressTellsOfNothingAfterAContact) {
+  Slider slider;
+  slider.bind("cart", std::make_shared<fcl::Boxd>(0.1, 0.1, 0.1),
+              Isometry3d::Identity());  // a pair for the paper's method
+  const JointTrajectory there = slider.linear({0, 1, 2, 3, 4, 5}, {-1, 0, 0.42, -0.2, 0.48, -1});
+  for (const Method method : {Method::standard, Method::redon2004}) {
+    std::vector<double> told;
+    CertifiedRequest request;
+    request.method = method;
+    request.mode = ContactMode::firstOfEveryPair;
+    request.max_contacts = 100;
+    request.progress = [&](double t) {
+      told.push_back(t);
+      return true;
+    };
+    const CertifiedResult r = slider.run(there, request);
+    expectContact(r, 1 + 0.4 / 0.42);
+    EXPECT_GE(told.size(), 4u);
+    for (const double t : told) EXPECT_LE(t, r.t_upper);
+  }
+}
+
 // Pieces that swept bounds settle count no test: the caller is asked between them all the same.
 TEST(Trajectory, OfEasyPiecesCanBeEnded) {
   Slider slider;
