@@ -41,7 +41,7 @@ PointCloud::PointCloud(std::vector<Eigen::Vector3d> points, std::vector<double> 
              shown(radii_[i]) + ", not a positive number of metres");
     }
   }
-  computeLocalAABB();
+  PointCloud::computeLocalAABB();
 }
 
 void PointCloud::computeLocalAABB() {

@@ -237,7 +237,7 @@ class PcdReader {
 
   Points readRows(std::string_view bytes) {
     const std::size_t row = rowBytes();
-    if (bytes.size() / row < num_points_) fail(where_, "is cut short");
+    if (row == 0 || bytes.size() / row < num_points_) fail(where_, "is cut short");
     std::size_t begins[3];
     for (int k = 0; k < 3; ++k) {
       begins[k] = 0;
