@@ -325,8 +325,9 @@ def test_progress_that_returns_false_ends_the_query(shared_world, robot):
 
     answers = shared_world.check_many(q0, q1, threads=2, progress=stop)
     assert len(calls) == 1 and answers.undecided.any()
+    # a motion that was never begun has no answer; each thread may have left one in its middle, free up to t_lower
     left = answers.undecided
-    assert (answers.t_lower[left] == 0).all() and (answers.pair[left] == -1).all()
+    assert ((answers.t_lower[left] > 0) | (answers.pair[left] != -1)).sum() <= 2
 
 
 def test_an_exception_in_progress_ends_the_query(shared_world, robot):
