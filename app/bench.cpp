@@ -33,12 +33,20 @@ void addBench(CLI::App& program, int& exit_status) {
       ->envname("FCL_ARTIC_DATA")
       ->required()
       ->type_name("FOLDER");
-  planning->add_option("--robot", o.robot, "panda, ur5 or ur5_coarse")->capture_default_str()->type_name("NAME");
+  planning->add_option("--robot", o.robot, "panda, ur5, ur5_coarse or baxter (both arms)")
+      ->capture_default_str()
+      ->type_name("NAME");
   planning->add_option("--environment", o.environments, "Only these; may be repeated")->type_name("NAME...");
   planning->add_option("--problems", o.problems, "Problems of each environment, at most")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   planning->add_option("--seeds", o.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  planning
+      ->add_option("--range", o.range,
+                   "Longest motion that the planner tries: root of the sum of squares over the joints, rad or m; 0:\n"
+                   "OMPL's default, a fifth of the space's extent")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   planning->add_option("--time-limit", o.seconds, "Seconds for a plan, and for its simplification")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

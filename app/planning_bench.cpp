@@ -108,12 +108,13 @@ class Bench {
     std::string out = fmt::format(
         "{}, {} problems of each environment, {} seed{}; RRTConnect and simplification, means; motions, medians\n\n",
         options_.robot, options_.problems, options_.seeds, options_.seeds == 1 ? "" : "s");
-    out += fmt::format("{:<18}{:<17}{:>8}{:>10}{:>12}{:>19}{:>19}{:>22}{:>22}\n", "environment", "validator", "solved",
-                       "plan ms", "simplify ms", "valid us (n)", "invalid us (n)", "raw plans collide",
-                       "simplified collide");
+    out += fmt::format("{:<{}}{:<17}{:>8}{:>10}{:>12}{:>19}{:>19}{:>22}{:>22}\n", "environment", nameWidth(),
+                       "validator", "solved", "plan ms", "simplify ms", "valid us (n)", "invalid us (n)",
+                       "raw plans collide", "simplified collide");
     for (const std::string& name : groups()) {
       for (int v = 0; v < kValidators; ++v) out += tableRow(name, v);
     }
+    if (left_out_) out += fmt::format("\n{} problems left out: their start or goal touches something\n", left_out_);
     return out + "\ncollide: seen by FCL in steps 100 times finer than OMPL's default / contact proven by fcl_artic\n";
   }
 
@@ -178,6 +179,10 @@ class Bench {
 
   void runProblem(const Environment& environment, const Problem& problem) {
     const PlanningSetup ours = setUp(robot_, environment, problem);
+    if (!mayBeSolved(ours, problem)) {
+      ++left_out_;
+      return;
+    }
     FclStateCheck check(robot_, problem.scene);
     const ob::SpaceInformationPtr spaces[kValidators] = {discreteOverFcl(robot_, environment, problem, kResolutions[0]),
                                                          discreteOverFcl(robot_, environment, problem, kResolutions[1]),
@@ -188,8 +193,8 @@ class Bench {
       for (int v = 0; v < kValidators; ++v) {
         timed[v]->valid_us.clear();
         timed[v]->invalid_us.clear();
-        const Plans plans =
-            plan(spaces[v], ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds);
+        const Plans plans = plan(spaces[v], ours, problem.start, problem.goal, static_cast<unsigned>(seed),
+                                 options_.seconds, options_.range);
         Outcome o;
         o.environment = environment.name;
         o.problem = problem.index;
@@ -220,6 +225,16 @@ class Bench {
     }
   }
 
+  /// Whether neither start nor goal touches anything.
+  static bool mayBeSolved(const PlanningSetup& setup, const Problem& problem) {
+    ob::ScopedState<> state(setup.space);
+    for (const std::vector<double>* end : {&problem.start, &problem.goal}) {
+      setup.setState(state.get(), *end);
+      if (!setup.si->isValid(state.get())) return false;
+    }
+    return true;
+  }
+
   long collidingSamples(const PlanningSetup& setup, const Environment& environment, FclStateCheck& check,
                         const Way& way) const {
     long colliding = 0;
@@ -235,6 +250,12 @@ class Bench {
     for (const Environment& environment : environments_) names.push_back(environment.name);
     if (names.size() > 1) names.push_back("ALL");
     return names;
+  }
+
+  std::size_t nameWidth() const {
+    std::size_t width = 18;
+    for (const std::string& name : groups()) width = std::max(width, name.size() + 2);
+    return width;
   }
 
   Sum sumOf(const std::string& environment, int validator) const {
@@ -260,9 +281,9 @@ class Bench {
   std::string tableRow(const std::string& environment, int validator) const {
     const Sum s = sumOf(environment, validator);
     const auto cost = [](const std::vector<double>& us) { return fmt::format("{:.2f} ({})", median(us), us.size()); };
-    return fmt::format("{:<18}{:<17}{:>8}{:>10.2f}{:>12.2f}{:>19}{:>19}{:>22}{:>22}\n", environment, kNames[validator],
-                       fmt::format("{}/{}", s.solved, s.runs), s.plan_ms, s.simplify_ms, cost(s.valid_us),
-                       cost(s.invalid_us), fmt::format("{} / {}", s.raw_sampled, s.raw_proven),
+    return fmt::format("{:<{}}{:<17}{:>8}{:>10.2f}{:>12.2f}{:>19}{:>19}{:>22}{:>22}\n", environment, nameWidth(),
+                       kNames[validator], fmt::format("{}/{}", s.solved, s.runs), s.plan_ms, s.simplify_ms,
+                       cost(s.valid_us), cost(s.invalid_us), fmt::format("{} / {}", s.raw_sampled, s.raw_proven),
                        fmt::format("{} / {}", s.simplified_sampled, s.simplified_proven));
   }
 
@@ -271,6 +292,7 @@ class Bench {
   Robot robot_;
   std::vector<Environment> environments_;
   std::vector<Outcome> outcomes_;
+  int left_out_ = 0;  ///< problems whose start or goal touches something
   Example example_;
 };
 

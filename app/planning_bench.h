@@ -13,6 +13,7 @@ struct PlanningBenchOptions {
   int problems = 10;                      ///< of each environment, at most
   int seeds = 1;
   double seconds = 20;  ///< for a plan, and for its simplification
+  double range = 0;     ///< longest motion that the planner tries, in the space's distance; 0: OMPL's default
   std::string out;      ///< folder for table, CSV, plot and picture; empty: the table only
 };
 

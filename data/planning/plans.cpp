@@ -55,7 +55,7 @@ class FclValidity : public ob::StateValidityChecker {
 }  // namespace
 
 Plans plan(const ob::SpaceInformationPtr& si, const PlanningSetup& setup, const std::vector<double>& start,
-           const std::vector<double>& goal, unsigned seed, double seconds) {
+           const std::vector<double>& goal, unsigned seed, double seconds, double range) {
   ompl::msg::noOutputHandler();
   ompl::RNG::setSeed(seed);  // of all generators that are made from here on
   og::SimpleSetup simple(si);
@@ -63,7 +63,9 @@ Plans plan(const ob::SpaceInformationPtr& si, const PlanningSetup& setup, const 
   setup.setState(from.get(), start);
   setup.setState(to.get(), goal);
   simple.setStartAndGoalStates(from, to);
-  simple.setPlanner(std::make_shared<og::RRTConnect>(si));
+  const auto planner = std::make_shared<og::RRTConnect>(si);
+  planner->setRange(range);  // 0: chosen in its setup()
+  simple.setPlanner(planner);
   Plans plans;
   auto begin = Clock::now();
   plans.solved = simple.solve(seconds) == ob::PlannerStatus::EXACT_SOLUTION;

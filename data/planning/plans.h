@@ -24,11 +24,14 @@ struct Plans {
   double plan_ms = 0, simplify_ms = 0;
 };
 
-/// RRTConnect, then simplification, both with OMPL's defaults.
+/// RRTConnect, then simplification, with OMPL's defaults.
 /// @param setup  of the space that `si` is made for, or of one just like it.
 /// @param seconds  at most, for each of the two.
+/// @param range  longest motion that the planner tries, in the space's distance; 0: OMPL's default, a fifth of its
+///   extent.
 Plans plan(const ompl::base::SpaceInformationPtr& si, const planning::PlanningSetup& setup,
-           const std::vector<double>& start, const std::vector<double>& goal, unsigned seed, double seconds);
+           const std::vector<double>& start, const std::vector<double>& goal, unsigned seed, double seconds,
+           double range = 0);
 
 /// Looks at a way in steps of 1/100 of OMPL's default resolution (1 % of the space's extent).
 /// @return number of the first sample that collides, -1 for none.

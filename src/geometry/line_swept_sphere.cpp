@@ -103,6 +103,7 @@ Points extremePoints(const Points& points) {
 /// Random steps, longer after a gain, shorter else.
 Segment searched(Segment best, const Points& points, double radius) {
   const double r = reach(best, points);
+  if (r == 0) return best;  // a ball, or a capsule along its axis
   double least = volume(best, r + radius), step = 0.2 * r;
   std::minstd_rand random(1);
   const auto moved = [&] { return step * (2.0 * static_cast<double>(random()) / std::minstd_rand::max() - 1); };

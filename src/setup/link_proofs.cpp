@@ -73,15 +73,13 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   std::map<std::pair<std::string, std::string>, std::vector<const LinkPairProofs::Proof*>> excused;
   const std::vector<ManagedBody>& links = registry.links();
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    for (std::size_t j = i + 1; j < links.size(); ++j) {
-      const ManagedBody &a = links[i], &b = links[j];
-      if (a.link == b.link || a.empty() || b.empty()) continue;
-      if (registry.mayTouch(a, b) && !a.mayTouchLink(b) && !b.mayTouchLink(a)) continue;
-      if (!a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link)) continue;
-      excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
-    }
-  }
+  registry.forEachTwoLinks([&](std::size_t i, std::size_t j) {
+    const ManagedBody &a = links[i], &b = links[j];
+    if (a.empty() || b.empty()) return;
+    if (registry.mayTouch(a, b) && !a.mayTouchLink(b) && !b.mayTouchLink(a)) return;
+    if (!a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link)) return;
+    excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
+  });
   for (const auto& [names, found] : excused) {
     for (const LinkPairProofs::Proof* proof : found) {
       if (proof) allowed_.push_back({allowed_self_, proof->margin, proof->variables});

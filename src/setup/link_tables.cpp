@@ -2,6 +2,7 @@
 #include "setup/link_tables.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "motion/half_angles.h"
 #include "numerics/arc_tangent.h"
@@ -11,8 +12,12 @@ namespace fcl_artic {
 
 void LinkTables::build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
                        std::size_t num_self_pairs, const ProvenPairs& proven) {
-  std::vector<Made> before;
-  std::swap(made_, before);
+  std::unordered_multimap<std::size_t, Made> before;  // by hash
+  for (Made& made : made_) {
+    const std::size_t hash = made.made.hash();
+    before.emplace(hash, std::move(made));
+  }
+  made_.clear();
   tables_.assign(num_self_pairs, nullptr);
   num_tables_ = 0;
   grids_.clear();
@@ -30,12 +35,13 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
       const ManagedBody &a = registry.body(pair.a), &b = registry.body(pair.b);
       if (a.attached || b.attached || proven.proven(next)) continue;
       Made made{PairMaking(tree, a, b), margins.ofLinkPair(next), nullptr, nullptr};
-      const auto known = std::find_if(before.begin(), before.end(), [&](const Made& m) {
-        return m.margin == made.margin && m.made.sameAs(made.made);
+      const auto [first, last] = before.equal_range(made.made.hash());
+      const auto known = std::find_if(first, last, [&](const auto& entry) {
+        return entry.second.margin == made.margin && entry.second.made.sameAs(made.made);
       });
-      if (known != before.end()) {
-        made.table = known->table;
-        made.grid = known->grid;
+      if (known != last) {
+        made.table = known->second.table;
+        made.grid = known->second.grid;
       } else {
         unknown.push_back(made_.size());
       }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "setup/pair_making.h"
 
+#include <functional>
+
 #include "fcl/fcl_geometry.h"
 
 namespace fcl_artic {
@@ -20,6 +22,17 @@ bool PairMaking::sameAs(const PairMaking& other) const {
   return link_a == other.link_a && link_b == other.link_b && offset_a == other.offset_a && offset_b == other.offset_b &&
          tree.sameAs(other.tree) && (shape_a == other.shape_a || content_a->sameAs(*other.content_a)) &&
          (shape_b == other.shape_b || content_b->sameAs(*other.content_b));
+}
+
+std::size_t PairMaking::hash() const {
+  std::size_t mixed = 0;
+  const auto mix = [&](std::size_t h) { mixed = (mixed ^ h) * 0x9e3779b97f4a7c15; };
+  mix(std::hash<LinkId>()(link_a));
+  mix(std::hash<LinkId>()(link_b));
+  for (const Eigen::Matrix4d* offset : {&offset_a, &offset_b}) {
+    for (Eigen::Index k = 0; k < offset->size(); ++k) mix(std::hash<double>()(offset->data()[k]));
+  }
+  return mixed;
 }
 
 }  // namespace fcl_artic

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include <Eigen/Core>
@@ -22,6 +23,8 @@ struct PairMaking {
   PairMaking(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b);
   /// Trees are the same as numbers, geometries by their content, whoever holds them.
   bool sameAs(const PairMaking& other) const;
+  /// Of links and offsets: equal for those that are the same.
+  std::size_t hash() const;
 };
 
 }  // namespace fcl_artic

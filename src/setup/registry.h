@@ -27,6 +27,20 @@ class Registry {
   const std::vector<ManagedBody>& moving() const { return moving_; }
   const std::vector<ManagedBody>& obstacles() const { return obstacles_; }
   const ManagedBody& body(std::int32_t number) const;
+  /// f(a, b) for any two of links() on different links, a's number the lower one: numbers in order. (Geometries of one
+  /// link mostly lie together, and are passed over together: of many on one link the pairs would be their square.)
+  template <class F>
+  void forEachTwoLinks(const F& f) const {
+    const std::size_t count = links_.size();
+    std::vector<std::size_t> next(count + 1, count);  // the first one after k that is on another link than k
+    for (std::size_t k = count; k-- > 0;) next[k] = sameLink(k, k + 1) ? next[k + 1] : k + 1;
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = next[a]; b < count; ++b) {
+        while (b < count && sameLink(a, b)) b = next[b];
+        if (b < count) f(a, b);
+      }
+    }
+  }
   /// Links that have geometry of their own, not only attached.
   std::set<LinkId> linksWithGeometry() const;
   bool hasObstacle(const std::string& name) const { return obstacle_names_.count(name) != 0; }
@@ -81,6 +95,9 @@ class Registry {
 
  private:
   using Bodies = std::vector<ManagedBody>;
+  bool sameLink(std::size_t a, std::size_t b) const {
+    return a < links_.size() && b < links_.size() && links_[a].link == links_[b].link;
+  }
   void requireNew(const void* object, const std::string& what) const;
   void requireLink(LinkId link, const std::string& what) const;
   void requireLinks() const;

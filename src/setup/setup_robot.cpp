@@ -91,32 +91,30 @@ void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>&
   const std::vector<ManagedBody>& links = registry.links();
   link_pairs_.clear();
   std::map<LinkId, std::int32_t> sweep_of;  // base link to sweep
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    for (std::size_t j = i + 1; j < links.size(); ++j) {
-      if (links[i].link == links[j].link || !checked(links[i], links[j])) continue;
-      // The shorter path first: an ancestor is the base.
-      std::size_t a = i, b = j;
-      if (linkAbove(tree, links[j].link, links[i].link)) std::swap(a, b);
-      engine::LinkPair pair;
-      pair.a = static_cast<std::int32_t>(a);
-      pair.b = static_cast<std::int32_t>(b);
-      if (bodies_[a].step < 0) {  // stands still: the world's sweep serves
-        pair.inverse_a = makeInversePlacement(carriers[a], links[a].offset);
-        pair.step_b = bodies_[b].step;
-        pair.placement_b = bodies_[b].placement;
-      } else {
-        const auto next = static_cast<std::int32_t>(sweeps_.size());
-        const auto [sweep, is_new] = sweep_of.try_emplace(links[a].link, next);
-        if (is_new) sweeps_.push_back(FrameSweep::fromLink(tree, links[a].link));
-        pair.sweep = sweep->second;
-        const Carrier carrier = sweeps_[static_cast<std::size_t>(pair.sweep)].carrier(links[b].link);
-        pair.step_b = carrier.step;
-        pair.inverse_a = makePlacement(links[a].offset.inverse());
-        pair.placement_b = makePlacement(carrier, links[b].offset);
-      }
-      link_pairs_.push_back(pair);
+  registry.forEachTwoLinks([&](std::size_t i, std::size_t j) {
+    if (!checked(links[i], links[j])) return;
+    // The shorter path first: an ancestor is the base.
+    std::size_t a = i, b = j;
+    if (linkAbove(tree, links[j].link, links[i].link)) std::swap(a, b);
+    engine::LinkPair pair;
+    pair.a = static_cast<std::int32_t>(a);
+    pair.b = static_cast<std::int32_t>(b);
+    if (bodies_[a].step < 0) {  // stands still: the world's sweep serves
+      pair.inverse_a = makeInversePlacement(carriers[a], links[a].offset);
+      pair.step_b = bodies_[b].step;
+      pair.placement_b = bodies_[b].placement;
+    } else {
+      const auto next = static_cast<std::int32_t>(sweeps_.size());
+      const auto [sweep, is_new] = sweep_of.try_emplace(links[a].link, next);
+      if (is_new) sweeps_.push_back(FrameSweep::fromLink(tree, links[a].link));
+      pair.sweep = sweep->second;
+      const Carrier carrier = sweeps_[static_cast<std::size_t>(pair.sweep)].carrier(links[b].link);
+      pair.step_b = carrier.step;
+      pair.inverse_a = makePlacement(links[a].offset.inverse());
+      pair.placement_b = makePlacement(carrier, links[b].offset);
     }
-  }
+    link_pairs_.push_back(pair);
+  });
   num_link_sweeps_ = sweeps_.size();
   // Large links first: they are the likeliest to touch, where any contact will do.
   const auto size = [&](const engine::LinkPair& pair) {

@@ -108,8 +108,7 @@ struct Law {
   void at(long double t, long double* q) const {
     long double d[4] = {0, 0, 0, 0};
     for (std::size_t k = s.size(); k-- > 0;) {
-      long double factor = 1, power = 1;
-      for (std::size_t j = 0; j < k; ++j) power *= t;
+      long double factor = 1;
       for (std::size_t n = 0; n < 4 && n <= k; ++n) {
         long double p = factor * s[k];
         for (std::size_t j = 0; j + n < k; ++j) p *= t;

@@ -45,8 +45,8 @@ struct Arm {
     tree->addJoint(makeJoint("shoulder", JointType::revolute, "base", "upper", Vector3d::UnitZ()));
     tree->addJoint(makeJoint("elbow", JointType::revolute, "upper", "lower", Vector3d::UnitZ(), pose({1, 0, 0})));
     manager = std::make_unique<ArticulatedCollisionManager>(tree);
-    const auto add = [&](std::shared_ptr<fcl::CollisionGeometryd> shape, const Vector3d& at) {
-      objects.push_back(object(std::move(shape), pose(at)));
+    const auto add = [&](const std::shared_ptr<fcl::CollisionGeometryd>& shape, const Vector3d& at) {
+      objects.push_back(object(shape, pose(at)));
       return objects.back().get();
     };
     const auto box = std::make_shared<fcl::Boxd>(0.1, 0.1, 0.3);

@@ -67,8 +67,8 @@ struct Cart {
   std::shared_ptr<KinematicTree> tree = sliderTree({"rail", "cart"});
   std::shared_ptr<fcl::CollisionObjectd> body;
   std::unique_ptr<ArticulatedCollisionManager> manager = std::make_unique<ArticulatedCollisionManager>(tree);
-  explicit Cart(std::shared_ptr<fcl::CollisionGeometryd> geometry = std::make_shared<fcl::Sphered>(0.1))
-      : body(object(std::move(geometry))) {
+  explicit Cart(const std::shared_ptr<fcl::CollisionGeometryd>& geometry = std::make_shared<fcl::Sphered>(0.1))
+      : body(object(geometry)) {
     manager->bind("cart", body.get());
   }
   CertifiedResult run(double from, double to, const CertifiedRequest& request = {}) const {

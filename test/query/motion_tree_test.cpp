@@ -196,6 +196,7 @@ TEST(MotionTree, TreesWithTheSameVariablesTakeTheSameMotions) {
   }
 }
 
+// NOLINTBEGIN(bugprone-use-after-move, clang-analyzer-cplusplus.Move): what this is about
 TEST(MotionTree, MovedFromIsRefused) {
   const auto robot = chain("drone", {{"fly", JointType::floating}});
   const Asked asked(robot);
@@ -209,19 +210,19 @@ TEST(MotionTree, MovedFromIsRefused) {
   };
   JointMotion from = still(*robot), to = still(*arm());
   const JointMotion constructed = std::move(from);
-  refusedByAll(from);  // NOLINT: what this is about
+  refusedByAll(from);
   EXPECT_TRUE(constructed.isOf(*robot));
   from = constructed;
   EXPECT_TRUE(from.isOf(*robot));
   to = std::move(from);
-  refusedByAll(from);  // NOLINT: what this is about
+  refusedByAll(from);
   EXPECT_TRUE(to.isOf(*robot));
 
   JointTrajectory trajectory =
       JointTrajectory::linear(*robot, {3, 4}, {robot->neutralConfiguration(), robot->neutralConfiguration()});
   const JointTrajectory taken = std::move(trajectory);
   CertifiedResult result;
-  EXPECT_THROW(asked.manager.continuousCollide(trajectory, {}, result), std::invalid_argument);  // NOLINT: likewise
+  EXPECT_THROW(asked.manager.continuousCollide(trajectory, {}, result), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(asked.manager.clearance(trajectory)), std::invalid_argument);
   EXPECT_THROW(trajectory.beginTime(), std::out_of_range);
   EXPECT_THROW(trajectory.endTime(), std::out_of_range);
@@ -238,6 +239,7 @@ TEST(MotionTree, MovedFromIsRefused) {
   const JointMotion kept = std::move(stays);
   for (const std::string& said : of_statue.refusals(stays)) EXPECT_NE(said, "");  // NOLINT(bugprone-use-after-move)
 }
+// NOLINTEND(bugprone-use-after-move, clang-analyzer-cplusplus.Move)
 
 // Motions in between are of the tree that inBetweenTree() made, and of no other one with as many variables.
 TEST(MotionTree, InBetweenMotions) {

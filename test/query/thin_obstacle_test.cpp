@@ -31,8 +31,8 @@ struct Scene {
   Cart cart;
   std::shared_ptr<fcl::CollisionObjectd> obstacle;
 
-  Scene(std::shared_ptr<Mesh> link, std::shared_ptr<fcl::CollisionGeometryd> solid, const Isometry3d& at)
-      : cart(std::move(link)), obstacle(object(std::move(solid), at)) {
+  Scene(const std::shared_ptr<Mesh>& link, const std::shared_ptr<fcl::CollisionGeometryd>& solid, const Isometry3d& at)
+      : cart(link), obstacle(object(solid, at)) {
     cart.manager->registerObject(obstacle.get(), "solid");
     cart.manager->setup();
   }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Each part of the solver by itself, on two balls whose times of contact are known.
+#include <random>
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "two_balls.h"
@@ -35,6 +38,28 @@ TEST(TimeBatch, IsEqualToTheSameIntervalsOnly) {
   TimeBatch other = TimeBatch::middles();
   other.setPose(5, 0.7);
   EXPECT_FALSE(other == TimeBatch::middles());
+}
+
+TEST(EarliestFirst, GivesTimesInOrderAndEqualOnesAsNumbered) {
+  std::mt19937 random(7);
+  EarliestFirst waiting;
+  for (int round = 0; round < 200; ++round) {
+    waiting.clear();
+    std::set<std::pair<double, int>> expected;  // the judge
+    const int count = round % 40;
+    for (int number = 0; number < count || !expected.empty();) {
+      if (number < count && (expected.empty() || random() % 3)) {
+        const double t = 0.125 * (random() % 8);  // many are equal
+        waiting.add(t, number);
+        expected.emplace(t, number++);
+      } else {
+        ASSERT_FALSE(waiting.empty());
+        ASSERT_EQ(waiting.take(), expected.begin()->second) << "round " << round;
+        expected.erase(expected.begin());
+      }
+    }
+    EXPECT_TRUE(waiting.empty());
+  }
 }
 
 TEST(Task, EndsWithItsBudgetOrByTheCaller) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "narrowphase/solver/any_contact.h"
+#include "narrowphase/solver/earliest_first.h"
 #include "narrowphase/solver/follower.h"
 
 namespace fcl_artic {
@@ -97,6 +98,7 @@ class PairSearch : PartOfSolver {
   Follower& follower_;
   AnyContact& any_;
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
+  EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
   int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAtStart()
@@ -398,6 +400,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
                                   unsigned first_lanes) {
   using Target = Candidate::Target;
   candidates_.clear();
+  earliest_first_.clear();
   const int roots = open.size();
   const bool suspected = lane == 0 && horizon_.contactLane() == 1;  // in this lane
   for (int i = begin; i < end && !horizon_.isOver();) {
@@ -426,16 +429,12 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
       continue;
     }
     if (f.certain) return follower_.record(f);
+    earliest_first_.add(f.t_lower, candidates_.size());
     candidates_.push(f);
     horizon_.mustEnd();
   }
-  for (int done = 0; done < candidates_.size() && !horizon_.isOver(); ++done) {
-    int first = done;
-    for (int i = done + 1; i < candidates_.size(); ++i) {
-      if (candidates_[i].t_lower < candidates_[first].t_lower) first = i;
-    }
-    Candidate f = candidates_[first];
-    candidates_[first] = candidates_[done];
+  while (!earliest_first_.empty() && !horizon_.isOver()) {
+    Candidate f = candidates_[earliest_first_.take()];
     horizon_.provenFree(f.t_lower);
     if (f.t_lower >= horizon_.end()) break;
     if (f.isHulls()) {
