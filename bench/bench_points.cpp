@@ -3,10 +3,7 @@
 // A Panda amid a cloud of points, as a scanner sees 20 bumpy bodies: each point a ball, beside the same points as the
 // cells of an OcTree. Set-up, memory, and queries of free and of colliding random motions; and the cloud's answers
 // beside FCL's of each ball at samples of the motions. FCL_ARTIC_DATA names the folder with robots/ and problems/.
-#include <malloc.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -22,21 +19,14 @@
 #include "arm_scene.h"
 #include "planning/problems.h"
 #include "random_motion.h"
+#include "setup_cost.h"
 
 using namespace fcl_artic;
 using namespace fcl_artic::bench;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Eigen::Vector3d;
-
-double microsecondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-}
-double megabytes() {
-  return static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd) / 1e6;
-}
 
 /// Points of the bodies' surfaces, each off by up to a third of a radius.
 std::vector<Vector3d> scan(std::size_t n, double radius, Random& random) {
@@ -80,12 +70,6 @@ struct World {
   ArticulatedCollisionManager manager;
   double setup_ms, memory;
 };
-
-double rank(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-}
 
 /// Times of all motions, the fastest of three runs each; and whether they are free.
 void measure(const char* what, std::size_t points, const World& world, const std::vector<JointMotion>& motions,
