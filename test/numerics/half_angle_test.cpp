@@ -187,9 +187,15 @@ TEST(HalfAngle, BoundsHoldWhereTheirLargestValueLiesWithinTheInterval) {
           subject->boundVariable(law.step, law.query, 0, 1, m);
           for (int n = 0; n < 4; ++n) EXPECT_LE(sampled[n], m[n] * (1 + 1e-13)) << subject->name << " " << n;
           // Of a straight s each derivative is one product: nothing is given away where the peak is within.
-          if (peak > 0 && peak < 1) EXPECT_GT(sampled[2], 0.999 * m[2]) << half;
-          if (peak == 0) EXPECT_GT(sampled[1], 0.999 * m[1]) << half;
-          if (peak == 0) EXPECT_GT(sampled[3], 0.999 * m[3]) << half;
+          if (peak > 0 && peak < 1) {
+            EXPECT_GT(sampled[2], 0.999 * m[2]) << half;
+          }
+          if (peak == 0) {
+            EXPECT_GT(sampled[1], 0.999 * m[1]) << half;
+          }
+          if (peak == 0) {
+            EXPECT_GT(sampled[3], 0.999 * m[3]) << half;
+          }
         }
       }
     }
