@@ -49,6 +49,11 @@ struct LinkPair {
   Placement placement_b;     ///< B's tree frame in its step's frame
 };
 
+/// Two movers.
+struct MoverPair {
+  std::int32_t a = -1, b = -1;
+};
+
 /// Pose of B's tree frame in A's at one time: a point p of B is at R p + c up to `error`, one of A seen from B
 /// likewise.
 struct PairPose {
@@ -81,6 +86,7 @@ struct Problem {
   std::int32_t num_sweeps = 0;
   /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
   const LinkPair* link_pairs = nullptr;
+  const MoverPair* link_movers = nullptr;  ///< of each link pair: most are done with once these are seen, side by side
   std::int32_t num_link_pairs = 0;
   const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
   std::int32_t num_scene_pairs = 0;

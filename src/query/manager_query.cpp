@@ -88,6 +88,7 @@ void restrictPairs(const CertifiedRequest& request, std::int32_t num_self_pairs,
   if (!request.check_scene) problem.num_link_pairs = num_self_pairs;
   if (!request.check_self) {
     problem.link_pairs += num_self_pairs;
+    problem.link_movers += num_self_pairs;
     margins.skipLinkPairs(num_self_pairs);
     problem.num_link_pairs -= num_self_pairs;
   }

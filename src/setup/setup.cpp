@@ -11,6 +11,7 @@ void Setup::build(const Registry& registry) {
   if (!robot_ready_) buildRobot(registry);
   ready_ = false;
   buildScene(registry);
+  listMovers();
   margins_ = PairMargins::of(registry.margins(), problem(),
                              [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
   readSolids(registry);
@@ -26,6 +27,14 @@ void Setup::build(const Registry& registry) {
                 [&](std::size_t i) { registry.body(static_cast<std::int32_t>(i)).shape->obbTree(); });
   }
   tables_ready_ = ready_ = true;
+}
+
+void Setup::listMovers() {
+  link_movers_.clear();
+  for (const engine::LinkPair& pair : link_pairs_) {
+    const auto mover = [&](std::int32_t body) { return bodies_[static_cast<std::size_t>(body)].mover; };
+    link_movers_.push_back({mover(pair.a), mover(pair.b)});
+  }
 }
 
 void Setup::readSolids(const Registry& registry) {
@@ -50,6 +59,7 @@ engine::Problem Setup::problem() const {
   p.sweeps = sweep_views_.data();
   p.num_sweeps = static_cast<std::int32_t>(sweep_views_.size());
   p.link_pairs = link_pairs_.data();
+  p.link_movers = link_movers_.data();
   p.num_link_pairs = static_cast<std::int32_t>(link_pairs_.size());
   p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * obstacle_bodies_.size());
   p.scene_allowed = scene_allowed_.empty() ? nullptr : scene_allowed_.data();

@@ -56,6 +56,7 @@ class Setup {
   std::vector<Carrier> buildLinks(const Registry& registry);
   using IsChecked = std::function<bool(const ManagedBody&, const ManagedBody&)>;
   void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked);
+  void listMovers();
   void readSolids(const Registry& registry);
   // setup_scene.cpp: what depends on the obstacles.
   void buildScene(const Registry& registry);
@@ -69,6 +70,7 @@ class Setup {
   std::vector<engine::Body> bodies_;  ///< as the registry's: links, moving obstacles, the others
   std::vector<std::int32_t> movers_, obstacle_bodies_;
   std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
+  std::vector<engine::MoverPair> link_movers_;
   std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
   std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
   std::int32_t num_scene_allowed_ = 0;

@@ -20,6 +20,7 @@ void Setup::buildEveryPair(const Registry& registry) {
     return !a.empty() && !b.empty() && !a.attached && !b.attached &&
            !areNeighbours(tree, with_geometry, a.link, b.link);
   });
+  listMovers();
   readSolids(registry);
   sweep_views_.clear();
   for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());

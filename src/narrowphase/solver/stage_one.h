@@ -199,7 +199,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     unsigned mask = problem().isAllowed(pair) ? 0 : kAllLanes;
     for (int n = 0; n < num_free; ++n) mask &= ~static_cast<unsigned>(free[n][p]);
     if (!mask) continue;
-    const int mover_a = body(problem().link_pairs[p].a).mover, mover_b = body(problem().link_pairs[p].b).mover;
+    const auto [mover_a, mover_b] = problem().link_movers[p];
     mask &= ~boxesApart(mover_a, mover_b);
     const bool links = task_.isLink(mover_a) && task_.isLink(mover_b);
     Lanes square;
