@@ -128,7 +128,7 @@ class ArticulatedCollisionManager::Some {
     if (details_.size() < most) details_.resize(most);
     together.begin(most);
     std::size_t n = 0;
-    for (; n < most && (n == 0 || together.numObjects() < Together::kManyObjects); ++n) {
+    for (; n < most && (n == 0 || !together.isFull()); ++n) {
       const engine::Advisor advisor = together.assume(n, request_.tolerance_distance);
       solve(begin + n, advisor, details_[n], conditional_[n]);
     }

@@ -40,6 +40,11 @@ void Together::take(void* self, const engine::Problem& problem, const engine::Sw
   one.collecting_us = steadyMicroseconds() - begin;
 }
 
+bool Together::isFull() const {
+  const auto side = static_cast<std::size_t>(loan_->batch.resolution);
+  return numObjects() >= kManyObjects || kViews * side * side * loan_->batch.windows.size() >= kManyPixels;
+}
+
 void Together::draw() {
   Batch& batch = loan_->batch;
   const double begin = steadyMicroseconds();

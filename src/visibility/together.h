@@ -21,8 +21,9 @@ namespace visibility {
 
 class Together {
  public:
-  /// Objects of a pass: some tens of megabytes. A pass is to be drawn before it has many more.
-  static constexpr std::size_t kManyObjects = 200000;
+  /// Objects of a pass, and pixels in the views of its windows, of which an executor keeps some ten bytes each: each of
+  /// both is some tens of megabytes.
+  static constexpr std::size_t kManyObjects = 200000, kManyPixels = std::size_t{1} << 23;
 
   /// Borrows an executor for as long as this lives.
   Together(const VisibilityCuller& culler, Way way) : culler_(culler), loan_(culler, way) {}
@@ -36,6 +37,8 @@ class Together {
   void draw();
   /// Number of objects that draw() has to draw.
   std::size_t numObjects() const { return loan_->batch.objects.size(); }
+  /// Whether the pass has so much that it is to be drawn before another query is asked.
+  bool isFull() const;
 
   // After draw():
   /// Whether all that query i's first advisor was asked about is free: its answer stands.

@@ -115,14 +115,22 @@ bool agree(const CertifiedResult& a, const CertifiedResult& b) {
   return a.t_lower <= (b.certain ? b.t_upper : 1) && b.t_lower <= (a.certain ? a.t_upper : 1);
 }
 
+/// Of mode `on`: a contact that was found with something taken out, and not again without. Its bits are seldom others.
+bool standsWronglyWithOn(const CertifiedResult& result) {
+  const VisibilityStatistics& s = result.statistics.visibility;
+  return result.status == Status::contact && s.pairs > 0 && s.repeated == 0;
+}
+
 struct Counts {
-  std::uint64_t contacts = 0, pairs = 0, culled = 0, whole = 0, repeated = 0, trials = 0;
+  std::uint64_t contacts = 0, pairs = 0, culled = 0, whole = 0, whole_in_contact = 0, repeated = 0, trials = 0;
   void add(const CertifiedResult& result) {
     const VisibilityStatistics& s = result.statistics.visibility;
     contacts += result.status == Status::contact;
     pairs += s.pairs;
     culled += s.culled;
-    whole += s.pairs > 0 && s.culled == s.pairs;
+    const bool none_left = s.pairs > 0 && s.culled == s.pairs;
+    whole += none_left;
+    whole_in_contact += none_left && result.status == Status::contact;
     repeated += s.repeated;
     trials += s.trials;
   }
@@ -161,14 +169,18 @@ TEST_F(Batches, AnswersAreThoseOfOneAfterTheOther) {
         manager_.continuousCollide(all, request, batch, threads);
         ASSERT_EQ(batch.size(), all.size());
         counts = Counts();
-        std::uint64_t differ = 0;
+        std::uint64_t differ = 0, kept = 0;
         for (std::size_t i = 0; i < all.size(); ++i) {
           counts.add(batch[i]);
+          kept += standsWronglyWithOn(batch[i]);
           const bool bits = mode != VisibilityMode::atOnce;
           differ += bits ? !sameBits(off[i], batch[i]) : !agree(off[i], batch[i]);
           if (mode == VisibilityMode::atOnce && executor.name == "cpu") differ += !sameBits(at_once[i], batch[i]);
         }
         EXPECT_EQ(differ, 0u) << executor.name << ", mode " << static_cast<int>(mode) << ", threads " << threads;
+        if (mode == VisibilityMode::on) {
+          EXPECT_EQ(kept, 0u) << executor.name << ", threads " << threads;
+        }
       }
       const auto n = static_cast<double>(all.size());
       EXPECT_GT(static_cast<double>(counts.contacts), 0.2 * n);
@@ -181,6 +193,7 @@ TEST_F(Batches, AnswersAreThoseOfOneAfterTheOther) {
       EXPECT_EQ(executor.culler->fallbackReason(), "");
       EXPECT_GT(static_cast<double>(counts.culled), 0.3 * static_cast<double>(counts.pairs));
       EXPECT_GT(static_cast<double>(counts.whole), 0.05 * n);
+      EXPECT_GT(counts.whole_in_contact, 0u) << "with something else than what the stage has taken out";
       if (mode == VisibilityMode::atOnce) {
         EXPECT_EQ(counts.repeated, 0u);
       }
@@ -249,9 +262,9 @@ struct Watched : visibility::Executor {
   Orders& orders;
   visibility::CpuExecutor cpu;
 };
-Culler watched(Watched::Orders& orders) {
-  const auto culler = std::make_shared<VisibilityCuller>(VisibilityOptions(), "watched",
-                                                         [&orders] { return std::make_unique<Watched>(orders); });
+Culler watched(Watched::Orders& orders, const VisibilityOptions& options = {}) {
+  const auto culler =
+      std::make_shared<VisibilityCuller>(options, "watched", [&orders] { return std::make_unique<Watched>(orders); });
   EXPECT_EQ(culler->executor(), "watched");
   orders.runs = 0;
   orders.windows = 0;
@@ -274,6 +287,25 @@ TEST_F(Batches, HundredsOfMotionsAreDrawnInOnePass) {
       EXPECT_TRUE(result.statistics.visibility.pairs == 0 || result.statistics.visibility_executor == "watched");
     }
   }
+}
+
+/// Views of many pixels take memory: a pass then takes fewer motions, and the answers are the same.
+TEST_F(Batches, PassesOfFineViewsTakeFewerMotions) {
+  const std::vector<JointMotion> all = make(300);
+  VisibilityOptions options;
+  options.resolution = 128;
+  Watched::Orders orders;
+  manager_.setVisibility(watched(orders, options));
+  CertifiedRequest request;
+  std::vector<CertifiedResult> off, results;
+  manager_.continuousCollide(all, request, off);
+  request.visibility = VisibilityMode::on;
+  manager_.continuousCollide(all, request, results, 1);
+  EXPECT_GT(orders.runs, 2) << "passes";
+  const std::size_t most = 8388608 / (3 * 128 * 128);  // 2^23 pixels in three views of a window
+  EXPECT_GT(orders.windows, most / 2);
+  EXPECT_LT(orders.windows, most + 4) << "no more than those of one motion beyond";
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_TRUE(sameBits(off[i], results[i])) << i;
 }
 
 /// What a pass culls wrongly is missed: the comparison above sees faults.
