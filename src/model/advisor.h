@@ -10,21 +10,26 @@
 namespace fcl_artic {
 namespace engine {
 
+struct Placement;
 struct Problem;
 
 /// A link's line swept sphere over one of the eight parts [k/8, (k+1)/8] of the motion: within the hull of these
-/// points, in the world, grown by a ball.
+/// points, grown by a ball. Seen from where the other body of the pair stands still: in the world of an obstacle, in
+/// the other one's tree frame of a link or an obstacle that moves.
 struct SweptLink {
   double points[6][3];
   double radius;
 };
 
-/// A pair of a link and a still obstacle that stage 1 left.
+/// A pair of a link and another body that stage 1 left.
 struct CullCandidate {
-  std::int32_t pair, mover, obstacle;  ///< mover: among Problem::movers; obstacle: a body
-  std::uint32_t lanes;                 ///< parts of the motion in which their bounds meet
-  double margin;                       ///< of the pair
-  /// Nodes of the obstacle's tree, a bit each, that are proven free of the mover over the whole motion; null: none.
+  std::int32_t pair;
+  std::int32_t swept;   ///< links[8 * swept + k]: what the link sweeps in part k
+  std::int32_t still;   ///< the other body, which stands still in the frame of these
+  const Placement* at;  ///< of its tree in that frame
+  std::uint32_t lanes;  ///< parts of the motion in which their bounds meet
+  double margin;        ///< of the pair
+  /// Nodes of the other body's tree, a bit each, that are proven free of the link over the whole motion; null: none.
   /// There until the solver returns.
   const std::uint64_t* free_nodes = nullptr;
 };
@@ -43,7 +48,8 @@ struct Advisor {
   /// The same of one link pair, for what costs more to look up: asked of those that stage 1's own bounds leave.
   unsigned (*freePartsOf)(void* self, std::int32_t link_pair) = nullptr;
   /// Asked between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
-  /// `free_nodes`. The pairs of a mover lie together; links[8 * mover + k] is set for movers that have pairs.
+  /// `free_nodes`. The pairs with the same `swept` lie together and share a frame. Pairs come in the order of their
+  /// numbers but for those of links and still obstacles, which come first, by link.
   void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
                 std::int32_t num_pairs) = nullptr;
   /// With Query::any: where balls inside links are likely to meet. Asked before all else.

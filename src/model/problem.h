@@ -23,6 +23,7 @@ struct Body {
   std::int32_t step = -1;                 ///< in the world's sweep; -1: stands still
   std::int32_t mover = -1;                ///< index among Problem::movers; -1: an obstacle
   double lss[7] = {};                     ///< line swept sphere p0, p1, r in the step's frame: holds the body
+  const double* tree_lss = nullptr;       ///< of a link: the same in its tree's frame; null: not known
   const InnerBalls* balls = nullptr;      ///< of a link; null: none known
   const SolidSpace* space = nullptr;      ///< of a mesh that is a solid; null: any other body
   const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid

@@ -165,10 +165,8 @@ class ArticulatedCollisionManager::Some {
     manager_.impl_->complete(motions_[motion], alone_, details_[i], result);
     if (!volumes) return;
     VisibilityStatistics& s = result.statistics.visibility;
-    s.pairs = volumes->pairs();
-    s.culled = volumes->culled();
-    s.nodes = at_once ? volumes->nodes() : 0;
-    s.pieces = volumes->pieces();
+    s = volumes->work();
+    if (!at_once) s.nodes = 0;
     s.repeated = !holds && !at_once;
     s.us = together.microseconds(i);
     result.statistics.visibility_executor = together.executor();

@@ -149,13 +149,7 @@ CertifiedContact report(const Registry& registry, const JointMotion& motion, con
 QueryStatistics workOf(const Solved& solved) {
   QueryStatistics statistics = statisticsOf(solved.answer.statistics);
   const visibility::Report& stage = solved.stage;
-  statistics.visibility.pairs = stage.pairs;
-  statistics.visibility.culled = stage.culled;
-  statistics.visibility.nodes = stage.nodes;
-  statistics.visibility.pieces = stage.pieces;
-  statistics.visibility.trials = stage.trials;
-  statistics.visibility.repeated = stage.repeated;
-  statistics.visibility.us = stage.elapsed_us;
+  statistics.visibility = stage;
   statistics.visibility_executor = stage.executor;
   statistics.visibility_fallback = stage.fallback;
   statistics.redon = solved.redon;

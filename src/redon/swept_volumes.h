@@ -19,17 +19,28 @@ namespace redon {
 
 class SweptVolumes {
  public:
-  /// Takes pairs of links and still obstacles out that stage 2 proves free, sub-intervals in which it does, and nodes
-  /// of obstacles' trees (BodyPair::free_nodes, there until the next call).
-  /// @param pairs  those of a link lie together, pairs of two links behind them: as Culling::bodyPairs() gives them.
+  /// Takes pairs out that stage 2 proves free, sub-intervals in which it does, and nodes of A's trees
+  /// (BodyPair::free_nodes, there until the next call).
+  /// @param pairs  those of a link and still obstacles lie together, pairs of two bodies that move after them: as
+  /// Culling::bodyPairs() gives them.
   void refine(const engine::Problem& problem, const engine::Query& query, const Options& options,
               std::vector<BodyPair>& pairs, Counts& counts);
 
  private:
-  static constexpr int kParts = 8;  ///< engine::Advisor's
+  static constexpr std::size_t kParts = 8;  ///< engine::Advisor's
+  /// A line swept sphere that is to be swept.
+  struct Volume {
+    std::size_t first;                   ///< its parts, in links_
+    std::int32_t sweep, step;            ///< that carry it
+    const IntervalTransform* seen_from;  ///< the sweep's base as seen from where it is wanted; null: from the base
+    IntervalVec3 ends[2];                ///< in the step's frame
+    double radius;
+  };
+  void collect(const engine::Problem& problem, const engine::Query& query, const std::vector<BodyPair>& pairs);
   void sweep(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
 
   SweepChains chains_;
+  std::vector<Volume> volumes_;
   std::vector<engine::CullCandidate> candidates_;
   std::vector<engine::SweptLink> links_;
   std::vector<std::vector<std::uint64_t>> free_nodes_;  ///< by candidate

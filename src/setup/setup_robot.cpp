@@ -64,6 +64,7 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
     body.step = carrier.step;
     body.placement = makePlacement(carrier, link.offset);
     const LineSweptSphere& lss = link.shape->lineSweptSphere();
+    body.tree_lss = lss.data();
     const Eigen::Vector3d p0 = in_step * Eigen::Vector3d::Map(&lss[0]), p1 = in_step * Eigen::Vector3d::Map(&lss[3]);
     for (int k = 0; k < 3; ++k) {
       body.lss[k] = p0[k];

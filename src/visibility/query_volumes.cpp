@@ -52,20 +52,28 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
   first_object_ = batch.objects.size();
   clusters_.clear();
   free_.clear();
+  kinds_.clear();
   num_words_.clear();
+  work_ = VisibilityStatistics();
   Collection collection{batch, first_group_, 0, clusters_, free_};
   std::int32_t end = 0;
   for (std::int32_t begin = 0; begin < n; begin = end) {
-    const std::int32_t mover = candidates[begin].mover;
+    const std::int32_t swept = candidates[begin].swept;
     std::uint32_t lanes = 0;
-    for (end = begin; end < n && candidates[end].mover == mover; ++end) {
+    for (end = begin; end < n && candidates[end].swept == swept; ++end) {
       lanes |= candidates[end].lanes;
-      num_words_.push_back(wordsOf(*problem.bodies[candidates[end].obstacle].tree));
+      const engine::Body& still = problem.bodies[candidates[end].still];
+      num_words_.push_back(wordsOf(*still.tree));
+      const bool moves = still.mover >= 0, is_link = moves && still.mover < problem.num_scene_movers;
+      kinds_.push_back(is_link ? Kind::link : moves ? Kind::moving : Kind::obstacle);
+      ++work_.pairs;
+      work_.link_pairs += kinds_.back() == Kind::link;
+      work_.moving_pairs += kinds_.back() == Kind::moving;
     }
     Bounds parts[kParts], link = Bounds::none(), reach = Bounds::none();
     for (int lane = 0; lane < kParts; ++lane) {
       if (!(lanes >> lane & 1)) continue;
-      parts[lane] = boundsOf(links[kParts * mover + lane]);
+      parts[lane] = boundsOf(links[kParts * swept + lane]);
       link.join(parts[lane]);
     }
     const double size = std::max({link.hi[0] - link.lo[0], link.hi[1] - link.lo[1], link.hi[2] - link.lo[2]});
@@ -80,7 +88,7 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
       const Bounds reached = reach;
       collection.most = std::min(first_object_ + kMostObjects, objects + kMostOfPair);
       std::uint32_t met = c.lanes;
-      if (!BodyPieces(problem.bodies[c.obstacle], c.margin + tolerance_distance)
+      if (!BodyPieces(*problem.bodies[c.still].tree, *c.at, c.margin + tolerance_distance)
                .add(parts, met, least, kCluster * size, window, i, collection, reach)) {
         batch.objects.resize(objects);
         batch.points.resize(points);
@@ -94,11 +102,12 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
     if (batch.objects.size() == first_object) continue;
     batch.windows.push_back(windowOf(link, reach));
     for (int lane = 0; lane < kParts; ++lane) {
-      if (lanes >> lane & 1) batch.swept.push_back({addVolume(links[kParts * mover + lane], batch), window});
+      if (lanes >> lane & 1) batch.swept.push_back({addVolume(links[kParts * swept + lane], batch), window});
     }
   }
   end_object_ = batch.objects.size();
   batch.num_groups = collection.nextGroup();
+  work_.pieces = end_object_ - first_object_;
 }
 
 void QueryVolumes::conclude(const Batch& batch, const std::vector<std::uint8_t>& may) {
@@ -118,15 +127,19 @@ void QueryVolumes::conclude(const Batch& batch, const std::vector<std::uint8_t>&
     }
   }
   free_nodes_.assign(words, 0);
-  nodes_ = 0;
   for (const Cluster& c : free_) {
     const std::size_t first = first_word_[static_cast<std::size_t>(c.pair)];
     if (first == kNone) continue;
     const auto node = static_cast<std::size_t>(c.node);
     free_nodes_[first + node / 64] |= std::uint64_t{1} << node % 64;
-    ++nodes_;
+    ++work_.nodes;
   }
-  culled_ = static_cast<std::uint64_t>(std::count(first_word_.begin(), first_word_.end(), kNone));
+  for (std::size_t pair = 0; pair < kinds_.size(); ++pair) {
+    if (first_word_[pair] != kNone) continue;
+    ++work_.culled;
+    work_.link_culled += kinds_[pair] == Kind::link;
+    work_.moving_culled += kinds_[pair] == Kind::moving;
+  }
 }
 
 void QueryVolumes::apply(CullCandidate* candidates) const {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What one query adds to a batch, its links' swept volumes and the pieces that they may touch, and what the batch's
-// answer says of its pairs (doc/VISIBILITY.md). A batch may hold several queries: they share nothing in it.
+// What one query adds to a batch, its links' swept volumes and the other bodies' pieces that they may touch, and what
+// the batch's answer says of its pairs (doc/VISIBILITY.md). A batch may hold several queries: they share nothing in it.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "fcl_artic/statistics.h"
 #include "model/query.h"
 #include "visibility/batch.h"
 #include "visibility/volumes.h"
@@ -16,8 +17,8 @@ namespace visibility {
 
 class QueryVolumes {
  public:
-  /// Adds one window per link, its swept parts, and per pair those pieces of the obstacle whose bounds meet a part's,
-  /// in groups by cluster.
+  /// Adds one window per swept volume, its parts, and per pair those pieces of the other body whose bounds meet a
+  /// part's, in groups by cluster.
   /// @param links, candidates  as engine::Advisor::clear is given them; not needed any more afterwards.
   /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
   /// contact.
@@ -30,22 +31,22 @@ class QueryVolumes {
   /// Clears the candidates that are proven free, and sets the free nodes of the others; they stay valid until the next
   /// add(). @param candidates  those of add(), in their order.
   void apply(engine::CullCandidate* candidates) const;
-  std::uint64_t pairs() const { return num_words_.size(); }
-  std::uint64_t culled() const { return culled_; }  ///< pairs that are free
-  std::uint64_t nodes() const { return nodes_; }    ///< free nodes of the other pairs
-  std::uint64_t pieces() const { return static_cast<std::uint64_t>(end_object_ - first_object_); }
+  /// Pairs, pieces and what was culled.
+  const VisibilityStatistics& work() const { return work_; }
 
  private:
+  enum class Kind : std::uint8_t { obstacle, link, moving };  ///< the other body is
   static constexpr std::size_t kNone = ~std::size_t{0};
   std::int32_t first_group_ = 0;
   std::size_t first_object_ = 0, end_object_ = 0;  ///< in the batch
-  std::vector<std::size_t> num_words_;             ///< of each pair: a bit for each node of the obstacle's tree
+  std::vector<Kind> kinds_;                        ///< of each pair
+  std::vector<std::size_t> num_words_;             ///< of each pair: a bit for each node of the other body's tree
   std::vector<Cluster> clusters_;                  ///< of each group, from first_group_ on
   std::vector<Cluster> free_;                      ///< proven free
   std::vector<std::uint8_t> stays_;                ///< by group
   std::vector<std::size_t> first_word_;            ///< of each pair, in free_nodes_; kNone: the pair is free
   std::vector<std::uint64_t> free_nodes_;          ///< CullCandidate::free_nodes, one after the other
-  std::uint64_t culled_ = 0, nodes_ = 0;
+  VisibilityStatistics work_;
 };
 
 }  // namespace visibility

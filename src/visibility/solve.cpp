@@ -32,21 +32,19 @@ bool solveShortened(const VisibilityCuller& culler, Way way, const Solver& solve
   engine::Query advised = query;
   advised.ask(stage.advisor());
   solver(advised, answer);
-  report.pairs = stage.pairs;
-  report.culled = stage.culled;
-  report.nodes = stage.nodes;
-  report.pieces = stage.pieces;
-  report.elapsed_us = stage.elapsed_us;
+  static_cast<VisibilityStatistics&>(report) = stage.work;
   report.making_us = stage.making_us;
   report.executor = stage.executor;
   report.fallback = culler.fallbackReason();
-  return isPlainlyFree(answer) || (stage.culled == 0 && stage.nodes == 0);
+  return isPlainlyFree(answer) || (stage.work.culled == 0 && stage.work.nodes == 0);
 }
 
 }  // namespace
 
 bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine::Query& query) {
-  if (mode == VisibilityMode::off || !query.check_scene || problem.num_obstacles == 0) return false;
+  const bool scene = query.check_scene && problem.num_obstacles > 0,
+             moving = query.check_self && problem.num_link_pairs > 0;
+  if (mode == VisibilityMode::off || !(scene || moving)) return false;
   return mode == VisibilityMode::atOnce || query.work_budget == 0;
 }
 
@@ -106,7 +104,7 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
   choice.addQueries(own_us);
   if (!trial.given()) return;
   const double extra_us = with_us + report.making_us + without_us - own_us;
-  choice.addTrial(trial, {on_us, without_us, report.elapsed_us, extra_us, report.pairs > 0});
+  choice.addTrial(trial, {on_us, without_us, report.us, extra_us, report.pairs > 0});
 }
 
 }  // namespace visibility

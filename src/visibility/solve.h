@@ -16,9 +16,8 @@ namespace fcl_artic {
 namespace visibility {
 
 /// What stage 2 did in a query.
-struct Report {
-  std::uint64_t pairs = 0, culled = 0, nodes = 0, pieces = 0, trials = 0, repeated = 0;
-  double elapsed_us = 0, making_us = 0;  ///< the latter: making an executor
+struct Report : VisibilityStatistics {
+  double making_us = 0;  ///< making an executor; not in `us`
   std::string executor;
   std::string fallback;
 };

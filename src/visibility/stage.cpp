@@ -3,6 +3,8 @@
 
 #include <exception>
 
+#include "model/add_fields.h"
+
 namespace fcl_artic {
 namespace visibility {
 
@@ -20,20 +22,17 @@ void Stage::run(const engine::Problem& problem, const engine::SweptLink* links, 
   beginBatch(culler_, batch);
   QueryVolumes& volumes = volumes_.emplace_back();
   volumes.add(problem, links, candidates, n, tolerance_distance_, batch);
-  pieces += batch.objects.size();
   executor = loan->name;
   loan->executor->run(batch, loan->may);
   volumes.conclude(batch, loan->may);
   volumes.apply(candidates);  // from here on nothing fails
-  culled += volumes.culled();
-  nodes += volumes.nodes();
+  engine::addFields(volumes.work(), work);
 }
 
 void Stage::clear(void* context, const engine::Problem& problem, const engine::SweptLink* links,
                   engine::CullCandidate* pairs, std::int32_t num_pairs) {
   Stage& stage = *static_cast<Stage*>(context);
   const double begin = stage.now_();
-  stage.pairs += static_cast<std::uint64_t>(num_pairs);
   ExecutorLoan loan(stage.culler_, stage.way_);
   const double made = loan.made() ? stage.now_() : begin;
   stage.making_us += made - begin;
@@ -42,7 +41,7 @@ void Stage::clear(void* context, const engine::Problem& problem, const engine::S
   } catch (const std::exception& e) {  // nothing was taken out yet
     loan.giveUp(e.what());
   }
-  stage.elapsed_us += stage.now_() - made;
+  stage.work.us += stage.now_() - made;
 }
 
 }  // namespace visibility

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2 of a query: takes pairs of link and obstacle, and nodes of an obstacle's tree, out that visibility proves
+// Stage 2 of a query: takes pairs of a link and another body, and nodes of that body's tree, out that visibility proves
 // free (doc/VISIBILITY.md).
 #pragma once
 
@@ -35,10 +35,9 @@ class Stage {
   }
 
   // What it did.
-  std::uint64_t pairs = 0, culled = 0, nodes = 0, pieces = 0;
-  double elapsed_us = 0;  ///< without the making
-  double making_us = 0;   ///< of an executor
-  std::string executor;   ///< empty: nothing was asked of one
+  VisibilityStatistics work;  ///< its time is without the making
+  double making_us = 0;       ///< of an executor
+  std::string executor;       ///< empty: nothing was asked of one
 
  private:
   static void clear(void* stage, const engine::Problem& problem, const engine::SweptLink* links,

@@ -67,7 +67,7 @@ void Together::draw() {
 double Together::drawingMicroseconds(std::size_t i) const {
   const One& one = queries_[i];
   if (!one.drawn || numObjects() == 0) return 0;
-  return drawing_us_ * static_cast<double>(one.volumes.pieces()) / static_cast<double>(numObjects());
+  return drawing_us_ * static_cast<double>(one.volumes.work().pieces) / static_cast<double>(numObjects());
 }
 
 engine::Advisor Together::advise(std::size_t i) {

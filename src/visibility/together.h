@@ -62,7 +62,7 @@ class Together {
     bool asked = false, asked_again = false, drawn = false;
     std::vector<engine::CullCandidate> candidates;  ///< as they were given, then with what is proven
     QueryVolumes volumes;
-    bool free() const { return !asked || (drawn && !asked_again && volumes.culled() == volumes.pairs()); }
+    bool free() const { return !asked || (drawn && !asked_again && volumes.work().culled == volumes.work().pairs); }
   };
   static void take(void* one, const engine::Problem& problem, const engine::SweptLink* links,
                    engine::CullCandidate* pairs, std::int32_t num_pairs);

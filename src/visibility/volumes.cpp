@@ -79,17 +79,18 @@ Volume addVolume(const engine::SweptLink& link, Batch& batch) {
   return volume;
 }
 
-BodyPieces::BodyPieces(const engine::Body& body, double margin)
-    : body_(body),
+BodyPieces::BodyPieces(const engine::TreeView& tree, const engine::Placement& at, double margin)
+    : tree_(tree),
+      at_(at),
       // The placement's own error and a dozen roundings of numbers no larger than these.
-      pad_(margin + 0x1p-52 * (body.placement.ulps + 64) * (2 * body.tree->extent + body.placement.length + margin)) {
-  const double *R = body.placement.R, *t = body.placement.t;
+      pad_(margin + 0x1p-52 * (at.ulps + 64) * (2 * tree.extent + at.length + margin)) {
+  const double *R = at.R, *t = at.t;
   for (int k = 0; k < 3; ++k) along(R[k], R[3 + k], R[6 + k], axes_[k]);
   along(t[0], t[1], t[2], origin_);
 }
 
-void BodyPieces::toWorld(const double* p, double* x) const {
-  const double *R = body_.placement.R, *t = body_.placement.t;
+void BodyPieces::place(const double* p, double* x) const {
+  const double *R = at_.R, *t = at_.t;
   for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
 }
 
@@ -115,7 +116,7 @@ Bounds BodyPieces::boundsOf(const Node& node) const {
 Volume BodyPieces::ballAround(const Node& node, Batch& batch) const {
   double center[3], x[3];
   for (int k = 0; k < 3; ++k) center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
-  toWorld(center, x);
+  place(center, x);
   Volume volume;
   volume.first = static_cast<std::int32_t>(batch.points.size() / 3);
   volume.count = 1;
@@ -132,19 +133,18 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
   const auto add = [&](double a, double b, double c) {
     const double p[3] = {piece.center[0] + a, piece.center[1] + b, piece.center[2] + c};
     double x[3];
-    toWorld(p, x);
+    place(p, x);
     batch.points.insert(batch.points.end(), x, x + 3);
     ++volume.count;
   };
-  baseline::coverCore(*body_.tree, piece, add);  // of an unbounded piece no points: the projector finds it unusable
+  baseline::coverCore(tree_, piece, add);  // of an unbounded piece no points: the projector finds it unusable
   return volume;
 }
 
 bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
                      std::int32_t pair, Collection& to, Bounds& reach) const {
   Batch& batch = to.batch;
-  const engine::TreeView& tree = *body_.tree;
-  if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
+  if (!(tree_.nodes[0].radius < engine::kUnbounded)) return false;
   const auto met = [&](const Bounds& bounds, std::uint32_t asked) {
     std::uint32_t mask = 0;
     for (int lane = 0; lane < 8; ++lane) {
@@ -163,7 +163,7 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, do
   std::uint32_t touched = 0;
   while (open) {
     Open top = stack[--open];
-    const Node& node = tree.nodes[top.node];
+    const Node& node = tree_.nodes[top.node];
     const bool small = static_cast<double>(node.radius) < least;
     const auto openCluster = [&] {
       if (top.group >= 0) return;
@@ -184,7 +184,7 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, do
     }
     if (batch.objects.size() >= to.most) return false;
     const std::size_t points = batch.points.size();
-    const Volume volume = small ? ballAround(node, batch) : volumeOf(tree.pieces[node.piece()], batch);
+    const Volume volume = small ? ballAround(node, batch) : volumeOf(tree_.pieces[node.piece()], batch);
     const Bounds bounds = visibility::boundsOf(batch.points.data() + points, volume.count, volume.radius);
     const std::uint32_t mask = met(bounds, top.lanes);
     if (mask) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bodies of the engine's problem as convex solids in the world.
+// Bodies of the engine's problem as convex solids in one frame: the world, or that of a body that moves, in which it
+// stands still.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// Bounds along 13 directions in the world: the axes, the diagonals of their planes and of space (a 26-DOP).
+/// Bounds along 13 directions: the axes, the diagonals of their planes and of space (a 26-DOP).
 struct Bounds {
   static constexpr int kDirections = 13;
   double lo[kDirections], hi[kDirections];
@@ -31,11 +32,11 @@ struct Bounds {
 /// Of the hull of points, grown by a ball; rounded outward.
 Bounds boundsOf(const double* points, int count, double radius);
 
-/// A link's line swept sphere over one of the motion's parts.
+/// What a link sweeps over one of the motion's parts.
 Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
-/// A subtree of the obstacle of a pair: what of it is drawn is one group.
+/// A subtree of a pair's still body: what of it is drawn is one group.
 struct Cluster {
   std::int32_t pair, node;
 };
@@ -50,11 +51,12 @@ struct Collection {
   std::int32_t nextGroup() const { return first_group + static_cast<std::int32_t>(clusters.size()); }
 };
 
-/// Pieces of a still body, in the world.
+/// Pieces of a body that stands still, in the frame of what is swept.
 class BodyPieces {
  public:
+  /// @param at      where the tree stands in that frame.
   /// @param margin  that all of it is grown by, m.
-  BodyPieces(const engine::Body& body, double margin);
+  BodyPieces(const engine::TreeView& tree, const engine::Placement& at, double margin);
   /// Adds those whose bounds meet one of the parts: triangles and other convex pieces; a node smaller than `least` (m)
   /// as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make groups.
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
@@ -66,13 +68,14 @@ class BodyPieces {
 
  private:
   Bounds boundsOf(const engine::Node& node) const;
-  void toWorld(const double* p, double* x) const;
+  void place(const double* p, double* x) const;
   Volume volumeOf(const engine::Piece& piece, Batch& batch) const;
   Volume ballAround(const engine::Node& node, Batch& batch) const;
 
-  const engine::Body& body_;
-  double pad_;  ///< rounding of a point's way to the world, and the margin
-  double axes_[3][Bounds::kDirections], origin_[Bounds::kDirections];  ///< of the body's frame, along the directions
+  const engine::TreeView& tree_;
+  const engine::Placement& at_;
+  double pad_;  ///< rounding of a point's way to its place, and the margin
+  double axes_[3][Bounds::kDirections], origin_[Bounds::kDirections];  ///< of the tree's frame, along the directions
 };
 
 }  // namespace visibility

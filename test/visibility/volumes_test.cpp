@@ -66,7 +66,7 @@ TEST(BodyPieces, NodesHoldTheirPieces) {
     Collection collection{batch, 0, 100000, clusters, free};
     Bounds reach = Bounds::none();
     std::uint32_t lanes = asked;
-    ASSERT_TRUE(BodyPieces(body, margin).add(parts, lanes, 0, 0.3, 0, 0, collection, reach));
+    ASSERT_TRUE(BodyPieces(*body.tree, body.placement, margin).add(parts, lanes, 0, 0.3, 0, 0, collection, reach));
     EXPECT_EQ(batch.objects.size(), expected) << trial;
     found += expected;
   }

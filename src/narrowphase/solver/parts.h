@@ -35,7 +35,7 @@ struct SolverParts {
   Traversal traversal{task, motion, horizon, contacts, proofs};
   Follower follower{task, motion, horizon, contacts};
   AnyContact any{task, frames, motion, horizon, balls, proofs, traversal};
-  StageOne stage_one{task, frames, horizon, contacts, any};
+  StageOne stage_one{task, frames, motion, horizon, contacts, any};
   Containment containment{task, motion, horizon, contacts, stage_one};
   InitialContacts initial{task, motion, horizon, contacts, traversal, containment};
   PairSearch search{task, motion, horizon, contacts, traversal, follower, any};

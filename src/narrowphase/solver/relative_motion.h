@@ -59,6 +59,14 @@ class RelativeMotion : PartOfSolver {
   }
   /// B seen from A, as it is evaluated: without what certificates need.
   const RigidLanes& seenFromA() const { return side_[0].m; }
+  /// Where a point p of B, in its tree frame, is seen from A's. @return radius about it that holds the point.
+  double seePoint(const Vec3& p, PointLanes& x) const {
+    const RigidLanes& m = side_[0].m;
+    for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
+    // The pad is for points no farther out than the bodies' own; it scales with sizes.
+    const double reach = norm(p) * (1 + 8 * kUlp), sizes = max(a().extent + b().extent, kLeastLength);
+    return m.rem_c + m.rem_R * reach + pad_ * (1 + reach / sizes);
+  }
   /// A body's tree where it stands still (`side`) or moves.
   const TreeView& still(int s) const { return *side_[s].still; }
   const TreeView& moving(int s) const { return *side_[s].moving; }

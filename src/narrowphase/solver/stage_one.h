@@ -32,12 +32,13 @@ struct BoxHit {
 
 class StageOne : PartOfSolver {
  public:
-  StageOne(Task& task, SweptFrames& frames, Horizon& horizon, const ContactList& contacts, AnyContact& any)
-      : PartOfSolver(task), frames_(frames), horizon_(horizon), contacts_(contacts), any_(any) {}
+  StageOne(Task& task, SweptFrames& frames, RelativeMotion& motion, Horizon& horizon, const ContactList& contacts,
+           AnyContact& any)
+      : PartOfSolver(task), frames_(frames), motion_(motion), horizon_(horizon), contacts_(contacts), any_(any) {}
 
   /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
   void cull(Buffer<Entry>& open);
-  /// Pairs of links and still obstacles that advisors prove free (stage 2) are left out of `open`.
+  /// Pairs that advisors prove free (stage 2) are left out of `open`.
   void refine(Traversal& traversal, Buffer<Entry>& open);
   /// Of the i-th pair left: from A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
   const Vec3Lanes* direction(int i) const { return i < directions_.size() ? &directions_[i] : nullptr; }
@@ -53,11 +54,13 @@ class StageOne : PartOfSolver {
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
   void expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
                      const Vec3Lanes& nearest);
-  void sweptSegments(int mover, engine::SweptLink* parts);
+  void sweptInWorld(int mover, engine::SweptLink* parts) const;
+  void sweptInPartner(int pair, const double* lss, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
+  RelativeMotion& motion_;
   Horizon& horizon_;
   const ContactList& contacts_;
   AnyContact& any_;
@@ -242,19 +245,35 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   statistics().pairs_after_culling += static_cast<std::uint64_t>(open.size());
 }
 
-/// A link's line swept sphere in each lane of [0, 1]: both ends' Bernstein points, and its radius.
-inline void StageOne::sweptSegments(int mover, engine::SweptLink* parts) {
-  const SweptLss& s = mover_lss_[mover];
-  for (int lane = 0; lane < kLanes; ++lane) {
-    for (int end = 0; end < 2; ++end) {
-      const PointLanes& p = s.end[end];
-      const Vec3 c0 = laneOf(p.c[0], lane), c1 = laneOf(p.c[1], lane), c2 = laneOf(p.c[2], lane);
-      (c0 - c1 + c2).store(parts[lane].points[end]);
-      (c0 + c1 + c2).store(parts[lane].points[2 + end]);
-      (c0 - c2).store(parts[lane].points[4 + end]);
-    }
-    parts[lane].radius = s.radius * (1 + 4 * kUlp);
+/// A line swept sphere over one lane: both ends' Bernstein points.
+inline void sweptOver(int lane, const PointLanes* ends, double radius, engine::SweptLink& part) {
+  for (int end = 0; end < 2; ++end) {
+    const PointLanes& p = ends[end];
+    const Vec3 c0 = laneOf(p.c[0], lane), c1 = laneOf(p.c[1], lane), c2 = laneOf(p.c[2], lane);
+    (c0 - c1 + c2).store(part.points[end]);
+    (c0 + c1 + c2).store(part.points[2 + end]);
+    (c0 - c2).store(part.points[4 + end]);
   }
+  part.radius = radius * (1 + 4 * kUlp);
+}
+
+/// A link's line swept sphere in each lane of [0, 1].
+inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
+  const SweptLss& s = mover_lss_[mover];
+  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius, parts[lane]);
+}
+
+/// The same of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands still.
+/// @param lss  in B's tree frame.
+inline void StageOne::sweptInPartner(int pair, const double* lss, engine::SweptLink* parts) {
+  motion_.set(pair, whole());
+  PointLanes ends[2];
+  double radius = 0;
+  for (int end = 0; end < 2; ++end) {
+    const Vec3 p(lss + 3 * end);
+    radius = max(radius, lss[6] + motion_.seePoint(p, ends[end]));
+  }
+  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, ends, radius, parts[lane]);
 }
 
 inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {
@@ -264,35 +283,44 @@ inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {
 }
 
 inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open) {
+  static constexpr engine::Placement kWhereItStands = {};
   candidates_.clear();
-  swept_links_.resize(kLanes * problem().num_movers);
-  int previous = -1;
-  for (int i = 0; i < open.size() && problem().isScenePair(open[i].pair); ++i) {
+  swept_links_.resize(kLanes * (problem().num_movers + open.size()));
+  int previous = -1, num_swept = problem().num_movers;
+  for (int i = 0; i < open.size(); ++i) {
     const Entry& e = open[i];
-    const int mover = problem().moverOf(e.pair);
-    if (mover != previous) sweptSegments(previous = mover, swept_links_.data() + kLanes * mover);
-    candidates_.push(
-        {e.pair, mover, problem().obstacles[problem().obstacleOf(e.pair)], e.mask, query().margins.of(e.pair)});
+    const double margin = query().margins.of(e.pair);
+    if (problem().isScenePair(e.pair)) {
+      const int mover = problem().moverOf(e.pair), obstacle = problem().obstacles[problem().obstacleOf(e.pair)];
+      if (mover != previous) sweptInWorld(previous = mover, swept_links_.data() + kLanes * mover);
+      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, e.mask, margin});
+      continue;
+    }
+    const PairParts parts = problem().parts(e.pair);
+    if (!body(parts.b).tree_lss) continue;
+    sweptInPartner(e.pair, body(parts.b).tree_lss, swept_links_.data() + kLanes * num_swept);
+    candidates_.push({e.pair, num_swept++, parts.a, &kWhereItStands, e.mask, margin});
   }
   const int asked = candidates_.size();
   if (!asked) return;
   advisor.clear(advisor.self, problem(), swept_links_.data(), candidates_.data(), asked);
-  int kept = 0, directions = 0;
+  int kept = 0, directions = 0, next = 0;
   for (int i = 0; i < open.size(); ++i) {
     Entry e = open[i];
-    if (i < asked) {  // it may clear parts, nothing else
-      const engine::CullCandidate& answer = candidates_[i];
-      FCL_ARTIC_ASSERT(answer.pair == e.pair && !(answer.lanes & ~e.mask));
+    if (next < asked && candidates_[next].pair == e.pair) {  // it may clear parts, nothing else
+      const engine::CullCandidate& answer = candidates_[next++];
+      FCL_ARTIC_ASSERT(!(answer.lanes & ~e.mask));
       e.mask &= answer.lanes;
       if (e.mask && answer.free_nodes) traversal.knowFreeNodes(e.pair, answer.free_nodes);
     }
     if (!e.mask) continue;
-    if (i < asked) {
+    if (i < directions_.size()) {
       directions_[kept] = directions_[i];
       directions = kept + 1;
     }
     open[kept++] = e;
   }
+  FCL_ARTIC_ASSERT(next == asked);
   open.truncate(kept);
   directions_.truncate(directions);
 }
