@@ -6,8 +6,9 @@
 // Scenes, all about an arm of meshes (1,000 triangles a link) with a reach of 0.95 m:
 //   room     a bumpy closed surface around the arm, near enough to touch, as a scan of a cell is: one mesh
 //   bushes   150 balls of random small triangles within reach, as clutter or a point cloud with triangles for points:
-//   one
-//            mesh, or each an object
+//            one mesh, or each an object
+//   moving   the room, or the bushes in one mesh, carried past the arm: an obstacle that moves
+//   itself   nothing but the arm: its links are checked against each other, and nowhere else
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,8 @@
 #include <memory>
 #include <optional>
 
+#include <fcl/math/motion/interp_motion.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
 #include <fmt/format.h>
 
 #include "arm_scene.h"
@@ -81,41 +84,62 @@ std::vector<TriangleMesh> makeBushes(int triangles) {
   return bushes;
 }
 
-/// A kind of scene; its obstacles for a number of triangles.
+/// A kind of scene; its obstacles for a number of triangles. None: the arm's links are checked against each other.
 struct Kind {
   std::string name;
   std::function<std::vector<TriangleMesh>(int triangles)> make;
+  bool moving = false;
 };
 std::vector<Kind> kinds() {
-  return {{"room", [](int n) { return std::vector<TriangleMesh>{makeRoom(n)}; }},
-          {"bushes, one mesh", [](int n) { return std::vector<TriangleMesh>{merge(makeBushes(n))}; }},
-          {"bushes", makeBushes}};
+  const auto room = [](int n) { return std::vector<TriangleMesh>{makeRoom(n)}; };
+  const auto bushes = [](int n) { return std::vector<TriangleMesh>{merge(makeBushes(n))}; };
+  return {{"room", room},
+          {"bushes, one mesh", bushes},
+          {"bushes", makeBushes},
+          {"moving room", room, true},
+          {"moving bushes", bushes, true},
+          {"itself", [](int) { return std::vector<TriangleMesh>(); }}};
 }
+/// How far obstacles that move do, m, and turn, rad.
+const fcl::Vector3d kCarried(0.1, 0.05, 0);
+constexpr double kTurned = 0.1;
 
 /// An arm and obstacles in a manager.
 class Place {
  public:
-  Place(int links, const std::vector<TriangleMesh>& obstacles) : random_(5), arm_(makeArm(links)), manager_(arm_.tree) {
+  Place(int links, const std::vector<TriangleMesh>& obstacles, bool moving)
+      : itself_(obstacles.empty()), random_(5), arm_(makeArm(links)), manager_(arm_.tree) {
     for (const ArmLink& link : arm_.links) {
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(link.mesh)));
       manager_.bind(link.link, objects_.back().get(), link.offset);
     }
     for (const TriangleMesh& mesh : obstacles) {
+      triangles_ += mesh.triangles.size();
+      if (moving) {
+        fcl::Transform3d to = fcl::Transform3d::Identity();
+        to.translate(kCarried);
+        to.rotate(Eigen::AngleAxisd(kTurned, fcl::Vector3d::UnitZ()));
+        moving_.push_back(std::make_unique<fcl::ContinuousCollisionObjectd>(
+            toBvh<fcl::OBBRSSd>(mesh), std::make_shared<fcl::InterpMotion<double>>(fcl::Transform3d::Identity(), to)));
+        manager_.registerObject(moving_.back().get());
+        continue;
+      }
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(mesh)));
       manager_.registerObject(objects_.back().get());
-      triangles_ += mesh.triangles.size();
     }
     manager_.setup();
   }
   ArticulatedCollisionManager& manager() { return manager_; }
   std::size_t triangles() const { return triangles_; }
+  /// The arm is checked against itself only.
+  bool itself() const { return itself_; }
 
   /// Random motions of which nothing is nearer than 5 mm at the start; each joint turns by at most `step`, rad.
   /// @param set  those that are "free", those in "contact", or "any".
   /// @return fewer than `count` where they are rare.
   std::vector<JointMotion> motions(double step, const std::string& set, std::size_t count) {
     CertifiedRequest clear, query;
-    clear.check_self = query.check_self = false;
+    clear.check_self = query.check_self = itself_;
     clear.margin = 0.005;
     const auto n = static_cast<Eigen::Index>(arm_.tree->dof());
     Eigen::VectorXd q(n), dq(n);
@@ -145,9 +169,11 @@ class Place {
     }
     return makeArmScene(options);
   }
+  bool itself_;
   Random random_;
   ArmScene arm_;
   std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects_;
+  std::vector<std::unique_ptr<fcl::ContinuousCollisionObjectd>> moving_;
   ArticulatedCollisionManager manager_;
   std::size_t triangles_ = 0;
 };
@@ -190,7 +216,7 @@ struct Cell {
 class Asker {
  public:
   Asker(Place& place, const std::vector<JointMotion>& motions, ContactMode mode) : place_(place), motions_(motions) {
-    request_.check_self = false;
+    request_.check_self = place.itself();
     request_.mode = mode;
     request_.tolerance_time = 0x1p-13;
   }
@@ -352,7 +378,7 @@ int main(int argc, char** argv) {
     for (const int size : sizes) {
       const std::vector<TriangleMesh> obstacles = kind.make(size);
       for (const int n : links) {
-        Place place(n, obstacles);
+        Place place(n, obstacles, kind.moving);
         for (const double degrees : steps) {
           for (const std::string set : {"free", "contact", "any"}) {
             const std::vector<JointMotion> motions = place.motions(degrees * kPi / 180, set, count);
