@@ -8,7 +8,8 @@
 //   bushes   150 balls of random small triangles within reach, as clutter or a point cloud with triangles for points:
 //            one mesh, or each an object
 //   moving   the room, or the bushes in one mesh, carried past the arm: an obstacle that moves
-//   itself   nothing but the arm: its links are checked against each other, and nowhere else
+//   cabin    the room as the link that carries the arm, an arm in its vehicle: links are checked against each other
+//   only itself   nothing but the arm: likewise
 
 #include <algorithm>
 #include <cmath>
@@ -84,11 +85,13 @@ std::vector<TriangleMesh> makeBushes(int triangles) {
   return bushes;
 }
 
-/// A kind of scene; its obstacles for a number of triangles. None: the arm's links are checked against each other.
+/// What the meshes of a scene are. Where they are no obstacles, links are checked against each other, and only so.
+enum class Role { obstacles, movingObstacles, link };
+/// A kind of scene; its meshes for a number of triangles.
 struct Kind {
   std::string name;
   std::function<std::vector<TriangleMesh>(int triangles)> make;
-  bool moving = false;
+  Role role = Role::obstacles;
 };
 std::vector<Kind> kinds() {
   const auto room = [](int n) { return std::vector<TriangleMesh>{makeRoom(n)}; };
@@ -96,9 +99,10 @@ std::vector<Kind> kinds() {
   return {{"room", room},
           {"bushes, one mesh", bushes},
           {"bushes", makeBushes},
-          {"moving room", room, true},
-          {"moving bushes", bushes, true},
-          {"itself", [](int) { return std::vector<TriangleMesh>(); }}};
+          {"moving room", room, Role::movingObstacles},
+          {"moving bushes", bushes, Role::movingObstacles},
+          {"cabin", room, Role::link},
+          {"itself", [](int) { return std::vector<TriangleMesh>(); }, Role::link}};
 }
 /// How far obstacles that move do, m, and turn, rad.
 const fcl::Vector3d kCarried(0.1, 0.05, 0);
@@ -107,15 +111,15 @@ constexpr double kTurned = 0.1;
 /// An arm and obstacles in a manager.
 class Place {
  public:
-  Place(int links, const std::vector<TriangleMesh>& obstacles, bool moving)
-      : itself_(obstacles.empty()), random_(5), arm_(makeArm(links)), manager_(arm_.tree) {
+  Place(int links, const std::vector<TriangleMesh>& meshes, Role role)
+      : itself_(role == Role::link), random_(5), arm_(makeArm(links)), manager_(arm_.tree) {
     for (const ArmLink& link : arm_.links) {
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(link.mesh)));
       manager_.bind(link.link, objects_.back().get(), link.offset);
     }
-    for (const TriangleMesh& mesh : obstacles) {
+    for (const TriangleMesh& mesh : meshes) {
       triangles_ += mesh.triangles.size();
-      if (moving) {
+      if (role == Role::movingObstacles) {
         fcl::Transform3d to = fcl::Transform3d::Identity();
         to.translate(kCarried);
         to.rotate(Eigen::AngleAxisd(kTurned, fcl::Vector3d::UnitZ()));
@@ -125,7 +129,11 @@ class Place {
         continue;
       }
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(mesh)));
-      manager_.registerObject(objects_.back().get());
+      if (role == Role::link) {
+        manager_.bind(arm_.tree->linkName(0), objects_.back().get());
+      } else {
+        manager_.registerObject(objects_.back().get());
+      }
     }
     manager_.setup();
   }
@@ -324,11 +332,11 @@ std::string csvOf(const std::vector<Cell>& cells) {
   return csv;
 }
 
-std::shared_ptr<const VisibilityCuller> cullerOf(const std::string& executor) {
-  if (executor == "cpu") return std::make_shared<const VisibilityCuller>();
+std::shared_ptr<const VisibilityCuller> cullerOf(const std::string& executor, const VisibilityOptions& options) {
+  if (executor == "cpu") return std::make_shared<const VisibilityCuller>(options);
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
-  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa);
-  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl);
+  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa, options);
+  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl, options);
 #endif
   throw std::runtime_error("no executor '" + executor + "'");
 }
@@ -348,6 +356,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> modes = {"on", "at once", "automatic"};
   std::string name = "bench_visibility_map";
   bool any = false;
+  VisibilityOptions options;
   app.add_option("--queries", count, "motions of each set")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--blocks", blocks, "times that each way is asked, in turns with `off`")
       ->check(CLI::PositiveNumber)
@@ -360,13 +369,15 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", scenes, "kinds of scenes")->capture_default_str();
   app.add_option("--modes", modes, "ways of the stage")->capture_default_str();
   app.add_option("--name", name, "of the files of results")->capture_default_str();
+  app.add_flag("--every-link-pair", options.every_link_pair,
+               "look at pairs of two links that the default leaves alone");
   app.add_flag("--any", any, "ask for any contact, as planners do, not for the first");
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe draws in the thread that asks
 
   std::map<std::string, std::shared_ptr<const VisibilityCuller>> cullers;
   for (const std::string& executor : executors) {
-    cullers[executor] = cullerOf(executor);
+    cullers[executor] = cullerOf(executor, options);
     if (cullers[executor]->executor() != executor) throw std::runtime_error(cullers[executor]->fallbackReason());
   }
   std::vector<Cell> cells;
@@ -378,7 +389,7 @@ int main(int argc, char** argv) {
     for (const int size : sizes) {
       const std::vector<TriangleMesh> obstacles = kind.make(size);
       for (const int n : links) {
-        Place place(n, obstacles, kind.moving);
+        Place place(n, obstacles, kind.role);
         for (const double degrees : steps) {
           for (const std::string set : {"free", "contact", "any"}) {
             const std::vector<JointMotion> motions = place.motions(degrees * kPi / 180, set, count);

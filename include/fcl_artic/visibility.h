@@ -25,6 +25,9 @@ enum class VisibilityRule {
 struct VisibilityOptions {
   VisibilityRule rule = VisibilityRule::intervals;  ///< The rule by which obstacles are proven free.
   int resolution = 32;                              ///< Pixels along a side of each view, 4 to 128.
+  /// Looks at every pair of two links that their bounds leave. Default: only at those of which one link comes into the
+  /// box around the other's geometry, as an arm in a cabin does. Of the others the exact tests cost less than a look.
+  bool every_link_pair = false;
 };
 
 /// Culling by visibility, inside.

@@ -44,10 +44,31 @@ Window windowOf(const Bounds& link, const Bounds& pieces) {
   return window;
 }
 
+/// Whether the middle of what a link sweeps comes into the box around the other one, in whose tree frame it is seen.
+/// Only then it takes long to find two links apart: hulls around them do so where each lies on its own side.
+/// Measured by bench_visibility_map (doc/VISIBILITY.md, "Bodies that move").
+bool comesInto(const engine::Node& box, const Bounds* parts, std::uint32_t lanes) {
+  for (int lane = 0; lane < kParts; ++lane) {
+    if (!(lanes >> lane & 1)) continue;
+    bool within = true;
+    for (int k = 0; k < 3; ++k) {
+      const double middle = 0.5 * (parts[lane].lo[k] + parts[lane].hi[k]);
+      within = within && middle >= static_cast<double>(box.lo[k]) && middle <= static_cast<double>(box.hi[k]);
+    }
+    if (within) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
+QueryVolumes::Kind QueryVolumes::kindOf(const engine::Problem& problem, std::int32_t still) {
+  const std::int32_t mover = problem.bodies[still].mover;
+  return mover < 0 ? Kind::obstacle : mover < problem.num_scene_movers ? Kind::link : Kind::moving;
+}
+
 void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, const CullCandidate* candidates,
-                       std::int32_t n, double tolerance_distance, Batch& batch) {
+                       std::int32_t n, double tolerance_distance, bool every_link_pair, Batch& batch) {
   first_group_ = batch.num_groups;
   first_object_ = batch.objects.size();
   clusters_.clear();
@@ -60,16 +81,7 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
   for (std::int32_t begin = 0; begin < n; begin = end) {
     const std::int32_t swept = candidates[begin].swept;
     std::uint32_t lanes = 0;
-    for (end = begin; end < n && candidates[end].swept == swept; ++end) {
-      lanes |= candidates[end].lanes;
-      const engine::Body& still = problem.bodies[candidates[end].still];
-      num_words_.push_back(wordsOf(*still.tree));
-      const bool moves = still.mover >= 0, is_link = moves && still.mover < problem.num_scene_movers;
-      kinds_.push_back(is_link ? Kind::link : moves ? Kind::moving : Kind::obstacle);
-      ++work_.pairs;
-      work_.link_pairs += kinds_.back() == Kind::link;
-      work_.moving_pairs += kinds_.back() == Kind::moving;
-    }
+    for (end = begin; end < n && candidates[end].swept == swept; ++end) lanes |= candidates[end].lanes;
     Bounds parts[kParts], link = Bounds::none(), reach = Bounds::none();
     for (int lane = 0; lane < kParts; ++lane) {
       if (!(lanes >> lane & 1)) continue;
@@ -84,11 +96,21 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
     lanes = 0;
     for (std::int32_t i = begin; i < end; ++i) {
       const CullCandidate& c = candidates[i];
+      const engine::TreeView& tree = *problem.bodies[c.still].tree;
+      kinds_.push_back(kindOf(problem, c.still));
+      num_words_.push_back(wordsOf(tree));
+      if (kinds_.back() == Kind::link && !every_link_pair && !comesInto(tree.nodes[0], parts, c.lanes)) {
+        kinds_.back() = Kind::none;
+        continue;
+      }
+      ++work_.pairs;
+      work_.link_pairs += kinds_.back() == Kind::link;
+      work_.moving_pairs += kinds_.back() == Kind::moving;
       const std::size_t objects = batch.objects.size(), points = batch.points.size(), groups = clusters_.size();
       const Bounds reached = reach;
       collection.most = std::min(first_object_ + kMostObjects, objects + kMostOfPair);
       std::uint32_t met = c.lanes;
-      if (!BodyPieces(*problem.bodies[c.still].tree, *c.at, c.margin + tolerance_distance)
+      if (!BodyPieces(tree, *c.at, c.margin + tolerance_distance)
                .add(parts, met, least, kCluster * size, window, i, collection, reach)) {
         batch.objects.resize(objects);
         batch.points.resize(points);
@@ -135,7 +157,7 @@ void QueryVolumes::conclude(const Batch& batch, const std::vector<std::uint8_t>&
     ++work_.nodes;
   }
   for (std::size_t pair = 0; pair < kinds_.size(); ++pair) {
-    if (first_word_[pair] != kNone) continue;
+    if (!isFree(pair)) continue;
     ++work_.culled;
     work_.link_culled += kinds_[pair] == Kind::link;
     work_.moving_culled += kinds_[pair] == Kind::moving;
@@ -149,7 +171,7 @@ void QueryVolumes::apply(CullCandidate* candidates) const {
   }
   for (std::size_t pair = 0; pair < first_word_.size(); ++pair) {
     // Of the others single lanes are left as they are: the solver would find the same, by other roundings.
-    if (first_word_[pair] == kNone) candidates[pair].lanes = 0;
+    if (isFree(pair)) candidates[pair].lanes = 0;
   }
 }
 

@@ -21,7 +21,7 @@ void Stage::run(const engine::Problem& problem, const engine::SweptLink* links, 
   Batch& batch = loan->batch;
   beginBatch(culler_, batch);
   QueryVolumes& volumes = volumes_.emplace_back();
-  volumes.add(problem, links, candidates, n, tolerance_distance_, batch);
+  volumes.add(problem, links, candidates, n, tolerance_distance_, culler_.options().every_link_pair, batch);
   executor = loan->name;
   loan->executor->run(batch, loan->may);
   volumes.conclude(batch, loan->may);

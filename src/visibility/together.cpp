@@ -34,9 +34,14 @@ void Together::take(void* self, const engine::Problem& problem, const engine::Sw
   if (!one.asked) {
     one.asked = true;
     one.candidates.assign(pairs, pairs + num_pairs);
-    one.volumes.add(problem, links, pairs, num_pairs, one.tolerance_distance, one.owner->loan_->batch);
+    one.volumes.add(problem, links, pairs, num_pairs, one.tolerance_distance,
+                    one.owner->culler_.options().every_link_pair, one.owner->loan_->batch);
   }
-  for (std::int32_t i = 0; i < num_pairs; ++i) pairs[i].lanes = 0;
+  if (!one.asked_again) {
+    for (std::int32_t i = 0; i < num_pairs; ++i) {
+      if (one.volumes.looksAt(i)) pairs[i].lanes = 0;
+    }
+  }
   one.collecting_us = steadyMicroseconds() - begin;
 }
 

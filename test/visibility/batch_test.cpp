@@ -15,6 +15,7 @@
 #include <fcl/math/motion/translation_motion.h>
 #include <gtest/gtest.h>
 
+#include "answers.h"
 #include "fcl_artic/fcl_artic.h"
 #include "recorder.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
@@ -94,27 +95,6 @@ class Batches : public testing::Test {
   ArticulatedCollisionManager manager_;
 };
 
-bool sameContact(const CertifiedContact& a, const CertifiedContact& b) {
-  return a.body1.name == b.body1.name && a.body2.name == b.body2.name && a.b1 == b.b1 && a.b2 == b.b2 &&
-         a.point == b.point && a.normal == b.normal && a.t_lower == b.t_lower && a.t_upper == b.t_upper &&
-         a.certain == b.certain;
-}
-
-bool sameBits(const CertifiedResult& a, const CertifiedResult& b) {
-  return a.status == b.status && a.t_lower == b.t_lower && a.t_upper == b.t_upper && a.certain == b.certain &&
-         a.contacts.size() == b.contacts.size() &&
-         std::equal(a.contacts.begin(), a.contacts.end(), b.contacts.begin(), sameContact) &&
-         a.ignored_initial_contacts.size() == b.ignored_initial_contacts.size() &&
-         a.unproven_allowed_pairs == b.unproven_allowed_pairs;
-}
-
-/// Verdicts are the same, and both brackets may hold the same time.
-bool agree(const CertifiedResult& a, const CertifiedResult& b) {
-  if (a.status != b.status) return false;
-  if (a.status != Status::contact) return true;
-  return a.t_lower <= (b.certain ? b.t_upper : 1) && b.t_lower <= (a.certain ? a.t_upper : 1);
-}
-
 /// Of mode `on`: a contact that was found with something taken out, and not again without. Its bits are seldom others.
 bool standsWronglyWithOn(const CertifiedResult& result) {
   const VisibilityStatistics& s = result.statistics.visibility;
@@ -174,8 +154,8 @@ TEST_F(Batches, AnswersAreThoseOfOneAfterTheOther) {
           counts.add(batch[i]);
           kept += standsWronglyWithOn(batch[i]);
           const bool bits = mode != VisibilityMode::atOnce;
-          differ += bits ? !sameBits(off[i], batch[i]) : !agree(off[i], batch[i]);
-          if (mode == VisibilityMode::atOnce && executor.name == "cpu") differ += !sameBits(at_once[i], batch[i]);
+          differ += bits ? !test::sameBits(off[i], batch[i]) : !test::agree(off[i], batch[i]);
+          if (mode == VisibilityMode::atOnce && executor.name == "cpu") differ += !test::sameBits(at_once[i], batch[i]);
         }
         EXPECT_EQ(differ, 0u) << executor.name << ", mode " << static_cast<int>(mode) << ", threads " << threads;
         if (mode == VisibilityMode::on) {
@@ -227,12 +207,12 @@ TEST_F(Batches, AllRequestsAreAnsweredAsOneByOne) {
         manager_.continuousCollide(all[i], request, off);
         request.visibility = mode;
         if (bits) {
-          ASSERT_TRUE(sameBits(off, batch[i])) << k << " " << i;
+          ASSERT_TRUE(test::sameBits(off, batch[i])) << k << " " << i;
         } else {
           manager_.continuousCollide(all[i], request, alone);
-          ASSERT_TRUE(sameBits(alone, batch[i])) << k << " " << i;
+          ASSERT_TRUE(test::sameBits(alone, batch[i])) << k << " " << i;
           if (request.work_budget == 0) {
-            ASSERT_TRUE(agree(off, batch[i])) << k << " " << i;
+            ASSERT_TRUE(test::agree(off, batch[i])) << k << " " << i;
           }
         }
         if (request.certificate) {
@@ -322,7 +302,7 @@ TEST_F(Batches, WrongCullsAreSeen) {
     request.visibility = mode;
     manager_.continuousCollide(all, request, results, 1);
     int differ = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) differ += !agree(off[i], results[i]);
+    for (std::size_t i = 0; i < all.size(); ++i) differ += !test::agree(off[i], results[i]);
     std::cout << differ << " of " << all.size() << " answers differ\n";
     EXPECT_GT(differ, 5);
   }
@@ -342,7 +322,7 @@ TEST_F(Batches, AnExecutorThatFailsCostsNothingButTime) {
   EXPECT_EQ(orders.runs, 2);
   std::uint64_t culled[3] = {0, 0, 0};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    ASSERT_TRUE(sameBits(off[i], results[i])) << i;
+    ASSERT_TRUE(test::sameBits(off[i], results[i])) << i;
     culled[i / 256] += results[i].statistics.visibility.culled;
   }
   EXPECT_GT(culled[0], 0u);

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "answers.h"
 #include "engine.h"
 #include "generator.h"
 #include "visibility/cpu_executor.h"
@@ -20,7 +21,6 @@
 
 namespace {
 
-using fcl_artic::CertifiedContact;
 using fcl_artic::CertifiedResult;
 using fcl_artic::VisibilityMode;
 
@@ -28,23 +28,6 @@ using fcl_artic::VisibilityMode;
 std::uint64_t queries() {
   const char* wanted = std::getenv("FCL_ARTIC_VISIBILITY_QUERIES");
   return wanted ? std::strtoull(wanted, nullptr, 10) : 320;
-}
-
-bool sameContact(const CertifiedContact& a, const CertifiedContact& b) {
-  return a.body1.name == b.body1.name && a.body2.name == b.body2.name && a.b1 == b.b1 && a.b2 == b.b2 &&
-         a.feature == b.feature && a.point == b.point && a.normal == b.normal && a.t_lower == b.t_lower &&
-         a.t_upper == b.t_upper && a.certain == b.certain;
-}
-
-bool sameAnswer(const CertifiedResult& a, const CertifiedResult& b) {
-  if (a.status != b.status || a.t_lower != b.t_lower || a.t_upper != b.t_upper || a.certain != b.certain ||
-      a.contacts.size() != b.contacts.size()) {
-    return false;
-  }
-  for (std::size_t i = 0; i < a.contacts.size(); ++i) {
-    if (!sameContact(a.contacts[i], b.contacts[i])) return false;
-  }
-  return true;
 }
 
 struct Counts {
@@ -68,7 +51,7 @@ Counts compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::Visibilit
     for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
       question.request.visibility = mode;
       question.manager->continuousCollide(motion, question.request, result);
-      if (!sameAnswer(off, result)) {
+      if (!fcl_artic::test::sameBits(off, result)) {
         ++counts.different;
         std::cout << "different: " << family << " " << seed << "\n";
       }
@@ -237,7 +220,7 @@ TEST_F(ArmAmidBalls, NodesOfAMeshAreCulled) {
     for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
       request_.visibility = mode;
       manager_->continuousCollide(motion(from, from + 0.1), request_, result_);
-      different += !sameAnswer(off, result_);
+      different += !fcl_artic::test::sameBits(off, result_);
       if (mode != VisibilityMode::on || result_.statistics.visibility.culled) continue;
       const bool contact = off.status == fcl_artic::Status::contact;
       contacts += contact;
@@ -323,11 +306,11 @@ TEST_F(ArmAmidBalls, WrongCullsChangeNoContact) {
     ASSERT_EQ(off.status, fcl_artic::Status::contact);
     request_.visibility = VisibilityMode::on;
     manager_->continuousCollide(motion(0, 2), request_, result_);  // made while it tells the truth
-    EXPECT_TRUE(sameAnswer(off, result_));
+    EXPECT_TRUE(fcl_artic::test::sameBits(off, result_));
     EXPECT_EQ(result_.statistics.visibility_executor, "liar");
     for (lie = 0; lie < 2; ++lie) {
       manager_->continuousCollide(motion(0, 2), request_, result_);
-      EXPECT_TRUE(sameAnswer(off, result_)) << one_mesh << lie;
+      EXPECT_TRUE(fcl_artic::test::sameBits(off, result_)) << one_mesh << lie;
       EXPECT_EQ(result_.statistics.visibility.culled, one_mesh ? 0u : 1u);
       EXPECT_EQ(result_.statistics.visibility.repeated, 1u);
     }
@@ -347,7 +330,7 @@ TEST_F(ArmAmidBalls, OffWithAWorkBudget) {
   ASSERT_EQ(off.status, fcl_artic::Status::undecided);
   request_.visibility = VisibilityMode::on;
   manager_->continuousCollide(motion(0, 1.2), request_, result_);
-  EXPECT_TRUE(sameAnswer(off, result_));
+  EXPECT_TRUE(fcl_artic::test::sameBits(off, result_));
   EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
 }
 
@@ -381,7 +364,7 @@ TEST_F(ArmAmidBalls, AutomaticTriesWithinItsShare) {
     request_.visibility = VisibilityMode::automatic;
     request_.measure_times = true;
     manager_->continuousCollide(motion(from, from + 0.5), request_, result_);
-    different += !sameAnswer(off, result_);
+    different += !fcl_artic::test::sameBits(off, result_);
     trials += result_.statistics.visibility.trials;
     all_us += result_.statistics.total_us;
     if (result_.statistics.visibility.trials) visibility_us += result_.statistics.visibility.us;
@@ -412,7 +395,7 @@ TEST_F(ArmAmidBalls, FourThreadsGetTheSameAnswers) {
   manager_->continuousCollide(motions, request_, on, 4);
   std::uint64_t pairs = 0;
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    EXPECT_TRUE(sameAnswer(off[i], on[i])) << i;
+    EXPECT_TRUE(fcl_artic::test::sameBits(off[i], on[i])) << i;
     pairs += on[i].statistics.visibility.pairs;
   }
   EXPECT_GT(pairs, 64u);

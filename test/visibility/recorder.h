@@ -24,8 +24,9 @@ struct Recorder : visibility::Executor {
   visibility::Batch& last;
   visibility::CpuExecutor cpu;
 };
-inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Batch& batch) {
-  return std::make_shared<VisibilityCuller>(VisibilityOptions(), "recorder",
+inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Batch& batch,
+                                                        const VisibilityOptions& options = {}) {
+  return std::make_shared<VisibilityCuller>(options, "recorder",
                                             [&batch] { return std::make_unique<Recorder>(batch); });
 }
 

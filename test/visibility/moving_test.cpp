@@ -1,0 +1,482 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stage 2 between two bodies that move: links and links, links and obstacles that move. Pairs that touch, by FCL's own
+// static test of their poses at one time of the motion, are never culled; what is culled is looked at densely by the
+// same test; what is swept holds the link; answers are those without the stage.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <random>
+
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/math/motion/interp_motion.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+#include <gtest/gtest.h>
+
+#include "answers.h"
+#include "fcl_artic/fcl_artic.h"
+#include "recorder.h"
+#ifdef FCL_ARTIC_HAS_OFFSCREEN
+#include "fcl_artic/visibility/offscreen.h"
+#endif
+
+namespace {
+
+using namespace fcl_artic;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Culler = std::shared_ptr<const VisibilityCuller>;
+using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
+
+/// FCL_ARTIC_VISIBILITY_PAIRS=1000000 in the environment makes it a campaign.
+std::uint64_t pairs(std::uint64_t usual) {
+  const char* wanted = std::getenv("FCL_ARTIC_VISIBILITY_PAIRS");
+  return wanted ? std::strtoull(wanted, nullptr, 10) : usual;
+}
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double lo = 0, double hi = 1) { return std::uniform_real_distribution<double>(lo, hi)(engine_); }
+  double logUniform(double lo, double hi) { return std::exp(uniform(std::log(lo), std::log(hi))); }
+  Vector3d inCube() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
+  Eigen::VectorXd vector(Eigen::Index n, double most) {
+    Eigen::VectorXd v(n);
+    for (double& x : v) x = uniform(-most, most);
+    return v;
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Triangles all around, with room between them.
+std::shared_ptr<Mesh> bush(int triangles, Random& random) {
+  auto mesh = std::make_shared<Mesh>();
+  mesh->beginModel();
+  for (int i = 0; i < triangles; ++i) {
+    const Vector3d at = random.uniform(0.25, 0.7) * random.inCube().normalized();
+    const double size = random.logUniform(0.01, 0.15);
+    mesh->addTriangle(at, at + size * random.inCube(), at + size * random.inCube());
+  }
+  mesh->endModel();
+  return mesh;
+}
+
+/// A corner of a bar along z, of eight.
+Vector3d cornerOf(const Vector3d& sides, int c) {
+  return 0.5 * sides.cwiseProduct(Vector3d(c & 1 ? 1 : -1, c & 2 ? 1 : -1, c & 4 ? 1 : -1));
+}
+
+std::shared_ptr<Mesh> bar(const Vector3d& sides) {
+  auto mesh = std::make_shared<Mesh>();
+  mesh->beginModel();
+  const auto corner = [&](int c) -> Vector3d { return cornerOf(sides, c); };
+  for (int k = 0; k < 3; ++k) {
+    const int u = 1 << k, v = 1 << (k + 1) % 3, w = 1 << (k + 2) % 3;
+    for (const int at : {0, w}) {
+      mesh->addTriangle(corner(at), corner(at + u), corner(at + u + v));
+      mesh->addTriangle(corner(at), corner(at + u + v), corner(at + v));
+    }
+  }
+  mesh->endModel();
+  return mesh;
+}
+
+enum class Partner { link, obstacle };
+
+/// A bar on the last of six links, and a bush on the second one, four joints before it, or as an obstacle that moves.
+class Pair {
+ public:
+  static constexpr int kJoints = 6, kBar = 5, kBush = 1;
+
+  Pair(Partner partner, std::uint64_t seed) : partner_(partner), random_(seed) {
+    auto tree = std::make_shared<KinematicTree>("arm");
+    tree->addLink("base");
+    for (int i = 0; i < kJoints; ++i) {
+      Joint joint;
+      joint.name = "joint" + std::to_string(i);
+      joint.type = i == 3 ? JointType::prismatic : JointType::revolute;
+      joint.parent = i ? "link" + std::to_string(i - 1) : "base";
+      joint.child = "link" + std::to_string(i);
+      joint.axis = random_.inCube().normalized();
+      joint.origin = Eigen::Translation3d(0.15 * random_.inCube()) *
+                     Eigen::AngleAxisd(random_.uniform(-3, 3), random_.inCube().normalized());
+      tree->addLink(joint.child);
+      tree->addJoint(joint);
+      joints_.push_back(joint);
+    }
+    tree_ = tree;
+    const double thickness = random_.uniform(0.01, 0.06);
+    sides_ << thickness, thickness, random_.uniform(0.1, 0.3);
+    bar_ = bar(sides_);
+    bush_ = bush(static_cast<int>(random_.uniform(1, 60)), random_);
+    bar_object_ = std::make_unique<fcl::CollisionObjectd>(bar_);
+    bush_object_ = std::make_unique<fcl::CollisionObjectd>(bush_);
+    manager_ = std::make_unique<ArticulatedCollisionManager>(tree_);
+    manager_->bind("link5", bar_object_.get());
+    if (partner == Partner::link) {
+      manager_->bind("link1", bush_object_.get());
+    } else {
+      from_ = 0.2 * random_.inCube();
+      path_ = 0.3 * random_.inCube();
+      turn_ = random_.uniform(-1, 1) * random_.inCube().normalized();
+      Isometry3d to = obstaclePose(1);
+      moving_ = std::make_unique<fcl::ContinuousCollisionObjectd>(
+          bush_, std::make_shared<fcl::InterpMotion<double>>(obstaclePose(0), to));
+      manager_->registerObject(moving_.get());
+    }
+    manager_->setup();
+  }
+
+  ArticulatedCollisionManager& manager() { return *manager_; }
+  const KinematicTree& tree() const { return *tree_; }
+  Random& random() { return random_; }
+  Partner partner() const { return partner_; }
+  const Vector3d& barSides() const { return sides_; }
+
+  Isometry3d linkPose(const Eigen::VectorXd& q, int link) const {
+    Isometry3d M = Isometry3d::Identity();
+    for (int i = 0; i <= link; ++i) {
+      const Joint& joint = joints_[static_cast<std::size_t>(i)];
+      M = M * joint.origin;
+      if (joint.type == JointType::prismatic) {
+        M.translate(q[i] * joint.axis);
+      } else {
+        M.rotate(Eigen::AngleAxisd(q[i], joint.axis));
+      }
+    }
+    return M;
+  }
+  /// At time t, where it is an obstacle.
+  Isometry3d bushPose(const Eigen::VectorXd& q, double t) const {
+    return partner_ == Partner::link ? linkPose(q, kBush) : obstaclePose(t);
+  }
+  /// By FCL's static test.
+  bool touches(const Eigen::VectorXd& q, double t) const {
+    const fcl::CollisionRequestd request;
+    fcl::CollisionResultd result;
+    return fcl::collide(bar_.get(), linkPose(q, kBar), bush_.get(), bushPose(q, t), request, result) > 0;
+  }
+  double distance(const Eigen::VectorXd& q, double t) const {
+    const fcl::DistanceRequestd request;
+    fcl::DistanceResultd result;
+    return fcl::distance(bar_.get(), linkPose(q, kBar), bush_.get(), bushPose(q, t), request, result);
+  }
+  /// Configurations that touch at time t and that do not, as near to each other as doubles allow, about.
+  bool findGrazing(double t, Eigen::VectorXd& touching, Eigen::VectorXd& free) {
+    int found = 0;
+    for (int i = 0; i < 60 && found != 3; ++i) {
+      const Eigen::VectorXd q = random_.vector(kJoints, 3);
+      const bool hit = touches(q, t);
+      (hit ? touching : free) = q;
+      found |= hit ? 1 : 2;
+    }
+    if (found != 3) return false;
+    for (int i = 0; i < 45; ++i) {
+      const Eigen::VectorXd middle = 0.5 * (touching + free);
+      (touches(middle, t) ? touching : free) = middle;
+    }
+    return true;
+  }
+  JointMotion motionThrough(const Eigen::VectorXd& q, double t, const Eigen::VectorXd& rate) const {
+    return JointMotion::linear(*tree_, q - t * rate, q + (1 - t) * rate);
+  }
+
+ private:
+  /// The screw of fcl::InterpMotion, as it is asked for: turned by a part of turn_ about the reference point 0.
+  Isometry3d obstaclePose(double t) const {
+    Isometry3d M = Isometry3d::Identity();
+    M.translate(from_ + t * path_);
+    M.rotate(Eigen::AngleAxisd(t * turn_.norm(), turn_.normalized()));
+    return M;
+  }
+
+  Partner partner_;
+  Random random_;
+  std::vector<Joint> joints_;
+  std::shared_ptr<const KinematicTree> tree_;
+  std::shared_ptr<Mesh> bar_, bush_;
+  Vector3d sides_, from_, path_, turn_;
+  std::unique_ptr<fcl::CollisionObjectd> bar_object_, bush_object_;
+  std::unique_ptr<fcl::ContinuousCollisionObjectd> moving_;
+  std::unique_ptr<ArticulatedCollisionManager> manager_;
+};
+
+/// What was culled of the pair.
+std::uint64_t culled(const Pair& pair, const CertifiedResult& result) {
+  const VisibilityStatistics& s = result.statistics.visibility;
+  EXPECT_LE(s.pairs, 1u);
+  EXPECT_EQ(s.pairs, pair.partner() == Partner::link ? s.link_pairs : s.moving_pairs);
+  EXPECT_EQ(s.culled, pair.partner() == Partner::link ? s.link_culled : s.moving_culled);
+  return s.culled;
+}
+
+struct Counts {
+  std::uint64_t queries = 0, asked = 0, wrong = 0, missed = 0, near = 0, culled = 0, culled_near = 0;
+};
+
+/// Motions through a contact that just touches, and past it, in turns.
+Counts examine(Partner partner, std::uint64_t n, const Culler& culler, Method method, std::uint64_t first_seed) {
+  constexpr std::uint64_t kEach = 250;  // of one arm
+  constexpr double kNear = 0.005;       // m
+  Counts counts;
+  CertifiedRequest request;
+  request.visibility = VisibilityMode::atOnce;
+  request.method = method;
+  CertifiedResult result;
+  for (std::uint64_t seed = first_seed; counts.queries < n; ++seed) {
+    Pair pair(partner, seed);
+    pair.manager().setVisibility(culler);
+    Random& random = pair.random();
+    std::uint64_t failed = 0;
+    for (std::uint64_t i = 0; i < kEach && counts.queries < n && failed < 20; ++i) {
+      const double t = random.uniform() < 0.1 ? (random.uniform() < 0.5 ? 0 : 1) : random.uniform();
+      Eigen::VectorXd touching, free;
+      if (!pair.findGrazing(t, touching, free)) {
+        ++failed;
+        continue;
+      }
+      const Eigen::VectorXd rate = random.logUniform(0.01, 2) * random.vector(Pair::kJoints, 1);
+      pair.manager().continuousCollide(pair.motionThrough(touching, t, rate), request, result);
+      ++counts.queries;
+      counts.asked += result.statistics.visibility.pairs;
+      if (culled(pair, result)) {
+        ++counts.wrong;
+        if (counts.wrong < 5) std::cout << "culled, and touches: seed " << seed << ", motion " << i << "\n";
+      } else if (result.status == Status::free) {
+        ++counts.missed;
+      }
+
+      const Eigen::VectorXd away = free + random.logUniform(1e-5, 0.3) * random.vector(Pair::kJoints, 1);
+      if (pair.touches(away, t)) continue;
+      const double distance = pair.distance(away, t);
+      pair.manager().continuousCollide(pair.motionThrough(away, t, rate), request, result);
+      ++counts.queries;
+      counts.asked += result.statistics.visibility.pairs;
+      counts.near += distance < kNear;
+      if (!culled(pair, result)) continue;
+      ++counts.culled;
+      counts.culled_near += distance < kNear;
+      bool hit = false;
+      for (int k = 0; k <= 48 && !hit; ++k) {
+        // All over the motion, and near t.
+        const double at = k <= 24 ? k / 24.0 : std::clamp(t + std::pow(0.7, k - 24) * (k % 2 ? 0.2 : -0.2), 0.0, 1.0);
+        hit = pair.touches(away + (at - t) * rate, at);
+      }
+      counts.wrong += hit;
+      if (hit && counts.wrong < 5)
+        std::cout << "culled, and sampled to touch: seed " << seed << ", motion " << i << "\n";
+    }
+  }
+  return counts;
+}
+
+const char* nameOf(Partner partner) {
+  return partner == Partner::link ? "two links" : "link and moving obstacle";
+}
+
+VisibilityOptions everyPair(int resolution = 32, VisibilityRule rule = VisibilityRule::intervals) {
+  VisibilityOptions options;
+  options.resolution = resolution;
+  options.rule = rule;
+  options.every_link_pair = true;
+  return options;
+}
+
+void print(const std::string& how, Partner partner, const Counts& counts) {
+  std::cout << how << ", " << nameOf(partner) << ": " << counts.queries << " motions, " << counts.asked
+            << " pairs seen, " << counts.wrong << " culled wrongly; past a contact " << counts.culled << " culled, "
+            << counts.culled_near << " of the " << counts.near << " that pass within 5 mm\n";
+}
+
+class MovingPairs : public testing::TestWithParam<Partner> {};
+
+TEST_P(MovingPairs, NoneThatTouchesIsCulled) {
+  for (const auto rule : {VisibilityRule::intervals, VisibilityRule::occlusion}) {
+    for (const int resolution : {8, 32}) {
+      const Counts counts =
+          examine(GetParam(), pairs(16000) / 4, std::make_shared<VisibilityCuller>(everyPair(resolution, rule)),
+                  Method::standard, 1000000 * static_cast<std::uint64_t>(resolution));
+      print("cpu, " + std::to_string(resolution) + (rule == VisibilityRule::intervals ? ", intervals" : ", occlusion"),
+            GetParam(), counts);
+      EXPECT_EQ(counts.wrong + counts.missed, 0u);
+      EXPECT_GT(counts.culled, counts.queries / 40);
+      EXPECT_GT(counts.culled_near, counts.near / 100);
+    }
+  }
+}
+
+TEST_P(MovingPairs, NoneThatTouchesIsCulledByThePapersMethod) {
+  const Counts counts =
+      examine(GetParam(), pairs(16000) / 8, std::make_shared<VisibilityCuller>(everyPair()), Method::redon2004, 5);
+  print("redon2004", GetParam(), counts);
+  EXPECT_EQ(counts.wrong + counts.missed, 0u);
+  EXPECT_GT(counts.culled, counts.queries / 40);
+}
+
+#ifdef FCL_ARTIC_HAS_OFFSCREEN
+TEST_P(MovingPairs, NoneThatTouchesIsCulledByOsmesaAndEgl) {
+  for (const auto backend : {OffscreenBackend::osmesa, OffscreenBackend::egl}) {
+    const Culler culler = makeOffscreenCuller(backend, everyPair());
+    const Counts counts = examine(GetParam(), pairs(16000) / 16, culler, Method::standard, 7);
+    print(backend == OffscreenBackend::osmesa ? "osmesa" : "egl", GetParam(), counts);
+    EXPECT_EQ(counts.wrong + counts.missed, 0u);
+    EXPECT_GT(counts.culled, counts.queries / 40);
+    EXPECT_EQ(culler->fallbackReason(), "");
+  }
+}
+#endif
+
+/// The executor cpu, but that what is swept is drawn thinner than it is.
+struct Thin : visibility::Executor {
+  explicit Thin(const bool& honest) : honest_(honest) {}
+  void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
+    visibility::Batch thin = batch;
+    if (!honest_) {
+      for (auto& swept : thin.swept) swept.volume.radius *= 0.5;
+    }
+    cpu_.run(thin, may);
+  }
+  const bool& honest_;
+  visibility::CpuExecutor cpu_;
+};
+
+TEST_P(MovingPairs, ThinnerVolumesAreSeen) {
+  bool honest = true;  // while it is tested by its culler
+  const auto culler =
+      std::make_shared<VisibilityCuller>(everyPair(), "thin", [&honest] { return std::make_unique<Thin>(honest); });
+  ASSERT_EQ(culler->executor(), "thin");
+  honest = false;
+  const Counts counts = examine(GetParam(), 2000, culler, Method::standard, 11);
+  print("half the radius", GetParam(), counts);
+  EXPECT_GT(counts.wrong, 10u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Partners, MovingPairs, testing::Values(Partner::link, Partner::obstacle),
+                         [](const auto& info) {
+                           return std::string(info.param == Partner::link ? "TwoLinks" : "MovingObstacle");
+                         });
+
+/// Corners of the bar, as the bush sees them at dense times, lie in what the stage was given.
+TEST(MovingVolumes, HoldTheLinkWhereTheOtherStands) {
+  for (const Partner partner : {Partner::link, Partner::obstacle}) {
+    for (const Method method : {Method::standard, Method::redon2004}) {
+      double least_room = HUGE_VAL;
+      std::uint64_t looked = 0;
+      for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        Pair pair(partner, seed);
+        visibility::Batch batch;
+        pair.manager().setVisibility(test::recordTo(batch, everyPair()));
+        CertifiedRequest request;
+        request.visibility = VisibilityMode::on;
+        request.method = method;
+        request.margin = 3;  // all of the bush is near, all the time
+        const Eigen::VectorXd q = pair.random().vector(Pair::kJoints, 3),
+                              rate = pair.random().vector(Pair::kJoints, seed % 4 ? 0.5 : 2);
+        CertifiedResult result;
+        pair.manager().continuousCollide(pair.motionThrough(q, 0, rate), request, result);
+        if (result.statistics.visibility_executor != "recorder" || batch.swept.size() != 8) continue;
+        ++looked;
+        for (std::size_t lane = 0; lane < 8; ++lane) {
+          for (int k = 0; k < 24; ++k) {
+            const Vector3d n = pair.random().inCube().normalized();
+            const double held = test::support(batch, batch.swept[lane].volume, n);
+            for (int i = 0; i <= 16; ++i) {
+              const double t = (static_cast<double>(lane) + i / 16.0) / 8;
+              const Isometry3d seen =
+                  pair.bushPose(q + t * rate, t).inverse() * pair.linkPose(q + t * rate, Pair::kBar);
+              double reached = -HUGE_VAL;
+              for (int c = 0; c < 8; ++c) reached = std::max(reached, n.dot(seen * cornerOf(pair.barSides(), c)));
+              ASSERT_LE(reached, held + 1e-12) << seed << " " << lane << " " << i;
+              least_room = std::min(least_room, held - reached);
+            }
+          }
+        }
+      }
+      std::cout << nameOf(partner) << ": " << looked << " motions, least room " << least_room << " m\n";
+      EXPECT_GT(looked, 40u);
+      EXPECT_LT(least_room, 2e-3) << "not just large";
+    }
+  }
+}
+
+/// All ways of asking give the answers without the stage.
+TEST(MovingAnswers, AreThoseWithoutTheStage) {
+  for (const Partner partner : {Partner::link, Partner::obstacle}) {
+    std::uint64_t contacts = 0, queries = 0, culled = 0;
+    for (std::uint64_t seed = 100; seed < 130; ++seed) {
+      Pair pair(partner, seed);
+      pair.manager().setVisibility(std::make_shared<VisibilityCuller>(everyPair()));
+      std::vector<JointMotion> motions;
+      for (int i = 0; i < 40; ++i) {
+        motions.push_back(
+            pair.motionThrough(pair.random().vector(Pair::kJoints, 3), 0,
+                               pair.random().logUniform(0.05, 1) * pair.random().vector(Pair::kJoints, 1)));
+      }
+      for (const bool margin : {false, true}) {
+        CertifiedRequest request;
+        request.mode = seed % 3 ? ContactMode::first : ContactMode::any;
+        request.ignore_initial_contact = seed % 5 == 0;
+        request.margin = margin ? 0.02 : 0;
+        std::vector<CertifiedResult> off, batch;
+        pair.manager().continuousCollide(motions, request, off, 1);
+        for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic, VisibilityMode::atOnce}) {
+          request.visibility = mode;
+          pair.manager().continuousCollide(motions, request, batch, 1);
+          for (std::size_t i = 0; i < motions.size(); ++i) {
+            CertifiedResult alone;
+            pair.manager().continuousCollide(motions[i], request, alone);
+            ++queries;
+            contacts += off[i].status == Status::contact;
+            culled += alone.statistics.visibility.culled;
+            if (mode == VisibilityMode::atOnce) {
+              EXPECT_TRUE(test::agree(off[i], alone)) << seed << " " << i;
+              EXPECT_TRUE(test::sameBits(batch[i], alone)) << seed << " " << i;
+            } else {
+              EXPECT_TRUE(test::sameBits(off[i], alone)) << seed << " " << i;
+              EXPECT_TRUE(test::sameBits(off[i], batch[i])) << seed << " " << i;
+            }
+          }
+        }
+      }
+    }
+    std::cout << nameOf(partner) << ": " << queries << " queries, " << contacts << " with contact, " << culled
+              << " culled\n";
+    EXPECT_GT(contacts, queries / 10);
+    EXPECT_LT(contacts, queries * 9 / 10);
+    EXPECT_GT(culled, queries / 20);
+  }
+}
+
+/// Two links are left to the exact tests unless one comes into the other one's box.
+TEST(MovingAnswers, LinksThatKeepToTheirSidesAreNotLookedAt) {
+  std::uint64_t usual = 0, all = 0;
+  for (std::uint64_t seed = 200; seed < 230; ++seed) {
+    Pair pair(Partner::link, seed);
+    const auto ask = [&](bool every) {
+      VisibilityOptions options;
+      options.every_link_pair = every;
+      pair.manager().setVisibility(std::make_shared<VisibilityCuller>(options));
+      CertifiedRequest request;
+      request.visibility = VisibilityMode::atOnce;
+      std::uint64_t looked = 0;
+      Random random(seed);
+      for (int i = 0; i < 20; ++i) {
+        CertifiedResult result;
+        pair.manager().continuousCollide(
+            pair.motionThrough(random.vector(Pair::kJoints, 3), 0, random.vector(Pair::kJoints, 0.1)), request, result);
+        looked += result.statistics.visibility.link_pairs;
+      }
+      return looked;
+    };
+    usual += ask(false);
+    all += ask(true);
+  }
+  std::cout << usual << " of " << all << " pairs of two links are looked at\n";
+  EXPECT_GT(usual, 20u);
+  EXPECT_GT(all, usual + 20);
+}
+
+}  // namespace
