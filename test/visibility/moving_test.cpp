@@ -28,6 +28,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Culler = std::shared_ptr<const VisibilityCuller>;
 using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
+using visibility::Batch;
 
 /// FCL_ARTIC_VISIBILITY_PAIRS=1000000 in the environment makes it a campaign.
 std::uint64_t pairs(std::uint64_t usual) {
@@ -108,7 +109,7 @@ class Pair {
       joints_.push_back(joint);
     }
     tree_ = tree;
-    const double thickness = random_.uniform(0.01, 0.06);
+    const double thickness = random_.logUniform(0.001, 0.06);
     sides_ << thickness, thickness, random_.uniform(0.1, 0.3);
     bar_ = bar(sides_);
     bush_ = bush(static_cast<int>(random_.uniform(1, 60)), random_);
@@ -122,9 +123,10 @@ class Pair {
       from_ = 0.2 * random_.inCube();
       path_ = 0.3 * random_.inCube();
       turn_ = random_.uniform(-1, 1) * random_.inCube().normalized();
-      Isometry3d to = obstaclePose(1);
+      const Isometry3d begin = obstaclePose(0), end = obstaclePose(1);
       moving_ = std::make_unique<fcl::ContinuousCollisionObjectd>(
-          bush_, std::make_shared<fcl::InterpMotion<double>>(obstaclePose(0), to));
+          bush_, std::make_shared<fcl::InterpMotion<double>>(begin.linear(), begin.translation(), end.linear(),
+                                                             end.translation(), Vector3d(0, 0, 0)));
       manager_->registerObject(moving_.get());
     }
     manager_->setup();
@@ -167,7 +169,7 @@ class Pair {
   /// Configurations that touch at time t and that do not, as near to each other as doubles allow, about.
   bool findGrazing(double t, Eigen::VectorXd& touching, Eigen::VectorXd& free) {
     int found = 0;
-    for (int i = 0; i < 60 && found != 3; ++i) {
+    for (int i = 0; i < 400 && found != 3; ++i) {
       const Eigen::VectorXd q = random_.vector(kJoints, 3);
       const bool hit = touches(q, t);
       (hit ? touching : free) = q;
@@ -219,8 +221,8 @@ struct Counts {
 
 /// Motions through a contact that just touches, and past it, in turns.
 Counts examine(Partner partner, std::uint64_t n, const Culler& culler, Method method, std::uint64_t first_seed) {
-  constexpr std::uint64_t kEach = 250;  // of one arm
-  constexpr double kNear = 0.005;       // m
+  constexpr std::uint64_t kEach = 50;  // of one arm
+  constexpr double kNear = 0.02;       // m
   Counts counts;
   CertifiedRequest request;
   request.visibility = VisibilityMode::atOnce;
@@ -231,14 +233,14 @@ Counts examine(Partner partner, std::uint64_t n, const Culler& culler, Method me
     pair.manager().setVisibility(culler);
     Random& random = pair.random();
     std::uint64_t failed = 0;
-    for (std::uint64_t i = 0; i < kEach && counts.queries < n && failed < 20; ++i) {
+    for (std::uint64_t i = 0; i < kEach && counts.queries < n && failed < 2; ++i) {
       const double t = random.uniform() < 0.1 ? (random.uniform() < 0.5 ? 0 : 1) : random.uniform();
       Eigen::VectorXd touching, free;
       if (!pair.findGrazing(t, touching, free)) {
         ++failed;
         continue;
       }
-      const Eigen::VectorXd rate = random.logUniform(0.01, 2) * random.vector(Pair::kJoints, 1);
+      const Eigen::VectorXd rate = random.logUniform(1e-3, 2) * random.vector(Pair::kJoints, 1);
       pair.manager().continuousCollide(pair.motionThrough(touching, t, rate), request, result);
       ++counts.queries;
       counts.asked += result.statistics.visibility.pairs;
@@ -288,7 +290,7 @@ VisibilityOptions everyPair(int resolution = 32, VisibilityRule rule = Visibilit
 void print(const std::string& how, Partner partner, const Counts& counts) {
   std::cout << how << ", " << nameOf(partner) << ": " << counts.queries << " motions, " << counts.asked
             << " pairs seen, " << counts.wrong << " culled wrongly; past a contact " << counts.culled << " culled, "
-            << counts.culled_near << " of the " << counts.near << " that pass within 5 mm\n";
+            << counts.culled_near << " of the " << counts.near << " that pass within 20 mm\n";
 }
 
 class MovingPairs : public testing::TestWithParam<Partner> {};
@@ -297,7 +299,7 @@ TEST_P(MovingPairs, NoneThatTouchesIsCulled) {
   for (const auto rule : {VisibilityRule::intervals, VisibilityRule::occlusion}) {
     for (const int resolution : {8, 32}) {
       const Counts counts =
-          examine(GetParam(), pairs(16000) / 4, std::make_shared<VisibilityCuller>(everyPair(resolution, rule)),
+          examine(GetParam(), pairs(8000) / 4, std::make_shared<VisibilityCuller>(everyPair(resolution, rule)),
                   Method::standard, 1000000 * static_cast<std::uint64_t>(resolution));
       print("cpu, " + std::to_string(resolution) + (rule == VisibilityRule::intervals ? ", intervals" : ", occlusion"),
             GetParam(), counts);
@@ -310,7 +312,7 @@ TEST_P(MovingPairs, NoneThatTouchesIsCulled) {
 
 TEST_P(MovingPairs, NoneThatTouchesIsCulledByThePapersMethod) {
   const Counts counts =
-      examine(GetParam(), pairs(16000) / 8, std::make_shared<VisibilityCuller>(everyPair()), Method::redon2004, 5);
+      examine(GetParam(), pairs(8000) / 8, std::make_shared<VisibilityCuller>(everyPair()), Method::redon2004, 5);
   print("redon2004", GetParam(), counts);
   EXPECT_EQ(counts.wrong + counts.missed, 0u);
   EXPECT_GT(counts.culled, counts.queries / 40);
@@ -320,7 +322,7 @@ TEST_P(MovingPairs, NoneThatTouchesIsCulledByThePapersMethod) {
 TEST_P(MovingPairs, NoneThatTouchesIsCulledByOsmesaAndEgl) {
   for (const auto backend : {OffscreenBackend::osmesa, OffscreenBackend::egl}) {
     const Culler culler = makeOffscreenCuller(backend, everyPair());
-    const Counts counts = examine(GetParam(), pairs(16000) / 16, culler, Method::standard, 7);
+    const Counts counts = examine(GetParam(), pairs(8000) / 16, culler, Method::standard, 7);
     print(backend == OffscreenBackend::osmesa ? "osmesa" : "egl", GetParam(), counts);
     EXPECT_EQ(counts.wrong + counts.missed, 0u);
     EXPECT_GT(counts.culled, counts.queries / 40);
@@ -332,8 +334,8 @@ TEST_P(MovingPairs, NoneThatTouchesIsCulledByOsmesaAndEgl) {
 /// The executor cpu, but that what is swept is drawn thinner than it is.
 struct Thin : visibility::Executor {
   explicit Thin(const bool& honest) : honest_(honest) {}
-  void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
-    visibility::Batch thin = batch;
+  void run(const Batch& batch, std::vector<std::uint8_t>& may) override {
+    Batch thin = batch;
     if (!honest_) {
       for (auto& swept : thin.swept) swept.volume.radius *= 0.5;
     }
@@ -359,45 +361,56 @@ INSTANTIATE_TEST_SUITE_P(Partners, MovingPairs, testing::Values(Partner::link, P
                            return std::string(info.param == Partner::link ? "TwoLinks" : "MovingObstacle");
                          });
 
-/// Corners of the bar, as the bush sees them at dense times, lie in what the stage was given.
+/// How far a volume reaches beyond the bar over an eighth of the motion, along random directions; below 0: not as far.
+double roomIn(const Batch& batch, const visibility::Volume& volume, Pair& pair, const Eigen::VectorXd& q,
+              const Eigen::VectorXd& rate, int eighth) {
+  double room = HUGE_VAL;
+  for (int k = 0; k < 24; ++k) {
+    const Vector3d n = pair.random().inCube().normalized();
+    const double held = test::support(batch, volume, n) + 1e-12;
+    for (int i = 0; i <= 16; ++i) {
+      const double t = (eighth + i / 16.0) / 8;
+      const Eigen::VectorXd at = q + t * rate;
+      const Isometry3d seen = pair.bushPose(at, t).inverse() * pair.linkPose(at, Pair::kBar);
+      for (int c = 0; c < 8; ++c) room = std::min(room, held - n.dot(seen * cornerOf(pair.barSides(), c)));
+    }
+  }
+  return room;
+}
+
+/// Corners of the bar, as the bush sees them at dense times, lie in what the stage was given: each volume that is drawn
+/// holds the bar over one of the eighths, another one than the volume before it.
 TEST(MovingVolumes, HoldTheLinkWhereTheOtherStands) {
   for (const Partner partner : {Partner::link, Partner::obstacle}) {
     for (const Method method : {Method::standard, Method::redon2004}) {
       double least_room = HUGE_VAL;
       std::uint64_t looked = 0;
-      for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         Pair pair(partner, seed);
-        visibility::Batch batch;
+        Batch batch;
         pair.manager().setVisibility(test::recordTo(batch, everyPair()));
         CertifiedRequest request;
         request.visibility = VisibilityMode::on;
         request.method = method;
-        request.margin = 3;  // all of the bush is near, all the time
-        const Eigen::VectorXd q = pair.random().vector(Pair::kJoints, 3),
-                              rate = pair.random().vector(Pair::kJoints, seed % 4 ? 0.5 : 2);
+        Eigen::VectorXd touching, free;
+        if (!pair.findGrazing(0.5, touching, free)) continue;
+        const Eigen::VectorXd rate = pair.random().vector(Pair::kJoints, seed % 4 ? 0.3 : 1.5), q = free - 0.5 * rate;
         CertifiedResult result;
         pair.manager().continuousCollide(pair.motionThrough(q, 0, rate), request, result);
-        if (result.statistics.visibility_executor != "recorder" || batch.swept.size() != 8) continue;
-        ++looked;
-        for (std::size_t lane = 0; lane < 8; ++lane) {
-          for (int k = 0; k < 24; ++k) {
-            const Vector3d n = pair.random().inCube().normalized();
-            const double held = test::support(batch, batch.swept[lane].volume, n);
-            for (int i = 0; i <= 16; ++i) {
-              const double t = (static_cast<double>(lane) + i / 16.0) / 8;
-              const Isometry3d seen =
-                  pair.bushPose(q + t * rate, t).inverse() * pair.linkPose(q + t * rate, Pair::kBar);
-              double reached = -HUGE_VAL;
-              for (int c = 0; c < 8; ++c) reached = std::max(reached, n.dot(seen * cornerOf(pair.barSides(), c)));
-              ASSERT_LE(reached, held + 1e-12) << seed << " " << lane << " " << i;
-              least_room = std::min(least_room, held - reached);
-            }
-          }
+        if (result.statistics.visibility_executor != "recorder" || result.statistics.redon.pairs_by_standard) continue;
+        int eighth = 0;
+        for (const Batch::Swept& swept : batch.swept) {
+          double room = -1;
+          for (; eighth < 8 && room < 0; ++eighth) room = roomIn(batch, swept.volume, pair, q, rate, eighth);
+          ASSERT_GE(room, 0) << "seed " << seed;
+          least_room = std::min(least_room, room);
+          ++looked;
         }
       }
-      std::cout << nameOf(partner) << ": " << looked << " motions, least room " << least_room << " m\n";
-      EXPECT_GT(looked, 40u);
-      EXPECT_LT(least_room, 2e-3) << "not just large";
+      std::cout << nameOf(partner) << (method == Method::standard ? "" : ", redon2004") << ": " << looked
+                << " volumes, least room " << least_room << " m\n";
+      EXPECT_GT(looked, 100u);
+      EXPECT_LT(least_room, 1e-3) << "not just large";
     }
   }
 }
@@ -410,10 +423,12 @@ TEST(MovingAnswers, AreThoseWithoutTheStage) {
       Pair pair(partner, seed);
       pair.manager().setVisibility(std::make_shared<VisibilityCuller>(everyPair()));
       std::vector<JointMotion> motions;
-      for (int i = 0; i < 40; ++i) {
-        motions.push_back(
-            pair.motionThrough(pair.random().vector(Pair::kJoints, 3), 0,
-                               pair.random().logUniform(0.05, 1) * pair.random().vector(Pair::kJoints, 1)));
+      Eigen::VectorXd touching, free;
+      for (int i = 0; i < 20 && pair.findGrazing(0.5, touching, free); ++i) {
+        const double most = pair.random().logUniform(0.05, 1);
+        motions.push_back(pair.motionThrough(touching, 0.5, pair.random().vector(Pair::kJoints, most)));
+        const Eigen::VectorXd away = free + pair.random().vector(Pair::kJoints, 0.3);
+        motions.push_back(pair.motionThrough(away, 0.5, pair.random().vector(Pair::kJoints, most)));
       }
       for (const bool margin : {false, true}) {
         CertifiedRequest request;
@@ -444,7 +459,7 @@ TEST(MovingAnswers, AreThoseWithoutTheStage) {
     }
     std::cout << nameOf(partner) << ": " << queries << " queries, " << contacts << " with contact, " << culled
               << " culled\n";
-    EXPECT_GT(contacts, queries / 10);
+    EXPECT_GT(contacts, queries / 4);
     EXPECT_LT(contacts, queries * 9 / 10);
     EXPECT_GT(culled, queries / 20);
   }
@@ -476,7 +491,7 @@ TEST(MovingAnswers, LinksThatKeepToTheirSidesAreNotLookedAt) {
   }
   std::cout << usual << " of " << all << " pairs of two links are looked at\n";
   EXPECT_GT(usual, 20u);
-  EXPECT_GT(all, usual + 20);
+  EXPECT_GT(all, usual + 10);
 }
 
 }  // namespace
