@@ -415,6 +415,42 @@ TEST(StageOne, TakesWhatAdvisorsClear) {
   EXPECT_EQ(world.stage_one.direction(0), nullptr);
 }
 
+/// Of two bodies that move the advisor is given what B sweeps where A stands still: a ball that goes straight along z.
+TEST(StageOne, OffersPairsThatBothMoveWhereOneStandsStill) {
+  TwoBalls world(-2, 2);
+  world.asPair();
+  const double ball[7] = {0, 0, 0, 0, 0, 0, 0.25};
+  engine::Advisor advisor;
+  int asked = 0;
+  advisor.self = &asked;
+  advisor.clear = [](void* context, const Problem& problem, const engine::SweptLink* links,
+                     engine::CullCandidate* pairs, std::int32_t n) {
+    ASSERT_EQ(n, 1);
+    ++*static_cast<int*>(context);
+    EXPECT_EQ(pairs->pair, problem.linkPair(0));
+    EXPECT_EQ(pairs->still, 0);
+    EXPECT_TRUE(pairs->at->identity);
+    EXPECT_EQ(pairs->lanes, kAllLanes);
+    for (int k = 0; k < kLanes; ++k) {
+      const engine::SweptLink& part = links[kLanes * pairs->swept + k];
+      EXPECT_GE(part.radius, 0.25);
+      EXPECT_LT(part.radius, 0.25 + 1e-9);
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(part.points[i][2], -2 + (k + i / 2 * 0.5) * 0.5, 1e-12) << k << " " << i;
+    }
+    pairs->lanes = 0b10;
+  };
+  world.query.ask(advisor);
+  world.begin();
+  world.stage_one.cull(world.open);
+  world.stage_one.refine(world.traversal, world.open);
+  EXPECT_EQ(asked, 0) << "free bodies";
+  world.bodies[1].tree_lss = ball;
+  world.stage_one.refine(world.traversal, world.open);
+  EXPECT_EQ(asked, 1);
+  ASSERT_EQ(world.open.size(), 1);
+  EXPECT_EQ(world.open[0].mask, 0b10u);
+}
+
 /// A toy advisor: it knows the two balls by heart, and counts how often it is asked.
 struct Toy {
   unsigned free = 0;  ///< parts that it clears
