@@ -435,7 +435,8 @@ TEST(StageOne, OffersPairsThatBothMoveWhereOneStandsStill) {
       const engine::SweptLink& part = links[kLanes * pairs->swept + k];
       EXPECT_GE(part.radius, 0.25);
       EXPECT_LT(part.radius, 0.25 + 1e-9);
-      for (int i = 0; i < 6; ++i) EXPECT_NEAR(part.points[i][2], -2 + (k + i / 2 * 0.5) * 0.5, 1e-12) << k << " " << i;
+      const double at[3] = {0, 1, 0.5};  // begin, end, and the Bernstein point between them
+      for (int i = 0; i < 6; ++i) EXPECT_NEAR(part.points[i][2], -2 + 0.5 * (k + at[i / 2]), 1e-12) << k << " " << i;
     }
     pairs->lanes = 0b10;
   };

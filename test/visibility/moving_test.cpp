@@ -216,7 +216,7 @@ std::uint64_t culled(const Pair& pair, const CertifiedResult& result) {
 }
 
 struct Counts {
-  std::uint64_t queries = 0, asked = 0, wrong = 0, missed = 0, near = 0, culled = 0, culled_near = 0;
+  std::uint64_t queries = 0, asked = 0, wrong = 0, missed = 0, near = 0, culled = 0, drawn = 0, culled_near = 0;
 };
 
 /// Motions through a contact that just touches, and past it, in turns.
@@ -260,6 +260,7 @@ Counts examine(Partner partner, std::uint64_t n, const Culler& culler, Method me
       counts.near += distance < kNear;
       if (!culled(pair, result)) continue;
       ++counts.culled;
+      counts.drawn += result.statistics.visibility.pieces > 0;
       counts.culled_near += distance < kNear;
       bool hit = false;
       for (int k = 0; k <= 48 && !hit; ++k) {
@@ -289,8 +290,9 @@ VisibilityOptions everyPair(int resolution = 32, VisibilityRule rule = Visibilit
 
 void print(const std::string& how, Partner partner, const Counts& counts) {
   std::cout << how << ", " << nameOf(partner) << ": " << counts.queries << " motions, " << counts.asked
-            << " pairs seen, " << counts.wrong << " culled wrongly; past a contact " << counts.culled << " culled, "
-            << counts.culled_near << " of the " << counts.near << " that pass within 20 mm\n";
+            << " pairs seen, " << counts.wrong << " culled wrongly; past a contact " << counts.culled << " culled ("
+            << counts.drawn << " by drawing), " << counts.culled_near << " of the " << counts.near
+            << " that pass within 20 mm\n";
 }
 
 class MovingPairs : public testing::TestWithParam<Partner> {};
