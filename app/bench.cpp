@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "certify_bench.h"
 #include "planning_bench.h"
 #include "robot_bench.h"
 #include "table1.h"
@@ -56,6 +57,33 @@ void addBench(CLI::App& program, int& exit_status) {
                    "accepted, at the moment of contact")
       ->type_name("FOLDER");
   planning->callback([options, &exit_status] { exit_status = benchPlanning(*options); });
+
+  auto certify_options = std::make_shared<CertifyBenchOptions>();
+  CertifyBenchOptions& c = *certify_options;
+  CLI::App* certify = bench->add_subcommand(
+      "certify", "Plans of RRTConnect at OMPL's default resolution: how many collide, what certify finds and mends");
+  certify->footer(
+      "The data is that of bench planning. Every plan is certified, looked at by FCL in steps 100 times finer than\n"
+      "OMPL's default, and mended where it touches.\n"
+      "Exit status: 0, 1 a plan certified free is seen to collide, 2 error.");
+  certify->add_option("--data", c.data, "Folder with robots/ and problems/")
+      ->envname("FCL_ARTIC_DATA")
+      ->required()
+      ->type_name("FOLDER");
+  certify->add_option("--robot", c.robot, "panda, ur5 or ur5_coarse")->capture_default_str()->type_name("NAME");
+  certify->add_option("--environment", c.environments, "Only these; may be repeated")->type_name("NAME...");
+  certify->add_option("--problems", c.problems, "Problems of each environment, at most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  certify->add_option("--seeds", c.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  certify->add_option("--time-limit", c.seconds, "Seconds for a plan, and for its simplification")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  certify->add_option("--mend-time", c.mend_seconds, "Seconds to mend a plan")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  certify->add_option("--csv", c.csv, "Write a row for each plan")->type_name("FILE");
+  certify->callback([certify_options, &exit_status] { exit_status = benchCertify(*certify_options); });
 }
 
 }  // namespace fcl_artic::app

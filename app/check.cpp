@@ -18,6 +18,7 @@
 #include "fcl_artic/fcl_artic.h"
 #include "lines.h"
 #include "progress.h"
+#include "query_options.h"
 #include "redon_options.h"
 #include "render/picture.h"
 #include "report.h"
@@ -40,7 +41,7 @@ struct Options {
   CertifiedRequest request;
   VisibilityChoice visibility;
   std::optional<std::size_t> max_contacts;
-  bool every_pair = false, no_self = false, no_scene = false;
+  bool every_pair = false;
   bool shortest = false, json = false, clearance = false;
   ClearanceRequest clearance_request;
 };
@@ -71,24 +72,12 @@ std::string requireCamera(const std::string& text) {
   return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
 }
 
-int exitStatus(Status status) {
-  switch (status) {
-    case Status::free:
-      return kExitFree;
-    case Status::contact:
-      return kExitContact;
-    case Status::undecided:
-      return kExitUndecided;
-  }
-  return kExitError;
-}
-
 int run(const Options& options) {
   if (!options.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
   World world(options.world);
   world.readRobot();
-  const bool check_allowed = !options.world.robot.srdf.empty() && !options.no_self;
+  const bool check_allowed = !options.world.robot.srdf.empty() && options.request.check_self;
   if (check_allowed || !options.world.auto_srdf.empty()) world.provePairs();
   const KinematicTree& tree = *world.robot.tree;
   // One of the two.
@@ -128,8 +117,6 @@ int run(const Options& options) {
 
   CertifiedRequest request = options.request;
   request.visibility = options.visibility.mode;
-  request.check_self = !options.no_self;
-  request.check_scene = !options.no_scene;
   request.mode = options.every_pair ? ContactMode::firstOfEveryPair : ContactMode::first;
   request.max_contacts = options.max_contacts.value_or(options.every_pair ? kAllContacts : 1);
   request.measure_times = true;
@@ -159,10 +146,7 @@ int run(const Options& options) {
 
   std::optional<Clearance> clearance;
   if (options.clearance) {
-    ClearanceRequest asked = options.clearance_request;
-    asked.check_self = request.check_self;
-    asked.check_scene = request.check_scene;
-    asked.work_budget = request.work_budget;
+    const ClearanceRequest asked = clearanceOf(options.clearance_request, request);
     clearance = trajectory ? manager.clearance(*trajectory, asked) : manager.clearance(*motion, asked);
   }
 
@@ -257,35 +241,13 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->capture_default_str();
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
-  const auto number = [&](const std::string& name, double& value, const std::string& help) {
-    return check->add_option(name, value, help)->check(requireNotNegative)->group("Query")->capture_default_str();
-  };
-  number("--margin", request.margin, "Nearer than this counts as touching, in m");
-  CLI::Option* clearance =
-      check->add_flag("--clearance", o.clearance, "Also the smallest distance over the whole motion, proven")
-          ->group("Query");
-  check->add_option("--clearance-most", o.clearance_request.most, "Distances beyond this are of no interest, in m")
-      ->check(requirePositive)
-      ->needs(clearance)
-      ->group("Query")
-      ->capture_default_str();
-  number("--tolerance-time", request.tolerance_time, "Wanted width of the bracket of the contact time");
-  number("--tolerance-distance", request.tolerance_distance,
-         "A gap below this, in m, may be taken for a contact that is not certain");
-  check->add_option("--budget", request.work_budget, "Tests after which the answer is 'undecided'; 0: no limit")
-      ->group("Query")
-      ->capture_default_str();
+  addQueryOptions(*check, request);
+  CLI::Option* clearance = addClearanceOptions(*check, o.clearance, o.clearance_request);
   check->add_option("--max-contacts", o.max_contacts, "Contacts to report at most (1; with --every-pair: all)")
       ->check(CLI::PositiveNumber)
       ->group("Query");
   check->add_flag("--every-pair", o.every_pair, "The first contact of every pair of bodies that touches")
       ->group("Query");
-  check
-      ->add_flag("--ignore-initial-contact", request.ignore_initial_contact,
-                 "Pairs that touch at t = 0 may separate; they are watched from then on")
-      ->group("Query");
-  check->add_flag("--no-self", o.no_self, "Do not check links against links")->group("Query");
-  check->add_flag("--no-scene", o.no_scene, "Do not check links against obstacles")->group("Query");
 
   check
       ->add_option_function<std::string>(

@@ -3,13 +3,13 @@
 
 #include <charconv>
 #include <cmath>
-#include <set>
+#include <map>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "text/nearest_name.h"
+#include "plans/variables.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -28,12 +28,6 @@ std::vector<std::string> splitTokens(const std::vector<std::string>& words) {
     }
   }
   return tokens;
-}
-
-std::string variableNames(const KinematicTree& tree) {
-  std::string names;
-  for (int v = 0; v < tree.dof(); ++v) names += (v ? ", " : "") + tree.variableName(v);
-  return names;
 }
 
 double parseValue(const KinematicTree& tree, int variable, std::string_view text, const std::string& option) {
@@ -58,54 +52,58 @@ double parseValue(const KinematicTree& tree, int variable, std::string_view text
   return degrees ? value * kRadiansPerDegree : value;
 }
 
-}  // namespace
-
-int variableOf(const KinematicTree& tree, const std::string& name, const std::string& option) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return v;
-  }
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    const Joint& joint = tree.joint(j);
-    if (joint.name != name) continue;
-    if (tree.numVariables(j) > 1) {
-      throw std::invalid_argument(fmt::format("{}: joint '{}' has {} values, from '{}' on", option, name,
-                                              tree.numVariables(j), tree.variableName(tree.jointVariable(j))));
+/// Values by variable, of tokens that all carry a joint's name.
+std::map<int, double> namedValues(const KinematicTree& tree, const std::vector<std::string>& tokens,
+                                  const std::string& option) {
+  std::map<int, double> values;
+  for (const std::string& token : tokens) {
+    const std::size_t equals = token.find('=');
+    if (equals == std::string::npos) {
+      throw std::invalid_argument(
+          fmt::format("{}: '{}': either all values carry a joint's name or none does", option, token));
     }
-    throw std::invalid_argument(joint.mimics ? fmt::format("{}: joint '{}' follows joint '{}' and takes no value",
-                                                           option, name, joint.mimic.master)
-                                             : fmt::format("{}: joint '{}' is fixed and takes no value", option, name));
+    const int variable = plans::variableOf(tree, token.substr(0, equals), option);
+    const double value = parseValue(tree, variable, std::string_view(token).substr(equals + 1), option);
+    if (!values.emplace(variable, value).second) {
+      throw std::invalid_argument(fmt::format("{}: joint '{}' is given twice", option, tree.variableName(variable)));
+    }
   }
-  std::vector<std::string> names;
-  for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));
-  throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}{}", option, tree.name(),
-                                          name, variableNames(tree), text::didYouMean(name, names)));
+  return values;
 }
+
+}  // namespace
 
 Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<std::string>& words,
                                    const std::string& option) {
   const std::vector<std::string> tokens = splitTokens(words);
-  const bool named = !tokens.empty() && tokens.front().find('=') != std::string::npos;
-  if (!named && static_cast<int>(tokens.size()) != tree.dof()) {
+  Eigen::VectorXd q = tree.neutralConfiguration();
+  if (!tokens.empty() && tokens.front().find('=') != std::string::npos) {
+    for (const auto& [variable, value] : namedValues(tree, tokens, option)) q[variable] = value;
+    return q;
+  }
+  if (static_cast<int>(tokens.size()) != tree.dof()) {
     throw std::invalid_argument(fmt::format("{} has {} value{}, robot '{}' has {} joint{}: {}", option, tokens.size(),
                                             tokens.size() == 1 ? "" : "s", tree.name(), tree.dof(),
-                                            tree.dof() == 1 ? "" : "s", variableNames(tree)));
+                                            tree.dof() == 1 ? "" : "s", plans::variableNames(tree)));
   }
-  Eigen::VectorXd q = tree.neutralConfiguration();
-  std::set<int> seen;
-  for (std::size_t i = 0; i < tokens.size(); ++i) {
-    const std::string& token = tokens[i];
-    const std::size_t equals = token.find('=');
-    if ((equals != std::string::npos) != named) {
+  for (int v = 0; v < tree.dof(); ++v) {
+    const std::string& token = tokens[static_cast<std::size_t>(v)];
+    if (token.find('=') != std::string::npos) {
       throw std::invalid_argument(
           fmt::format("{}: '{}': either all values carry a joint's name or none does", option, token));
     }
-    const int variable = named ? variableOf(tree, token.substr(0, equals), option) : static_cast<int>(i);
-    if (!seen.insert(variable).second) {
-      throw std::invalid_argument(fmt::format("{}: joint '{}' is given twice", option, tree.variableName(variable)));
-    }
-    q[variable] = parseValue(tree, variable, std::string_view(token).substr(named ? equals + 1 : 0), option);
+    q[v] = parseValue(tree, v, token, option);
   }
   return q;
+}
+
+std::map<std::string, double> parseValues(const KinematicTree& tree, const std::vector<std::string>& words,
+                                          const std::string& option) {
+  std::map<std::string, double> values;
+  for (const auto& [variable, value] : namedValues(tree, splitTokens(words), option)) {
+    values[tree.variableName(variable)] = value;
+  }
+  return values;
 }
 
 }  // namespace fcl_artic::app

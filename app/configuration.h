@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,8 @@ namespace fcl_artic::app {
 Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<std::string>& words,
                                    const std::string& option);
 
-/// Variable of that name.
-/// @param what  begins the message.
-/// @throws std::invalid_argument: no such joint, or one that takes no value.
-int variableOf(const KinematicTree& tree, const std::string& name, const std::string& what);
+/// Reads name=value pairs, as parseConfiguration() does, and no others.
+std::map<std::string, double> parseValues(const KinematicTree& tree, const std::vector<std::string>& words,
+                                          const std::string& option);
 
 }  // namespace fcl_artic::app

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "fcl_artic/bracket.h"
+
 namespace fcl_artic::app {
 
 // Exit statuses of the program.
@@ -8,5 +10,25 @@ constexpr int kExitFree = 0;       ///< proven free; also success of the other v
 constexpr int kExitContact = 1;    ///< a contact, proven or not
 constexpr int kExitError = 2;      ///< wrong input or usage
 constexpr int kExitUndecided = 3;  ///< the work budget ran out
+
+inline int exitStatus(Status status) {
+  switch (status) {
+    case Status::free:
+      return kExitFree;
+    case Status::contact:
+      return kExitContact;
+    case Status::undecided:
+      return kExitUndecided;
+  }
+  return kExitError;
+}
+
+/// Of many answers: an error before a contact before undecided before free.
+inline int worseExit(int a, int b) {
+  for (const int status : {kExitError, kExitContact, kExitUndecided}) {
+    if (a == status || b == status) return status;
+  }
+  return kExitFree;
+}
 
 }  // namespace fcl_artic::app

@@ -143,7 +143,7 @@ class Answers {
     } catch (const std::exception& error) {
       if (!question.id.is_null()) out["id"] = question.id;
       out.update({{"status", "error"}, {"error", fmt::format("line {}: {}", number, error.what())}});
-      errors_ = true;
+      exit_ = kExitError;
     }
     // Not the reader's fault if a text is cut within a character.
     fmt::print("{}\n", out.dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -151,9 +151,7 @@ class Answers {
   }
 
   std::size_t asked() const { return asked_; }
-  int exitStatus() const {
-    return errors_ ? kExitError : contacts_ ? kExitContact : undecided_ ? kExitUndecided : kExitFree;
-  }
+  int exitStatus() const { return exit_; }
 
  private:
   Json solve(const Question& question) {
@@ -162,8 +160,7 @@ class Answers {
     } else {
       manager_.continuousCollide(*question.motion, request_, result_);
     }
-    contacts_ = contacts_ || result_.status == Status::contact;
-    undecided_ = undecided_ || result_.status == Status::undecided;
+    exit_ = worseExit(exit_, app::exitStatus(result_.status));
     const double begin = question.trajectory ? question.trajectory->beginTime() : 0,
                  end = question.trajectory ? question.trajectory->endTime() : 1;
     const auto configuration = [&](double t) {
@@ -187,7 +184,7 @@ class Answers {
   CertificateFile& certificates_;
   CertifiedResult result_;
   std::size_t asked_ = 0;
-  bool errors_ = false, contacts_ = false, undecided_ = false;
+  int exit_ = kExitFree;  ///< of the worst answer
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bench.h"
+#include "certify.h"
 #include "check.h"
 #include "compare.h"
 #include "exit_status.h"
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   program.get_formatter()->column_width(34);
   int exit_status = kExitError;
   addBench(program, exit_status);
+  addCertify(program, exit_status);
   addCheck(program, exit_status);
   addCompare(program, exit_status);
   addGenerate(program, exit_status);

@@ -74,20 +74,16 @@ std::optional<Eigen::Isometry3d> poseOf(const std::string& text) {
 
 }  // namespace
 
-void addRobotFile(CLI::App& verb, RobotOptions& o) {
-  verb.add_option("ROBOT,--robot", o.robot, "Robot (URDF)")
-      ->required()
-      ->check(requireInput)
-      ->group(kGroup)
-      ->type_name("FILE");
+void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
+  verb.add_option(names, o.robot, "Robot (URDF)")->required()->check(requireInput)->group(kGroup)->type_name("FILE");
   verb.add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)
       ->group(kGroup)
       ->type_name("NAME=DIR");
 }
 
-CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o) {
-  addRobotFile(verb, o);
+CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string& names) {
+  addRobotFile(verb, o, names);
   CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
                           ->check(requireInput)
                           ->group(kGroup)

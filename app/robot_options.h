@@ -22,11 +22,14 @@ struct RobotOptions {
   bool floating_base = false, solid_meshes = false, collada_up_axis = false;
 };
 
+/// Names of the robot's option: the file may stand by itself.
+constexpr const char* kRobotNames = "ROBOT,--robot";
 /// Adds ROBOT (or --robot) and --package, in the group "Robot and scene".
-void addRobotFile(CLI::App& verb, RobotOptions& options);
+/// @param names  of the robot's option.
+void addRobotFile(CLI::App& verb, RobotOptions& options, const std::string& names = kRobotNames);
 /// Adds these, --srdf, --base and --floating-base.
 /// @return --srdf, for what excludes it.
-CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options);
+CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options, const std::string& names = kRobotNames);
 /// Adds --attach.
 void addAttachOption(CLI::App& verb, RobotOptions& options);
 

@@ -2,57 +2,28 @@
 #include "waypoints.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "configuration.h"
 #include "files/files.h"
+#include "plans/csv.h"
+#include "plans/variables.h"
 
 namespace fcl_artic::app {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(" \t\r\"");
-  return begin == std::string_view::npos ? std::string_view()
-                                         : text.substr(begin, text.find_last_not_of(" \t\r\"") + 1 - begin);
-}
-
-std::vector<std::string_view> splitLine(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t at = 0;;) {
-    const std::size_t end = line.find(',', at);
-    fields.push_back(trimmed(line.substr(at, end == std::string_view::npos ? end : end - at)));
-    if (end == std::string_view::npos) return fields;
-    at = end + 1;
-  }
-}
-
-double parseNumber(std::string_view text, const std::string& where, const std::string& column) {
-  const std::string whole(text);
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes no plus
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw std::invalid_argument(fmt::format("{}, column '{}': '{}' is not a finite number", where, column, whole));
-  }
-  return value;
-}
-
 constexpr int kTime = -1;
 
 /// Variable of each column.
-std::vector<int> readHeader(const KinematicTree& tree, const std::vector<std::string_view>& names,
+std::vector<int> readHeader(const KinematicTree& tree, const std::vector<std::string>& names,
                             const std::string& where) {
   std::vector<int> columns;
   std::set<int> seen;
-  for (const std::string_view text : names) {
-    const std::string name(text);
-    const int column = name == "time" || name == "t" ? kTime : variableOf(tree, name, where);
+  for (const std::string& name : names) {
+    const int column = name == "time" || name == "t" ? kTime : plans::variableOf(tree, name, where);
     if (!seen.insert(column).second)
       throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, name));
     columns.push_back(column);
@@ -68,37 +39,26 @@ Waypoints readWaypoints(const KinematicTree& tree, const std::string& path) {
 }
 
 Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, const std::string& path) {
-  Waypoints out;
-  out.open_end = !content.empty() && content.back() != '\n';
+  const std::string file = fmt::format("'{}' ", path);
+  const plans::Table table = plans::parseTable(content, file);
   std::vector<int> columns;
-  std::vector<std::string> names;
-  for (int number = 1; !content.empty(); ++number) {
-    const std::size_t end = std::min(content.find('\n'), content.size());
-    std::string_view line = content.substr(0, end);
-    content.remove_prefix(std::min(end + 1, content.size()));
-    if (number == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
-    const std::string where = fmt::format("'{}' line {}", path, number);
-    const std::vector<std::string_view> fields = splitLine(line);
-    if (columns.empty()) {
-      columns = readHeader(tree, fields, where);
-      names.assign(fields.begin(), fields.end());
-      continue;
-    }
-    if (fields.size() != columns.size()) {
-      throw std::invalid_argument(
-          fmt::format("{} has {} columns, the first line names {}", where, fields.size(), columns.size()));
-    }
+  if (!table.columns.empty()) {
+    columns = readHeader(tree, table.columns, fmt::format("{}line {}", file, table.header_line));
+  }
+  Waypoints out;
+  out.open_end = table.open_end;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    const std::string where = file + table.where(k);
     Eigen::VectorXd q = tree.neutralConfiguration();
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const double value = parseNumber(fields[i], where, names[i]);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const double value = table.rows[k][i];
       if (columns[i] != kTime) {
         q[columns[i]] = value;
         continue;
       }
       if (!out.times.empty() && !(value > out.times.back())) {
         throw std::invalid_argument(fmt::format("{}, column '{}': {} is not later than the time before, {}", where,
-                                                names[i], value, out.times.back()));
+                                                table.columns[i], value, out.times.back()));
       }
       out.times.push_back(value);
     }

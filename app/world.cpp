@@ -57,8 +57,8 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-void addWorldOptions(CLI::App& verb, WorldOptions& o) {
-  CLI::Option* srdf = addRobotOptions(verb, o.robot);
+void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_names) {
+  CLI::Option* srdf = addRobotOptions(verb, o.robot, robot_names);
   verb.add_option("--auto-srdf", o.auto_srdf,
                   "Find the pairs of links that need no check, proven apart or always in "
                   "contact, write them to FILE and use them")

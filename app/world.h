@@ -25,7 +25,8 @@ struct WorldOptions {
 
 /// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
 /// --unknown-cells, --point-radius, --solid-meshes, --solid and --attach.
-void addWorldOptions(CLI::App& verb, WorldOptions& options);
+/// @param robot_names  of the robot's option.
+void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& robot_names = kRobotNames);
 
 /// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no
 /// check found again (--auto-srdf /dev/null).

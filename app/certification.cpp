@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certification.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "exit_status.h"
+#include "files/files.h"
+#include "plans/write.h"
+#include "progress.h"
+#include "query_options.h"
+
+namespace fcl_artic::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+std::vector<std::string> filesOf(const std::string& path) {
+  std::error_code none;
+  if (!fs::is_directory(path, none)) return {path};
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    if (!entry.is_directory() && plans::hasPlanEnding(entry.path().string())) files.push_back(entry.path().string());
+  }
+  if (files.empty()) throw std::invalid_argument(fmt::format("'{}': no file of this folder has a plan's ending", path));
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void readFile(const KinematicTree& tree, const std::string& file, const std::optional<plans::Format>& format,
+              std::vector<CertifiedPlan>& out) {
+  try {
+    const plans::Format kind = format ? *format : plans::formatOf(file);
+    for (plans::Plan& plan : plans::parsePlans(tree, files::read(file == "-" ? "/dev/stdin" : file), kind)) {
+      CertifiedPlan& one = out.emplace_back();
+      one.file = file;
+      one.plan = std::move(plan);
+    }
+  } catch (const std::exception& error) {
+    CertifiedPlan& one = out.emplace_back();
+    one.file = file;
+    one.plan.error = error.what();
+  }
+}
+
+void requireCarried(const plans::Plan& plan, bool carries) {
+  if (plan.carried.empty() || carries) return;
+  std::string names;
+  for (const std::string& name : plan.carried) names += (names.empty() ? "'" : ", '") + name + "'";
+  throw std::invalid_argument(
+      fmt::format("the message says that the robot carries {}: --attach says what that is", names));
+}
+
+}  // namespace
+
+std::string CertifiedPlan::title() const {
+  return plan.name.empty() ? file : file + " " + plan.name;
+}
+
+int CertifiedPlan::exitStatus() const {
+  if (as_mended) return as_mended->exitStatus();
+  return error.empty() ? app::exitStatus(result.status) : kExitError;
+}
+
+std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
+                                     const std::optional<plans::Format>& format) {
+  std::vector<CertifiedPlan> out;
+  for (const std::string& path : paths) {
+    for (const std::string& file : filesOf(path)) readFile(tree, file, format, out);
+  }
+  return out;
+}
+
+void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan) {
+  try {
+    plan.motion = plans::toMotion(manager.tree(), plan.plan, options.motion);
+    requireCarried(plan.plan, options.carries);
+    const auto begin = Clock::now();
+    manager.continuousCollide(plan.motion->trajectory, options.request, plan.result);
+    plan.us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+    if (options.clearance) {
+      plan.clearance = manager.clearance(plan.motion->trajectory, clearanceOf(*options.clearance, options.request));
+    }
+  } catch (const std::exception& error) {
+    plan.error = error.what();
+    plan.motion.reset();
+  }
+}
+
+void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options,
+             std::vector<CertifiedPlan>& plans) {
+  const auto wanted = static_cast<std::size_t>(options.threads > 0 ? options.threads
+                                                                   : std::max(1U, std::thread::hardware_concurrency()));
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::size_t done = 0;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < plans.size();) {
+      certify(manager, options, plans[i]);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (++done == plans.size()) changed.notify_one();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < std::min(wanted, plans.size()); ++i) threads.emplace_back(work);
+  {
+    ProgressBar bar;
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!changed.wait_for(lock, std::chrono::milliseconds(100), [&] { return done == plans.size(); })) {
+      bar.show(static_cast<double>(done) / static_cast<double>(plans.size()));
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
+void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
+             const MendOptions& mending, std::vector<CertifiedPlan>& plans) {
+  std::vector<CertifiedPlan*> touching;
+  for (CertifiedPlan& plan : plans) {
+    if (plan.error.empty() && plan.result.status == Status::contact) touching.push_back(&plan);
+  }
+  ProgressBar bar;
+  double done = 0;
+  for (CertifiedPlan* plan : touching) {
+    try {
+      plan->mended = mend(manager, *plan->motion, options.motion.turns, mending);
+      plan->mended->plan.name = plan->plan.name;
+      const std::string written = plans::writePlans({plan->mended->plan}, plans::Format::json);
+      auto again = std::make_shared<CertifiedPlan>();
+      again->file = plan->file;
+      again->plan = plans::parsePlans(manager->tree(), written, plans::Format::json).at(0);
+      again->plan.state = plan->mended->plan.state;
+      CertifyOptions straight = options;
+      straight.motion.interpolation = plans::Interpolation::linear;
+      straight.motion.turns = plans::Turns::given;  // its steps are what was proven
+      straight.carries = true;                      // as was said for the plan itself
+      certify(*manager, straight, *again);
+      plan->as_mended = again;
+    } catch (const std::runtime_error& error) {
+      plan->not_mended = error.what();
+    }
+    bar.show(++done / static_cast<double>(touching.size()));
+  }
+}
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Plans of files against a robot and a scene.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fcl_artic/manager.h"
+#include "mend.h"
+#include "plans/motion.h"
+#include "plans/plan.h"
+
+namespace fcl_artic::app {
+
+/// A plan, and what is known of it so far.
+struct CertifiedPlan {
+  std::string file;                         ///< as it was named
+  plans::Plan plan;                         ///< as the file says it
+  std::optional<plans::PlanMotion> motion;  ///< that was asked about; none: see `error`
+  std::string error;                        ///< why there is no answer; empty: there is one
+  CertifiedResult result;
+  std::optional<Clearance> clearance;  ///< where it was asked for
+  double us = 0;                       ///< time of the query, without reading and clearance
+
+  std::optional<Mended> mended;              ///< a way around what the plan touches
+  std::shared_ptr<CertifiedPlan> as_mended;  ///< the mended plan, certified as any other
+  std::string not_mended;                    ///< why there is none
+
+  /// "FILE" or "FILE PLAN".
+  std::string title() const;
+  /// Exit status of the answer; that of the mended plan, where there is one.
+  int exitStatus() const;
+};
+
+struct CertifyOptions {
+  plans::MotionOptions motion;
+  CertifiedRequest request;
+  std::optional<ClearanceRequest> clearance;
+  bool carries = false;  ///< the caller has said what the robot carries
+  int threads = 0;       ///< 0: as many as the machine runs at once
+};
+
+/// The plans of files and folders (those of its files whose ending names a format, by name), in their order.
+/// @param format  of all files; none: each by its ending.
+/// @return one for each plan; a file that can't be read is one with an error.
+/// @throws std::invalid_argument for a folder without plans.
+std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
+                                     const std::optional<plans::Format>& format);
+
+/// Makes the plan's motion and asks the manager.
+void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan);
+/// All of them, on several threads, with a progress bar.
+void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options,
+             std::vector<CertifiedPlan>& plans);
+
+/// Mends those that touch, and certifies what comes out: not the plan in memory, but what writePlans() writes of it.
+void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
+             const MendOptions& mending, std::vector<CertifiedPlan>& plans);
+
+}  // namespace fcl_artic::app

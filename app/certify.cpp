@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certify.h"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "certification.h"
+#include "certify_report.h"
+#include "configuration.h"
+#include "exit_status.h"
+#include "files/files.h"
+#include "plans/write.h"
+#include "query_options.h"
+#include "usage.h"
+#include "world.h"
+
+namespace fcl_artic::app {
+namespace {
+
+struct Options {
+  WorldOptions world;
+  std::vector<std::string> plans, joints, state;
+  std::string format, interpolation = "auto", turns = "ask", csv, out;
+  double blend = 0;
+  CertifyOptions certify;
+  bool clearance = false, json = false, failed_only = false, mend = false;
+  ClearanceRequest clearance_request;
+  MendOptions mending;
+};
+
+plans::Turns turnsNamed(const std::string& name) {
+  if (name == "given") return plans::Turns::given;
+  return name == "shortest" ? plans::Turns::shortest : plans::Turns::ask;
+}
+
+/// The plans that are free, mended ones among them, as a file.
+void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
+  std::vector<plans::Plan> out;
+  for (const CertifiedPlan& plan : all) {
+    if (plan.exitStatus() != kExitFree) continue;
+    out.push_back(plan.as_mended ? plan.as_mended->plan : plan.plan);
+    if (out.back().joints.empty()) out.back().joints = plan.motion->joints;
+    if (out.back().name.empty() && all.size() > 1) out.back().name = plan.file;
+  }
+  if (out.empty()) return;  // the report says that none is free
+  files::write(o.out, plans::writePlans(out, plans::formatOf(o.out)));
+}
+
+int run(Options& o) {
+  if (o.mend) requireMending();
+  if (!o.out.empty()) (void)plans::formatOf(o.out);
+  World world(o.world);
+  world.readRobot();
+  const bool check_allowed = !o.world.robot.srdf.empty() && o.certify.request.check_self;
+  if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
+  const KinematicTree& tree = *world.robot.tree;
+  o.certify.motion.interpolation = plans::interpolationNamed(o.interpolation);
+  o.certify.motion.turns = turnsNamed(o.turns);
+  o.certify.motion.blend = o.blend;
+  o.certify.motion.joints = o.joints;
+  o.certify.motion.state = parseValues(tree, o.state, "--state");
+  o.certify.carries = !o.world.robot.attached.empty();
+  if (o.clearance) o.certify.clearance = o.clearance_request;
+  std::optional<plans::Format> format;
+  if (!o.format.empty()) format = plans::formatNamed(o.format);
+  std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format);
+  world.readScene();
+  const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
+
+  const auto begin = std::chrono::steady_clock::now();
+  certify(*manager, o.certify, all);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (o.mend) {
+    o.mending.request = o.certify.request;
+    mendAll(manager, o.certify, o.mending, all);
+  }
+  if (!o.out.empty()) writeOut(o, all);
+
+  const std::vector<std::string> notes = world.notes();
+  const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
+  if (!o.csv.empty()) files::write(o.csv, csvReport(report));
+  if (o.json) {
+    fmt::print("{}\n", jsonReport(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  } else {
+    fmt::print("{}", textReport(report));
+  }
+  int status = kExitFree;
+  for (const CertifiedPlan& plan : all) status = worseExit(status, plan.exitStatus());
+  return status;
+}
+
+}  // namespace
+
+void addCertify(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<Options>();
+  Options& o = *options;
+  CLI::App* certify = program.add_subcommand(
+      "certify", "Does anybody's plan touch anything? Plans of files, one or thousands, against a robot and a scene");
+  certify->footer(
+      "PLAN is a file or a folder: CSV (a header of joints' names, time where there is one), JSON and YAML (plans, or\n"
+      "ROS messages: JointTrajectory, RobotTrajectory, DisplayTrajectory), JSON lines (.jsonl), OMPL's text of a path\n"
+      "(.path, .txt), NumPy's arrays (.npy, .npz); - is standard input, with --format.\n"
+      "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
+      "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
+      "before 3; with --mend a plan counts as what it is mended to.");
+  certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
+  addWorldOptions(*certify, o.world, "--robot,--urdf");
+  // One value each, so that plans may stand after them.
+  for (const char* name : {"--scene", "--attach", "--package", "--solid"}) {
+    certify->get_option(name)->allow_extra_args(false);
+  }
+
+  certify->add_option("--format", o.format, "What the files are, whatever their endings")
+      ->check(CLI::IsMember({"csv", "json", "jsonl", "yaml", "ompl", "numpy"}))
+      ->group("Plans");
+  certify
+      ->add_option(
+          "--interpolation", o.interpolation,
+          "Between waypoints: linear; cubic by their velocities; quintic by their velocities and accelerations; "
+          "blends: lines joined by parabolas; auto: as much as each plan gives")
+      ->check(CLI::IsMember({"auto", "linear", "cubic", "quintic", "blends"}))
+      ->group("Plans")
+      ->capture_default_str();
+  certify->add_option("--blend", o.blend, "Half the duration of a blend, in s")->check(requirePositive)->group("Plans");
+  certify
+      ->add_option("--turns", o.turns,
+                   "Joints that turn forever: as the values are given, or the shortest way round; ask: an error where "
+                   "that makes a difference")
+      ->check(CLI::IsMember({"ask", "given", "shortest"}))
+      ->group("Plans")
+      ->capture_default_str();
+  certify->add_option("--joints", o.joints, "Joints of plans without names (OMPL's, NumPy's), in their order")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group("Plans")
+      ->type_name("NAME,...");
+  certify->add_option("--state", o.state, "Values of joints that plans do not name: NAME=VALUE; may be repeated")
+      ->allow_extra_args(false)
+      ->group("Plans")
+      ->type_name("NAME=VALUE");
+  certify
+      ->add_flag("--ignore-limits", o.certify.motion.ignore_limits,
+                 "Waypoints beyond the joints' limits are noted, and certified all the same")
+      ->group("Plans");
+
+  addQueryOptions(*certify, o.certify.request);
+  addClearanceOptions(*certify, o.clearance, o.clearance_request);
+  certify->add_option("--threads", o.certify.threads, "Threads at most; 0: as many as the machine runs at once")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Query")
+      ->capture_default_str();
+
+  CLI::Option* mend =
+      certify->add_flag("--mend", o.mend, "Find certified detours around what plans touch, and certify what comes out")
+          ->group("Mending");
+  certify->add_option("--mend-time", o.mending.seconds, "Seconds for a plan, at most")
+      ->check(requirePositive)
+      ->needs(mend)
+      ->group("Mending")
+      ->capture_default_str();
+  certify
+      ->add_option("--out", o.out, "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...)")
+      ->group("Mending")
+      ->type_name("FILE");
+
+  certify->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
+  certify->add_option("--csv", o.csv, "Write a row for each plan")->group("Output")->type_name("FILE");
+  certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
+  certify->callback([options, &exit_status] {
+    if ((options->interpolation == "blends") != (options->blend > 0)) {
+      throw CLI::RequiresError("--interpolation blends", "--blend");
+    }
+    try {
+      exit_status = run(*options);
+    } catch (const std::exception& error) {
+      if (options->json) {
+        fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));
+      }
+      throw;
+    }
+  });
+}
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certify_report.h"
+
+#include <algorithm>
+#include <functional>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "exit_status.h"
+#include "report.h"
+
+namespace fcl_artic::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the plans come to.
+struct Sum {
+  std::size_t free = 0, contact = 0, undecided = 0, wrong = 0;
+  std::size_t mended = 0;  ///< of those in contact: free, as mended
+  double median_us = 0, slowest_us = 0;
+};
+
+Sum sumOf(const std::vector<CertifiedPlan>& plans) {
+  Sum sum;
+  std::vector<double> us;
+  for (const CertifiedPlan& plan : plans) {
+    if (!plan.error.empty()) {
+      ++sum.wrong;
+      continue;
+    }
+    us.push_back(plan.us);
+    ++(plan.result.status == Status::free      ? sum.free
+       : plan.result.status == Status::contact ? sum.contact
+                                               : sum.undecided);
+    sum.mended += plan.as_mended && plan.as_mended->exitStatus() == kExitFree;
+  }
+  if (us.empty()) return sum;
+  std::sort(us.begin(), us.end());
+  sum.median_us = us[us.size() / 2];
+  sum.slowest_us = us.back();
+  return sum;
+}
+
+Report reportOf(const CertifyReport& r, const CertifiedPlan& plan) {
+  const JointTrajectory& way = plan.motion->trajectory;
+  return {r.tree,
+          r.request,
+          plan.result,
+          plan.motion->notes,
+          [&way](double t) { return way.configuration(t); },
+          way.beginTime(),
+          way.endTime(),
+          plan.clearance ? &*plan.clearance : nullptr};
+}
+
+/// "linear, 12 waypoints, t from 0 to 3.5".
+std::string motionText(const CertifiedPlan& plan) {
+  const plans::PlanMotion& m = *plan.motion;
+  return fmt::format("{}, {} waypoints, t {} to {:g}{}", toString(m.interpolation), m.times.size(), m.times.front(),
+                     m.times.back(), m.timed ? " s" : " (numbers of waypoints)");
+}
+
+std::string verdictText(const CertifiedPlan& plan) {
+  if (!plan.error.empty()) return "error: " + plan.error;
+  const CertifiedResult& result = plan.result;
+  std::ostringstream out;
+  out << result;
+  if (const CertifiedContact* c = result.first()) {
+    out << fmt::format(
+        ", after waypoint {}: '{}' and '{}' at ({:.4g}, {:.4g}, {:.4g}), normal ({:.3g}, {:.3g}, {:.3g})",
+        plan.motion->waypointBefore(result.t_lower), c->body1.name, c->body2.name, c->point.x(), c->point.y(),
+        c->point.z(), c->normal.x(), c->normal.y(), c->normal.z());
+  }
+  if (plan.clearance) out << fmt::format("; clearance at least {:.6g} m", plan.clearance->lower);
+  return out.str();
+}
+
+std::string mendedText(const CertifiedPlan& plan) {
+  if (!plan.not_mended.empty()) return "not mended: " + plan.not_mended;
+  if (!plan.as_mended) return {};
+  const Mended& m = *plan.mended;
+  const bool velocities = plan.motion->interpolation != plans::Interpolation::linear;
+  return fmt::format(
+      "mended in {:.1f} ms, {} detour{}, {} waypoints, {:g} times as long, off by at most {:.4g} in any "
+      "joint{}; certified again: {}",
+      m.ms, m.detours, m.detours == 1 ? "" : "s", m.plan.positions.size(), m.length_ratio, m.deviation,
+      velocities ? ", straight between waypoints and without velocities" : "", verdictText(*plan.as_mended));
+}
+
+std::string sumText(const CertifyReport& r) {
+  const Sum sum = sumOf(r.plans);
+  std::string text = fmt::format("{} plans: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(), sum.free,
+                                 sum.contact, sum.undecided, sum.wrong);
+  const bool mending = std::any_of(r.plans.begin(), r.plans.end(),
+                                   [](const CertifiedPlan& p) { return p.as_mended || !p.not_mended.empty(); });
+  if (mending) text += fmt::format("; {} of {} mended", sum.mended, sum.contact);
+  return text + fmt::format("; median {:.1f} us, slowest {:.1f} us, {:.3g} s in all\n", sum.median_us, sum.slowest_us,
+                            r.seconds);
+}
+
+Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
+  Json out = {{"file", plan.file}, {"plan", plan.plan.name.empty() ? Json() : Json(plan.plan.name)}};
+  if (!plan.error.empty()) {
+    out.update({{"status", "error"}, {"error", plan.error}});
+    return out;
+  }
+  const plans::PlanMotion& motion = *plan.motion;
+  const Json all = jsonReport(reportOf(r, plan));
+  for (const char* key : {"status", "t_lower", "t_upper", "certain", "nothing_checked", "t_begin", "t_end"}) {
+    out[key] = all.at(key);
+  }
+  const bool free = plan.result.isFree();
+  out["waypoint"] = free ? Json() : Json(motion.waypointBefore(plan.result.t_lower));
+  out["interpolation"] = toString(motion.interpolation);
+  out["waypoints"] = motion.times.size();
+  out["timed"] = motion.timed;
+  out["contacts"] = all.at("contacts");
+  if (!free) out["q_at_t_lower"] = all.at("q_at_t_lower");
+  out["clearance"] = all.at("clearance");
+  out["unproven_allowed_pairs"] = all.at("unproven_allowed_pairs");
+  out["us"] = plan.us;
+  out["notes"] = motion.notes;
+  if (!plan.not_mended.empty()) out["mended"] = {{"status", "error"}, {"error", plan.not_mended}};
+  if (plan.as_mended) {
+    Json& mended = out["mended"] = planJson(r, *plan.as_mended);
+    mended["detours"] = plan.mended->detours;
+    mended["deviation"] = plan.mended->deviation;
+    mended["length_ratio"] = plan.mended->length_ratio;
+    mended["ms"] = plan.mended->ms;
+  }
+  return out;
+}
+
+/// A field of CSV.
+std::string field(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c == '\n' ? ' ' : c);
+  return out + "\"";
+}
+
+}  // namespace
+
+std::string textReport(const CertifyReport& r) {
+  std::string text;
+  if (r.plans.size() == 1 && r.plans[0].error.empty()) {
+    const CertifiedPlan& plan = r.plans[0];
+    text = fmt::format("{}: {}\n", plan.title(), motionText(plan));
+    if (plan.result.status != Status::free) {
+      text += fmt::format("after waypoint {}\n", plan.motion->waypointBefore(plan.result.t_lower));
+    }
+    text += textReport(reportOf(r, plan));
+    if (const std::string mended = mendedText(plan); !mended.empty()) text += mended + "\n";
+    for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
+    return text;
+  }
+  for (const CertifiedPlan& plan : r.plans) {
+    if (r.failed_only && plan.exitStatus() == kExitFree) continue;
+    text += fmt::format("{}: {}", plan.title(), verdictText(plan));
+    if (plan.error.empty()) text += fmt::format(" ({})", motionText(plan));
+    text += '\n';
+    if (const std::string mended = mendedText(plan); !mended.empty()) text += fmt::format("  {}\n", mended);
+    if (plan.motion) {
+      for (const std::string& note : plan.motion->notes) text += fmt::format("  note: {}\n", note);
+    }
+  }
+  for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
+  return text + sumText(r);
+}
+
+nlohmann::ordered_json jsonReport(const CertifyReport& r) {
+  const Sum sum = sumOf(r.plans);
+  Json plans = Json::array();
+  for (const CertifiedPlan& plan : r.plans) plans.push_back(planJson(r, plan));
+  return {{"robot", r.tree.name()},
+          {"plans", std::move(plans)},
+          {"summary",
+           {{"free", sum.free},
+            {"contact", sum.contact},
+            {"undecided", sum.undecided},
+            {"error", sum.wrong},
+            {"mended", sum.mended},
+            {"median_us", sum.median_us},
+            {"slowest_us", sum.slowest_us},
+            {"seconds", r.seconds}}},
+          {"notes", r.notes}};
+}
+
+std::string csvReport(const CertifyReport& r) {
+  std::string out =
+      "file,plan,status,certain,t_lower,t_upper,waypoint,body1,body2,x,y,z,normal_x,normal_y,normal_z,clearance_lower,"
+      "clearance_upper,interpolation,waypoints,us,mended,deviation,length_ratio,mend_ms,error\n";
+  for (const CertifiedPlan& plan : r.plans) {
+    out += fmt::format("{},{},", field(plan.file), field(plan.plan.name));
+    if (!plan.error.empty()) {
+      out += fmt::format("error{}{}\n", std::string(22, ','), field(plan.error));
+      continue;
+    }
+    const CertifiedResult& result = plan.result;
+    const plans::PlanMotion& motion = *plan.motion;
+    out += fmt::format("{},{:d},{},{},", toString(result.status), result.certain, result.t_lower, result.t_upper);
+    if (const CertifiedContact* c = result.first()) {
+      out += fmt::format("{},{},{},{},{},{},{},{},{},", motion.waypointBefore(result.t_lower), field(c->body1.name),
+                         field(c->body2.name), c->point.x(), c->point.y(), c->point.z(), c->normal.x(), c->normal.y(),
+                         c->normal.z());
+    } else {
+      out += (result.isFree() ? "" : std::to_string(motion.waypointBefore(result.t_lower))) + std::string(9, ',');
+    }
+    out += plan.clearance ? fmt::format("{},{},", plan.clearance->lower, plan.clearance->upper) : ",,";
+    out += fmt::format("{},{},{:.3f},", toString(motion.interpolation), motion.times.size(), plan.us);
+    out += plan.as_mended
+               ? fmt::format("{},{},{},{:.3f},",
+                             plan.as_mended->error.empty() ? toString(plan.as_mended->result.status) : "error",
+                             plan.mended->deviation, plan.mended->length_ratio, plan.mended->ms)
+               : ",,,,";
+    out += field(plan.not_mended) + "\n";
+  }
+  return out;
+}
+
+}  // namespace fcl_artic::app

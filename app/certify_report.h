@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "certification.h"
+
+namespace fcl_artic::app {
+
+/// What answers are shown with.
+struct CertifyReport {
+  const KinematicTree& tree;
+  const CertifiedRequest& request;
+  const std::vector<CertifiedPlan>& plans;
+  const std::vector<std::string>& notes;  ///< of robot and scene
+  double seconds = 0;                     ///< that all queries took
+  bool failed_only = false;               ///< rows of the table
+};
+
+/// One plan in full, several as a table, and what they come to.
+std::string textReport(const CertifyReport& report);
+/// With the keys of fcl_artic(1).
+nlohmann::ordered_json jsonReport(const CertifyReport& report);
+/// A row for each plan.
+std::string csvReport(const CertifyReport& report);
+
+}  // namespace fcl_artic::app

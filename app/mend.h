@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Detours around what a plan touches. (Needs OMPL.)
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "fcl_artic/manager.h"
+#include "plans/motion.h"
+
+namespace fcl_artic::app {
+
+struct MendOptions {
+  double seconds = 5;        ///< for one plan, at most
+  CertifiedRequest request;  ///< margin, scope and budget of what planners ask
+};
+
+/// A plan with detours. It goes straight between its waypoints and has no velocities. Nothing is said of it here: it is
+/// to be certified as any other plan.
+struct Mended {
+  plans::Plan plan;
+  std::size_t detours = 0;  ///< stretches that were replaced
+  double deviation = 0;     ///< of any joint from the plan, at the same share of a stretch's length, rad or m: the most
+  double length_ratio = 1;  ///< of the way in joint space, beside that of the plan straight between its waypoints
+  double ms = 0;            ///< time that it took
+};
+
+/// Replaces the stretches between waypoints that are not proven free, when every joint goes straight, by ways that
+/// RRTConnect with the certified validator finds from the last free waypoint to the next, simplified by certified
+/// shortcuts; where it finds none, by ways between waypoints farther apart. A stretch that becomes longer takes longer
+/// in proportion.
+/// @param manager  set up.
+/// @throws std::runtime_error saying why it cannot be: the start or the goal touches, no way was found in the time,
+///   joints that planners don't take; that this program was built without OMPL.
+Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const plans::PlanMotion& motion,
+            plans::Turns turns, const MendOptions& options);
+
+/// @throws std::runtime_error that this program was built without OMPL.
+void requireMending();
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plans/document.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <Eigen/Geometry>
+
+#include "plans/variables.h"
+
+namespace fcl_artic::plans {
+namespace {
+
+constexpr int kDeepest = 20;        // messages within messages
+constexpr double kFlat = 1e-6;      // of a planar joint's pose: m out of its plane, and part of the quaternion
+constexpr double kIdentity = 1e-9;  // a pose that nobody has to know of
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+/// Of a message's start state.
+struct Start {
+  std::map<std::string, double> state;
+  std::vector<std::string> carried, notes;
+};
+
+std::string shown(const Json& value) {
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() <= 40 ? text : text.substr(0, 37) + "...";
+}
+
+/// The first of the keys that an object has; null where it has none.
+const Json* find(const Json& object, std::initializer_list<const char*> keys) {
+  for (const char* key : keys) {
+    const auto found = object.find(key);
+    if (found != object.end()) return &*found;
+  }
+  return nullptr;
+}
+
+const Json& listOf(const Json& object, const char* key, const std::string& where) {
+  static const Json none = Json::array();
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return none;
+  if (!found->is_array()) refuse(fmt::format("{}: '{}' is no list: {}", where, key, shown(*found)));
+  return *found;
+}
+
+double numberOf(const Json& value, const std::string& where) {
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) {
+    const std::string text = value.get<std::string>();
+    if (text == "NaN" || text == "nan") return std::numeric_limits<double>::quiet_NaN();
+    if (text == "Infinity" || text == "inf") return std::numeric_limits<double>::infinity();
+    if (text == "-Infinity" || text == "-inf") return -std::numeric_limits<double>::infinity();
+    if (text == "...") refuse(where + ": the list was cut short by who printed it (ros2 topic echo --full-length)");
+  }
+  refuse(fmt::format("{}: {} is not a number", where, shown(value)));
+}
+
+std::vector<double> numbersOf(const Json& list, const std::string& where) {
+  if (list.is_null()) return {};
+  if (!list.is_array()) refuse(fmt::format("{}: {} is no list of numbers", where, shown(list)));
+  std::vector<double> out;
+  for (std::size_t i = 0; i < list.size(); ++i) out.push_back(numberOf(list[i], fmt::format("{}, value {}", where, i)));
+  return out;
+}
+
+std::vector<std::string> textsOf(const Json& list, const std::string& where) {
+  if (!list.is_array()) refuse(fmt::format("{}: {} is no list of names", where, shown(list)));
+  std::vector<std::string> out;
+  for (const Json& value : list) {
+    if (!value.is_string()) refuse(fmt::format("{}: {} is no name", where, shown(value)));
+    out.push_back(value.get<std::string>());
+  }
+  return out;
+}
+
+/// Seconds: {sec, nanosec} (ROS 2), {secs, nsecs} (ROS 1), or a number.
+double secondsOf(const Json& duration, const std::string& where) {
+  if (!duration.is_object()) return numberOf(duration, where);
+  const Json *whole = find(duration, {"sec", "secs"}), *part = find(duration, {"nanosec", "nsecs"});
+  if (!whole || !part) refuse(fmt::format("{}: {} has no sec and nanosec", where, shown(duration)));
+  const double nanoseconds = numberOf(*part, where);
+  if (!(std::abs(nanoseconds) < 1e9)) refuse(fmt::format("{}: {} nanoseconds", where, shown(*part)));
+  return numberOf(*whole, where) + 1e-9 * nanoseconds;
+}
+
+/// Of a joint: the values of a pose, x, y, z and a quaternion x, y, z, w.
+std::vector<double> poseOf(const Json& transform, const std::string& where) {
+  const auto part = [&](const char* key, std::initializer_list<const char*> entries, std::vector<double>& out) {
+    const Json* values = transform.is_object() ? find(transform, {key}) : nullptr;
+    if (!values || !values->is_object()) refuse(fmt::format("{}: no '{}' in {}", where, key, shown(transform)));
+    for (const char* entry : entries) {
+      const Json* value = find(*values, {entry});
+      if (!value) refuse(fmt::format("{}: no '{}' in {}", where, entry, shown(*values)));
+      out.push_back(numberOf(*value, where));
+    }
+  };
+  std::vector<double> pose;
+  part("translation", {"x", "y", "z"}, pose);
+  part("rotation", {"x", "y", "z", "w"}, pose);
+  return pose;
+}
+
+/// A joint that moves by poses, and the names of its variables.
+struct PoseJoint {
+  JointType type;
+  std::vector<std::string> variables;
+};
+
+PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const std::string& where) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    if (joint.name != name) continue;
+    if (joint.type != JointType::planar && joint.type != JointType::floating) {
+      refuse(fmt::format("{}: joint '{}' of robot '{}' is neither planar nor floating", where, name, tree.name()));
+    }
+    PoseJoint out{joint.type, {}};
+    for (int i = 0; i < tree.numVariables(j); ++i) {
+      out.variables.push_back(tree.variableName(tree.jointVariable(j) + i));
+    }
+    return out;
+  }
+  refuse(fmt::format("{}: robot '{}' has no planar or floating joint '{}' (its base moves with --floating-base)", where,
+                     tree.name(), name));
+}
+
+/// Values of the joint's variables at a pose.
+std::vector<double> valuesAt(const PoseJoint& joint, const std::vector<double>& pose, const std::string& where) {
+  if (joint.type == JointType::floating) return pose;
+  if (!(std::abs(pose[2]) <= kFlat && std::abs(pose[3]) <= kFlat && std::abs(pose[4]) <= kFlat)) {
+    refuse(where + ": the pose leaves the plane of the planar joint");
+  }
+  return {pose[0], pose[1], 2 * std::atan2(pose[5], pose[6])};
+}
+
+bool isVariable(const KinematicTree& tree, const std::string& name) {
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (tree.variableName(v) == name) return true;
+  }
+  return false;
+}
+
+bool isJoint(const KinematicTree& tree, const std::string& name) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    if (tree.joint(j).name == name) return true;
+  }
+  return false;
+}
+
+/// moveit_msgs/RobotState. Names that the robot lacks are noted.
+Start startOf(const KinematicTree& tree, const Json& robot_state) {
+  Start start;
+  const std::string where = "trajectory_start";
+  if (!robot_state.is_object()) refuse(where + " is no object");
+  if (const Json* joints = find(robot_state, {"joint_state"}); joints && joints->is_object()) {
+    const std::vector<std::string> names = textsOf(listOf(*joints, "name", where), where);
+    const std::vector<double> values = numbersOf(listOf(*joints, "position", where), where + ", position");
+    if (names.size() != values.size()) {
+      refuse(fmt::format("{}: {} positions of {} joints", where, values.size(), names.size()));
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (isVariable(tree, names[i])) start.state[names[i]] = values[i];
+      if (!isJoint(tree, names[i])) {
+        start.notes.push_back(fmt::format("{} has a joint '{}', which the robot lacks", where, names[i]));
+      }
+    }
+  }
+  if (const Json* poses = find(robot_state, {"multi_dof_joint_state"}); poses && poses->is_object()) {
+    const std::vector<std::string> names = textsOf(listOf(*poses, "joint_names", where), where);
+    const Json& transforms = listOf(*poses, "transforms", where);
+    if (names.size() != transforms.size()) {
+      refuse(fmt::format("{}: {} transforms of {} joints", where, transforms.size(), names.size()));
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::vector<double> pose = poseOf(transforms[i], where);
+      if (isJoint(tree, names[i])) {
+        const PoseJoint joint = poseJoint(tree, names[i], where);
+        const std::vector<double> values = valuesAt(joint, pose, where);
+        for (std::size_t v = 0; v < values.size(); ++v) start.state[joint.variables[v]] = values[v];
+        continue;
+      }
+      const bool moved =
+          std::any_of(pose.begin(), pose.begin() + 6, [](double x) { return !(std::abs(x) <= kIdentity); });
+      if (moved) {
+        refuse(
+            fmt::format("{}: joint '{}', which the robot lacks, is not at the identity: where the robot stands is "
+                        "said by --base, or it moves with --floating-base",
+                        where, names[i]));
+      }
+    }
+  }
+  for (const Json& object : listOf(robot_state, "attached_collision_objects", where)) {
+    const Json* body = object.is_object() ? find(object, {"object"}) : nullptr;
+    const Json* id = body && body->is_object() ? find(*body, {"id"}) : nullptr;
+    start.carried.push_back(id && id->is_string() ? id->get<std::string>() : "without a name");
+  }
+  return start;
+}
+
+/// Rows of velocities or accelerations: all points have them, or none has.
+void addRates(const Json& point, const char* key, std::size_t k, std::size_t joints, Plan::Rows& rows) {
+  const std::string where = fmt::format("waypoint {}", k);
+  const std::vector<double> values = numbersOf(listOf(point, key, where), fmt::format("{}, {}", where, key));
+  if (values.empty() != (k > 0 && rows.empty()) && k > 0) {
+    refuse(fmt::format("{} has {}{}, the one before has{}", where, values.empty() ? "no " : "", key,
+                       values.empty() ? "" : " none"));
+  }
+  if (values.empty()) return;
+  if (values.size() != joints) refuse(fmt::format("{} has {} {} for {} joints", where, values.size(), key, joints));
+  rows.push_back(values);
+}
+
+const Json& pointAt(const Json& points, std::size_t k) {
+  if (points[k].is_object()) return points[k];
+  if (points[k] == "...")
+    refuse(fmt::format("waypoint {}: the list was cut short by who printed it (ros2 topic echo --full-length)", k));
+  refuse(fmt::format("waypoint {}: {} is no point", k, shown(points[k])));
+}
+
+double timeAt(const Json& point, std::size_t k) {
+  const Json* time = find(point, {"time_from_start"});
+  if (!time) refuse(fmt::format("waypoint {} has no time_from_start", k));
+  return secondsOf(*time, fmt::format("waypoint {}, time_from_start", k));
+}
+
+/// trajectory_msgs/JointTrajectory.
+void addJoints(const Json& message, Plan& plan) {
+  const Json& points = listOf(message, "points", "joint_trajectory");
+  plan.joints = textsOf(listOf(message, "joint_names", "joint_trajectory"), "joint_names");
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Json& point = pointAt(points, k);
+    plan.times.push_back(timeAt(point, k));
+    const std::string where = fmt::format("waypoint {}", k);
+    plan.positions.push_back(numbersOf(listOf(point, "positions", where), where + ", positions"));
+    addRates(point, "velocities", k, plan.joints.size(), plan.velocities);
+    addRates(point, "accelerations", k, plan.joints.size(), plan.accelerations);
+  }
+}
+
+/// trajectory_msgs/MultiDOFJointTrajectory, beside what the plan has.
+void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
+  const Json& points = listOf(message, "points", "multi_dof_joint_trajectory");
+  const std::vector<std::string> names =
+      textsOf(listOf(message, "joint_names", "multi_dof_joint_trajectory"), "joint_names");
+  std::vector<PoseJoint> joints;
+  for (const std::string& name : names) joints.push_back(poseJoint(tree, name, "multi_dof_joint_trajectory"));
+  if (points.empty()) return;
+  const bool first = plan.positions.empty();
+  if (!first && plan.positions.size() != points.size()) {
+    refuse(fmt::format("{} points of joint_trajectory, {} of multi_dof_joint_trajectory", plan.positions.size(),
+                       points.size()));
+  }
+  if (!plan.velocities.empty()) refuse("velocities beside a multi_dof_joint_trajectory, whose own are not read");
+  for (const PoseJoint& joint : joints) {
+    plan.joints.insert(plan.joints.end(), joint.variables.begin(), joint.variables.end());
+  }
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Json& point = pointAt(points, k);
+    const std::string where = fmt::format("waypoint {}", k);
+    const double time = timeAt(point, k);
+    if (first) {
+      plan.times.push_back(time);
+      plan.positions.emplace_back();
+    } else if (time != plan.times[k]) {
+      refuse(fmt::format("{}: two times, {} and {}", where, plan.times[k], time));
+    }
+    for (const char* key : {"velocities", "accelerations"}) {
+      if (!listOf(point, key, where).empty()) {
+        refuse(fmt::format("{}: {} of a multi_dof_joint_trajectory are not read", where, key));
+      }
+    }
+    const Json& transforms = listOf(point, "transforms", where);
+    if (transforms.size() != names.size()) {
+      refuse(fmt::format("{} has {} transforms for {} joints", where, transforms.size(), names.size()));
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const std::string here = fmt::format("{}, joint '{}'", where, names[i]);
+      const std::vector<double> values = valuesAt(joints[i], poseOf(transforms[i], here), here);
+      plan.positions[k].insert(plan.positions[k].end(), values.begin(), values.end());
+    }
+  }
+}
+
+/// A message whose times are all 0 is one that nobody has timed.
+void forgetNoTimes(Plan& plan) {
+  const bool none = std::all_of(plan.times.begin(), plan.times.end(), [](double t) { return t == 0; });
+  if (plan.times.size() < 2 || !none) return;
+  plan.times.clear();
+  plan.notes.emplace_back("all times are 0: waypoints are numbered instead");
+}
+
+class Reader {
+ public:
+  Reader(const KinematicTree& tree, std::vector<Plan>& out) : tree_(tree), out_(out) {}
+
+  void read(const Json& value, const std::string& label, const Start& start, int depth) {
+    if (depth > kDeepest) return fail(label, "too many messages within messages");
+    if (value.is_array()) return readList(value, label, start, depth);
+    if (!value.is_object()) return fail(label, fmt::format("{} is no plan", shown(value)));
+    if (const Json* plans = find(value, {"plans"})) return read(*plans, label, start, depth + 1);
+    if (find(value, {"joint_trajectory", "multi_dof_joint_trajectory"}) || find(value, {"points"})) {
+      return add(label, start, [&](Plan& plan) { readMessage(value, plan); });
+    }
+    if (const Json* inner = find(value, {"trajectory", "planned_trajectory", "goal", "msg"})) {
+      Start own = start;
+      if (const Json* state = find(value, {"trajectory_start", "start_state"})) {
+        try {
+          own = startOf(tree_, *state);
+        } catch (const std::invalid_argument& error) {
+          return fail(label, error.what());
+        }
+      }
+      return readParts(*inner, label, own, depth + 1);
+    }
+    if (find(value, {"waypoints", "from", "start"})) {
+      return add(label, start, [&](Plan& plan) { readPlan(value, plan); });
+    }
+    std::string keys;
+    for (const auto& item : value.items()) keys += (keys.empty() ? "" : ", ") + item.key();
+    fail(label, fmt::format("no plan in it: none of joint_trajectory, points, trajectory, waypoints, from; its keys "
+                            "are: {}",
+                            keys.empty() ? "none" : keys));
+  }
+
+ private:
+  void fail(const std::string& label, const std::string& error) {
+    Plan& plan = out_.emplace_back();
+    plan.name = label;
+    plan.error = error;
+  }
+
+  template <class Fill>
+  void add(const std::string& label, const Start& start, const Fill& fill) {
+    Plan& plan = out_.emplace_back();
+    plan.name = label;
+    plan.state = start.state;
+    plan.carried = start.carried;
+    plan.notes = start.notes;
+    try {
+      fill(plan);
+    } catch (const std::exception& error) {
+      plan.error = error.what();
+    }
+  }
+
+  void readList(const Json& list, const std::string& label, const Start& start, int depth) {
+    const bool rows = !list.empty() && list[0].is_array() && !list[0].empty() && list[0][0].is_number();
+    if (rows) {
+      return add(label, start, [&](Plan& plan) { addWaypoints(list, "", plan.positions, plan.joints); });
+    }
+    if (list.empty()) return fail(label, "an empty list");
+    for (std::size_t i = 0; i < list.size(); ++i) read(list[i], fmt::format("{}[{}]", label, i), start, depth + 1);
+  }
+
+  /// One message or several, carried out one after the other: what the first has moved stays where it is.
+  void readParts(const Json& message, const std::string& label, const Start& start, int depth) {
+    if (!message.is_array() || message.size() == 1) {
+      return read(message.is_array() ? message[0] : message, label, start, depth);
+    }
+    if (message.empty()) return fail(label, "a message without a trajectory");
+    Start now = start;
+    for (std::size_t i = 0; i < message.size(); ++i) {
+      const std::size_t begin = out_.size();
+      read(message[i], fmt::format("{}[{}]", label, i), now, depth);
+      for (std::size_t p = begin; p < out_.size(); ++p) {
+        const Plan& plan = out_[p];
+        if (!plan.error.empty() || plan.positions.empty() || plan.positions.back().size() != plan.joints.size())
+          continue;
+        for (std::size_t j = 0; j < plan.joints.size(); ++j) now.state[plan.joints[j]] = plan.positions.back()[j];
+      }
+    }
+  }
+
+  void readMessage(const Json& message, Plan& plan) {
+    const Json* joints = find(message, {"joint_trajectory"});
+    const Json* poses = find(message, {"multi_dof_joint_trajectory"});
+    if (!joints && !poses) {  // one of these itself
+      const Json& points = listOf(message, "points", "message");
+      const bool transforms = !points.empty() && points[0].is_object() && find(points[0], {"transforms"});
+      (transforms ? poses : joints) = &message;
+    }
+    for (const Json* part : {joints, poses}) {
+      if (part && !part->is_object()) refuse(fmt::format("{} is no trajectory", shown(*part)));
+    }
+    readName(message, plan);
+    if (joints) addJoints(*joints, plan);
+    if (poses && plan.positions.empty()) plan.joints.clear();  // names without points
+    if (poses) addPoses(tree_, *poses, plan);
+    forgetNoTimes(plan);
+  }
+
+  static void readName(const Json& value, Plan& plan) {
+    const Json* name = find(value, {"name", "id"});
+    if (!name || name->is_null()) return;
+    const std::string text = name->is_string() ? name->get<std::string>() : shown(*name);
+    plan.name += (plan.name.empty() ? "" : " ") + text;
+  }
+
+  /// Waypoints as lists or as objects by name.
+  static void addWaypoints(const Json& list, const std::string& what, Plan::Rows& rows,
+                           std::vector<std::string>& joints) {
+    if (!list.is_array()) refuse(fmt::format("'{}' is no list: {}", what, shown(list)));
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      const std::string where = fmt::format("waypoint {}{}{}", k, what.empty() ? "" : ", ", what);
+      if (!list[k].is_object()) {
+        rows.push_back(numbersOf(list[k], where));
+        continue;
+      }
+      if (joints.empty()) {
+        for (const auto& item : list[k].items()) joints.push_back(item.key());
+      }
+      std::vector<double>& row = rows.emplace_back();
+      for (const std::string& joint : joints) {
+        const Json* value = find(list[k], {joint.c_str()});
+        if (!value) refuse(fmt::format("{} has no value of joint '{}'", where, joint));
+        row.push_back(numberOf(*value, fmt::format("{}, joint '{}'", where, joint)));
+      }
+      for (const auto& item : list[k].items()) {
+        if (std::find(joints.begin(), joints.end(), item.key()) != joints.end()) continue;
+        refuse(fmt::format("{} has a value of joint '{}', which others lack", where, item.key()));
+      }
+    }
+  }
+
+  static void readPlan(const Json& value, Plan& plan) {
+    static const std::set<std::string> known{"name",      "id",    "joints",     "joint_names",   "times",
+                                             "waypoints", "state", "velocities", "accelerations", "from",
+                                             "to",        "start", "goal"};
+    for (const auto& item : value.items()) {
+      if (!known.count(item.key())) refuse(fmt::format("the key '{}' is not known", item.key()));
+    }
+    readName(value, plan);
+    if (const Json* joints = find(value, {"joints", "joint_names"})) plan.joints = textsOf(*joints, "joints");
+    if (const Json* waypoints = find(value, {"waypoints"})) {
+      addWaypoints(*waypoints, "", plan.positions, plan.joints);
+    } else {
+      const Json *from = find(value, {"from", "start"}), *to = find(value, {"to", "goal"});
+      if (!from || !to) refuse("no 'waypoints', and not both of 'from' and 'to'");
+      addWaypoints(Json::array({*from, *to}), "", plan.positions, plan.joints);
+    }
+    if (const Json* times = find(value, {"times"})) plan.times = numbersOf(*times, "times");
+    if (const Json* rates = find(value, {"velocities"}))
+      addWaypoints(*rates, "velocities", plan.velocities, plan.joints);
+    if (const Json* rates = find(value, {"accelerations"})) {
+      addWaypoints(*rates, "accelerations", plan.accelerations, plan.joints);
+    }
+    if (const Json* state = find(value, {"state"})) {
+      if (!state->is_object()) refuse("'state' is no object from names to values");
+      for (const auto& item : state->items()) {
+        plan.state[item.key()] = numberOf(item.value(), fmt::format("state, joint '{}'", item.key()));
+      }
+    }
+  }
+
+  const KinematicTree& tree_;
+  std::vector<Plan>& out_;
+};
+
+}  // namespace
+
+void readDocument(const KinematicTree& tree, const Json& document, const std::string& label, std::vector<Plan>& out) {
+  Reader(tree, out).read(document, label, {}, 0);
+}
+
+}  // namespace fcl_artic::plans

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plans/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "plans/variables.h"
+
+namespace fcl_artic::plans {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+
+const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
+                                                                         {"linear", Interpolation::linear},
+                                                                         {"cubic", Interpolation::cubic},
+                                                                         {"quintic", Interpolation::quintic},
+                                                                         {"blends", Interpolation::blends}};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+std::string plural(std::size_t n, const std::string& what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+/// Columns of a plan as variables of the tree.
+struct Columns {
+  std::vector<std::string> names;
+  std::vector<int> variables;
+};
+
+Columns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
+  Columns out;
+  out.names = plan.joints.empty() ? options.joints : plan.joints;
+  if (out.names.empty()) {
+    for (int v = 0; v < tree.dof(); ++v) out.names.push_back(tree.variableName(v));
+    const std::size_t values = plan.positions[0].size();
+    if (values != out.names.size()) {
+      refuse(fmt::format("waypoint 0 has {} and no names; robot '{}' has {}: {}; name those of the plan by --joints",
+                         plural(values, "value"), tree.name(), plural(out.names.size(), "joint"), variableNames(tree)));
+    }
+  }
+  for (const std::string& name : out.names) {
+    const int variable = variableOf(tree, name, "the plan");
+    if (std::find(out.variables.begin(), out.variables.end(), variable) != out.variables.end()) {
+      refuse(fmt::format("the plan names joint '{}' twice", name));
+    }
+    out.variables.push_back(variable);
+  }
+  return out;
+}
+
+/// Values of all variables that the plan does not name.
+VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options, const Columns& columns,
+                std::vector<std::string>& notes) {
+  VectorXd q = tree.neutralConfiguration();
+  std::vector<bool> known(static_cast<std::size_t>(tree.dof()), false);
+  for (const int v : columns.variables) known[static_cast<std::size_t>(v)] = true;
+  for (const auto* state : {&options.state, &plan.state}) {
+    for (const auto& [name, value] : *state) {
+      const auto v = static_cast<std::size_t>(variableOf(tree, name, "the state of the other joints"));
+      if (known[v]) continue;  // by the plan's own waypoints, or by what the caller says
+      if (!std::isfinite(value)) refuse(fmt::format("the state of joint '{}' is {}", name, value));
+      q[static_cast<Eigen::Index>(v)] = value;
+      known[v] = true;
+    }
+  }
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (known[static_cast<std::size_t>(v)]) continue;
+    refuse(fmt::format("the plan has no joint '{}': give its value by --state {}=VALUE", tree.variableName(v),
+                       tree.variableName(v)));
+  }
+  // A quaternion of which only parts are known is nobody's wish, but has a length that is looked at.
+  for (int v = 0; v < tree.dof(); ++v) {
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
+    if (named || !hasLimits(joint) || (q[v] >= joint.lower && q[v] <= joint.upper)) continue;
+    notes.push_back(fmt::format("joint '{}' stays at {:g}, beyond its limits [{:g}, {:g}]", joint.name, q[v],
+                                joint.lower, joint.upper));
+  }
+  return q;
+}
+
+void requireRows(const Plan::Rows& rows, const char* what, std::size_t waypoints, const Columns& columns) {
+  if (rows.size() != waypoints) refuse(fmt::format("{} {} for {}", rows.size(), what, plural(waypoints, "waypoint")));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (rows[k].size() != columns.names.size()) {
+      refuse(
+          fmt::format("waypoint {} has {} {} for {}", k, rows[k].size(), what, plural(columns.names.size(), "joint")));
+    }
+    for (std::size_t j = 0; j < rows[k].size(); ++j) {
+      if (std::isfinite(rows[k][j])) continue;
+      refuse(fmt::format("waypoint {}, joint '{}': {} of its {} is not a finite number", k, columns.names[j],
+                         rows[k][j], what));
+    }
+  }
+}
+
+void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
+  if (times.size() != waypoints)
+    refuse(fmt::format("{} for {}", plural(times.size(), "time"), plural(waypoints, "waypoint")));
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (!std::isfinite(times[k])) refuse(fmt::format("waypoint {}: its time {} is not a finite number", k, times[k]));
+    if (k > 0 && !(times[k] > times[k - 1])) {
+      refuse(fmt::format("waypoint {}: its time {} is not later than that of waypoint {}, {}", k, times[k], k - 1,
+                         times[k - 1]));
+    }
+  }
+}
+
+void judgeLimits(const KinematicTree& tree, const Plan& plan, const Columns& columns, bool ignore,
+                 std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < plan.positions.size(); ++k) {
+    for (std::size_t j = 0; j < columns.names.size(); ++j) {
+      const Joint& joint = tree.joint(tree.variableJoint(columns.variables[j]));
+      const double value = plan.positions[k][j];
+      if (!hasLimits(joint) || (value >= joint.lower && value <= joint.upper)) continue;
+      const std::string what = fmt::format("waypoint {}: joint '{}' at {} is beyond its limits [{}, {}]", k, joint.name,
+                                           value, joint.lower, joint.upper);
+      if (!ignore) refuse(what + "; --ignore-limits has it certified all the same");
+      notes.push_back(what);
+    }
+  }
+}
+
+JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, const Columns& columns, Turns turns) {
+  if (turns == Turns::shortest) return JointTrajectory::Unwrap::yes;
+  if (turns == Turns::given) return JointTrajectory::Unwrap::no;
+  for (std::size_t j = 0; j < columns.names.size(); ++j) {
+    const int v = columns.variables[j];
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    const bool forever = joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(v));
+    for (std::size_t k = 1; forever && k < plan.positions.size(); ++k) {
+      const double step = plan.positions[k][j] - plan.positions[k - 1][j];
+      if (std::abs(step) < kHalfTurn) continue;
+      refuse(
+          fmt::format("joint '{}' turns forever and goes by {:g} rad from waypoint {} to {}: --turns given takes it "
+                      "at its word, --turns shortest goes the shorter way round",
+                      columns.names[j], step, k - 1, k));
+    }
+  }
+  return JointTrajectory::Unwrap::no;
+}
+
+Interpolation chosen(const Plan& plan, const MotionOptions& options) {
+  Interpolation kind = options.interpolation;
+  if (kind == Interpolation::automatic) {
+    if (plan.velocities.empty() && !plan.accelerations.empty()) {
+      refuse("it has accelerations and no velocities: --interpolation says what is meant");
+    }
+    if (plan.velocities.empty()) return Interpolation::linear;
+    kind = plan.accelerations.empty() ? Interpolation::cubic : Interpolation::quintic;
+  }
+  const bool polynomial = kind == Interpolation::cubic || kind == Interpolation::quintic;
+  if (polynomial && plan.velocities.empty())
+    refuse(fmt::format("{} needs velocities, the plan has none", toString(kind)));
+  if (kind == Interpolation::quintic && plan.accelerations.empty()) {
+    refuse("quintic needs accelerations, the plan has none");
+  }
+  if (kind != Interpolation::linear && plan.times.empty()) {
+    refuse(fmt::format("{} needs times, the plan has none", toString(kind)));
+  }
+  return kind;
+}
+
+/// Rows of some columns as vectors of all variables.
+std::vector<VectorXd> spread(const Plan::Rows& rows, const Columns& columns, const VectorXd& rest) {
+  std::vector<VectorXd> out;
+  for (const std::vector<double>& row : rows) {
+    VectorXd& q = out.emplace_back(rest);
+    for (std::size_t j = 0; j < row.size(); ++j) q[columns.variables[j]] = row[j];
+  }
+  return out;
+}
+
+}  // namespace
+
+Interpolation interpolationNamed(const std::string& name) {
+  for (const auto& known : kInterpolations) {
+    if (name == known.first) return known.second;
+  }
+  refuse(fmt::format("'{}' is no interpolation", name));
+}
+
+const char* toString(Interpolation interpolation) {
+  for (const auto& known : kInterpolations) {
+    if (interpolation == known.second) return known.first;
+  }
+  return "";
+}
+
+std::size_t PlanMotion::waypointBefore(double t) const {
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  return after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
+}
+
+PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
+  if (!plan.error.empty()) refuse(plan.error);
+  const std::size_t waypoints = plan.positions.size();
+  if (waypoints < 2) refuse(fmt::format("it has {}, a plan needs two", plural(waypoints, "waypoint")));
+  const Columns columns = columnsOf(tree, plan, options);
+  std::vector<std::string> notes = plan.notes;
+  const VectorXd rest = restOf(tree, plan, options, columns, notes);
+  requireRows(plan.positions, "positions", waypoints, columns);
+  if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);
+  if (!plan.accelerations.empty()) requireRows(plan.accelerations, "accelerations", waypoints, columns);
+  const bool timed = !plan.times.empty();
+  std::vector<double> times = plan.times;
+  for (std::size_t k = 0; !timed && k < waypoints; ++k) times.push_back(static_cast<double>(k));
+  requireTimes(times, waypoints);
+  judgeLimits(tree, plan, columns, options.ignore_limits, notes);
+  const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, options.turns);
+  const Interpolation kind = chosen(plan, options);
+  if (timed && times.front() > 0) {
+    notes.push_back(
+        fmt::format("the first waypoint is at t = {:g}: the way to it is no part of the plan", times.front()));
+  }
+
+  std::vector<VectorXd> q = spread(plan.positions, columns, rest);
+  const VectorXd zero = VectorXd::Zero(tree.dof());
+  const auto trajectory = [&]() -> JointTrajectory {
+    switch (kind) {
+      case Interpolation::cubic:
+        return JointTrajectory::cubic(tree, times, q, spread(plan.velocities, columns, zero), unwrap);
+      case Interpolation::quintic:
+        return JointTrajectory::quintic(tree, times, q, spread(plan.velocities, columns, zero),
+                                        spread(plan.accelerations, columns, zero), unwrap);
+      case Interpolation::blends:
+        return JointTrajectory::parabolicBlends(tree, times, q, options.blend, unwrap);
+      case Interpolation::automatic:
+      case Interpolation::linear:
+        break;
+    }
+    return JointTrajectory::linear(tree, times, q, unwrap);
+  };
+  JointTrajectory motion = trajectory();
+  return {kind, columns.names, std::move(times), std::move(q), std::move(motion), timed, std::move(notes)};
+}
+
+}  // namespace fcl_artic::plans

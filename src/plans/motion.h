@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// From a plan as its file says it to the motion that is asked about: what is between the waypoints is said here, and
+// nowhere guessed.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "fcl_artic/trajectory.h"
+#include "plans/plan.h"
+
+namespace fcl_artic::plans {
+
+/// What lies between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
+///
+/// - linear: q0 + s d; a quaternion turns the shorter way at constant speed. Velocities do not count.
+/// - cubic (Hermite), with velocities v: q0 + c1 s + c2 s² + c3 s³,
+///     c1 = h v0,  c2 = 3 d - 2 h v0 - h v1,  c3 = h v0 + h v1 - 2 d.
+/// - quintic, with velocities and accelerations a: q0 + c1 s + ... + c5 s⁵,
+///     c1 = h v0,  c2 = h² a0 / 2,  c3 = 10 d - 6 h v0 - 4 h v1 - 3/2 h² a0 + 1/2 h² a1,
+///     c4 = -15 d + 8 h v0 + 7 h v1 + 3/2 h² a0 - h² a1,  c5 = 6 d - 3 h (v0 + v1) - 1/2 h² (a0 - a1).
+/// - blends: straight lines joined by parabolas, at constant acceleration from `blend` before each inner waypoint to
+///   `blend` after it (JointTrajectory::parabolicBlends()).
+///
+/// Cubic and quintic are the only polynomials of these degrees with these values at both ends, and so those of
+/// ros_control's and ros2_control's joint_trajectory_controller, which takes the highest degree that both points have
+/// values for, as `automatic` does. Their coefficients are rounded here, by at most 3e-14 of the largest of |q|, h |v|
+/// and h² |a| of the two waypoints (doc/NUMERICS.md); what is certified is the polynomial with these coefficients.
+enum class Interpolation {
+  automatic,  ///< quintic where velocities and accelerations are given, cubic where velocities are, else linear
+  linear,
+  cubic,
+  quintic,
+  blends
+};
+
+/// Of an option's value: "auto", "linear", "cubic", "quintic" or "blends". @throws std::invalid_argument.
+Interpolation interpolationNamed(const std::string& name);
+const char* toString(Interpolation interpolation);
+
+/// How joints that turn forever go from value to value, where that makes a difference: where a step is longer than half
+/// a turn.
+enum class Turns {
+  ask,      ///< such a step is refused, and both ways named
+  given,    ///< as the values say
+  shortest  ///< the shorter way round (JointTrajectory::Unwrap::yes)
+};
+
+struct MotionOptions {
+  Interpolation interpolation = Interpolation::automatic;
+  double blend = 0;  ///< s; half the duration of a blend
+  Turns turns = Turns::ask;
+  bool ignore_limits = false;           ///< waypoints beyond the joints' limits are noted, not refused
+  std::vector<std::string> joints;      ///< names for plans without names, in their order; empty: all variables
+  std::map<std::string, double> state;  ///< values of joints that plans do not name; before those of the plan itself
+};
+
+/// The motion of a plan.
+struct PlanMotion {
+  Interpolation interpolation;             ///< that was used
+  std::vector<std::string> joints;         ///< names of the plan's columns
+  std::vector<double> times;               ///< of the waypoints, s; 0, 1, 2 ... where `timed` is false
+  std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them
+  JointTrajectory trajectory;
+  bool timed;
+  std::vector<std::string> notes;  ///< the plan's, and what was accepted though unusual
+
+  /// The waypoint at or before time t: 0 to the last.
+  std::size_t waypointBefore(double t) const;
+};
+
+/// @throws std::invalid_argument naming waypoint and joint: the plan's own error; fewer than two waypoints, rows of
+///   another length than joints; a joint that is unknown, named twice, or without a value; values that are not finite,
+///   or beyond the joint's limits; times that do not increase; an interpolation for which velocities or accelerations
+///   are missing, or that has no times; a turn that has to be asked for.
+PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options);
+
+}  // namespace fcl_artic::plans

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plans/ompl_path.h"
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace fcl_artic::plans {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r";
+
+/// Numbers between blanks, appended.
+void addNumbers(std::string_view text, int line, std::vector<double>& out) {
+  for (std::size_t at = 0; (at = text.find_first_not_of(kBlank, at)) != std::string_view::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kBlank, at), text.size());
+    const std::string_view word = text.substr(at, end - at);
+    double value = 0;
+    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || stop != word.data() + word.size()) {
+      throw std::invalid_argument(fmt::format("line {}: '{}' is not a number", line, word));
+    }
+    out.push_back(value);
+    at = end;
+  }
+}
+
+}  // namespace
+
+Plan parseOmplPath(std::string_view content) {
+  Plan plan;
+  std::vector<double> row;
+  int depth = 0;  // of compound states that are open
+  const auto end = [&] {
+    if (depth > 0 || row.empty()) return;
+    plan.positions.push_back(std::move(row));
+    row.clear();
+  };
+  for (int number = 1; !content.empty(); ++number) {
+    const std::size_t length = std::min(content.find('\n'), content.size());
+    std::string_view line = content.substr(0, length);
+    content.remove_prefix(std::min(length + 1, content.size()));
+    const std::size_t begin = line.find_first_not_of(kBlank);
+    if (begin == std::string_view::npos) continue;
+    line = line.substr(begin, line.find_last_not_of(kBlank) + 1 - begin);
+    if (line.substr(0, 14) == "Geometric path") continue;
+    const std::size_t open = line.find('['), close = line.rfind(']');
+    if (line == "]") {
+      if (--depth < 0) throw std::invalid_argument(fmt::format("line {}: a bracket that nothing opens", number));
+    } else if (line.substr(0, 14) == "Compound state" && open != std::string_view::npos &&
+               close == std::string_view::npos) {
+      ++depth;
+    } else if (open != std::string_view::npos && close != std::string_view::npos && close > open) {
+      addNumbers(line.substr(open + 1, close - open - 1), number, row);
+    } else {
+      addNumbers(line, number, row);
+    }
+    end();
+  }
+  if (depth > 0 || !row.empty()) throw std::invalid_argument("the last state has no end: the file is cut short");
+  return plan;
+}
+
+}  // namespace fcl_artic::plans

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Plans as files hold them, whoever made them: one way of saying for all formats, and the readers.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fcl_artic/kinematic_tree.h"
+
+namespace fcl_artic::plans {
+
+/// A plan as its file says it. Only what a format itself demands has been checked; toMotion() checks the rest.
+/// Waypoints are counted from 0.
+struct Plan {
+  using Rows = std::vector<std::vector<double>>;  ///< one for each waypoint, of one value for each of `joints`
+
+  std::string name;                 ///< within its file; empty: the only one
+  std::vector<std::string> joints;  ///< names of variables (KinematicTree::variableName()); empty: all of the robot's
+  std::vector<double> times;        ///< s, one for each waypoint; empty: none are given
+  Rows positions;                   ///< rad or m
+  Rows velocities, accelerations;   ///< rad/s, m/s, and per s²; empty: none are given
+  std::map<std::string, double> state;  ///< values of other joints all the time, as a message's start state has them
+  std::vector<std::string> carried;     ///< objects that the message says the robot carries
+  std::vector<std::string> notes;       ///< what was accepted though unusual, one line each
+  std::string error;                    ///< what is wrong with this plan; empty: nothing was found
+};
+
+enum class Format {
+  csv,    ///< a header of column names, a line for each waypoint
+  json,   ///< a document: messages and plans as doc/manual/howto/certify.md has them
+  jsonl,  ///< such a document a line
+  yaml,   ///< such documents, as ROS prints messages
+  ompl,   ///< OMPL's PathGeometric::printAsMatrix() or print()
+  numpy   ///< .npy, .npz
+};
+
+/// The format that a file's ending names. @throws std::invalid_argument naming the file and the endings that are known.
+Format formatOf(const std::string& path);
+/// Of an option's value: "csv", "json", "jsonl", "yaml", "ompl" or "numpy". @throws std::invalid_argument.
+Format formatNamed(const std::string& name);
+/// Whether the file's ending names a format.
+bool hasPlanEnding(const std::string& path);
+
+/// Reads the plans of one file's content.
+/// @param tree     the robot that they are for: it says what a pose in a message means (planar, floating joints).
+/// @param content  the file's bytes.
+/// @return at least one plan; one that is wrong by itself says so (`error`), and the others are read all the same.
+/// @throws std::invalid_argument, without the file's name: the content is not of the format, or holds no plan; a format
+///   that this build does not read (YAML without yaml-cpp, NumPy's archives without zlib).
+std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format);
+
+}  // namespace fcl_artic::plans

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plans/variables.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "text/nearest_name.h"
+
+namespace fcl_artic::plans {
+
+std::string variableNames(const KinematicTree& tree) {
+  std::string names;
+  for (int v = 0; v < tree.dof(); ++v) names += (v ? ", " : "") + tree.variableName(v);
+  return names;
+}
+
+int variableOf(const KinematicTree& tree, const std::string& name, const std::string& what) {
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (tree.variableName(v) == name) return v;
+  }
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    if (joint.name != name) continue;
+    if (tree.numVariables(j) > 1) {
+      throw std::invalid_argument(fmt::format("{}: joint '{}' has {} values, from '{}' on", what, name,
+                                              tree.numVariables(j), tree.variableName(tree.jointVariable(j))));
+    }
+    throw std::invalid_argument(joint.mimics ? fmt::format("{}: joint '{}' follows joint '{}' and takes no value", what,
+                                                           name, joint.mimic.master)
+                                             : fmt::format("{}: joint '{}' is fixed and takes no value", what, name));
+  }
+  std::vector<std::string> names;
+  for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));
+  throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}{}", what, tree.name(),
+                                          name, variableNames(tree), text::didYouMean(name, names)));
+}
+
+}  // namespace fcl_artic::plans

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "fcl_artic/kinematic_tree.h"
+
+namespace fcl_artic::plans {
+
+/// Names of all variables, separated by commas.
+std::string variableNames(const KinematicTree& tree);
+
+/// Variable of that name.
+/// @param what  begins the message.
+/// @throws std::invalid_argument: no such joint, or one that takes no value.
+int variableOf(const KinematicTree& tree, const std::string& name, const std::string& what);
+
+}  // namespace fcl_artic::plans

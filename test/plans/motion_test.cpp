@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lies between waypoints, beside an evaluation of its own: Bézier curves in long doubles, by de Casteljau.
+#include <random>
+
+#include "arm.h"
+
+namespace fcl_artic::plans {
+namespace {
+
+/// The curve of one joint between two waypoints h apart: that of the degree with these values and derivatives at its
+/// ends, from the derivatives of a Bézier curve of degree n at its ends: n (b1 - b0), n (n - 1) (b2 - 2 b1 + b0).
+struct End {
+  long double q, v, a;
+};
+
+long double bezier(std::vector<long double> b, long double s) {
+  for (std::size_t n = b.size() - 1; n > 0; --n) {
+    for (std::size_t i = 0; i < n; ++i) b[i] += s * (b[i + 1] - b[i]);
+  }
+  return b[0];
+}
+
+long double cubicAt(const End& e0, const End& e1, long double h, long double s) {
+  return bezier({e0.q, e0.q + h * e0.v / 3, e1.q - h * e1.v / 3, e1.q}, s);
+}
+
+long double quinticAt(const End& e0, const End& e1, long double h, long double s) {
+  const long double b1 = e0.q + h * e0.v / 5, b4 = e1.q - h * e1.v / 5;
+  return bezier({e0.q, b1, 2 * b1 - e0.q + h * h * e0.a / 20, 2 * b4 - e1.q + h * h * e1.a / 20, b4, e1.q}, s);
+}
+
+/// The bound of NUMERICS.md, and as much again for the motion's own evaluation at one time.
+TEST(PlanMotionTest, SplinesAreThoseOfTheirValues) {
+  const KinematicTree tree = armTree();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  double worst = 0;
+  for (int run = 0; run < 300; ++run) {
+    Plan plan;
+    plan.joints = {"rail", "hinge"};
+    double t = 0.1 + unit(random);
+    for (int k = 0; k < 4; ++k) {
+      plan.times.push_back(t += 0.01 + 2 * std::abs(unit(random)));
+      plan.positions.push_back({unit(random), unit(random)});
+      plan.velocities.push_back({3 * unit(random), 3 * unit(random)});
+      plan.accelerations.push_back({10 * unit(random), 10 * unit(random)});
+    }
+    for (const bool quintic : {false, true}) {
+      Plan one = plan;
+      if (!quintic) one.accelerations.clear();
+      const PlanMotion motion = toMotion(tree, one, {});
+      ASSERT_EQ(motion.interpolation, quintic ? Interpolation::quintic : Interpolation::cubic);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double h = plan.times[k + 1] - plan.times[k];
+        for (int i = 0; i <= 20; ++i) {
+          const double s = i / 20.0;
+          const Eigen::VectorXd q = motion.trajectory.piece(k).configuration(s);
+          for (std::size_t j = 0; j < 2; ++j) {
+            const End e0{plan.positions[k][j], plan.velocities[k][j], plan.accelerations[k][j]},
+                e1{plan.positions[k + 1][j], plan.velocities[k + 1][j], plan.accelerations[k + 1][j]};
+            const long double wanted = quintic ? quinticAt(e0, e1, h, s) : cubicAt(e0, e1, h, s);
+            long double size = 0;
+            for (const End& e : {e0, e1})
+              size = std::max({size, std::abs(e.q), h * std::abs(e.v), h * h * std::abs(e.a)});
+            const double error = static_cast<double>(std::abs(q[j == 0 ? 1 : 0] - wanted) / size);
+            worst = std::max(worst, error);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_LT(worst, 3e-14);
+  EXPECT_GT(worst, 1e-17);  // they are not the same arithmetic
+}
+
+TEST(PlanMotionTest, InterpolationIsAsGivenOrAsAsked) {
+  const KinematicTree tree = armTree();
+  Plan plan;
+  plan.joints = {"hinge", "rail"};
+  plan.positions = {{0, 0}, {1, 0}, {0, 0.5}};
+  MotionOptions options;
+  EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::linear);
+  const auto refused = [&](Interpolation kind, const std::string& reason) {
+    options.interpolation = kind;
+    expectContains(refusal([&] { (void)toMotion(tree, plan, options); }), reason);
+  };
+  refused(Interpolation::cubic, "cubic needs velocities");
+  plan.velocities = {{0, 0}, {1, 0}, {0, 0}};
+  refused(Interpolation::automatic, "cubic needs times");
+  plan.times = {0, 1, 2};
+  refused(Interpolation::quintic, "quintic needs accelerations");
+  options.interpolation = Interpolation::linear;
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(0.5)[0], 0.5, 1e-15);
+  options.interpolation = Interpolation::automatic;
+  // Hermite: q(1/2) = 1/2 - h v1 / 8.
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(0.5)[0], 0.375, 1e-15);
+  plan.accelerations = {{0, 0}, {0, 0}, {0, 0}};
+  // Quintic: q(1/2) = 1/2 - 5/32 h v1.
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(0.5)[0], 0.5 - 5.0 / 32, 1e-15);
+  options.interpolation = Interpolation::blends;
+  options.blend = 0.25;
+  const PlanMotion blends = toMotion(tree, plan, options);
+  // Half way through the blend it has cut the corner by |change of speed| blend / 4 = 2 * 0.25 / 4.
+  EXPECT_NEAR(blends.trajectory.configuration(1)[0], 0.875, 1e-15);
+  EXPECT_EQ(blends.waypointBefore(0.9), 0u);
+  EXPECT_EQ(blends.waypointBefore(1), 1u);
+  EXPECT_EQ(blends.waypointBefore(2.5), 2u);
+  options.blend = 0.6;
+  expectContains(refusal([&] { (void)toMotion(tree, plan, options); }), "overlap");
+}
+
+TEST(PlanMotionTest, LongTurnsAreAskedFor) {
+  KinematicTree tree("wheel");
+  tree.addLink("base");
+  tree.addLink("wheel");
+  addJoint(tree, "turn", JointType::continuous, "base", "wheel");
+  Plan plan;
+  plan.positions = {{3}, {-3}};
+  MotionOptions options;
+  expectContains(refusal([&] { (void)toMotion(tree, plan, options); }),
+                 "joint 'turn' turns forever and goes by -6 rad from waypoint 0 to 1");
+  options.turns = Turns::given;
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(0.5)[0], 0, 1e-15);
+  options.turns = Turns::shortest;
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(1)[0], 2 * M_PI - 3, 1e-15);
+  plan.positions = {{1}, {-1}};
+  EXPECT_EQ(toMotion(tree, plan, {}).waypoints[1][0], -1);
+}
+
+TEST(PlanMotionTest, OtherJointsKeepTheirState) {
+  const KinematicTree tree = armTree();
+  Plan plan;
+  plan.joints = {"hinge"};
+  plan.positions = {{0}, {1}};
+  plan.state = {{"rail", 0.25}, {"hinge", 0.5}};  // the plan's own waypoints come first
+  EXPECT_EQ(toMotion(tree, plan, {}).waypoints[1], Eigen::Vector2d(1, 0.25));
+  MotionOptions options;
+  options.state = {{"rail", 1.5}};
+  const PlanMotion motion = toMotion(tree, plan, options);
+  EXPECT_EQ(motion.waypoints[1], Eigen::Vector2d(1, 1.5));
+  ASSERT_EQ(motion.notes.size(), 1u);
+  expectContains(motion.notes[0], "joint 'rail' stays at 1.5, beyond its limits");
+  plan.state = {{"elbow", 1}};
+  expectContains(refusal([&] { (void)toMotion(tree, plan, {}); }), "no joint 'elbow'");
+  plan.positions[1][0] = 2.5;
+  options.ignore_limits = true;
+  plan.state.clear();
+  expectContains(toMotion(tree, plan, options).notes[1], "waypoint 1: joint 'hinge' at 2.5 is beyond");
+}
+
+}  // namespace
+}  // namespace fcl_artic::plans

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One plan in every format: the same numbers. What is wrong with a file names waypoint and joint.
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <random>
+
+#include "arm.h"
+#include "plans/write.h"
+
+namespace fcl_artic::plans {
+namespace {
+
+/// Made by NumPy 1.24.2: savez_compressed(positions=[[0, 0], [.25, 0], [1.25, .5]], times=[1, 3, 5],
+/// joint_names=['hinge', 'rail']).
+const char* const kNumpyOwn =
+    "504b030414000000080000002100c2ae6f0152000000b00000000d001400706f736974696f6e732e6e707901001000b000000000000000"
+    "52000000000000009bec17ea1b10c9c850c650ad9e925a9c5ca46ea5a06e9366a1aea3a09e965f54529498179f5f94920a12774bcc294e"
+    "058a17672416a402f91ac63a0a469a3a0ab50a64032e06ace0823d2aff0b94ffc01e00504b03041400000008000000210083dcbdb15000"
+    "0000980000000900140074696d65732e6e707901001000980000000000000050000000000000009bec17ea1b10c9c850c650ad9e925a9c"
+    "5ca46ea5a06e9366a1aea3a09e965f54529498179f5f94920a12774bcc294e058a17672416a402f91ac63a9a3a0ab50a14002e0630f860"
+    "0fa1391c20b4880300504b03041400000008000000210069fb32045b000000a80000000f0014006a6f696e745f6e616d65732e6e707901"
+    "001000a8000000000000005b000000000000009bec17ea1b10c9c850c650ad9e925a9c5ca46ea5a06e136aaaaea3a09e965f5452949817"
+    "9f5f94920a12774bcc294e058a17672416a402f91a463a9a3a0ab50a1400ae0c0606864c20ce03e274204e05e222204e848ae730400000"
+    "504b0102140314000000080000002100c2ae6f0152000000b00000000d0000000000000000000000800100000000706f736974696f6e73"
+    "2e6e7079504b010214031400000008000000210083dcbdb1500000009800000009000000000000000000000080019100000074696d6573"
+    "2e6e7079504b010214031400000008000000210069fb32045b000000a80000000f000000000000000000000080011c0100006a6f696e74"
+    "5f6e616d65732e6e7079504b05060000000003000300af000000b80100000000";
+
+std::string bytesOf(const std::string& hex) {
+  std::string out;
+  for (std::size_t i = 0; i < hex.size(); i += 2) out += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return out;
+}
+
+/// An array file of version 1.0.
+std::string npy(const std::string& descr, bool fortran, const std::string& shape, const std::string& data) {
+  std::string header =
+      "{'descr': '" + descr + "', 'fortran_order': " + (fortran ? "True" : "False") + ", 'shape': " + shape + ", }";
+  header.resize(118, ' ');
+  return std::string("\x93NUMPY\x01\x00\x76\x00", 10) + header + data;
+}
+
+template <class T>
+std::string raw(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+const std::string kCsv = "rail, time ,hinge\r\n# a comment\n0,1,0\n\n0,3,0.25\n0.5,5,1.25\n";
+const std::string kPlain =
+    R"({"name": "p", "joints": ["hinge", "rail"], "times": [1, 3, 5], "waypoints": [[0, 0], [0.25, 0], [1.25, 0.5]]})";
+const std::string kByName =
+    R"({"times": [1, 3, 5], "waypoints": [{"rail": 0, "hinge": 0}, {"hinge": 0.25, "rail": 0}, {"rail": 0.5, "hinge": 1.25}]})";
+const std::string kJointTrajectory = R"({"header": {"frame_id": ""}, "joint_names": ["rail", "hinge"], "points": [
+  {"positions": [0, 0], "velocities": [], "accelerations": [], "effort": [], "time_from_start": {"sec": 1, "nanosec": 0}},
+  {"positions": [0, 0.25], "time_from_start": {"secs": 2, "nsecs": 1000000000}},
+  {"positions": [0.5, 1.25], "time_from_start": 5.0}]})";
+
+std::string jointTrajectory() {
+  std::string text = kJointTrajectory;
+  const std::string wrong = R"("secs": 2, "nsecs": 1000000000)";
+  return text.replace(text.find(wrong), wrong.size(), R"("secs": 3, "nsecs": 0)");
+}
+std::string robotTrajectory() {
+  return R"({"joint_trajectory": )" + jointTrajectory() +
+         R"(, "multi_dof_joint_trajectory": {"joint_names": [], "points": []}})";
+}
+/// As `ros2 topic echo --full-length /display_planned_path` prints it.
+const std::string kDisplayYaml = R"(model_id: arm
+trajectory:
+- joint_trajectory:
+    header:
+      stamp:
+        sec: 0
+        nanosec: 0
+      frame_id: world
+    joint_names:
+    - hinge
+    points:
+    - positions:
+      - 0.0
+      velocities: []
+      time_from_start:
+        sec: 1
+        nanosec: 0
+    - positions: [0.25]
+      velocities: []
+      time_from_start: {sec: 3, nanosec: 0}
+    - positions:
+      - 1.25
+      velocities: []
+      time_from_start:
+        sec: 5
+        nanosec: 0
+  multi_dof_joint_trajectory:
+    joint_names: []
+    points: []
+trajectory_start:
+  joint_state:
+    name: [hinge, rail, gripper]
+    position: [0.0, 0.125, 3.0]
+  multi_dof_joint_state:
+    joint_names:
+    - virtual_joint
+    transforms:
+    - translation: {x: 0.0, y: 0.0, z: 0.0}
+      rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}
+  attached_collision_objects: []
+  is_diff: false
+---
+)";
+
+void expectThePlan(const PlanMotion& motion, const std::string& what, double rail_at_start = 0) {
+  SCOPED_TRACE(what);
+  ASSERT_EQ(motion.waypoints.size(), 3u);
+  EXPECT_EQ(motion.times, (std::vector<double>{1, 3, 5}));
+  EXPECT_TRUE(motion.timed);
+  EXPECT_EQ(motion.interpolation, Interpolation::linear);
+  const double wanted[3][2] = {
+      {0, rail_at_start}, {0.25, rail_at_start}, {1.25, rail_at_start == 0 ? 0.5 : rail_at_start}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(motion.waypoints[k][0], wanted[k][0]) << k;
+    EXPECT_EQ(motion.waypoints[k][1], wanted[k][1]) << k;
+  }
+}
+
+PlanMotion only(const KinematicTree& tree, const std::string& content, Format format,
+                const MotionOptions& options = {}) {
+  const std::vector<Plan> plans = parsePlans(tree, content, format);
+  EXPECT_EQ(plans.size(), 1u);
+  return toMotion(tree, plans.at(0), options);
+}
+
+TEST(PlanReadersTest, EveryFormatSaysTheSame) {
+  const KinematicTree tree = armTree();
+  expectThePlan(only(tree, kCsv, Format::csv), "csv");
+  expectThePlan(only(tree, kPlain, Format::json), "json, joints and waypoints");
+  expectThePlan(only(tree, kByName, Format::json), "json, waypoints by name");
+  expectThePlan(only(tree, "{\"plans\": [" + kPlain + "]}", Format::json), "json, plans");
+  expectThePlan(only(tree, jointTrajectory(), Format::json), "JointTrajectory");
+  expectThePlan(only(tree, robotTrajectory(), Format::json), "RobotTrajectory");
+  expectThePlan(only(tree, "{\"trajectory\": [" + robotTrajectory() + "]}", Format::json), "DisplayTrajectory");
+  expectThePlan(only(tree, "{\"goal\": {\"trajectory\": " + jointTrajectory() + "}}", Format::json),
+                "an action's goal");
+  expectThePlan(only(tree, bytesOf(kNumpyOwn), Format::numpy), "npz");
+  const std::string plain_line = kPlain + "\n\n" + kByName + "\n";
+  const std::vector<Plan> lines = parsePlans(tree, plain_line, Format::jsonl);
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].name, "line 1 p");
+  EXPECT_EQ(lines[1].name, "line 3");
+  for (const Plan& plan : lines) expectThePlan(toMotion(tree, plan, {}), plan.name);
+}
+
+TEST(PlanReadersTest, YamlAsRosPrintsIt) {
+  const KinematicTree tree = armTree();
+  const PlanMotion motion = only(tree, kDisplayYaml, Format::yaml);
+  expectThePlan(motion, "yaml", 0.125);
+  ASSERT_EQ(motion.notes.size(), 2u);
+  expectContains(motion.notes[0], "'gripper', which the robot lacks");
+  expectContains(motion.notes[1], "first waypoint is at t = 1");
+  expectThePlan(only(tree, jointTrajectory(), Format::yaml), "JSON is YAML");
+  const std::vector<Plan> two = parsePlans(tree, kDisplayYaml + kDisplayYaml, Format::yaml);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[1].name, "document 1");
+  std::string cut = kDisplayYaml;
+  cut.replace(cut.find("[0.25]"), 6, "[0.25, '...']");
+  expectContains(refusalOf(tree, cut, Format::yaml), "--full-length");
+  expectContains(refusalOf(tree, "a: 1\na: 2\n", Format::yaml), "line 2, column 1: the key 'a' is there twice");
+  expectContains(refusalOf(tree, "a: &x [1]\nb: *x\n", Format::yaml), "alias");
+  expectContains(refusalOf(tree, "a: [1\n", Format::yaml), "no YAML");
+  expectContains(refusalOf(tree, std::string(5000, '['), Format::yaml), "levels");
+}
+
+TEST(PlanReadersTest, OmplText) {
+  const KinematicTree tree = armTree();
+  for (const std::string text :
+       {"0 0 \n0.25 0 \n1.25 0.5 \n\n",
+        "Geometric path with 3 states\nRealVectorState [0 0]\nRealVectorState [0.25 0]\n"
+        "RealVectorState [1.25 0.5]\n\n",
+        "Geometric path with 3 states\nCompound state [\nSO2State [0]\nRealVectorState [0]\n]\n"
+        "Compound state [\nSO2State [0.25]\nRealVectorState [0]\n]\n"
+        "Compound state [\nSO2State [1.25]\nRealVectorState [0.5]\n]\n"}) {
+    const PlanMotion motion = only(tree, text, Format::ompl);
+    EXPECT_FALSE(motion.timed);
+    EXPECT_EQ(motion.times, (std::vector<double>{0, 1, 2}));
+    EXPECT_EQ(motion.waypoints[1][0], 0.25);
+    EXPECT_EQ(motion.waypoints[2][1], 0.5);
+  }
+  MotionOptions other;
+  other.joints = {"rail", "hinge"};
+  EXPECT_EQ(only(tree, "0 0\n1 0.5\n", Format::ompl, other).waypoints[1][0], 0.5);
+  expectContains(refusalOf(tree, "0 0 1\n0 0 1\n", Format::ompl),
+                 "waypoint 0 has 3 values and no names; robot 'arm' has 2");
+  expectContains(refusalOf(tree, "0 0\n0\n", Format::ompl), "waypoint 1 has 1 positions for 2 joints");
+  expectContains(refusalOf(tree, "0 0\n0 x\n", Format::ompl), "line 2: 'x' is not a number");
+  expectContains(refusalOf(tree, "Compound state [\nSO2State [0]\n", Format::ompl), "cut short");
+}
+
+TEST(PlanReadersTest, Arrays) {
+  const KinematicTree tree = armTree();
+  const std::vector<double> c_order{0, 0, 0.25, 0, 1.25, 0.5}, fortran{0, 0.25, 1.25, 0, 0, 0.5};
+  std::vector<double> big = c_order;
+  for (double& x : big) {
+    auto* bytes = reinterpret_cast<char*>(&x);
+    std::reverse(bytes, bytes + sizeof x);
+  }
+  const std::vector<float> single(c_order.begin(), c_order.end());
+  for (const std::string& content :
+       {npy("<f8", false, "(3, 2)", raw(c_order)), npy("<f8", true, "(3, 2)", raw(fortran)),
+        npy(">f8", false, "(3, 2)", raw(big)), npy("<f4", false, "(3, 2)", raw(single))}) {
+    const PlanMotion motion = only(tree, content, Format::numpy);
+    EXPECT_EQ(motion.waypoints[1], Eigen::Vector2d(0.25, 0));
+    EXPECT_EQ(motion.waypoints[2], Eigen::Vector2d(1.25, 0.5));
+  }
+  std::vector<double> many = c_order;
+  many.insert(many.end(), c_order.rbegin(), c_order.rend());
+  const std::vector<Plan> two = parsePlans(tree, npy("<f8", false, "(2, 3, 2)", raw(many)), Format::numpy);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[1].positions[0][0], 0.5);
+  EXPECT_EQ(two[1].name, "array[1]");
+  expectContains(refusalOf(tree, npy("<f8", false, "(3, 3)", raw(c_order)), Format::numpy),
+                 "48 bytes of data, its header says 72");
+  expectContains(refusalOf(tree, npy("<c16", false, "(3, 1)", raw(c_order)), Format::numpy), "type '<c16'");
+  expectContains(refusalOf(tree, npy("<f8", false, "(0, 2)", ""), Format::numpy), "empty");
+  expectContains(refusalOf(tree, npy("<f8", false, "(6,)", raw(c_order)), Format::numpy),
+                 "waypoints by joints are wanted");
+  const std::string own = bytesOf(kNumpyOwn);
+  std::string damaged = own;
+  damaged[60] = static_cast<char>(damaged[60] ^ 8);
+  expectContains(refusalOf(tree, damaged, Format::numpy), "'positions.npy'");
+  expectContains(refusalOf(tree, own.substr(0, own.size() - 40), Format::numpy), "cut short");
+}
+
+TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
+  const KinematicTree tree = cartTree();
+  const auto message = [](const std::string& second_pose) {
+    return R"({"joint_trajectory": {"joint_names": ["wheel"], "points": [
+        {"positions": [0], "time_from_start": {"sec": 0, "nanosec": 0}},
+        {"positions": [1], "time_from_start": {"sec": 2, "nanosec": 500000000}}]},
+      "multi_dof_joint_trajectory": {"joint_names": ["drive", "fly"], "points": [
+        {"transforms": [{"translation": {"x": 0, "y": 0, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}},
+                        {"translation": {"x": 1, "y": 2, "z": 3}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}}],
+         "time_from_start": {"sec": 0, "nanosec": 0}},
+        {"transforms": [)" +
+           second_pose + R"(, {"translation": {"x": 1, "y": 2, "z": 4}, "rotation": {"x": 0, "y": 0, "z": 1, "w": 0}}],
+         "time_from_start": {"sec": 2, "nanosec": 500000000}}]}})";
+  };
+  const std::string turned =
+      R"({"translation": {"x": 0.5, "y": 1, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0.7071067811865476, "w": 0.7071067811865476}})";
+  const PlanMotion motion = only(tree, message(turned), Format::json);
+  const Eigen::VectorXd& q = motion.waypoints[1];
+  EXPECT_EQ(motion.times[1], 2.5);
+  EXPECT_EQ(q[0], 0.5);
+  EXPECT_EQ(q[1], 1);
+  EXPECT_NEAR(q[2], M_PI / 2, 1e-15);
+  EXPECT_EQ(q[3], 1);  // the wheel
+  EXPECT_EQ(q[6], 4);
+  EXPECT_EQ(q[9], 1);  // half a turn
+  EXPECT_EQ(q[10], 0);
+  const std::string tilted =
+      R"({"translation": {"x": 0.5, "y": 1, "z": 0}, "rotation": {"x": 0.6, "y": 0, "z": 0, "w": 0.8}})";
+  expectContains(refusalOf(tree, message(tilted), Format::json),
+                 "waypoint 1, joint 'drive': the pose leaves the plane");
+  const KinematicTree arm = armTree();
+  expectContains(refusalOf(arm, message(turned), Format::json), "robot 'arm' has no planar or floating joint 'drive'");
+}
+
+TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
+  const KinematicTree tree = armTree();
+  const auto part = [](const std::string& joint, double to) {
+    return R"({"joint_trajectory": {"joint_names": [")" + joint +
+           R"("], "points": [{"positions": [0.1], "time_from_start": 0}, {"positions": [)" + std::to_string(to) +
+           R"(], "time_from_start": 1}]}})";
+  };
+  const std::string start =
+      R"("trajectory_start": {"joint_state": {"name": ["hinge", "rail"], "position": [0.1, 0.1]}})";
+  const std::vector<Plan> plans = parsePlans(
+      tree, "{\"trajectory\": [" + part("hinge", 1) + ", " + part("rail", 0.5) + "], " + start + "}", Format::json);
+  ASSERT_EQ(plans.size(), 2u);
+  EXPECT_EQ(toMotion(tree, plans[0], {}).waypoints[1], Eigen::Vector2d(1, 0.1));
+  EXPECT_EQ(toMotion(tree, plans[1], {}).waypoints[0],
+            Eigen::Vector2d(1, 0.1));  // the hinge is where the first left it
+  EXPECT_EQ(toMotion(tree, plans[1], {}).waypoints[1], Eigen::Vector2d(1, 0.5));
+  const std::string moved =
+      R"("trajectory_start": {"multi_dof_joint_state": {"joint_names": ["virtual"], "transforms": [
+        {"translation": {"x": 0, "y": 0.1, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}}]}})";
+  expectContains(refusalOf(tree, "{\"trajectory\": [" + part("hinge", 1) + "], " + moved + "}", Format::json),
+                 "--base");
+  const std::string carrying =
+      R"("trajectory_start": {"attached_collision_objects": [{"link_name": "arm", "object": {"id": "cup"}}]})";
+  EXPECT_EQ(
+      parsePlans(tree, "{\"trajectory\": [" + part("hinge", 1) + "], " + carrying + "}", Format::json).at(0).carried,
+      std::vector<std::string>{"cup"});
+}
+
+TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
+  const KinematicTree tree = armTree();
+  const auto json = [&](const std::string& from, const std::string& to, const std::string& reason) {
+    std::string text = jointTrajectory();
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    expectContains(refusalOf(tree, text.replace(at, from.size(), to), Format::json), reason);
+  };
+  json("\"rail\", \"hinge\"", "\"rail\", \"hing\"",
+       "robot 'arm' has no joint 'hing'; its joints are: hinge, rail; did you mean 'hinge'?");
+  json("\"rail\", \"hinge\"", "\"rail\", \"rail\"", "names joint 'rail' twice");
+  json("[0, 0.25]", "[0]", "waypoint 1 has 1 positions for 2 joints");
+  json("[0, 0.25]", "[0, NaN]", "waypoint 1, joint 'hinge': nan of its positions is not a finite number");
+  json("[0, 0.25]", "[-Infinity, 0]", "waypoint 1, joint 'rail': -inf");
+  json("[0, 0.25]", "[0, null]", "waypoint 1, positions, value 1: null is not a number");
+  json("[0, 0.25]", "[0, 2.5]", "waypoint 1: joint 'hinge' at 2.5 is beyond its limits [-1, 2]; --ignore-limits");
+  json("\"secs\": 3", "\"secs\": 1", "waypoint 1: its time 1 is not later than that of waypoint 0, 1");
+  json("\"secs\": 3", "\"secs\": 0", "waypoint 1: its time 0 is not later than that of waypoint 0, 1");
+  json("\"nsecs\": 0", "\"nsecs\": 1000000000", "waypoint 1, time_from_start: 1000000000 nanoseconds");
+  json("\"velocities\": []", "\"velocities\": [0, 0]", "waypoint 1 has no velocities, the one before has");
+  json("\"velocities\": []", "\"velocities\": [0]", "waypoint 0 has 1 velocities for 2 joints");
+  json("\"points\"", "\"dots\"", "no plan in it");
+  json("\"points\": [", "\"points\": [], \"others\": [", "it has 0 waypoints, a plan needs two");
+  json("\"joint_names\"", "\"points\": [], \"joint_names\"", "the key 'points' is there twice");
+  json("{\"header\"", "{{\"header\"", "no JSON");
+  expectContains(refusalOf(tree, R"({"joints": ["hinge", "rail"], "waypoints": [[0, 0]]})", Format::json),
+                 "it has 1 waypoint, a plan needs two");
+  expectContains(refusalOf(tree, R"({"joints": ["hinge"], "waypoints": [[0], [1]]})", Format::json),
+                 "the plan has no joint 'rail': give its value by --state rail=VALUE");
+  expectContains(refusalOf(tree, R"({"joint": ["hinge"], "waypoints": [[0], [1]]})", Format::json),
+                 "the key 'joint' is not known");
+  expectContains(refusalOf(tree, R"({"waypoints": [{"hinge": 0, "rail": 0}, {"hinge": 0}]})", Format::json),
+                 "waypoint 1 has no value of joint 'rail'");
+  expectContains(refusalOf(tree, "[]", Format::json), "an empty list");
+  expectContains(refusalOf(tree, "", Format::json), "no JSON");
+  expectContains(refusalOf(tree, "", Format::jsonl), "no plan in it");
+  expectContains(refusalOf(tree, "", Format::ompl), "0 waypoints");
+  expectContains(refusalOf(tree, "", Format::numpy), "no array of NumPy's");
+  expectContains(refusalOf(tree, "", Format::csv), "it is empty");
+  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n0,1,0\n", Format::csv),
+                 "waypoint 1: its time 0 is not later");
+  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,0\n", Format::csv), "line 3 has 2 columns");
+  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,nan,0\n", Format::csv), "line 3, column 'hinge': 'nan'");
+  expectContains(refusalOf(tree, "time,hinge,rail,hinge_vel\n0,0,0,0\n1,1,0,0\n", Format::csv),
+                 "line 1: joint 'rail' has no column of its velocity");
+  expectContains(refusalOf(tree, "time,hinge,elbow\n0,0,0\n1,1,0\n", Format::csv), "no joint 'elbow'");
+}
+
+TEST(PlanReadersTest, WhatIsWrittenIsReadAgain) {
+  const KinematicTree tree = armTree();
+  Plan plan;
+  plan.name = "p";
+  plan.joints = {"rail", "hinge"};
+  plan.times = {0.5, 1.0 / 3 + 1, 1e3};
+  plan.positions = {{0.1, 1.0 / 3}, {-0.0, 1e-300}, {0.5, 1}};
+  plan.velocities = {{0, 0}, {1, 2}, {0, 0}};
+  plan.accelerations = {{0, 0}, {-1, 1e-7}, {0, 0}};
+  for (const Format format : {Format::csv, Format::json, Format::jsonl, Format::yaml, Format::ompl}) {
+    const Plan back = parsePlans(tree, writePlans({plan}, format), format).at(0);
+    EXPECT_EQ(back.positions, plan.positions);
+    if (format == Format::ompl) continue;
+    EXPECT_EQ(back.joints, plan.joints);
+    EXPECT_EQ(back.velocities, plan.velocities);
+    EXPECT_EQ(back.accelerations, plan.accelerations);
+    ASSERT_EQ(back.times.size(), 3u);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(back.times[k], plan.times[k], format == Format::csv ? 0 : 5.1e-10);
+  }
+  plan.times.clear();
+  EXPECT_EQ(parsePlans(tree, writePlans({plan, plan}, Format::json), Format::json).at(1).positions, plan.positions);
+  expectContains(refusal([&] { (void)writePlans({plan, plan}, Format::csv); }), "2 plans");
+  expectContains(refusal([&] { (void)writePlans({plan}, Format::numpy); }), "not written");
+}
+
+/// Whatever the bytes: plans, or an error that says something.
+TEST(PlanReadersTest, DamagedFilesAreErrors) {
+  const KinematicTree tree = armTree();
+  const std::vector<double> numbers{0, 0, 0.25, 0, 1.25, 0.5};
+  const std::vector<std::pair<std::string, Format>> files{
+      {kCsv, Format::csv},
+      {robotTrajectory(), Format::json},
+      {kPlain + "\n" + kByName, Format::jsonl},
+      {kDisplayYaml, Format::yaml},
+      {bytesOf(kNumpyOwn), Format::numpy},
+      {npy("<f8", false, "(3, 2)", raw(numbers)), Format::numpy},
+      {"Geometric path with 2 states\nCompound state [\nSO2State [0]\nRealVectorState [0]\n]\n1 1\n", Format::ompl}};
+  std::mt19937 random(20040401);
+  int refused = 0, accepted = 0;
+  for (const auto& [content, format] : files) {
+    for (int i = 0; i < 1500; ++i) {
+      std::string text = content;
+      for (int changes = 1 + static_cast<int>(random() % 3); changes > 0 && !text.empty(); --changes) {
+        const std::size_t at = random() % text.size();
+        if (random() % 4 == 0) {
+          text.erase(at, random() % 20);
+        } else {
+          text[at] = static_cast<char>(random() % 2 ? random() : "0123456789[]{},:-\"\n "[random() % 20]);
+        }
+      }
+      try {
+        for (const Plan& plan : parsePlans(tree, text, format)) {
+          (void)toMotion(tree, plan, {});
+          ++accepted;
+        }
+      } catch (const std::invalid_argument& error) {
+        EXPECT_STRNE(error.what(), "");
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 2000);
+  EXPECT_GT(accepted, 500);
+}
+
+}  // namespace
+}  // namespace fcl_artic::plans
