@@ -26,10 +26,10 @@ struct Mended {
   double ms = 0;            ///< time that it took
 };
 
-/// Replaces the stretches between waypoints that are not proven free, when every joint goes straight, by ways that
-/// RRTConnect with the certified validator finds from the last free waypoint to the next, simplified by certified
-/// shortcuts; where it finds none, by ways between waypoints farther apart. A stretch that becomes longer takes longer
-/// in proportion.
+/// Replaces the stretches between waypoints that are not proven free, when every joint goes straight: by ways from the
+/// last free waypoint to the next that leave the plan by a little, each motion of them certified; where none is found,
+/// by ways that RRTConnect with the certified validator finds, simplified by certified shortcuts; then by such ways
+/// between waypoints farther apart. A stretch that becomes longer takes longer in proportion.
 /// @param manager  set up.
 /// @throws std::runtime_error saying why it cannot be: the start or the goal touches, no way was found in the time,
 ///   joints that planners don't take; that this program was built without OMPL.

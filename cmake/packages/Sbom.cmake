@@ -8,7 +8,8 @@ set(rows
   "Assimp|BSD-3-Clause|libassimp-dev|DYNAMIC_LINK" "TinyXML-2|Zlib|libtinyxml2-dev|DYNAMIC_LINK"
   "OMPL|BSD-3-Clause|libompl-dev|DYNAMIC_LINK" "CLI11|BSD-3-Clause|libcli11-dev|CONTAINS"
   "JSON for Modern C++|MIT|nlohmann-json3-dev|CONTAINS" "fmt|MIT|libfmt-dev|DYNAMIC_LINK"
-  "libpng|libpng-2.0|libpng-dev|DYNAMIC_LINK" "pybind11|BSD-3-Clause|pybind11-dev|CONTAINS"
+  "libpng|libpng-2.0|libpng-dev|DYNAMIC_LINK" "yaml-cpp|MIT|libyaml-cpp-dev|DYNAMIC_LINK"
+  "zlib|Zlib|zlib1g-dev|DYNAMIC_LINK" "pybind11|BSD-3-Clause|pybind11-dev|CONTAINS"
   "GMP|LGPL-3.0-or-later OR GPL-2.0-or-later|libgmp-dev|DYNAMIC_LINK"
   "MPFR|LGPL-3.0-or-later|libmpfr-dev|DYNAMIC_LINK")
 string(TIMESTAMP now "%Y-%m-%dT%H:%M:%SZ" UTC)

@@ -211,7 +211,7 @@ elseif(CASE STREQUAL "ros")
   set(names eigen=libeigen3-dev libfcl-dev=libfcl-dev libccd-dev=libccd-dev liboctomap-dev=liboctomap-dev tbb=libtbb-dev
     liburdfdom-dev=liburdfdom-dev liburdfdom-headers-dev=liburdfdom-headers-dev assimp=libassimp-dev
     tinyxml2=libtinyxml2-dev ompl=libompl-dev opengl=libgl-dev libosmesa6-dev=libosmesa6-dev cli11=libcli11-dev
-    nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev libgmp=libgmp-dev mpfr=libmpfr-dev
+    nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev yaml-cpp=libyaml-cpp-dev zlib=zlib1g-dev libgmp=libgmp-dev mpfr=libmpfr-dev
     pybind11-dev=pybind11-dev python3-dev=python3-dev python3-numpy=python3-numpy gtest=libgtest-dev
     benchmark=libbenchmark-dev python3-pytest=python3-pytest python3-mypy=mypy python3-tqdm=python3-tqdm
     doxygen=doxygen python3-sphinx=python3-sphinx python3-breathe=python3-breathe cmake=cmake pkg-config=pkg-config)

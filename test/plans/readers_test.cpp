@@ -168,7 +168,12 @@ TEST(PlanReadersTest, YamlAsRosPrintsIt) {
   expectContains(refusalOf(tree, "a: 1\na: 2\n", Format::yaml), "line 2, column 1: the key 'a' is there twice");
   expectContains(refusalOf(tree, "a: &x [1]\nb: *x\n", Format::yaml), "alias");
   expectContains(refusalOf(tree, "a: [1\n", Format::yaml), "no YAML");
-  expectContains(refusalOf(tree, std::string(5000, '['), Format::yaml), "levels");
+  std::string deep;
+  for (int i = 0; i < 5000; ++i) deep += "- ";
+  expectContains(refusalOf(tree, deep + "1\n", Format::yaml), "levels");
+  EXPECT_NE(refusalOf(tree, std::string(100000, '['), Format::yaml), "");
+  EXPECT_NE(refusalOf(tree, std::string(100000, '['), Format::json), "");
+  EXPECT_NE(refusalOf(tree, std::string(10000, '[') + std::string(10000, ']'), Format::json), "");
 }
 
 TEST(PlanReadersTest, OmplText) {
@@ -226,7 +231,7 @@ TEST(PlanReadersTest, Arrays) {
                  "waypoints by joints are wanted");
   const std::string own = bytesOf(kNumpyOwn);
   std::string damaged = own;
-  damaged[60] = static_cast<char>(damaged[60] ^ 8);
+  damaged[80] = static_cast<char>(damaged[80] ^ 8);
   expectContains(refusalOf(tree, damaged, Format::numpy), "'positions.npy'");
   expectContains(refusalOf(tree, own.substr(0, own.size() - 40), Format::numpy), "cut short");
 }

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// fcl_artic certify: plans of files, one or many; what is wrong with them; mending.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "run_program.h"
+
+namespace {
+
+using Json = nlohmann::json;
+
+// As in program_test.cpp.
+const double kContactAngle = M_PI / 3 - std::asin(0.15 / 0.6);
+
+class CertifyProgramTest : public ProgramTest {
+ protected:
+  Outcome certify(const std::string& plans, const std::string& more = "") const {
+    return run("certify " + plans + " " + armAndBall() + " " + more);
+  }
+  Outcome certifyFile(const std::string& name, const std::string& content, const std::string& more = "") const {
+    return certify(write(name, content), more);
+  }
+
+  /// A block of 0.1 m that slides in x and y within 1 m each way, in the plane of a ball of radius 0.2 at (0.5, 0).
+  std::string gantry(
+      const std::string& obstacles =
+          R"(<collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.2"/></geometry></collision>)") const {
+    const std::string limit = R"(<limit lower="-2" upper="2" effort="1" velocity="1"/>)";
+    return "--robot " +
+           write("gantry.urdf", R"(<robot name="gantry"><link name="base"/><link name="carriage"/>
+  <link name="tool"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="x" type="prismatic"><parent link="base"/><child link="carriage"/><axis xyz="1 0 0"/>)" +
+                                    limit + R"(</joint>
+  <joint name="y" type="prismatic"><parent link="carriage"/><child link="tool"/><axis xyz="0 1 0"/>)" +
+                                    limit + R"(</joint>
+</robot>)") +
+           " --scene " +
+           write("things.urdf", R"(<robot name="things"><link name="ball">)" + obstacles + "</link></robot>");
+  }
+};
+
+const std::string kJointTrajectory = R"("joint_names": ["rail", "hinge"], "points": [
+  {"positions": [0, 0], "velocities": [], "time_from_start": {"sec": 1, "nanosec": 0}},
+  {"positions": [0, 0.25], "velocities": [], "time_from_start": {"sec": 3, "nanosec": 0}},
+  {"positions": [0.5, 1.25], "velocities": [], "time_from_start": {"sec": 5, "nanosec": 0}}])";
+
+/// 0.5 rad/s from t = 3 on, where the hinge is at 0.25. OMPL's text has no times: its waypoints are 0, 1, 2.
+TEST_F(CertifyProgramTest, ThroughEveryReaderTheSameVerdictAndTime) {
+  const std::string points = "[[0, 0], [0.25, 0], [1.25, 0.5]]";
+  const std::string files[] = {
+      write("a.csv", "rail,time,hinge\n0,1,0\n0,3,0.25\n0.5,5,1.25\n"),
+      write("b.json", R"({"joints": ["hinge", "rail"], "times": [1, 3, 5], "waypoints": )" + points + "}"),
+      write("c.json", "{" + kJointTrajectory + "}"),
+      write("d.json", R"({"joint_trajectory": {)" + kJointTrajectory + "}}"),
+      write("e.json", R"({"model_id": "arm", "trajectory": [{"joint_trajectory": {)" + kJointTrajectory + "}}]}"),
+      write("f.jsonl", R"({"times": [1, 3, 5], "waypoints": )" + points + "}\n"),
+      write("g.yaml", "joint_trajectory: {" + kJointTrajectory + "}\n"),
+      write("h.path", "0 0\n0.25 0\n1.25 0.5\n\n"),
+  };
+  std::string all;
+  for (const std::string& file : files) all += file + " ";
+  const Outcome run = certify(all, "--json");
+  ASSERT_EQ(run.status, 1) << run.err;
+  const Json answer = Json::parse(run.out);
+  ASSERT_EQ(answer.at("plans").size(), std::size(files));
+  const Json& first = answer.at("plans").at(0);
+  const double wanted = 3 + (kContactAngle - 0.25) / 0.5;
+  EXPECT_LE(first.at("t_lower"), wanted + 1e-9);
+  EXPECT_GE(first.at("t_upper"), wanted - 1e-9);
+  EXPECT_NEAR(first.at("t_upper"), wanted, 2e-6);
+  for (const Json& plan : answer.at("plans")) {
+    SCOPED_TRACE(plan.at("file").dump());
+    EXPECT_EQ(plan.at("status"), "contact");
+    EXPECT_EQ(plan.at("waypoint"), 1);
+    EXPECT_EQ(plan.at("interpolation"), "linear");
+    EXPECT_EQ(plan.at("contacts").at(0).at("body2").at("name"), "ball");
+    if (plan.at("timed") == false) {
+      EXPECT_NEAR(plan.at("t_lower"), 1 + (wanted - 3) / 2, 2e-6);
+      continue;
+    }
+    EXPECT_EQ(plan.at("t_lower"), first.at("t_lower"));
+    EXPECT_EQ(plan.at("t_upper"), first.at("t_upper"));
+    EXPECT_EQ(plan.at("q_at_t_lower"), first.at("q_at_t_lower"));
+  }
+  EXPECT_EQ(answer.at("summary").at("contact"), 8);
+  // A plan of its own, as check says it.
+  const Outcome text = certify(files[0]);
+  EXPECT_EQ(text.status, 1);
+  EXPECT_NE(text.out.find("linear, 3 waypoints, t 1 to 5 s\nafter waypoint 1\nCONTACT: first contact at t = 4.08903"),
+            std::string::npos)
+      << text.out;
+}
+
+/// Between waypoints from rest to rest the cubic is q1 (3 s² - 2 s³): half way at half the time; so is the quintic.
+TEST_F(CertifyProgramTest, SplinesAreSaidAndGoByTheirVelocities) {
+  const std::string to = std::to_string(2 * kContactAngle);
+  const std::string cubic = "t,hinge,rail,hinge_vel,rail_vel\n10,0,0,0,0\n14," + to + ",0,0,0\n";
+  const std::string quintic =
+      "t,hinge,rail,hinge/velocity,rail/velocity,hinge/acceleration,rail/acceleration\n"
+      "10,0,0,0,0,0,0\n14," +
+      to + ",0,0,0,0,0\n";
+  for (const auto& [content, name] : {std::pair(cubic, "cubic"), std::pair(quintic, "quintic")}) {
+    const Outcome run = certifyFile("way.csv", content, "--json");
+    ASSERT_EQ(run.status, 1) << run.err;
+    const Json plan = Json::parse(run.out).at("plans").at(0);
+    EXPECT_EQ(plan.at("interpolation"), name);
+    EXPECT_NEAR(plan.at("t_lower"), 12, 1e-5);
+  }
+  // 2/3 of the way: s = 0.6130 of the cubic, 2/3 of the line.
+  const std::string far = std::to_string(1.5 * kContactAngle);
+  const std::string to_far = "t,hinge,rail,hinge_vel,rail_vel\n0,0,0,0,0\n1," + far + ",0,0,0\n";
+  EXPECT_NEAR(Json::parse(certifyFile("way.csv", to_far, "--json").out).at("plans").at(0).at("t_lower"), 0.6130, 1e-4);
+  EXPECT_NEAR(
+      Json::parse(certifyFile("way.csv", to_far, "--json --interpolation linear").out).at("plans").at(0).at("t_lower"),
+      2.0 / 3, 1e-5);
+  const Outcome none = certifyFile("way.csv", "hinge,rail\n0,0\n1,0\n", "--interpolation cubic");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_NE(none.out.find("cubic needs velocities"), std::string::npos) << none.out;
+  EXPECT_EQ(certifyFile("way.csv", cubic, "--interpolation blends").status, 2);
+  EXPECT_EQ(
+      certifyFile("way.csv", "t,hinge,rail\n0,0,0\n1,0.4,0\n2,0,0\n", "--interpolation blends --blend 0.5").status, 0);
+}
+
+TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
+  const std::string free = R"({"waypoints": [[0, 0], [0.5, 0]]})",
+                    hit = R"({"id": 7, "waypoints": [[0, 0], [1.5, 0]]})",
+                    wrong = R"({"waypoints": [[0, 0], [0.5, 9]]})";
+  const Outcome fine = certifyFile("plans.jsonl", free + "\n" + free + "\n");
+  EXPECT_EQ(fine.status, 0) << fine.err;
+  EXPECT_NE(fine.out.find("2 plans: 2 free, 0 in contact, 0 undecided, 0 wrong"), std::string::npos) << fine.out;
+  const std::string csv = path("rows.csv");
+  const Outcome mixed =
+      certifyFile("plans.jsonl", free + "\n" + hit + "\n", "--failed-only --clearance --threads 2 --csv " + csv);
+  EXPECT_EQ(mixed.status, 1) << mixed.err;
+  EXPECT_NE(mixed.out.find("plans.jsonl line 2 7: contact within ["), std::string::npos) << mixed.out;
+  EXPECT_NE(mixed.out.find("'arm' and 'ball' at ("), std::string::npos) << mixed.out;
+  EXPECT_EQ(mixed.out.find("line 1"), std::string::npos) << mixed.out;
+  std::istringstream rows(read(csv));
+  std::string line;
+  int lines = 0;
+  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 24) << line;
+  EXPECT_EQ(lines, 3);
+  const Outcome error = certifyFile("plans.jsonl", free + "\n" + wrong + "\n" + hit + "\n" + "{\n");
+  EXPECT_EQ(error.status, 2);
+  EXPECT_NE(error.out.find("line 2: error: waypoint 1: joint 'rail' at 9 is beyond its limits [-1, 1]"),
+            std::string::npos)
+      << error.out;
+  EXPECT_NE(error.out.find("line 4: error: it is no JSON"), std::string::npos) << error.out;
+  EXPECT_NE(error.out.find("4 plans: 1 free, 1 in contact, 0 undecided, 2 wrong"), std::string::npos) << error.out;
+  EXPECT_EQ(certifyFile("plans.jsonl", free + "\n" + wrong + "\n", "--ignore-limits").status, 0);
+  EXPECT_EQ(certifyFile("plans.jsonl", hit + "\n", "--budget 1").status, 3);
+  // The same bits on any number of threads.
+  std::string many;
+  for (int i = 0; i < 40; ++i) many += R"({"waypoints": [[0, 0], [)" + std::to_string(0.05 * i) + ", 0.1]]}\n";
+  Json answers[2];
+  for (int threads : {1, 3}) {
+    answers[threads / 3] =
+        Json::parse(certifyFile("many.jsonl", many, "--json --threads " + std::to_string(threads)).out).at("plans");
+    for (Json& plan : answers[threads / 3]) plan.erase("us");
+  }
+  EXPECT_EQ(answers[0].size(), 40u);
+  EXPECT_EQ(answers[0], answers[1]);
+}
+
+TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
+  write("folder/b.csv", "hinge,rail\n0,0\n0.5,0\n");
+  write("folder/a.jsonl", R"({"waypoints": [[0, 0], [0.5, 0]]})");
+  write("folder/readme.md", "no plan");
+  const Outcome folder = certify(path("folder"));
+  EXPECT_EQ(folder.status, 0) << folder.err;
+  EXPECT_LT(folder.out.find("a.jsonl"), folder.out.find("b.csv"));
+  EXPECT_NE(folder.out.find("2 plans: 2 free"), std::string::npos) << folder.out;
+  std::filesystem::create_directory(path("empty"));
+  EXPECT_EQ(certify(path("empty")).status, 2);
+  EXPECT_EQ(certify("/nowhere.csv").status, 2);
+  const Outcome unknown = certifyFile("way.plan", "hinge,rail\n0,0\n0.5,0\n");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.out.find("--format says what it is"), std::string::npos) << unknown.out;
+  EXPECT_EQ(certifyFile("way.plan", "hinge,rail\n0,0\n0.5,0\n", "--format csv").status, 0);
+  EXPECT_EQ(certify("- --format csv <" + write("in", "hinge,rail\n0,0\n0.5,0\n")).status, 0);
+  EXPECT_EQ(run("certify --robot " + arm() + " --scene " + ball() + " " + path("folder/b.csv")).status, 0);
+}
+
+TEST_F(CertifyProgramTest, OtherJointsAndCarriedObjectsAreAskedFor) {
+  const Outcome missing = certifyFile("way.csv", "hinge\n0\n0.5\n");
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.out.find("way.csv: error: the plan has no joint 'rail': give its value by --state rail=VALUE"),
+            std::string::npos)
+      << missing.out;
+  EXPECT_EQ(certifyFile("way.csv", "hinge\n0\n0.5\n", "--state rail=0.5").status, 0);
+  EXPECT_EQ(certifyFile("way.csv", "hinge\n0\n0.5\n", "--state elbow=0.5").status, 2);
+  EXPECT_EQ(certifyFile("way.path", "0\n0.5\n", "--joints hinge --state rail=0").status, 0);
+  const std::string message =
+      R"({"trajectory": [{"joint_trajectory": {)" + kJointTrajectory +
+      R"(}}], "trajectory_start": {"attached_collision_objects": [{"object": {"id": "cup"}}]}})";
+  const Outcome carrying = certifyFile("way.json", message);
+  EXPECT_EQ(carrying.status, 2);
+  EXPECT_NE(carrying.out.find("carries 'cup': --attach says what that is"), std::string::npos) << carrying.out;
+  EXPECT_EQ(
+      certifyFile("way.json", message, "--attach slide=" + write("cup.urdf", R"(<robot name="cup"><link name="cup">
+    <collision><geometry><sphere radius="0.01"/></geometry></collision></link></robot>)"))
+          .status,
+      1);
+}
+
+#ifdef FCL_ARTIC_HAS_PLANS
+/// The way around the ball is looked at in closed form: the block is a square of side 0.1 in the ball's plane.
+TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
+  const std::string out = path("safe.csv");
+  const Outcome run = this->run("certify " + write("way.csv", "time,x,y\n0,-0.2,0\n1,0,0\n2,1,0\n3,1.2,0\n") + " " +
+                                gantry() + " --mend --json --out " + out);
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  const Json plan = Json::parse(run.out).at("plans").at(0);
+  EXPECT_EQ(plan.at("status"), "contact");
+  EXPECT_NEAR(plan.at("t_lower"), 1.25, 1e-5);
+  EXPECT_EQ(plan.at("waypoint"), 1);
+  const Json& mended = plan.at("mended");
+  EXPECT_EQ(mended.at("status"), "free");
+  EXPECT_EQ(mended.at("detours"), 1);
+  EXPECT_GE(mended.at("deviation"), 0.24);
+  EXPECT_GT(mended.at("length_ratio"), 1.05);
+  EXPECT_LT(mended.at("length_ratio"), 3);
+  // What was written: it begins and ends as the plan does, and no point of it touches.
+  std::istringstream rows(read(out));
+  std::string line;
+  std::getline(rows, line);
+  EXPECT_EQ(line, "time,x,y");
+  std::vector<std::array<double, 3>> way;
+  for (std::array<double, 3> row; std::getline(rows, line); way.push_back(row)) {
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &row[0], &row[1], &row[2]), 3) << line;
+    if (!way.empty()) {
+      EXPECT_GT(row[0], way.back()[0]);
+    }
+  }
+  ASSERT_GE(way.size(), 5u);
+  EXPECT_EQ(way.front(), (std::array<double, 3>{0, -0.2, 0}));
+  EXPECT_EQ(way[1], (std::array<double, 3>{1, 0, 0}));
+  EXPECT_EQ(way.back()[1], 1.2);
+  EXPECT_EQ(way.back()[2], 0);
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    for (int i = 0; i <= 1000; ++i) {
+      const double s = i / 1000.0, x = way[k - 1][1] + s * (way[k][1] - way[k - 1][1]),
+                   y = way[k - 1][2] + s * (way[k][2] - way[k - 1][2]);
+      const double dx = std::max(0.0, std::abs(x - 0.5) - 0.05), dy = std::max(0.0, std::abs(y) - 0.05);
+      ASSERT_GT(std::hypot(dx, dy), 0.2) << "at " << x << ", " << y;
+    }
+  }
+  // What was written is free for the plain path too.
+  EXPECT_EQ(this->run("certify " + out + " " + gantry()).status, 0);
+  EXPECT_EQ(
+      this->run("certify " + path("way.csv") + " " + gantry() + " --mend --margin 0.05 --out " + path("wide.json"))
+          .status,
+      0);
+  EXPECT_EQ(this->run("certify " + path("wide.json") + " " + gantry() + " --margin 0.05").status, 0);
+}
+
+TEST_F(CertifyProgramTest, SaysWhyItCannotMend) {
+  const auto refused = [&](const std::string& csv, const std::string& world, const std::string& reason) {
+    const Outcome run = this->run("certify " + write("way.csv", csv) + " " + world + " --mend --mend-time 0.3 --out " +
+                                  path("none.csv"));
+    EXPECT_EQ(run.status, 1) << run.err;
+    EXPECT_NE(run.out.find("not mended: " + reason), std::string::npos) << run.out;
+    EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
+  };
+  refused("x,y\n0.5,0\n1,0\n", gantry(), "its start touches something");
+  refused("x,y\n0,0\n0.5,0.1\n", gantry(), "its goal touches something");
+  const std::string wall =
+      R"(<collision><origin xyz="0.5 0 0"/><geometry><box size="0.1 9 1"/></geometry></collision>)";
+  refused("x,y\n0,0\n1,0\n", gantry(wall), "no way around what it touches after waypoint 0 was found in 0.3 s");
+}
+#endif
+
+}  // namespace
