@@ -166,6 +166,25 @@ TEST_F(ProgramTest, BenchPlanningOnOneProblem) {
   EXPECT_EQ(heightsOfBars(read(path("planning/planning.svg"))).size(), 12u);  // four charts of three bars
 }
 
+TEST_F(ProgramTest, BenchCertifyFindsWhatSamplingHides) {
+  const char* data = std::getenv("FCL_ARTIC_DATA");
+  if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
+    GTEST_SKIP() << "FCL_ARTIC_DATA does not name a folder with robots/ and problems/";
+  }
+  const Outcome run =
+      this->run("bench certify --environment bookshelf_small --problems 3 --mend-time 2 --csv " + path("certify.csv"));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;  // none that is seen to collide was certified free
+  std::istringstream csv(read(path("certify.csv")));
+  std::string line;
+  int rows = 0, touching = 0;
+  for (std::getline(csv, line); std::getline(csv, line); ++rows) {
+    expectContains(line, "panda,bookshelf_small,");
+    touching += line.find(",contact,") != std::string::npos;
+  }
+  EXPECT_EQ(rows, 3);
+  EXPECT_GE(touching, 1);
+}
+
 #endif
 
 }  // namespace

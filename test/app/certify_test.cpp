@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../plans/numpy_sample.h"
 #include "run_program.h"
 
 namespace {
@@ -63,6 +64,7 @@ TEST_F(CertifyProgramTest, ThroughEveryReaderTheSameVerdictAndTime) {
       write("f.jsonl", R"({"times": [1, 3, 5], "waypoints": )" + points + "}\n"),
       write("g.yaml", "joint_trajectory: {" + kJointTrajectory + "}\n"),
       write("h.path", "0 0\n0.25 0\n1.25 0.5\n\n"),
+      write("i.npz", numpySample()),
   };
   std::string all;
   for (const std::string& file : files) all += file + " ";
@@ -89,7 +91,7 @@ TEST_F(CertifyProgramTest, ThroughEveryReaderTheSameVerdictAndTime) {
     EXPECT_EQ(plan.at("t_upper"), first.at("t_upper"));
     EXPECT_EQ(plan.at("q_at_t_lower"), first.at("q_at_t_lower"));
   }
-  EXPECT_EQ(answer.at("summary").at("contact"), 8);
+  EXPECT_EQ(answer.at("summary").at("contact"), 9);
   // A plan of its own, as check says it.
   const Outcome text = certify(files[0]);
   EXPECT_EQ(text.status, 1);

@@ -6,32 +6,11 @@
 #include <random>
 
 #include "arm.h"
+#include "numpy_sample.h"
 #include "plans/write.h"
 
 namespace fcl_artic::plans {
 namespace {
-
-/// Made by NumPy 1.24.2: savez_compressed(positions=[[0, 0], [.25, 0], [1.25, .5]], times=[1, 3, 5],
-/// joint_names=['hinge', 'rail']).
-const char* const kNumpyOwn =
-    "504b030414000000080000002100c2ae6f0152000000b00000000d001400706f736974696f6e732e6e707901001000b000000000000000"
-    "52000000000000009bec17ea1b10c9c850c650ad9e925a9c5ca46ea5a06e9366a1aea3a09e965f54529498179f5f94920a12774bcc294e"
-    "058a17672416a402f91ac63a0a469a3a0ab50a64032e06ace0823d2aff0b94ffc01e00504b03041400000008000000210083dcbdb15000"
-    "0000980000000900140074696d65732e6e707901001000980000000000000050000000000000009bec17ea1b10c9c850c650ad9e925a9c"
-    "5ca46ea5a06e9366a1aea3a09e965f54529498179f5f94920a12774bcc294e058a17672416a402f91ac63a9a3a0ab50a14002e0630f860"
-    "0fa1391c20b4880300504b03041400000008000000210069fb32045b000000a80000000f0014006a6f696e745f6e616d65732e6e707901"
-    "001000a8000000000000005b000000000000009bec17ea1b10c9c850c650ad9e925a9c5ca46ea5a06e136aaaaea3a09e965f5452949817"
-    "9f5f94920a12774bcc294e058a17672416a402f91a463a9a3a0ab50a1400ae0c0606864c20ce03e274204e05e222204e848ae730400000"
-    "504b0102140314000000080000002100c2ae6f0152000000b00000000d0000000000000000000000800100000000706f736974696f6e73"
-    "2e6e7079504b010214031400000008000000210083dcbdb1500000009800000009000000000000000000000080019100000074696d6573"
-    "2e6e7079504b010214031400000008000000210069fb32045b000000a80000000f000000000000000000000080011c0100006a6f696e74"
-    "5f6e616d65732e6e7079504b05060000000003000300af000000b80100000000";
-
-std::string bytesOf(const std::string& hex) {
-  std::string out;
-  for (std::size_t i = 0; i < hex.size(); i += 2) out += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
-  return out;
-}
 
 /// An array file of version 1.0.
 std::string npy(const std::string& descr, bool fortran, const std::string& shape, const std::string& data) {
@@ -142,7 +121,7 @@ TEST(PlanReadersTest, EveryFormatSaysTheSame) {
   expectThePlan(only(tree, "{\"trajectory\": [" + robotTrajectory() + "]}", Format::json), "DisplayTrajectory");
   expectThePlan(only(tree, "{\"goal\": {\"trajectory\": " + jointTrajectory() + "}}", Format::json),
                 "an action's goal");
-  expectThePlan(only(tree, bytesOf(kNumpyOwn), Format::numpy), "npz");
+  expectThePlan(only(tree, numpySample(), Format::numpy), "npz");
   const std::string plain_line = kPlain + "\n\n" + kByName + "\n";
   const std::vector<Plan> lines = parsePlans(tree, plain_line, Format::jsonl);
   ASSERT_EQ(lines.size(), 2u);
@@ -229,7 +208,7 @@ TEST(PlanReadersTest, Arrays) {
   expectContains(refusalOf(tree, npy("<f8", false, "(0, 2)", ""), Format::numpy), "empty");
   expectContains(refusalOf(tree, npy("<f8", false, "(6,)", raw(c_order)), Format::numpy),
                  "waypoints by joints are wanted");
-  const std::string own = bytesOf(kNumpyOwn);
+  const std::string own = numpySample();
   std::string damaged = own;
   damaged[80] = static_cast<char>(damaged[80] ^ 8);
   expectContains(refusalOf(tree, damaged, Format::numpy), "'positions.npy'");
@@ -380,7 +359,7 @@ TEST(PlanReadersTest, DamagedFilesAreErrors) {
       {robotTrajectory(), Format::json},
       {kPlain + "\n" + kByName, Format::jsonl},
       {kDisplayYaml, Format::yaml},
-      {bytesOf(kNumpyOwn), Format::numpy},
+      {numpySample(), Format::numpy},
       {npy("<f8", false, "(3, 2)", raw(numbers)), Format::numpy},
       {"Geometric path with 2 states\nCompound state [\nSO2State [0]\nRealVectorState [0]\n]\n1 1\n", Format::ompl}};
   std::mt19937 random(20040401);
