@@ -28,9 +28,9 @@ namespace fcl_artic::plans {
 ///
 /// Cubic and quintic are the only polynomials of these degrees with these values at both ends, and so those of
 /// ros_control's and ros2_control's joint_trajectory_controller, which takes the highest degree that both points have
-/// values for, as `automatic` does. Rounding of their coefficients moves them by no more than 2e-13 of the largest of |q|,
-/// h |v| and h² |a| of the two waypoints (doc/NUMERICS.md, section 12); what is certified is the polynomial with these
-/// coefficients.
+/// values for, as `automatic` does. Rounding of their coefficients moves them by no more than 2e-13 of the largest of
+/// |q|, h |v| and h² |a| of the two waypoints (doc/NUMERICS.md, section 12); what is certified is the polynomial with
+/// these coefficients.
 enum class Interpolation {
   automatic,  ///< quintic where velocities and accelerations are given, cubic where velocities are, else linear
   linear,
