@@ -265,6 +265,25 @@ class JointTrajectory:
     def piece(self, k: int) -> JointMotion: ...
     def __len__(self) -> int: ...
 
+class Plan:
+    @property
+    def name(self) -> str: ...
+    @property
+    def error(self) -> str | None: ...
+    @property
+    def trajectory(self) -> JointTrajectory: ...
+    @property
+    def interpolation(self) -> str | None: ...
+    @property
+    def times(self) -> _Doubles | None: ...
+    @property
+    def waypoints(self) -> _Doubles | None: ...
+    @property
+    def carried(self) -> list[str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def waypoint_before(self, t: float) -> int: ...
+
 class Geometry:
     @property
     def kind(self) -> str: ...
@@ -738,6 +757,28 @@ class World:
         measure_times: bool = ...,
         progress: _Progress | None = ...,
     ) -> Result: ...
+    def certify(
+        self,
+        plan: Plan,
+        *,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> Result: ...
     def check_trajectory(
         self,
         waypoints: npt.ArrayLike,
@@ -936,6 +977,18 @@ def load_scene(
 def load_mesh(
     path: _Path, *, scale: npt.ArrayLike | None = ..., solid: bool = ..., collada_up_axis: bool = ...
 ) -> Geometry: ...
+def load_plans(
+    path: _Path,
+    robot: _HasTree,
+    *,
+    interpolation: str = ...,
+    blend: float = ...,
+    turns: str = ...,
+    ignore_limits: bool = ...,
+    joints: Sequence[str] = ...,
+    state: Mapping[str, float] = ...,
+    format: str | None = ...,
+) -> list[Plan]: ...
 def load_points(path: _Path, radius: float) -> Geometry: ...
 def load_srdf(srdf: _Path, tree: _HasTree) -> frozenset[_Pair]: ...
 def read_srdf(srdf: _Path, tree: _HasTree) -> list[tuple[str, str, str]]: ...

@@ -421,6 +421,7 @@ void bindWorld(py::module_& module) {
       });
   bindChanges(world);
   bindQueries(world);
+  bindPlans(module, world);
   bindBatch(module, world);
   bindPicture(module, world);
 }

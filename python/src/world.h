@@ -80,6 +80,7 @@ Question questionOf(const World& world, py::handle motion, py::handle q1);
 CertifiedResult answer(const World& world, const Question& question, Request request);
 
 void bindWorld(py::module_& module);
+void bindPlans(py::module_& module, py::class_<World>& world);
 void bindBatch(py::module_& module, py::class_<World>& world);
 void bindPicture(py::module_& module, py::class_<World>& world);
 

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Anybody's plans in Python.
+#include <pybind11/stl.h>
+
+#include <algorithm>
+
+#include "files/files.h"
+#include "kinematics.h"
+#include "plans/motion.h"
+#include "plans/plan.h"
+#include "world.h"
+
+namespace fcl_artic::python {
+namespace {
+
+/// A plan of a file, and the motion that it is.
+struct LoadedPlan {
+  plans::Plan plan;
+  std::optional<plans::PlanMotion> motion;  ///< none: `error` says why
+  std::string error;
+
+  const plans::PlanMotion& require() const {
+    if (!motion) valueError(error);
+    return *motion;
+  }
+};
+
+plans::Turns turnsNamed(const std::string& name) {
+  if (name == "ask") return plans::Turns::ask;
+  if (name == "given") return plans::Turns::given;
+  if (name == "shortest") return plans::Turns::shortest;
+  valueError("turns is '" + name + "', not 'ask', 'given' or 'shortest'");
+}
+
+std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string& interpolation, double blend,
+                             const std::string& turns, bool ignore_limits, const std::vector<std::string>& joints,
+                             const std::map<std::string, double>& state, const std::optional<std::string>& format) {
+  const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+  const std::shared_ptr<const KinematicTree> of = treeOf(tree);
+  plans::MotionOptions options;
+  options.interpolation = plans::interpolationNamed(interpolation);
+  if ((options.interpolation == plans::Interpolation::blends) != (blend > 0)) {
+    valueError("interpolation='blends' and a blend above 0 go together");
+  }
+  options.blend = blend;
+  options.turns = turnsNamed(turns);
+  options.ignore_limits = ignore_limits;
+  options.joints = joints;
+  options.state = state;
+  const plans::Format kind = format ? plans::formatNamed(*format) : plans::formatOf(file);
+  return guardFiles(file, [&] {
+    std::vector<LoadedPlan> out;
+    try {
+      for (plans::Plan& plan : plans::parsePlans(*of, files::read(file), kind)) {
+        LoadedPlan& one = out.emplace_back();
+        try {
+          one.motion = plans::toMotion(*of, plan, options);
+        } catch (const std::invalid_argument& error) {
+          one.error = error.what();
+        }
+        one.plan = std::move(plan);
+      }
+    } catch (const std::invalid_argument& error) {
+      throw std::runtime_error("'" + file + "': " + error.what());
+    }
+    return out;
+  });
+}
+
+CertifiedResult certify(const World& world, const LoadedPlan& plan, const py::kwargs& options) {
+  const plans::PlanMotion& motion = plan.require();
+  const bool carries = std::any_of(world.bodies().begin(), world.bodies().end(),
+                                   [](const World::Body& body) { return body.carrier >= 0; });
+  if (!plan.plan.carried.empty() && !carries) {
+    valueError("the plan's message says that the robot carries '" + plan.plan.carried[0] +
+               "', and nothing is attached in the world");
+  }
+  return answer(world, motion.trajectory, readRequest(options));
+}
+
+py::object arrayOfWaypoints(const LoadedPlan& plan) {
+  if (!plan.motion) return py::none();
+  const std::vector<Eigen::VectorXd>& q = plan.motion->waypoints;
+  RowMajor rows(static_cast<Eigen::Index>(q.size()), q[0].size());
+  for (std::size_t k = 0; k < q.size(); ++k) rows.row(static_cast<Eigen::Index>(k)) = q[k].transpose();
+  return arrayOfRows(rows);
+}
+
+}  // namespace
+
+void bindPlans(py::module_& module, py::class_<World>& world) {
+  py::class_<LoadedPlan>(module, "Plan",
+                         "A plan of a file, as load_plans() gives it: what it says, and the motion that it is.")
+      .def_property_readonly(
+          "name", [](const LoadedPlan& p) { return p.plan.name; }, "Within its file; '' for the only one.")
+      .def_property_readonly(
+          "error",
+          [](const LoadedPlan& p) -> py::object { return p.motion ? py::none() : py::object(py::str(p.error)); },
+          "What is wrong with it, naming waypoint and joint; None where nothing is.")
+      .def_property_readonly(
+          "trajectory", [](const LoadedPlan& p) { return p.require().trajectory; },
+          "The motion that is asked about. A ValueError for a plan with an error.")
+      .def_property_readonly(
+          "interpolation",
+          [](const LoadedPlan& p) -> py::object {
+            return p.motion ? py::object(py::str(plans::toString(p.motion->interpolation))) : py::none();
+          },
+          "What lies between the waypoints: 'linear', 'cubic', 'quintic' or 'blends'.")
+      .def_property_readonly(
+          "times",
+          [](const LoadedPlan& p) -> py::object {
+            if (!p.motion) return py::none();
+            const std::vector<double>& t = p.motion->times;
+            return arrayOf(
+                Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(t.data(), static_cast<Eigen::Index>(t.size()))));
+          },
+          "Of the waypoints; 0, 1, 2 ... where the plan has none.")
+      .def_property_readonly("waypoints", &arrayOfWaypoints, "(N, n): all joints of the robot.")
+      .def_property_readonly(
+          "carried", [](const LoadedPlan& p) { return p.plan.carried; },
+          "Objects that the message says the robot carries.")
+      .def_property_readonly(
+          "notes", [](const LoadedPlan& p) { return p.motion ? p.motion->notes : p.plan.notes; },
+          "What was accepted though unusual.")
+      .def(
+          "waypoint_before", [](const LoadedPlan& p, double t) { return p.require().waypointBefore(t); },
+          "Number of the waypoint at or before time t.", py::arg("t"))
+      .def("__repr__", [](const LoadedPlan& p) {
+        if (!p.motion) return py::str("<Plan {!r}: {}>").format(p.plan.name, p.error);
+        return py::str("<Plan {!r}: {} waypoints, {}>")
+            .format(p.plan.name, p.motion->times.size(), plans::toString(p.motion->interpolation));
+      });
+  module.def(
+      "load_plans", &load,
+      "Reads the plans of a file (CSV, JSON, JSON lines, YAML and messages of ROS, OMPL's text, NumPy's arrays) for a\n"
+      "robot. A plan that is wrong by itself has an `error`. `state` has values of joints that plans do not name.",
+      py::arg("path"), py::arg("robot"), py::kw_only(), py::arg("interpolation") = "auto", py::arg("blend") = 0.0,
+      py::arg("turns") = "ask", py::arg("ignore_limits") = false, py::arg("joints") = std::vector<std::string>(),
+      py::arg("state") = std::map<std::string, double>(), py::arg("format") = py::none());
+  world.def(
+      "certify", &certify,
+      "Finds the first contact of a plan of load_plans(), or proves that there is none. Options are those of Request.",
+      py::arg("plan"));
+}
+
+}  // namespace fcl_artic::python

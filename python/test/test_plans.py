@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plans of files: load_plans() and World.certify()."""
+import json
+
+import numpy as np
+import pytest
+
+import fcl_artic
+
+FROM = [-2.1, 1.0, -1.0, -0.1, -0.1, 0.0]
+TO = [-0.1, 0.3, -2.3, -1.0, 1.1, 0.0]
+ASIDE = [0.9, 0.4, -2.0, 0.0, 0.2, 0.0]
+
+
+def test_numpys_own_file_and_json_say_what_check_trajectory_says(shared_world, robot, tmp_path):
+    times = np.array([0.5, 2.5])
+    names = robot.tree.variables
+    np.savez(tmp_path / "a.npz", positions=[FROM, TO], times=times, joint_names=names)
+    np.savez_compressed(tmp_path / "b.npz", q=np.array([FROM[::-1], TO[::-1]], order="F"), t=times, joints=names[::-1])
+    np.savetxt(tmp_path / "c.csv", np.column_stack([times, [FROM, TO]]), delimiter=",", fmt="%.17g", comments="",
+               header=",".join(["time", *names]))
+    (tmp_path / "d.json").write_text(json.dumps({"joints": list(names), "times": list(times), "waypoints": [FROM, TO]}))
+    wanted = shared_world.check_trajectory([FROM, TO], times)
+    assert not wanted.free
+    for file in ("a.npz", "b.npz", "c.csv", "d.json"):
+        (plan,) = fcl_artic.load_plans(tmp_path / file, robot)
+        assert plan.error is None and plan.interpolation == "linear", file
+        assert np.array_equal(plan.waypoints, [FROM, TO]) and np.array_equal(plan.times, times)
+        result = shared_world.certify(plan)
+        assert (result.t_lower, result.t_upper, result.pair) == (wanted.t_lower, wanted.t_upper, wanted.pair)
+        assert plan.waypoint_before(result.t_lower) == 0
+        assert str(shared_world.check(plan.trajectory)) == str(wanted)
+    np.save(tmp_path / "many.npy", np.array([[FROM, ASIDE], [FROM, TO]]))
+    verdicts = [shared_world.certify(plan).free for plan in fcl_artic.load_plans(tmp_path / "many.npy", robot)]
+    assert verdicts == [True, False]
+
+
+def test_what_is_wrong_is_said(shared_world, robot, tmp_path):
+    file = tmp_path / "plans.jsonl"
+    file.write_text(json.dumps({"waypoints": [FROM, ASIDE]}) + "\n" + json.dumps({"waypoints": [FROM, ASIDE[:5]]}))
+    good, bad = fcl_artic.load_plans(file, robot)
+    assert good.error is None and shared_world.certify(good).free
+    assert bad.error == "waypoint 1 has 5 positions for 6 joints" and bad.times is None and bad.waypoints is None
+    for use in (lambda: bad.trajectory, lambda: shared_world.certify(bad), lambda: bad.waypoint_before(0)):
+        with pytest.raises(ValueError, match="waypoint 1 has 5 positions"):
+            use()
+    with pytest.raises(FileNotFoundError):
+        fcl_artic.load_plans(tmp_path / "nothing.csv", robot)
+    with pytest.raises(ValueError, match="none of .csv"):
+        fcl_artic.load_plans(tmp_path / "nothing.plan", robot)
+    file.write_text("")
+    with pytest.raises(ValueError, match="plans.jsonl.*no plan in it"):
+        fcl_artic.load_plans(file, robot)
+    for options in ({"interpolation": "wild"}, {"turns": "wild"}, {"interpolation": "blends"}, {"format": "wild"}):
+        with pytest.raises(ValueError, match="wild|blends"):
+            fcl_artic.load_plans(file, robot, **options)
+
+
+def test_a_carried_object_is_asked_for(robot, tmp_path):
+    points = [{"positions": FROM, "time_from_start": 0}, {"positions": ASIDE, "time_from_start": 1}]
+    message = {"trajectory": [{"joint_trajectory": {"joint_names": list(robot.tree.variables), "points": points}}],
+               "trajectory_start": {"attached_collision_objects": [{"object": {"id": "cup"}}]}}
+    (tmp_path / "plan.json").write_text(json.dumps(message))
+    (plan,) = fcl_artic.load_plans(tmp_path / "plan.json", robot)
+    assert plan.carried == ["cup"]
+    world = fcl_artic.World(robot)
+    with pytest.raises(ValueError, match="carries 'cup'"):
+        world.certify(plan)
