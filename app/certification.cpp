@@ -139,7 +139,6 @@ void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, 
       auto again = std::make_shared<CertifiedPlan>();
       again->file = plan->file;
       again->plan = plans::parsePlans(manager->tree(), written, plans::Format::json).at(0);
-      again->plan.state = plan->mended->plan.state;
       CertifyOptions straight = options;
       straight.motion.interpolation = plans::Interpolation::linear;
       straight.motion.turns = plans::Turns::given;  // its steps are what was proven

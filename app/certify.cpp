@@ -43,9 +43,11 @@ void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
   std::vector<plans::Plan> out;
   for (const CertifiedPlan& plan : all) {
     if (plan.exitStatus() != kExitFree) continue;
-    out.push_back(plan.as_mended ? plan.as_mended->plan : plan.plan);
-    if (out.back().joints.empty()) out.back().joints = plan.motion->joints;
-    if (out.back().name.empty() && all.size() > 1) out.back().name = plan.file;
+    const CertifiedPlan& one = plan.as_mended ? *plan.as_mended : plan;
+    plans::Plan& written = out.emplace_back(one.plan);
+    written.joints = one.motion->joints;
+    written.state = one.motion->rest;
+    if (written.name.empty() && all.size() > 1) written.name = plan.file;
   }
   if (out.empty()) return;  // the report says that none is free
   files::write(o.out, plans::writePlans(out, plans::formatOf(o.out)));

@@ -111,10 +111,7 @@ class Mender {
       values += static_cast<std::size_t>(tree_.numVariables(tree_.jointId(joint)));
     }
     if (values != variables_.size()) throw std::runtime_error("the plan moves only some of the values of a joint");
-    for (int v = 0; v < tree_.dof(); ++v) {
-      const bool moves = std::find(variables_.begin(), variables_.end(), v) != variables_.end();
-      if (!moves) setup.fixed[tree_.variableName(v)] = way_.points[0][v];
-    }
+    setup.fixed = motion.rest;
     addBounds(setup);
     setup.request.margin = options.request.margin;
     setup.request.check_self = options.request.check_self;
@@ -355,10 +352,7 @@ class Mender {
       std::vector<double>& row = out.plan.positions.emplace_back();
       for (const int v : variables_) row.push_back(q[v]);
     }
-    for (int v = 0; v < tree_.dof(); ++v) {
-      const bool moves = std::find(variables_.begin(), variables_.end(), v) != variables_.end();
-      if (!moves) out.plan.state[tree_.variableName(v)] = way_.points[0][v];
-    }
+    out.plan.state = motion.rest;
     return out;
   }
 

@@ -391,6 +391,7 @@ class Reader {
       if (part && !part->is_object()) refuse(fmt::format("{} is no trajectory", shown(*part)));
     }
     readName(message, plan);
+    readState(message, plan);
     if (joints) addJoints(*joints, plan);
     if (poses && plan.positions.empty()) plan.joints.clear();  // names without points
     if (poses) addPoses(tree_, *poses, plan);
@@ -452,11 +453,16 @@ class Reader {
     if (const Json* rates = find(value, {"accelerations"})) {
       addWaypoints(*rates, "accelerations", plan.accelerations, plan.joints);
     }
-    if (const Json* state = find(value, {"state"})) {
-      if (!state->is_object()) refuse("'state' is no object from names to values");
-      for (const auto& item : state->items()) {
-        plan.state[item.key()] = numberOf(item.value(), fmt::format("state, joint '{}'", item.key()));
-      }
+    readState(value, plan);
+  }
+
+  /// Values of joints that the plan does not name.
+  static void readState(const Json& value, Plan& plan) {
+    const Json* state = find(value, {"state"});
+    if (!state) return;
+    if (!state->is_object()) refuse("'state' is no object from names to values");
+    for (const auto& item : state->items()) {
+      plan.state[item.key()] = numberOf(item.value(), fmt::format("state, joint '{}'", item.key()));
     }
   }
 

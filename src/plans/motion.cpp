@@ -241,8 +241,14 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
     }
     return JointTrajectory::linear(tree, times, q, unwrap);
   };
+  std::map<std::string, double> others;
+  for (int v = 0; v < tree.dof(); ++v) {
+    const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
+    if (!named) others[tree.variableName(v)] = rest[v];
+  }
   JointTrajectory motion = trajectory();
-  return {kind, columns.names, std::move(times), std::move(q), std::move(motion), timed, std::move(notes)};
+  return {kind,  columns.names,   std::move(others), std::move(times), std::move(q), std::move(motion),
+          timed, std::move(notes)};
 }
 
 }  // namespace fcl_artic::plans

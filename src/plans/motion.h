@@ -64,6 +64,7 @@ struct MotionOptions {
 struct PlanMotion {
   Interpolation interpolation;             ///< that was used
   std::vector<std::string> joints;         ///< names of the plan's columns
+  std::map<std::string, double> rest;      ///< values of all other variables
   std::vector<double> times;               ///< of the waypoints, s; 0, 1, 2 ... where `timed` is false
   std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them
   JointTrajectory trajectory;

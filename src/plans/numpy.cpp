@@ -60,7 +60,7 @@ std::string_view valueOf(std::string_view header, const std::string& key, const 
 Array parseOne(std::string_view content, const std::string& name) {
   const std::string_view magic("\x93NUMPY", 6);
   if (content.substr(0, 6) != magic || content.size() < 12) refuse(fmt::format("'{}' is no array of NumPy's", name));
-  const int version = content[6];
+  const int version = static_cast<unsigned char>(content[6]);
   if (version < 1 || version > 3) refuse(fmt::format("'{}' is of version {} of NumPy's format", name, version));
   const std::size_t count = version == 1 ? 2 : 4;
   std::size_t length = 0;

@@ -16,6 +16,7 @@ std::string csvOf(const Plan& plan) {
   const auto addNames = [&](const Plan::Rows& rows, const char* ending) {
     if (rows.empty()) return;
     for (const std::string& joint : plan.joints) out += fmt::format("{}{}{}", out.empty() ? "" : ",", joint, ending);
+    for (const auto& [joint, value] : plan.state) out += fmt::format(",{}{}", joint, ending);
   };
   addNames(plan.positions, "");
   addNames(plan.velocities, "/velocity");
@@ -26,6 +27,7 @@ std::string csvOf(const Plan& plan) {
     for (const Plan::Rows* rows : {&plan.positions, &plan.velocities, &plan.accelerations}) {
       if (rows->empty()) continue;
       for (const double value : (*rows)[k]) line += fmt::format("{}{}", line.empty() ? "" : ",", value);
+      for (const auto& [joint, value] : plan.state) line += fmt::format(",{}", rows == &plan.positions ? value : 0);
     }
     out += line + '\n';
   }
@@ -52,6 +54,7 @@ Json durationOf(double seconds) {
 Json documentOf(const Plan& plan) {
   Json out = Json::object();
   if (!plan.name.empty()) out["name"] = plan.name;
+  if (!plan.state.empty()) out["state"] = plan.state;
   if (plan.times.empty()) {
     out["joints"] = plan.joints;
     out["waypoints"] = plan.positions;

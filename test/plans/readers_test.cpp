@@ -344,6 +344,22 @@ TEST(PlanReadersTest, WhatIsWrittenIsReadAgain) {
     ASSERT_EQ(back.times.size(), 3u);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(back.times[k], plan.times[k], format == Format::csv ? 0 : 5.1e-10);
   }
+  // What other joints keep comes along.
+  Plan part = plan;
+  part.joints = {"hinge"};
+  part.positions = part.velocities = part.accelerations = {{0}, {0.5}, {1}};
+  part.state = {{"rail", 0.125}};
+  for (const Format format : {Format::csv, Format::json, Format::jsonl}) {
+    for (const bool timed : {true, false}) {
+      Plan one = part;
+      if (!timed) one.times.clear();
+      MotionOptions straight;
+      straight.interpolation = Interpolation::linear;
+      const PlanMotion motion = only(tree, writePlans({one}, format), format, straight);
+      EXPECT_EQ(motion.timed, timed);
+      EXPECT_EQ(motion.waypoints[1], Eigen::Vector2d(0.5, 0.125));
+    }
+  }
   plan.times.clear();
   EXPECT_EQ(parsePlans(tree, writePlans({plan, plan}, Format::json), Format::json).at(1).positions, plan.positions);
   expectContains(refusal([&] { (void)writePlans({plan, plan}, Format::csv); }), "2 plans");
