@@ -16,6 +16,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kSameStart = 1e-6;  // rad or m, within which a plan begins at its start state
 
 const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
                                                                          {"linear", Interpolation::linear},
@@ -131,6 +132,19 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const Columns& col
   }
 }
 
+/// A controller goes from the start state to the first waypoint; if that is another place, nobody has asked about the
+/// way.
+void noteStart(const Plan& plan, const Columns& columns, std::vector<std::string>& notes) {
+  for (std::size_t j = 0; j < columns.names.size(); ++j) {
+    const auto start = plan.state.find(columns.names[j]);
+    if (start == plan.state.end() || std::abs(start->second - plan.positions[0][j]) <= kSameStart) continue;
+    notes.push_back(
+        fmt::format("joint '{}' begins at {:g}, the start state has it at {:g}: the way there is no part of "
+                    "the plan",
+                    columns.names[j], plan.positions[0][j], start->second));
+  }
+}
+
 JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, const Columns& columns, Turns turns) {
   if (turns == Turns::shortest) return JointTrajectory::Unwrap::yes;
   if (turns == Turns::given) return JointTrajectory::Unwrap::no;
@@ -223,6 +237,8 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
     notes.push_back(
         fmt::format("the first waypoint is at t = {:g}: the way to it is no part of the plan", times.front()));
   }
+
+  noteStart(plan, columns, notes);
 
   std::vector<VectorXd> q = spread(plan.positions, columns, rest);
   const VectorXd zero = VectorXd::Zero(tree.dof());
