@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "exit_status.h"
-#include "report.h"
+#include "report/report.h"
 
 namespace fcl_artic::app {
 namespace {

@@ -16,12 +16,13 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
+#include "files/files.h"
 #include "lines.h"
 #include "progress.h"
 #include "query_options.h"
 #include "redon_options.h"
 #include "render/picture.h"
-#include "report.h"
+#include "report/page.h"
 #include "usage.h"
 #include "visibility_options.h"
 #include "waypoints.h"
@@ -35,7 +36,7 @@ constexpr std::size_t kAllContacts = 1000000;
 
 struct Options {
   WorldOptions world;
-  std::string certificate, image, trajectory, lines, interpolation = "linear";
+  std::string certificate, image, html, trajectory, lines, interpolation = "linear";
   std::vector<std::string> from, to;
   std::string size = "1600x1000", camera;
   CertifiedRequest request;
@@ -70,6 +71,31 @@ std::string requireCamera(const std::string& text) {
   const auto angles = numberPair(text, ',');
   const bool good = angles && std::abs((*angles)[0]) <= 360 && std::abs((*angles)[1]) <= 90;
   return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
+}
+
+/// Writes the answer as a page.
+void writePage(const std::string& file, const World& world, const ArticulatedCollisionManager& manager,
+               const RobotMotion& motion, const Report& report) {
+  std::vector<PageBody> bodies = linksOf(report.tree, world.robot.geometry);
+  const std::size_t carried = world.scene.obstacles.size() - world.attachments.size();
+  for (std::size_t i = 0; i < world.scene.obstacles.size(); ++i) {
+    const Scene::Obstacle& o = world.scene.obstacles[i];
+    PageBody body{o.name, "obstacle", -1, Eigen::Isometry3d(o.object->getTransform()), o.object->collisionGeometry(),
+                  {}};
+    if (i >= carried) {
+      const Attachment& a = world.attachments[i - carried];
+      body.kind = "attached object";
+      body.link = report.tree.linkId(a.link);
+      body.pose = a.pose;
+    }
+    bodies.push_back(body);
+  }
+  DistanceOptions measured;
+  measured.obstacles = report.request.check_scene;
+  measured.links = report.request.check_self;
+  measured.most = sizeOf(report, bodies);
+  const WaitingNote note("writing " + file);
+  files::write(file, htmlPage(report, bodies, measureDistances(manager, motion, measured)));
 }
 
 int run(const Options& options) {
@@ -165,7 +191,8 @@ int run(const Options& options) {
     notes.push_back(certificates.add(*result.certificate));
     certificates.write();
   }
-  const Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
+  Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
+  if (trajectory) report.pieces = trajectory->numPieces();
 
   if (!options.image.empty()) {
     const auto size = *numberPair(options.size, 'x');
@@ -182,6 +209,9 @@ int run(const Options& options) {
     moveToLinks(world.attachments, scene, shown);
     const WaitingNote note("drawing " + options.image);
     render::writePicture(options.image, shown, scene.obstacles, path, drawn, picture);
+  }
+  if (!options.html.empty()) {
+    writePage(options.html, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
   }
   if (options.json) {
     fmt::print("{}\n", jsonReport(report).dump(2));
@@ -286,6 +316,13 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->needs(image)
       ->group("Output")
       ->type_name("AZ,EL");
+
+  check
+      ->add_option("--html", o.html,
+                   "Write the answer as a page for a browser: the motion in 3-D to scrub through, contacts, distances")
+      ->excludes(lines)
+      ->group("Output")
+      ->type_name("FILE");
 
   clearance->excludes(lines);
   check->callback([options, from, to, trajectory, lines, &exit_status] {

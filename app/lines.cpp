@@ -15,7 +15,7 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "files/files.h"
-#include "report.h"
+#include "report/report.h"
 
 namespace fcl_artic::app {
 namespace {

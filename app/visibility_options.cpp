@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "visibility_options.h"
 
-#include <map>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,27 +12,14 @@
 #endif
 
 namespace fcl_artic::app {
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-const std::vector<std::pair<std::string, VisibilityMode>>& modes() {
-  static const std::vector<std::pair<std::string, VisibilityMode>> kModes{{"off", VisibilityMode::off},
-                                                                          {"on", VisibilityMode::on},
-                                                                          {"automatic", VisibilityMode::automatic},
-                                                                          {"at-once", VisibilityMode::atOnce}};
-  return kModes;
-}
-
-}  // namespace
 
 void addVisibilityOptions(CLI::App& verb, VisibilityChoice& o) {
   std::vector<std::string> names;
-  for (const auto& [name, mode] : modes()) names.push_back(name);
+  for (const auto& [name, mode] : visibilityModes()) names.push_back(name);
   verb.add_option_function<std::string>(
           "--visibility",
           [&o](const std::string& given) {
-            for (const auto& [name, mode] : modes()) {
+            for (const auto& [name, mode] : visibilityModes()) {
               if (name == given) o.mode = mode;
             }
           },
@@ -74,32 +59,6 @@ void useVisibility(const VisibilityChoice& options, ArticulatedCollisionManager&
   if (options.mode == VisibilityMode::off) return;
   (void)culler->executor();
   manager.setVisibility(culler);
-}
-
-std::string nameOf(VisibilityMode wanted) {
-  for (const auto& [name, mode] : modes()) {
-    if (mode == wanted) return name;
-  }
-  return {};
-}
-
-Json visibilityJson(VisibilityMode mode, const QueryStatistics& s) {
-  if (mode == VisibilityMode::off) return {};
-  Json out{{"mode", nameOf(mode)},
-           {"used", !s.visibility_executor.empty()},
-           {"executor", s.visibility_executor.empty() ? Json() : Json(s.visibility_executor)},
-           {"fallback", s.visibility_fallback.empty() ? Json() : Json(s.visibility_fallback)}};
-  VisibilityStatistics::forEachField([&](const char* name, auto field) { out[name] = s.visibility.*field; });
-  return out;
-}
-
-std::string visibilityText(const QueryStatistics& s) {
-  if (s.visibility_executor.empty()) return "not used";
-  const VisibilityStatistics& v = s.visibility;
-  return fmt::format(
-      "executor {}: {} pairs seen, {} proven free, and {} nodes of others; {} pieces drawn, {} queries {}{}",
-      s.visibility_executor, v.pairs, v.culled, v.nodes, v.pieces, v.repeated, "solved again",
-      s.visibility_fallback.empty() ? "" : " (" + s.visibility_fallback + ")");
 }
 
 }  // namespace fcl_artic::app

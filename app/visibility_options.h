@@ -7,9 +7,9 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "fcl_artic/manager.h"
+#include "report/stage2.h"
 
 namespace fcl_artic::app {
 
@@ -29,12 +29,5 @@ std::shared_ptr<const VisibilityCuller> makeCuller(const std::string& executor);
 /// Gives the manager the culler that is asked for, and makes its executor, so that no query waits for a driver.
 /// @throws std::invalid_argument as makeCuller().
 void useVisibility(const VisibilityChoice& options, ArticulatedCollisionManager& manager);
-
-/// "off", "on", "automatic" or "at-once".
-std::string nameOf(VisibilityMode mode);
-/// What stage 2 did, in JSON: whether it was used, by which executor, its work; null where it was off.
-nlohmann::ordered_json visibilityJson(VisibilityMode mode, const QueryStatistics& statistics);
-/// The same for a reader, in a line without an end.
-std::string visibilityText(const QueryStatistics& statistics);
 
 }  // namespace fcl_artic::app

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "visibility_options.h"
+#include "stage2.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -93,43 +93,6 @@ std::string contactText(const KinematicTree& tree, const CertifiedContact& c) {
   return text;
 }
 
-std::string headline(const Report& r) {
-  const CertifiedResult& result = r.result;
-  switch (result.status) {
-    case Status::free: {
-      const std::size_t n = result.unproven_allowed_pairs;
-      const std::string unproven =
-          n == 0 ? "" : fmt::format(" but for {} allowed pair{} not proven apart", n, n == 1 ? "" : "s");
-      if (result.nothingChecked()) {
-        return fmt::format("FREE{}: nothing was checked, there is no pair of bodies that may touch.", unproven);
-      }
-      return r.request.margin > 0
-                 ? fmt::format("FREE{}: proven, no checked pair comes within {:g} m anywhere on the motion.", unproven,
-                               r.request.margin)
-                 : fmt::format("FREE{}: proven, no checked pair touches anywhere on the motion.", unproven);
-    }
-    case Status::contact: {
-      const std::string what =
-          r.request.margin > 0 ? fmt::format("first approach within {:g} m", r.request.margin) : "first contact";
-      if (result.t_upper <= r.begin) {
-        return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
-      }
-      // At the start there is no before.
-      const bool at_start = result.t_lower <= r.begin;
-      return result.certain
-                 ? fmt::format("CONTACT: {} at t = {:.6g}, proven{}.", what, result.t_lower,
-                               at_start ? "" : "; free before")
-                 : fmt::format("CONTACT (not certain): {}t = {:.6g}, a pair is nearer than can be decided{}.",
-                               at_start ? "at the start, " : "at ", result.t_lower,
-                               at_start ? " within the tolerances" : "; free before, proven");
-    }
-    case Status::undecided:
-      return fmt::format("UNDECIDED: the work budget of {} tests ran out; proven free only for t < {:.6g}.",
-                         r.request.work_budget, result.t_lower);
-  }
-  return {};
-}
-
 std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
   const bool any = std::isfinite(c.upper);
   std::string text = fmt::format("proven: no checked pair comes nearer than {:.6g} m", c.lower);
@@ -212,6 +175,18 @@ Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
           {"feature", toString(c.feature)}};
 }
 
+Json requestJson(const CertifiedRequest& request) {
+  return {{"tolerance_time", request.tolerance_time},
+          {"tolerance_distance", request.tolerance_distance},
+          {"margin", request.margin},
+          {"check_scene", request.check_scene},
+          {"check_self", request.check_self},
+          {"every_pair", request.mode == ContactMode::firstOfEveryPair},
+          {"max_contacts", request.max_contacts},
+          {"budget", request.work_budget},
+          {"ignore_initial_contact", request.ignore_initial_contact}};
+}
+
 Json posesJson(const Report& r) {
   Json out = Json::object();
   std::vector<Eigen::Isometry3d> at_lower;
@@ -226,6 +201,50 @@ Json posesJson(const Report& r) {
 }
 
 }  // namespace
+
+std::string headline(const Report& r) {
+  const CertifiedResult& result = r.result;
+  switch (result.status) {
+    case Status::free: {
+      const std::size_t n = result.unproven_allowed_pairs;
+      const std::string unproven =
+          n == 0 ? "" : fmt::format(" but for {} allowed pair{} not proven apart", n, n == 1 ? "" : "s");
+      if (result.nothingChecked()) {
+        return fmt::format("FREE{}: nothing was checked, there is no pair of bodies that may touch.", unproven);
+      }
+      if (!r.request_known) {
+        return fmt::format("FREE{}: proven, no checked pair touches, or comes within the margin that was asked for.",
+                           unproven);
+      }
+      return r.request.margin > 0
+                 ? fmt::format("FREE{}: proven, no checked pair comes within {:g} m anywhere on the motion.", unproven,
+                               r.request.margin)
+                 : fmt::format("FREE{}: proven, no checked pair touches anywhere on the motion.", unproven);
+    }
+    case Status::contact: {
+      const std::string what = r.request_known && r.request.margin > 0
+                                   ? fmt::format("first approach within {:g} m", r.request.margin)
+                                   : "first contact";
+      if (result.t_upper <= r.begin) {
+        return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
+      }
+      // At the start there is no before.
+      const bool at_start = result.t_lower <= r.begin;
+      return result.certain
+                 ? fmt::format("CONTACT: {} at t = {:.6g}, proven{}.", what, result.t_lower,
+                               at_start ? "" : "; free before")
+                 : fmt::format("CONTACT (not certain): {}t = {:.6g}, a pair is nearer than can be decided{}.",
+                               at_start ? "at the start, " : "at ", result.t_lower,
+                               at_start ? " within the tolerances" : "; free before, proven");
+    }
+    case Status::undecided:
+      return r.request_known && r.request.work_budget > 0
+                 ? fmt::format("UNDECIDED: the work budget of {} tests ran out; proven free only for t < {:.6g}.",
+                               r.request.work_budget, result.t_lower)
+                 : fmt::format("UNDECIDED: the search was ended; proven free only for t < {:.6g}.", result.t_lower);
+  }
+  return {};
+}
 
 std::string titleLine(const Report& r) {
   const CertifiedResult& result = r.result;
@@ -284,16 +303,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"ignored_initial_contacts", ignored},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
           {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},
-          {"request",
-           {{"tolerance_time", r.request.tolerance_time},
-            {"tolerance_distance", r.request.tolerance_distance},
-            {"margin", r.request.margin},
-            {"check_scene", r.request.check_scene},
-            {"check_self", r.request.check_self},
-            {"every_pair", r.request.mode == ContactMode::firstOfEveryPair},
-            {"max_contacts", r.request.max_contacts},
-            {"budget", r.request.work_budget},
-            {"ignore_initial_contact", r.request.ignore_initial_contact}}},
+          {"request", r.request_known ? requestJson(r.request) : Json()},
           {"visibility", visibilityJson(r.request.visibility, result.statistics)},
           {"statistics", statisticsJson(r)},
           {"notes", r.notes}};

@@ -23,7 +23,13 @@ struct Report {
   std::function<Eigen::VectorXd(double t)> configuration;
   double begin = 0, end = 1;             ///< of the motion
   const Clearance* clearance = nullptr;  ///< null: not asked for
+  std::size_t pieces = 1;                ///< of a trajectory
+  /// Whether `request` is what `result` answers. If not, as of an answer that comes from elsewhere, it is not told.
+  bool request_known = true;
 };
+
+/// The verdict in one sentence.
+std::string headline(const Report& report);
 
 /// The answer for a reader.
 std::string textReport(const Report& report);

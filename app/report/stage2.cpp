@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stage2.h"
+
+#include <fmt/format.h>
+
+namespace fcl_artic::app {
+
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::pair<std::string, VisibilityMode>>& visibilityModes() {
+  static const std::vector<std::pair<std::string, VisibilityMode>> kModes{{"off", VisibilityMode::off},
+                                                                          {"on", VisibilityMode::on},
+                                                                          {"automatic", VisibilityMode::automatic},
+                                                                          {"at-once", VisibilityMode::atOnce}};
+  return kModes;
+}
+
+std::string nameOf(VisibilityMode wanted) {
+  for (const auto& [name, mode] : visibilityModes()) {
+    if (mode == wanted) return name;
+  }
+  return {};
+}
+
+Json visibilityJson(VisibilityMode mode, const QueryStatistics& s) {
+  if (mode == VisibilityMode::off) return {};
+  Json out{{"mode", nameOf(mode)},
+           {"used", !s.visibility_executor.empty()},
+           {"executor", s.visibility_executor.empty() ? Json() : Json(s.visibility_executor)},
+           {"fallback", s.visibility_fallback.empty() ? Json() : Json(s.visibility_fallback)}};
+  VisibilityStatistics::forEachField([&](const char* name, auto field) { out[name] = s.visibility.*field; });
+  return out;
+}
+
+std::string visibilityText(const QueryStatistics& s) {
+  if (s.visibility_executor.empty()) return "not used";
+  const VisibilityStatistics& v = s.visibility;
+  return fmt::format(
+      "executor {}: {} pairs seen, {} proven free, and {} nodes of others; {} pieces drawn, {} queries {}{}",
+      s.visibility_executor, v.pairs, v.culled, v.nodes, v.pieces, v.repeated, "solved again",
+      s.visibility_fallback.empty() ? "" : " (" + s.visibility_fallback + ")");
+}
+
+}  // namespace fcl_artic::app
