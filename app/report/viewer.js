@@ -438,12 +438,15 @@ class Screen {
   /** Draws what `draw` draws translucently: each pixel once, that which is in front. */
   translucent(draw) {
     const gl = this.gl;
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 4);  // what is drawn already at the same place stays
     gl.colorMask(false, false, false, false);
     draw();
     gl.colorMask(true, true, true, true);
     gl.enable(gl.BLEND);
     draw();
     gl.disable(gl.BLEND);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
   }
   /** Runs `draw` into a picture that nobody sees, of numbers in place of colours, and returns its pixels. */
   numbers(width, height, draw, part = [0, 0, width, height]) {
@@ -707,7 +710,7 @@ function draw() {
   const {canvas} = screen, frames = framesAt(now);
   screen.begin(camera, canvas.width, canvas.height);
   drawBodies(frames, () => true, lookOf);
-  if (isOn('show-trace') && wayShape) screen.draw(wayShape, IDENTITY, {color: color(TOUCHING), glow: 0.6});
+  if (isOn('show-trace') && wayShape) screen.draw(wayShape, IDENTITY, {color: color(contact() ? TOUCHING : BEFORE), glow: 0.6});
   if (isOn('show-ground')) {
     const cell = 10 ** Math.round(Math.log10(stageBall[1] / 4));
     screen.drawGround(groundAt, 5 * stageBall[1], cell, isDark() ? [0.75, 0.8, 0.85] : [0.3, 0.35, 0.4], isDark() ? 0.3 : 0.35);

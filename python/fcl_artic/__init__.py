@@ -86,6 +86,7 @@ from ._fcl_artic import (
 )
 from ._picture import Picture
 from ._poses import pose
+from ._report import Report
 
 __all__ = [
     "Answers",
@@ -118,6 +119,7 @@ __all__ = [
     "Picture",
     "Plan",
     "RedonOptions",
+    "Report",
     "Request",
     "Result",
     "Robot",

@@ -20,6 +20,7 @@ from ._enums import (
     VisibilityRule,
 )
 from ._picture import Picture
+from ._report import Report
 
 __version__: str
 
@@ -953,6 +954,86 @@ class World:
         camera: tuple[float, float] | None = ...,
         title: str | None = ...,
     ) -> Picture: ...
+    @overload
+    def report(
+        self,
+        q0: npt.ArrayLike,
+        q1: npt.ArrayLike,
+        result: Result | None = ...,
+        path: str | os.PathLike[str] | None = ...,
+        *,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> Report: ...
+    @overload
+    def report(
+        self,
+        q0: JointMotion | JointTrajectory,
+        *,
+        result: Result | None = ...,
+        path: str | os.PathLike[str] | None = ...,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> Report: ...
+    def report_trajectory(
+        self,
+        waypoints: npt.ArrayLike,
+        times: npt.ArrayLike | None = ...,
+        *,
+        velocities: npt.ArrayLike | None = ...,
+        accelerations: npt.ArrayLike | None = ...,
+        blend: float | None = ...,
+        unwrap: bool = ...,
+        result: Result | None = ...,
+        path: str | os.PathLike[str] | None = ...,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> Report: ...
 
 def load_urdf(
     urdf: _Path,

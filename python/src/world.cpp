@@ -424,6 +424,7 @@ void bindWorld(py::module_& module) {
   bindPlans(module, world);
   bindBatch(module, world);
   bindPicture(module, world);
+  bindReport(world);
 }
 
 }  // namespace fcl_artic::python

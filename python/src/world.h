@@ -83,5 +83,6 @@ void bindWorld(py::module_& module);
 void bindPlans(py::module_& module, py::class_<World>& world);
 void bindBatch(py::module_& module, py::class_<World>& world);
 void bindPicture(py::module_& module, py::class_<World>& world);
+void bindReport(py::class_<World>& world);
 
 }  // namespace fcl_artic::python
