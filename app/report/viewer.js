@@ -240,11 +240,10 @@ function ballAround(numbers, stride) {
 // ----------------------------------------------------------------------------------------------------------- drawing
 
 const SHADE = `
-  // Light from the sky, from the ground, and from beside the viewer; both sides of a face are lit.
+  // Light from the sky, from the ground, and from beside the viewer.
   uniform vec3 eye;
   vec3 shaded(vec3 base, vec3 at, vec3 n, float glow) {
     vec3 view = normalize(eye - at);
-    if (dot(n, view) < 0.0) n = -n;
     vec3 lamp = normalize(view + 0.6 * normalize(cross(view, vec3(0.0, 0.0, 1.0)) + vec3(1e-4)) + vec3(0.0, 0.0, 0.7));
     float sky = 0.5 + 0.5 * n.z;
     float key = max(dot(n, lamp), 0.0);
@@ -274,7 +273,7 @@ const PROGRAMS = {
     uniform float glow;` + SHADE + HIGHLIGHT + `
     void main() {
       if (id.a > 0.0) { pixel = id; return; }
-      pixel = vec4(onScreen(shaded(baseAt(at), at, normalize(n), glow)), 1.0) * color.a;
+      pixel = vec4(onScreen(shaded(baseAt(at), at, normalize(gl_FrontFacing ? n : -n), glow)), 1.0) * color.a;
     }`],
   points: [`
     in vec4 cell;
@@ -482,7 +481,7 @@ const numberAt = (pixels, i) => (pixels[i + 3] ? pixels[i] | pixels[i + 1] << 8 
 
 /** Looks at a target from an azimuth and an elevation, in radians, and a distance. */
 class Camera {
-  constructor() { Object.assign(this, {target: [0, 0, 0], azimuth: -1, elevation: 0.35, distance: 3, field: 0.6, size: 1}); }
+  constructor() { Object.assign(this, {target: [0, 0, 0], azimuth: -1, elevation: 0.35, distance: 3, field: 0.5, size: 1}); }
   direction() {
     const c = Math.cos(this.elevation);
     return [c * Math.cos(this.azimuth), c * Math.sin(this.azimuth), Math.sin(this.elevation)];
@@ -514,7 +513,7 @@ class Camera {
 
 const camera = new Camera();
 let screen = null;
-let now = BEGIN, playing = false, last = 0, due = false, under = null;
+let now = BEGIN, playing = false, viewIsOwn = false, last = 0, due = false, under = null;
 const seconds = () => Number($('speed').value);
 const isOn = (id) => $(id).checked;
 
@@ -575,7 +574,7 @@ function chooseView() {
   if (!bodies.length) return;
   const frames = framesAt(c ? c.t_lower : BEGIN), mark = 0.05 * stageBall[1];
   let best = null;
-  for (const elevation of [0.3, 0.6]) {
+  for (const elevation of [0.25, 0.55]) {
     for (let i = 0; i < 12; ++i) {
       camera.azimuth = -1 + 2 * Math.PI * i / 12;
       camera.elevation = elevation;
@@ -590,7 +589,7 @@ function chooseView() {
         else if (n > 0 && bodies[n - 1].moves) ++robot;
         if (n > 0 && n <= bodies.length && sideOf(bodies[n - 1])) ++touching;
       }
-      let score = robot / 800 + 0.02 * Math.cos(camera.azimuth + 1);
+      let score = robot / 800 - 0.4 * elevation + 0.02 * Math.cos(camera.azimuth + 1);
       if (c) {
         const aside = 1 - Math.abs(dot(c.normal, camera.direction()));  // a normal is seen best from the side
         score += 1.5 * Math.min(1, contactSeen / 8) + 0.5 * aside + Math.min(1, touching / 600);
@@ -1020,6 +1019,7 @@ function listenToCanvas(canvas) {
   canvas.addEventListener('pointerdown', (e) => {
     canvas.setPointerCapture(e.pointerId);
     pointers.set(e.pointerId, relative(e));
+    viewIsOwn = true;
     $('over').style.opacity = 0;
   });
   for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, (e) => pointers.delete(e.pointerId));
@@ -1043,6 +1043,7 @@ function listenToCanvas(canvas) {
   canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   canvas.addEventListener('wheel', (e) => {
     e.preventDefault();
+    viewIsOwn = true;
     camera.zoom(Math.exp(clamp(e.deltaY * (e.deltaMode ? 20 : 1), -200, 200) * 0.0015));
     redraw();
   }, {passive: false});
@@ -1051,6 +1052,7 @@ function listenToCanvas(canvas) {
     const action = KEYS[e.key === '=' ? '+' : e.key.length === 1 ? e.key.toLowerCase() : e.key];
     if (!action || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault();
+    viewIsOwn = true;
     action(e);
     redraw();
   });
@@ -1096,7 +1098,11 @@ function listen() {
   };
   svg.addEventListener('pointerdown', (e) => { svg.setPointerCapture(e.pointerId); scrub(e); });
   svg.addEventListener('pointermove', scrub);
-  new ResizeObserver(() => { drawPlot(); redraw(); }).observe($('stage'));
+  new ResizeObserver(() => {
+    drawPlot();
+    if (screen && !viewIsOwn) fitView();
+    redraw();
+  }).observe($('stage'));
   window.addEventListener('hashchange', () => { readAddress(); redraw(); });
 }
 function setTheme(theme) {

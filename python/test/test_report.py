@@ -47,12 +47,12 @@ def test_a_page_is_saved_and_shown_in_a_frame(made, shared_world, hit, tmp_path)
 
 
 def test_a_result_that_is_there_is_shown(made, shared_world, hit):
-    result = shared_world.check(*hit, margin=0.05)
+    result = shared_world.check(*hit, margin=0.004)
     page = shared_world.report(*hit, result)
     assert part(page, "answer")["t_lower"] == result.t_lower and part(page, "answer")["request"] is None
-    known = shared_world.report(*hit, result, margin=0.05)
-    assert part(known, "answer")["request"]["margin"] == 0.05
-    assert "first approach within 0.05 m" in known.html and "first approach" not in page.html
+    known = shared_world.report(*hit, result, margin=0.004)
+    assert part(known, "answer")["request"]["margin"] == 0.004
+    assert "first approach within 0.004 m" in known.html and "first approach" not in page.html
 
 
 def test_options_are_those_of_a_query(made, shared_world, hit):

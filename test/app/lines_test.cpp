@@ -111,8 +111,8 @@ TEST_F(LinesTest, NothingAskedIsAnError) {
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.err.find("has no line to answer"), std::string::npos) << none.err;
   const std::string trajectory = "--trajectory " + write("x.csv", "time,hinge\n0,0\n1,1\n");
-  for (const std::string& other :
-       {std::string("--from 0,0"), std::string("--image x.png"), std::string("--clearance"), trajectory}) {
+  for (const std::string& other : {std::string("--from 0,0"), std::string("--image x.png"),
+                                   std::string("--html x.html"), std::string("--clearance"), trajectory}) {
     const Answers both = ask("{}", other);
     EXPECT_EQ(both.status, 2);
     EXPECT_NE(both.err.find("--lines"), std::string::npos) << both.err;

@@ -233,20 +233,14 @@ TEST_F(ProgramTest, MeasuringDistancesCanBeStopped) {
 
 TEST(PartOfMotion, IsTheMotionOverThatTime) {
   KinematicTree tree("free body");
-  const LinkId root = tree.addLink("root"), link = tree.addLink("body"), arm = tree.addLink("arm");
-  Joint base, hinge;
+  for (const char* link : {"root", "body", "arm"}) tree.addLink(link);
+  Joint base;
   base.name = "base";
   base.type = JointType::floating;
-  base.parent = root;
-  base.child = link;
-  hinge.name = "hinge";
-  hinge.type = JointType::revolute;
-  hinge.parent = link;
-  hinge.child = arm;
-  hinge.lower = -3;
-  hinge.upper = 3;
+  base.parent = "root";
+  base.child = "body";
   tree.addJoint(base);
-  tree.addJoint(hinge);
+  tree.addJoint(Joint::revolute("hinge", "body", "arm", Eigen::Vector3d::UnitZ()));
   Eigen::VectorXd q0(8), q1(8);
   q0 << 0, 1, 2, 0, 0, 0, 1, -1;
   q1 << 1, 1, -2, 0.6, 0, 0.8, 0, 2;

@@ -366,6 +366,7 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
                              "--no-scene",
                              "--json",
                              "--image",
+                             "--html",
                              "--size",
                              "--camera",
                              "--trajectory",

@@ -176,6 +176,7 @@ TEST_F(StreamsTest, FullDeviceIsAnErrorOfEveryWriter) {
   const std::string full = path("full");
   fs::create_symlink("/dev/full", full);
   std::vector<std::string> writers = {"check " + armAndBall() + " --from 0,0 --to 40deg,0 --auto-srdf " + full,
+                                      "check " + armAndBall() + " --from 0,0 --to 40deg,0 --html " + full,
                                       "generate pipes --triangles 1000 " + full};
 #ifdef FCL_ARTIC_HAS_PICTURES
   writers.push_back("check " + armAndBall() + " --from 0,0 --to 40deg,0 --size 64x64 --image " + full);
