@@ -7,6 +7,7 @@
 
 #include "enums.h"
 #include "fcl_artic/in_between.h"
+#include "recipe.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic::python {
@@ -238,37 +239,95 @@ void bindTree(py::module_& module) {
              return py::str("<KinematicTree {!r}: {} links, {} variables>")
                  .format(t.tree->name(), t.tree->numLinks(), t.tree->dof());
            })
-      .def(py::pickle(&treeState, &treeOfState));
+      .def(py::pickle(&treeState, &treeOfState))
+      .def(
+          "__deepcopy__",  // a robot's tree does not change
+          [](const Tree& t, py::handle) { return t.own ? treeOfState(treeState(t)) : t; }, py::arg("memo"));
 }
 
-void bindMotions(py::module_& module) {
-  const auto of = [](JointMotion (*make)(const KinematicTree&, const Eigen::VectorXd&, const Eigen::VectorXd&)) {
-    return [make](py::handle tree, py::handle q0, py::handle q1) {
-      return make(*treeOf(tree), vectorOf(q0, "q0"), vectorOf(q1, "q1"));
-    };
+/// A motion or trajectory as Python holds it. The library's functions take it as what it derives from.
+template <class Base>
+struct Made : Base {
+  Made(Base base, Recipe how) : Base(std::move(base)), recipe(std::move(how)) {}
+  Recipe recipe;
+};
+using MadeMotion = Made<JointMotion>;
+using MadeTrajectory = Made<JointTrajectory>;
+
+/// The tree alone of what has one: a recipe needs no geometry.
+py::object treeAlone(py::handle value) {
+  return py::cast(treeOfRobot(treeOf(value)));
+}
+
+Eigen::VectorXd optionalVector(py::handle value, const char* what) {
+  return value.is_none() ? Eigen::VectorXd() : vectorOf(value, what);
+}
+
+void bindMotion(py::module_& module) {
+  // What Python makes of the library's own functions: motions without a recipe are nowhere seen.
+  py::class_<JointMotion>(module, "_JointMotion");
+  py::class_<MadeMotion, JointMotion> motion(module, "JointMotion",
+                                             "A motion in joint space over t in [0, 1]: each variable is a polynomial "
+                                             "of t, or its angle's half has a tangent\n"
+                                             "that is one.");
+  const auto between = [&motion](const char* name, const char* doc, auto make) {
+    motion.def_static(
+        name,
+        [name, make](py::handle tree, py::handle q0, py::handle q1) {
+          return MadeMotion(make(*treeOf(tree), vectorOf(q0, "q0"), vectorOf(q1, "q1")),
+                            Recipe(name, py::make_tuple(treeAlone(tree), q0, q1)));
+        },
+        doc, py::arg("tree"), py::arg("q0"), py::arg("q1"));
   };
-  py::class_<JointMotion>(module, "JointMotion",
-                          "A motion in joint space over t in [0, 1]: each variable is a polynomial of t.")
-      .def_static("linear", of(&JointMotion::linear), "Moves every variable straight from q0 to q1.", py::arg("tree"),
-                  py::arg("q0"), py::arg("q1"))
-      .def_static("shortest", of(&JointMotion::shortest),
-                  "As linear(), except that joints without limits take the shorter way round.", py::arg("tree"),
-                  py::arg("q0"), py::arg("q1"))
+  between("linear", "Moves every variable straight from q0 to q1.", &JointMotion::linear);
+  between("shortest", "As linear(), except that joints without limits take the shorter way round.",
+          &JointMotion::shortest);
+  motion
       .def_static(
-          "still", [](py::handle tree, py::handle q) { return JointMotion::still(*treeOf(tree), vectorOf(q, "q")); },
+          "still",
+          [](py::handle tree, py::handle q) {
+            return MadeMotion(JointMotion::still(*treeOf(tree), vectorOf(q, "q")),
+                              Recipe("still", py::make_tuple(treeAlone(tree), q)));
+          },
           "Stands still at q.", py::arg("tree"), py::arg("q"))
       .def_static(
           "polynomial",
           [](py::handle tree, py::handle coefficients) {
-            return JointMotion::polynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows());
+            return MadeMotion(JointMotion::polynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows()),
+                              Recipe("polynomial", py::make_tuple(treeAlone(tree), coefficients)));
           },
           "Moves along polynomials up to the fifth degree: column k of the coefficients belongs to t**k.",
           py::arg("tree"), py::arg("coefficients"))
+      .def_static(
+          "tangent_half_angle",
+          [](py::handle tree, py::handle q0, py::handle q1, py::handle reference) {
+            return MadeMotion(JointMotion::tangentHalfAngle(*treeOf(tree), vectorOf(q0, "q0"), vectorOf(q1, "q1"),
+                                                            optionalVector(reference, "reference")),
+                              Recipe("tangent_half_angle", py::make_tuple(treeAlone(tree), q0, q1, reference)));
+          },
+          "Moves every angle so that tan((q - reference) / 2) goes straight, as planners in the tangent configuration\n"
+          "space do; slides and quaternions as in linear(). `reference` is 0 unless it is given.",
+          py::arg("tree"), py::arg("q0"), py::arg("q1"), py::arg("reference") = py::none())
+      .def_static(
+          "tangent_half_angle_polynomial",
+          [](py::handle tree, py::handle coefficients, py::handle reference) {
+            return MadeMotion(
+                JointMotion::tangentHalfAnglePolynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows(),
+                                                        optionalVector(reference, "reference")),
+                Recipe("tangent_half_angle_polynomial", py::make_tuple(treeAlone(tree), coefficients, reference)));
+          },
+          "As polynomial(), but rows of angles hold the coefficients of tan((q - reference) / 2).", py::arg("tree"),
+          py::arg("coefficients"), py::arg("reference") = py::none())
       .def_property_readonly("q0", [](const JointMotion& m) { return arrayOf(m.q0()); })
       .def_property_readonly("dq", [](const JointMotion& m) { return arrayOf(m.dq()); })
       .def_property_readonly("degree", &JointMotion::degree)
+      .def_property_readonly("is_polynomial", &JointMotion::isPolynomial)
       .def_property_readonly("coefficients",
                              [](const JointMotion& m) { return arrayOfRows(RowMajor(m.coefficients())); })
+      .def_property_readonly("references",
+                             [](const JointMotion& m) {
+                               return m.isPolynomial() ? py::object(py::none()) : py::object(arrayOf(m.references()));
+                             })
       .def(
           "configuration", [](const JointMotion& m, double t) { return arrayOf(m.configuration(t)); },
           "The configuration at time t.", py::arg("t"))
@@ -276,23 +335,64 @@ void bindMotions(py::module_& module) {
           "is_of", [](const JointMotion& m, py::handle tree) { return m.isOf(*treeOf(tree)); },
           "Whether the motion is of the tree's joint variables.", py::arg("tree"))
       .def("__len__", &JointMotion::size)
-      .def("__repr__", [](const JointMotion& m) {
-        return py::str("<JointMotion of {} variables, degree {}>").format(m.size(), m.degree());
-      });
+      .def("__repr__",
+           [](const JointMotion& m) {
+             return py::str("<JointMotion of {} variables, degree {}{}>")
+                 .format(m.size(), m.degree(), m.isPolynomial() ? "" : ", tangents of half angles");
+           })
+      .def("__reduce__", [](const py::object& self) { return py::cast<const MadeMotion&>(self).recipe.reduced(self); });
 
-  py::class_<JointTrajectory>(module, "JointTrajectory",
-                              "A trajectory in joint space: motions one after the other, in a time of its own.")
+  module.def(
+      "in_between_tree", [](py::handle tree) { return treeOfRobot(inBetweenTree(*treeOf(tree))); },
+      "The tree on which in_between_motion() moves: each link floats in its parent's frame.", py::arg("tree"));
+  module.def(
+      "in_between_motion",
+      [](py::handle tree, const py::iterable& begin, const py::iterable& end) {
+        const py::list from(begin), to(end);
+        const auto poses = [](const py::list& value, const char* what) {
+          std::vector<Eigen::Isometry3d> out;
+          for (const py::handle pose : value) out.push_back(poseOf(pose, what));
+          return out;
+        };
+        return MadeMotion(inBetweenMotion(*treeOf(tree), poses(from, "begin"), poses(to, "end")),
+                          Recipe("in_between_motion", py::make_tuple(treeAlone(tree), from, to), py::none()));
+      },
+      "The arbitrary in-between motion of Redon et al. (2004), Section 3, between two sets of link poses.",
+      py::arg("tree"), py::arg("begin"), py::arg("end"));
+}
+
+void bindTrajectory(py::module_& module) {
+  py::class_<JointTrajectory>(module, "_JointTrajectory");
+  py::class_<MadeTrajectory, JointTrajectory>(module, "JointTrajectory",
+                                              "A trajectory in joint space: motions one after the other, in a time of "
+                                              "its own.")
       .def_static(
           "linear",
           [](py::handle tree, py::handle times, py::handle waypoints, bool unwrap) {
-            return trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::none(), unwrap);
+            return MadeTrajectory(
+                trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::none(), unwrap),
+                Recipe("linear", py::make_tuple(treeAlone(tree), times, waypoints, unwrap)));
           },
           "Goes straight from waypoint to waypoint.", py::arg("tree"), py::arg("times"), py::arg("waypoints"),
           py::arg("unwrap") = false)
       .def_static(
+          "tangent_half_angle",
+          [](py::handle tree, py::handle times, py::handle waypoints, py::handle reference) {
+            const Eigen::VectorXd t = vectorOf(times, "times");
+            return MadeTrajectory(
+                JointTrajectory::tangentHalfAngle(*treeOf(tree), {t.begin(), t.end()},
+                                                  vectorsOf(waypoints, "waypoints"),
+                                                  optionalVector(reference, "reference")),
+                Recipe("tangent_half_angle", py::make_tuple(treeAlone(tree), times, waypoints, reference)));
+          },
+          "From waypoint to waypoint as JointMotion.tangent_half_angle() goes.", py::arg("tree"), py::arg("times"),
+          py::arg("waypoints"), py::arg("reference") = py::none())
+      .def_static(
           "cubic",
           [](py::handle tree, py::handle times, py::handle waypoints, py::handle velocities, bool unwrap) {
-            return trajectoryThrough(*treeOf(tree), waypoints, times, velocities, py::none(), py::none(), unwrap);
+            return MadeTrajectory(
+                trajectoryThrough(*treeOf(tree), waypoints, times, velocities, py::none(), py::none(), unwrap),
+                Recipe("cubic", py::make_tuple(treeAlone(tree), times, waypoints, velocities, unwrap)));
           },
           "Cubic pieces with given velocities at the waypoints.", py::arg("tree"), py::arg("times"),
           py::arg("waypoints"), py::arg("velocities"), py::arg("unwrap") = false)
@@ -300,15 +400,19 @@ void bindMotions(py::module_& module) {
           "quintic",
           [](py::handle tree, py::handle times, py::handle waypoints, py::handle velocities, py::handle accelerations,
              bool unwrap) {
-            return trajectoryThrough(*treeOf(tree), waypoints, times, velocities, accelerations, py::none(), unwrap);
+            return MadeTrajectory(
+                trajectoryThrough(*treeOf(tree), waypoints, times, velocities, accelerations, py::none(), unwrap),
+                Recipe("quintic",
+                       py::make_tuple(treeAlone(tree), times, waypoints, velocities, accelerations, unwrap)));
           },
           "Quintic pieces with given velocities and accelerations at the waypoints.", py::arg("tree"), py::arg("times"),
           py::arg("waypoints"), py::arg("velocities"), py::arg("accelerations"), py::arg("unwrap") = false)
       .def_static(
           "parabolic_blends",
           [](py::handle tree, py::handle times, py::handle waypoints, double blend, bool unwrap) {
-            return trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::float_(blend),
-                                     unwrap);
+            return MadeTrajectory(
+                trajectoryThrough(*treeOf(tree), waypoints, times, py::none(), py::none(), py::float_(blend), unwrap),
+                Recipe("parabolic_blends", py::make_tuple(treeAlone(tree), times, waypoints, blend, unwrap)));
           },
           "Straight lines joined by parabolas over [t - blend, t + blend] around each inner waypoint.", py::arg("tree"),
           py::arg("times"), py::arg("waypoints"), py::arg("blend"), py::arg("unwrap") = false)
@@ -316,8 +420,9 @@ void bindMotions(py::module_& module) {
           "bspline",
           [](py::handle tree, int degree, py::handle knots, py::handle control_points) {
             const Eigen::VectorXd k = vectorOf(knots, "knots");
-            return JointTrajectory::bspline(*treeOf(tree), degree, {k.begin(), k.end()},
-                                            vectorsOf(control_points, "control_points"));
+            return MadeTrajectory(JointTrajectory::bspline(*treeOf(tree), degree, {k.begin(), k.end()},
+                                                           vectorsOf(control_points, "control_points")),
+                                  Recipe("bspline", py::make_tuple(treeAlone(tree), degree, knots, control_points)));
           },
           "Along a B-spline.", py::arg("tree"), py::arg("degree"), py::arg("knots"), py::arg("control_points"))
       .def_static(
@@ -326,7 +431,8 @@ void bindMotions(py::module_& module) {
             const Eigen::VectorXd t = vectorOf(times, "times");
             std::vector<Eigen::MatrixXd> pieces;
             for (const py::handle piece : coefficients) pieces.emplace_back(matrixOf(piece, "coefficients").rows());
-            return JointTrajectory::piecewise(*treeOf(tree), {t.begin(), t.end()}, pieces);
+            return MadeTrajectory(JointTrajectory::piecewise(*treeOf(tree), {t.begin(), t.end()}, pieces),
+                                  Recipe("piecewise", py::make_tuple(treeAlone(tree), times, coefficients)));
           },
           "Polynomials of t - times[k], one matrix of coefficients for each piece.", py::arg("tree"), py::arg("times"),
           py::arg("coefficients"))
@@ -342,33 +448,21 @@ void bindMotions(py::module_& module) {
           "The configuration at a time, which is clamped to the trajectory's.", py::arg("t"))
       .def(
           "piece",
-          [](const JointTrajectory& t, std::size_t k) {
+          [](const py::object& self, std::size_t k) {
+            const auto& t = py::cast<const JointTrajectory&>(self);
             if (k >= t.numPieces())
               throw py::index_error("the trajectory has " + std::to_string(t.numPieces()) + " pieces");
-            return t.piece(k);
+            return MadeMotion(t.piece(k), Recipe("piece", py::make_tuple(k), self));
           },
           "Piece k as a motion over t in [0, 1].", py::arg("k"))
       .def("__len__", &JointTrajectory::numPieces)
-      .def("__repr__", [](const JointTrajectory& t) {
-        return py::str("<JointTrajectory of {} pieces from {} to {}>")
-            .format(t.numPieces(), t.beginTime(), t.endTime());
-      });
-
-  module.def(
-      "in_between_tree", [](py::handle tree) { return treeOfRobot(inBetweenTree(*treeOf(tree))); },
-      "The tree on which in_between_motion() moves: each link floats in its parent's frame.", py::arg("tree"));
-  module.def(
-      "in_between_motion",
-      [](py::handle tree, py::handle begin, py::handle end) {
-        const auto poses = [](py::handle value, const char* what) {
-          std::vector<Eigen::Isometry3d> out;
-          for (const py::handle pose : value) out.push_back(poseOf(pose, what));
-          return out;
-        };
-        return inBetweenMotion(*treeOf(tree), poses(begin, "begin"), poses(end, "end"));
-      },
-      "The arbitrary in-between motion of Redon et al. (2004), Section 3, between two sets of link poses.",
-      py::arg("tree"), py::arg("begin"), py::arg("end"));
+      .def("__repr__",
+           [](const JointTrajectory& t) {
+             return py::str("<JointTrajectory of {} pieces from {} to {}>")
+                 .format(t.numPieces(), t.beginTime(), t.endTime());
+           })
+      .def("__reduce__",
+           [](const py::object& self) { return py::cast<const MadeTrajectory&>(self).recipe.reduced(self); });
 }
 
 }  // namespace
@@ -431,7 +525,8 @@ JointTrajectory trajectoryThrough(const KinematicTree& tree, py::handle waypoint
 void bindKinematics(py::module_& module) {
   bindJoint(module);
   bindTree(module);
-  bindMotions(module);
+  bindMotion(module);
+  bindTrajectory(module);
 }
 
 }  // namespace fcl_artic::python

@@ -3,6 +3,7 @@
 // The extension module fcl_artic._fcl_artic. One file per topic; the package fcl_artic shows its names.
 #include <pybind11/pybind11.h>
 
+#include "docstrings.h"
 #include "geometry.h"
 #include "kinematics.h"
 #include "motion.h"
@@ -25,4 +26,5 @@ PYBIND11_MODULE(_fcl_artic, module) {
   bindScene(module);
   bindRigid(module);
   bindWorld(module);
+  documentProperties(module);
 }

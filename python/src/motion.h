@@ -9,6 +9,7 @@
 #include <fcl/math/motion/motion_base.h>
 
 #include "array.h"
+#include "recipe.h"
 
 namespace fcl_artic::python {
 
@@ -18,6 +19,7 @@ struct Motion {
   std::shared_ptr<const fcl::MotionBased> motion;
   /// The pose at t, with the GIL held: of a twin, as FCL's motions keep the last pose in themselves.
   std::function<Eigen::Isometry3d(double t)> pose;
+  Recipe recipe;
 };
 
 /// A motion, or a pose to stand still at. @throws py::type_error naming `what`.

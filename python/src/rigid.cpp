@@ -31,49 +31,60 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+/// @param kind   also the name of Motion's member that makes it.
+/// @param given  what that was called with.
 template <class Kind, class... Arguments>
-Motion make(const char* kind, const Arguments&... arguments) {
+Motion make(const char* kind, const py::tuple& given, const Arguments&... arguments) {
   const auto twin = std::make_shared<const Kind>(arguments...);
-  return {kind, std::make_shared<const Kind>(arguments...), [twin](double t) {
+  return {kind, std::make_shared<const Kind>(arguments...),
+          [twin](double t) {
             twin->integrate(t);
             Isometry3d pose;
             twin->getCurrentTransform(pose);
             return pose;
-          }};
+          },
+          Recipe(kind, given)};
 }
 
 Motion still(py::handle pose) {
   const Isometry3d at = poseOf(pose, "pose");
-  return make<fcl::TranslationMotiond>("still", at, at);
+  return make<fcl::TranslationMotiond>("still", py::make_tuple(pose), at, at);
 }
 
 Motion translation(py::handle begin, py::handle displacement) {
   const Isometry3d from = poseOf(begin, "begin");
   Isometry3d to = from;
   to.translation() += vector3Of(displacement, "displacement");
-  return make<fcl::TranslationMotiond>("translation", from, to);
+  return make<fcl::TranslationMotiond>("translation", py::make_tuple(begin, displacement), from, to);
 }
 
 Motion linear(py::handle begin, py::handle end) {
-  return make<fcl::InterpMotion<double>>("linear", poseOf(begin, "begin"), poseOf(end, "end"));
+  const Isometry3d from = poseOf(begin, "begin"), to = poseOf(end, "end");
+  // With the point that goes straight: FCL's constructor of two poses leaves it uninitialised.
+  return make<fcl::InterpMotion<double>>("linear", py::make_tuple(begin, end), from.linear(), from.translation(),
+                                         to.linear(), to.translation(), Vector3d(Vector3d::Zero()));
 }
 
 Motion screw(py::handle begin, py::handle end) {
-  return make<fcl::ScrewMotion<double>>("screw", poseOf(begin, "begin"), poseOf(end, "end"));
+  return make<fcl::ScrewMotion<double>>("screw", py::make_tuple(begin, end), poseOf(begin, "begin"),
+                                        poseOf(end, "end"));
 }
 
 Motion spline(py::handle positions, py::handle rotations) {
   const Matrix T = matrixOf(positions, "positions", 3), R = matrixOf(rotations, "rotations", 3);
   if (T.array.shape(0) != 4 || R.array.shape(0) != 4) valueError("a spline has 4 positions and 4 rotation vectors");
   const auto row = [](const Matrix& m, int i) { return Vector3d(m.rows().row(i).transpose()); };
-  return make<fcl::SplineMotion<double>>("spline", row(T, 0), row(T, 1), row(T, 2), row(T, 3), row(R, 0), row(R, 1),
-                                         row(R, 2), row(R, 3));
+  return make<fcl::SplineMotion<double>>("spline", py::make_tuple(positions, rotations), row(T, 0), row(T, 1),
+                                         row(T, 2), row(T, 3), row(R, 0), row(R, 1), row(R, 2), row(R, 3));
 }
 
-Motion ofLink(py::handle tree, const JointMotion& motion, py::handle link, py::handle offset) {
+Motion ofLink(py::handle tree, py::handle motion, py::handle link, py::handle offset) {
   const auto of = treeOf(tree);
-  const auto made = std::make_shared<const FclLinkMotion>(*of, motion, linkOf(*of, link), poseOf(offset, "offset"));
-  return {"of_link", made, [made](double t) { return made->pose(t); }};
+  if (!py::isinstance<JointMotion>(motion)) typeError("motion is no JointMotion but " + typeName(motion));
+  const auto made = std::make_shared<const FclLinkMotion>(*of, py::cast<const JointMotion&>(motion), linkOf(*of, link),
+                                                          poseOf(offset, "offset"));
+  return {"of_link", made, [made](double t) { return made->pose(t); },
+          Recipe("of_link", py::make_tuple(treeOfRobot(of), motion, link, offset))};
 }
 
 /// A motion of one's own, whose state and bounds Python functions tell.
@@ -144,9 +155,10 @@ class OwnMotion : public fcl::MotionBased, public BoundedMotion {
   bool derivatives_;
 };
 
-Motion bounded(py::function state, py::function bounds, bool derivatives) {
-  const auto made = std::make_shared<const OwnMotion>(std::move(state), std::move(bounds), derivatives);
-  return {"bounded", made, [made](double t) { return made->state(t).pose; }};
+Motion bounded(const py::function& state, const py::function& bounds, bool derivatives) {
+  const auto made = std::make_shared<const OwnMotion>(state, bounds, derivatives);
+  return {"bounded", made, [made](double t) { return made->state(t).pose; },
+          Recipe("bounded", py::make_tuple(state, bounds, derivatives))};
 }
 
 /// The request for two bodies. @throws py::type_error for an option that only worlds have.
@@ -307,7 +319,8 @@ void bindMotion(py::module_& module) {
       .def(
           "pose", [](const Motion& m, double t) { return arrayOf(m.pose(t)); },
           "Pose (4, 4) in the world at t, as rounded.", py::arg("t"))
-      .def("__repr__", [](const Motion& m) { return std::string("<Motion: ") + m.kind + ">"; });
+      .def("__repr__", [](const Motion& m) { return std::string("<Motion: ") + m.kind + ">"; })
+      .def("__reduce__", [](const py::object& self) { return py::cast<const Motion&>(self).recipe.reduced(self); });
 }
 
 }  // namespace

@@ -91,6 +91,77 @@ def test_allowed_pairs_go_along_and_proofs_are_left_out(data):
     assert copy.allowed == robot.allowed
 
 
+def motions_of(robot, q0, q1):
+    """One of each maker."""
+    M, T = fcl_artic.JointMotion, fcl_artic.JointTrajectory
+    points, zeros = [q0, q1, q0], np.zeros((3, robot.dof))
+    coefficients = np.column_stack([q0, q1 - q0, 0.1 * q1])
+    return [
+        M.linear(robot, q0, q1),
+        M.shortest(robot, q0, q1),
+        M.still(robot, q0),
+        M.polynomial(robot, coefficients),
+        M.tangent_half_angle(robot, q0, q1, 0.1 * q0),
+        M.tangent_half_angle_polynomial(robot, coefficients),
+        T.linear(robot, [10, 12, 15], points),
+        T.tangent_half_angle(robot, [10, 12, 15], points),
+        T.cubic(robot, [0, 1, 3], points, zeros),
+        T.quintic(robot, [0, 1, 3], points, zeros, zeros),
+        T.parabolic_blends(robot, [0, 1, 3], points, 0.2),
+        T.bspline(robot, 1, [0, 0, 1, 2, 2], points),
+        T.piecewise(robot, [0, 1], [coefficients]),
+        T.linear(robot, [10, 12, 15], points).piece(1),
+    ]
+
+
+def test_a_motion_of_joints_is_the_same_to_the_last_bit(robot, shared_world, hit):
+    for motion in motions_of(robot, *hit):
+        copy = copied(motion)
+        assert repr(copy) == repr(motion) and type(copy) is type(motion)
+        for t in np.linspace(0, 15, 31):
+            assert np.array_equal(copy.configuration(t), motion.configuration(t))
+        before, after = shared_world.check(motion), shared_world.check(copy)
+        assert (before.status, before.t_lower, before.t_upper) == (after.status, after.t_lower, after.t_upper)
+
+
+def test_a_pickled_motion_does_not_follow_its_arrays(robot, hit):
+    q0, q1 = np.array(hit)
+    motion = fcl_artic.JointMotion.linear(robot, q0, q1)
+    wanted = motion.configuration(0.5)
+    q0 += 1
+    assert np.array_equal(copied(motion).configuration(0.5), wanted)
+
+
+def test_the_in_between_motion_is_pickled(robot, hit):
+    poses = [robot.tree.forward_kinematics(q) for q in hit]
+    motion = fcl_artic.in_between_motion(fcl_artic.in_between_tree(robot), *poses)
+    assert np.array_equal(copied(motion).configuration(0.3), motion.configuration(0.3))
+
+
+def steady(t):
+    return fcl_artic.pose([t, 0, 0])
+
+
+def at_most(begin, end):
+    return 1, 0
+
+
+def test_a_motion_of_a_rigid_body_is_the_same(robot, hit):
+    M, one = fcl_artic.Motion, fcl_artic.pose([1, 2, 3])
+    spline = np.random.default_rng(3).normal(size=(2, 4, 3))
+    motions = [M.still(one), M.translation(one, [1, 0, 0]), M.linear(np.eye(4), one), M.screw(np.eye(4), one),
+               M.spline(*spline), M.of_link(robot, fcl_artic.JointMotion.linear(robot, *hit), "flange"),
+               M.bounded(steady, at_most, derivatives=False)]
+    for motion in motions:
+        copy = copied(motion)
+        assert copy.kind == motion.kind
+        for t in (0, 0.3, 1):
+            assert np.array_equal(copy.pose(t), motion.pose(t))
+    # What pickle cannot find by its name, it refuses.
+    with pytest.raises((AttributeError, pickle.PicklingError)):
+        pickle.dumps(M.bounded(lambda t: np.eye(4), at_most, derivatives=False))
+
+
 def ask(arguments):
     robot, scene, q0, q1 = arguments
     return os.getpid(), fcl_artic.World(robot, scene).check(q0, q1)

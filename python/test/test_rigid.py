@@ -33,6 +33,19 @@ def test_every_kind_of_motion_has_its_ends():
     assert np.allclose(spline.pose(0.5)[:3, 3], 1)
 
 
+def test_the_origin_of_a_linear_motion_goes_straight():
+    ball, random = fcl_artic.sphere(0.5), np.random.default_rng(11)
+    for _ in range(300):
+        garbage = [np.full(n, np.nan) for n in range(3, 60)]  # what memory holds that is not written to
+        del garbage
+        begin, end = (fcl_artic.pose([x, 0, 0], rpy=random.uniform(-1.5, 1.5, 3)) for x in (-5, 5))
+        motion = fcl_artic.Motion.linear(begin, end)
+        for t in (0, 0.25, 1):
+            assert np.allclose(motion.pose(t)[:3, 3], [-5 + 10 * t, 0, 0], atol=1e-9)
+        result = fcl_artic.continuous_collide(ball, motion, ball, np.eye(4))
+        assert result.certain and abs(result.t_lower - 0.4) < 1e-5
+
+
 def test_a_link_moves_as_its_robot_does(robot, shared_world, hit):
     motion = fcl_artic.JointMotion.linear(robot, *hit)
     link = fcl_artic.Motion.of_link(robot, motion, "wrist_roll")
