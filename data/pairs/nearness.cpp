@@ -63,8 +63,8 @@ struct Placed {
       case Kind::triangle: {
         Vec<R> best = body.vertices[0].template cast<R>();
         for (const Vec3& v : body.vertices) {
-          const Vec<R> x =
-              v.template cast<R>();  // NOLINT(performance-unnecessary-copy-initialization): of long doubles none
+          // NOLINTNEXTLINE(performance-unnecessary-copy-initialization): of long doubles none
+          const Vec<R> x = v.template cast<R>();
           if (x.dot(u) > best.dot(u)) best = x;
         }
         return best;

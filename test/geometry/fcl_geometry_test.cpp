@@ -437,12 +437,12 @@ void compareCells(const octomap::OcTree& map, const fcl::OcTree<S>& octree, doub
 
 TEST(FclOcTree, CellsAreOctomapsOwn) {
   const auto tree = map();
-  int sizes[3];
+  std::vector<int> sizes;
   for (const double occupancy : {0.5, 0.75, 0.9}) {
     fcl::OcTreed octree(tree);
     octree.setOccupancyThres(occupancy);
     compareCells(*tree, octree, static_cast<double>(octomap::logodds(occupancy)), 1e-15);
-    sizes[occupancy > 0.8 ? 2 : occupancy > 0.6 ? 1 : 0] = readGeometry(octree)->view().num_pieces;
+    sizes.push_back(readGeometry(octree)->view().num_pieces);
     fcl::OcTreef in_float(tree);
     in_float.setOccupancyThres(static_cast<float>(occupancy));
     compareCells(*tree, in_float, static_cast<double>(octomap::logodds(occupancy)), 1e-6);
