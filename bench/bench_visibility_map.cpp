@@ -124,7 +124,9 @@ class Place {
         to.translate(kCarried);
         to.rotate(Eigen::AngleAxisd(kTurned, fcl::Vector3d::UnitZ()));
         moving_.push_back(std::make_unique<fcl::ContinuousCollisionObjectd>(
-            toBvh<fcl::OBBRSSd>(mesh), std::make_shared<fcl::InterpMotion<double>>(fcl::Transform3d::Identity(), to)));
+            toBvh<fcl::OBBRSSd>(mesh),
+            std::make_shared<fcl::InterpMotion<double>>(Eigen::Matrix3d::Identity(), fcl::Vector3d::Zero(), to.linear(),
+                                                        to.translation(), fcl::Vector3d::Zero())));
         manager_.registerObject(moving_.back().get());
         continue;
       }

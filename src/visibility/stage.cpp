@@ -22,6 +22,7 @@ void Stage::run(const engine::Problem& problem, const engine::SweptLink* links, 
   beginBatch(culler_, batch);
   QueryVolumes& volumes = volumes_.emplace_back();
   volumes.add(problem, links, candidates, n, tolerance_distance_, culler_.options().every_link_pair, batch);
+  if (volumes.work().pairs == 0) return;
   executor = loan->name;
   loan->executor->run(batch, loan->may);
   volumes.conclude(batch, loan->may);

@@ -45,8 +45,11 @@ class Together {
   bool allFree(std::size_t i) const { return queries_[i].free(); }
   /// Advises query i with what is proven.
   engine::Advisor advise(std::size_t i);
-  /// What query i had in the pass; null: nothing was asked.
-  const QueryVolumes* volumes(std::size_t i) const { return queries_[i].asked ? &queries_[i].volumes : nullptr; }
+  /// What query i had in the pass; null: nothing was looked at.
+  const QueryVolumes* volumes(std::size_t i) const {
+    const One& one = queries_[i];
+    return one.asked && one.volumes.work().pairs > 0 ? &one.volumes : nullptr;
+  }
   /// Time of query i's volumes and of its part of the drawing, us; and the latter alone, which is by number of pieces.
   double microseconds(std::size_t i) const { return queries_[i].collecting_us + drawingMicroseconds(i); }
   double drawingMicroseconds(std::size_t i) const;
