@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "certificate_file.h"
 #include "certification.h"
 #include "certify_report.h"
 #include "configuration.h"
@@ -25,7 +26,7 @@ namespace {
 struct Options {
   WorldOptions world;
   std::vector<std::string> plans, joints, state;
-  std::string format, interpolation = "auto", turns = "ask", csv, out;
+  std::string format, interpolation = "auto", turns = "ask", csv, out, certificate;
   double blend = 0;
   CertifyOptions certify;
   bool clearance = false, json = false, failed_only = false, mend = false;
@@ -53,6 +54,21 @@ void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
   files::write(o.out, plans::writePlans(out, plans::formatOf(o.out)));
 }
 
+/// Writes a record for each plan, as it was mended, that has a proof.
+/// @return what to tell of it, one line.
+std::string writeCertificates(CertificateFile& certificates, const std::vector<CertifiedPlan>& all) {
+  std::size_t proofs = 0;
+  std::string note;
+  for (const CertifiedPlan& plan : all) {
+    const CertifiedPlan& one = plan.as_mended ? *plan.as_mended : plan;
+    if (!one.result.certificate) continue;
+    note = certificates.add(*one.result.certificate);
+    proofs += static_cast<bool>(*one.result.certificate);
+  }
+  certificates.write();
+  return all.size() == 1 ? note : fmt::format("certificates of {} of {} plans; {}", proofs, all.size(), note);
+}
+
 int run(Options& o) {
   if (o.mend) requireMending();
   if (!o.out.empty()) (void)plans::formatOf(o.out);
@@ -75,6 +91,8 @@ int run(Options& o) {
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
 
   o.certify.request.measure_times = all.size() == 1;  // the one that is shown in full
+  CertificateFile certificates(o.certificate);
+  o.certify.request.certificate = certificates.wanted();
   const auto begin = std::chrono::steady_clock::now();
   certify(*manager, o.certify, all);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -84,7 +102,8 @@ int run(Options& o) {
   }
   if (!o.out.empty()) writeOut(o, all);
 
-  const std::vector<std::string> notes = world.notes();
+  std::vector<std::string> notes = world.notes();
+  if (certificates.wanted()) notes.push_back(writeCertificates(certificates, all));
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
   if (!o.csv.empty()) files::write(o.csv, csvReport(report));
   if (o.json) {
@@ -173,6 +192,11 @@ void addCertify(CLI::App& program, int& exit_status) {
 
   certify->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   certify->add_option("--csv", o.csv, "Write a row for each plan")->group("Output")->type_name("FILE");
+  certify
+      ->add_option("--certificate", o.certificate,
+                   "Write a proof of each answer, and what it is about to FILE.world: fcl_artic_verify proves it again")
+      ->group("Output")
+      ->type_name("FILE");
   certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
   certify->callback([options, &exit_status] {
     if ((options->interpolation == "blends") != (options->blend > 0)) {

@@ -120,6 +120,7 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   if (!free) out["q_at_t_lower"] = all.at("q_at_t_lower");
   out["clearance"] = all.at("clearance");
   out["unproven_allowed_pairs"] = all.at("unproven_allowed_pairs");
+  out["certificate"] = all.at("certificate");
   out["us"] = plan.us;
   out["notes"] = motion.notes;
   if (!plan.not_mended.empty()) out["mended"] = {{"status", "error"}, {"error", plan.not_mended}};

@@ -82,4 +82,20 @@ TEST_F(CertificateOptionTest, AFolderThatIsNotThereIsAnError) {
   EXPECT_NE(run.err.find("/nowhere/at/all/x.fac.world"), std::string::npos) << run.err;
 }
 
+TEST_F(CertificateOptionTest, OfPlansThereIsARecordEach) {
+  const std::string file = path("plans"),
+                    plans = write("plans.jsonl",
+                                  "{\"waypoints\": [[0], [1], [0.5]]}\n{\"waypoints\": [[0], [3]]}\n"
+                                  "{\"waypoints\": [[0]]}\n");
+  const Outcome run =
+      this->run("certify " + plans + " --robot " + rail() + " --scene " + wall() + " --json --certificate " + file);
+  ASSERT_EQ(run.status, 2) << run.err;
+  const Json answer = Json::parse(run.out);
+  EXPECT_TRUE(answer.at("plans").at(0).at("certificate").contains("proof_bytes"));
+  EXPECT_TRUE(answer.at("plans").at(1).at("certificate").contains("proof_bytes"));  // until shortly before the contact
+  EXPECT_NE(answer.at("notes").dump().find("certificates of 2 of 3 plans"), std::string::npos) << answer.at("notes");
+  EXPECT_EQ(read(file).substr(0, 4), "FAC1");
+  EXPECT_EQ(read(file + ".world").substr(0, 18), "fcl_artic world 1\n");
+}
+
 }  // namespace
