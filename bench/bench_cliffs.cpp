@@ -147,8 +147,11 @@ class Search {
   Search(const Family& family, const CertifiedPairRequest& request) : family_(family), request_(request) {}
 
   Cost cost(const Motion& motion, const Eigen::Vector3d& aside, int runs) const {
-    const fcl::InterpMotion<double> still(Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity());
-    const fcl::InterpMotion<double> moving(motion.pose(family_, 0, aside), motion.pose(family_, 1, aside));
+    const Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // FCL's constructors without it leave it uninitialised
+    const Eigen::Matrix3d upright = Eigen::Matrix3d::Identity();
+    const fcl::InterpMotion<double> still(upright, origin, upright, origin, origin);
+    const Eigen::Isometry3d from = motion.pose(family_, 0, aside), to = motion.pose(family_, 1, aside);
+    const fcl::InterpMotion<double> moving(from.linear(), from.translation(), to.linear(), to.translation(), origin);
     Cost cost;
     for (int run = 0; run < runs; ++run) {
       const auto begin = std::chrono::steady_clock::now();
