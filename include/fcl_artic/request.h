@@ -17,8 +17,8 @@ enum class ContactMode {
 };
 
 /// Whether stage 2, culling by visibility (doc/VISIBILITY.md), takes part in a query of an ArticulatedCollisionManager.
-/// It looks at links against obstacles, still or moving, and against links. With `off`, `on` and `automatic` answers are
-/// the same bits; a work budget turns the stage off there.
+/// It looks at links against obstacles, still or moving, and against links. With `off`, `on` and `automatic` answers
+/// are the same bits; a work budget turns the stage off there.
 enum class VisibilityMode {
   off,        ///< Never.
   on,         ///< Always. A query that does not end as plainly free is solved again without the stage.
