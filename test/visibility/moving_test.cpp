@@ -87,10 +87,11 @@ std::shared_ptr<Mesh> bar(const Vector3d& sides) {
 
 enum class Partner { link, obstacle };
 
-/// A bar on the last of six links, and a bush on the second one, four joints before it, or as an obstacle that moves.
+/// A bar on the last of six links, and a bush: on the second one, four joints before it, on the same link of an arm
+/// beside it, on the base, in turns by the seed, or as an obstacle that moves. Both stand askew in their links' frames.
 class Pair {
  public:
-  static constexpr int kJoints = 6, kBar = 5, kBush = 1;
+  static constexpr int kJoints = 6, kBar = 5, kBush = 1, kBase = -1;
 
   Pair(Partner partner, std::uint64_t seed) : partner_(partner), random_(seed) {
     auto tree = std::make_shared<KinematicTree>("arm");
@@ -99,8 +100,9 @@ class Pair {
       Joint joint;
       joint.name = "joint" + std::to_string(i);
       joint.type = i == 3 ? JointType::prismatic : JointType::revolute;
-      joint.parent = i ? "link" + std::to_string(i - 1) : "base";
-      joint.child = "link" + std::to_string(i);
+      parents_.push_back(i == kBush + 1 && seed % 3 == 1 ? kBase : i - 1);  // the joints after it are another arm's
+      joint.parent = nameOf(parents_.back());
+      joint.child = nameOf(i);
       joint.axis = random_.inCube().normalized();
       joint.origin = Eigen::Translation3d(0.15 * random_.inCube()) *
                      Eigen::AngleAxisd(random_.uniform(-3, 3), random_.inCube().normalized());
@@ -116,10 +118,14 @@ class Pair {
     bar_object_ = std::make_unique<fcl::CollisionObjectd>(bar_);
     bush_object_ = std::make_unique<fcl::CollisionObjectd>(bush_);
     manager_ = std::make_unique<ArticulatedCollisionManager>(tree_);
-    manager_->bind("link5", bar_object_.get());
-    if (partner == Partner::link) {
-      manager_->bind("link1", bush_object_.get());
-    } else {
+    bar_offset_ = askew();
+    if (partner == Partner::link) {  // bound first: of two arms' links it is the one that the other is seen from
+      bush_link_ = seed % 3 == 2 ? kBase : kBush;
+      bush_offset_ = askew();
+      manager_->bind(nameOf(bush_link_), bush_object_.get(), bush_offset_);
+    }
+    manager_->bind(nameOf(kBar), bar_object_.get(), bar_offset_);
+    if (partner == Partner::obstacle) {
       from_ = 0.2 * random_.inCube();
       path_ = 0.3 * random_.inCube();
       turn_ = random_.uniform(-1, 1) * random_.inCube().normalized();
@@ -138,33 +144,21 @@ class Pair {
   Partner partner() const { return partner_; }
   const Vector3d& barSides() const { return sides_; }
 
-  Isometry3d linkPose(const Eigen::VectorXd& q, int link) const {
-    Isometry3d M = Isometry3d::Identity();
-    for (int i = 0; i <= link; ++i) {
-      const Joint& joint = joints_[static_cast<std::size_t>(i)];
-      M = M * joint.origin;
-      if (joint.type == JointType::prismatic) {
-        M.translate(q[i] * joint.axis);
-      } else {
-        M.rotate(Eigen::AngleAxisd(q[i], joint.axis));
-      }
-    }
-    return M;
-  }
+  Isometry3d barPose(const Eigen::VectorXd& q) const { return linkPose(q, kBar) * bar_offset_; }
   /// At time t, where it is an obstacle.
   Isometry3d bushPose(const Eigen::VectorXd& q, double t) const {
-    return partner_ == Partner::link ? linkPose(q, kBush) : obstaclePose(t);
+    return partner_ == Partner::link ? linkPose(q, bush_link_) * bush_offset_ : obstaclePose(t);
   }
   /// By FCL's static test.
   bool touches(const Eigen::VectorXd& q, double t) const {
     const fcl::CollisionRequestd request;
     fcl::CollisionResultd result;
-    return fcl::collide(bar_.get(), linkPose(q, kBar), bush_.get(), bushPose(q, t), request, result) > 0;
+    return fcl::collide(bar_.get(), barPose(q), bush_.get(), bushPose(q, t), request, result) > 0;
   }
   double distance(const Eigen::VectorXd& q, double t) const {
     const fcl::DistanceRequestd request;
     fcl::DistanceResultd result;
-    return fcl::distance(bar_.get(), linkPose(q, kBar), bush_.get(), bushPose(q, t), request, result);
+    return fcl::distance(bar_.get(), barPose(q), bush_.get(), bushPose(q, t), request, result);
   }
   /// Configurations that touch at time t and that do not, as near to each other as doubles allow, about.
   bool findGrazing(double t, Eigen::VectorXd& touching, Eigen::VectorXd& free) {
@@ -187,6 +181,22 @@ class Pair {
   }
 
  private:
+  static std::string nameOf(int link) { return link == kBase ? "base" : "link" + std::to_string(link); }
+  Isometry3d askew() {
+    return Eigen::Translation3d(0.1 * random_.inCube()) *
+           Eigen::AngleAxisd(random_.uniform(-3, 3), random_.inCube().normalized());
+  }
+  Isometry3d linkPose(const Eigen::VectorXd& q, int link) const {
+    if (link == kBase) return Isometry3d::Identity();
+    const Joint& joint = joints_[static_cast<std::size_t>(link)];
+    Isometry3d M = linkPose(q, parents_[static_cast<std::size_t>(link)]) * joint.origin;
+    if (joint.type == JointType::prismatic) {
+      M.translate(q[link] * joint.axis);
+    } else {
+      M.rotate(Eigen::AngleAxisd(q[link], joint.axis));
+    }
+    return M;
+  }
   /// The screw of fcl::InterpMotion, as it is asked for: turned by a part of turn_ about the reference point 0.
   Isometry3d obstaclePose(double t) const {
     Isometry3d M = Isometry3d::Identity();
@@ -198,6 +208,9 @@ class Pair {
   Partner partner_;
   Random random_;
   std::vector<Joint> joints_;
+  std::vector<int> parents_;  ///< of each joint: a link, or the base
+  int bush_link_ = kBush;
+  Isometry3d bar_offset_, bush_offset_;
   std::shared_ptr<const KinematicTree> tree_;
   std::shared_ptr<Mesh> bar_, bush_;
   Vector3d sides_, from_, path_, turn_;
@@ -373,7 +386,7 @@ double roomIn(const Batch& batch, const visibility::Volume& volume, Pair& pair, 
     for (int i = 0; i <= 16; ++i) {
       const double t = (eighth + i / 16.0) / 8;
       const Eigen::VectorXd at = q + t * rate;
-      const Isometry3d seen = pair.bushPose(at, t).inverse() * pair.linkPose(at, Pair::kBar);
+      const Isometry3d seen = pair.bushPose(at, t).inverse() * pair.barPose(at);
       for (int c = 0; c < 8; ++c) room = std::min(room, held - n.dot(seen * cornerOf(pair.barSides(), c)));
     }
   }
