@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fcl_artic/manager.h>
+#include <moveit/collision_detection/collision_env.hpp>
+#include <moveit/collision_detection/collision_matrix.hpp>
+
+#include "fcl_artic_moveit/robot.h"
+
+namespace fcl_artic_moveit {
+
+/// What a body of the manager is in MoveIt.
+struct BodyName {
+  enum Kind { link, attached, object } kind = object;  ///< a link, an attached body, an object of the world
+  std::string id;                                      ///< its name in MoveIt
+};
+
+/// A MoveIt robot and what surrounds it, as a manager.
+///
+/// What is checked is what MoveIt checks (PlanningScene::checkCollision()), with `padding` the distance that a link and
+/// what it carries have to keep from the world:
+/// - links with geometry against each other, neighbours too; attached bodies against links, except those that they may
+///   touch, and against each other, except on the same link or where one is among the other's touch links; both without
+///   padding;
+/// - links and attached bodies against the objects of the world, octomap included, with the link's padding;
+/// - but no pair of which neither body moves with the group, and none that the allowed collision matrix always allows,
+///   by an entry or by defaults. A pair that it allows conditionally is checked.
+///
+/// update() takes over a scene; what is the same as before is kept with all that was computed of it. A Cell whose
+/// update() threw is of no further use. One thread at a time may use a Cell.
+class Cell {
+ public:
+  /// Shares ownership of the model.
+  /// @throws std::invalid_argument as toTree().
+  explicit Cell(moveit::core::RobotModelConstPtr model);
+
+  /// Takes over the scene, and sets the manager up.
+  /// @param env    its world and the links' padding.
+  /// @param acm    pairs that may touch.
+  /// @param state  of which the attached bodies count.
+  /// @param group  whose joints move; null: all.
+  /// @throws std::invalid_argument naming link or object: another model, a link's scale that is not 1, a padding that
+  ///   is negative or not finite, a shape that toFcl() refuses, an unbounded shape (plane) on a link or in a hand,
+  ///   geometry or a pose that ArticulatedCollisionManager refuses.
+  void update(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
+              const moveit::core::RobotState& state, const moveit::core::JointModelGroup* group);
+
+  /// The model's tree, as of the last update().
+  const RobotTree& robot() const { return robot_; }
+  /// The manager, set up by update().
+  const fcl_artic::ArticulatedCollisionManager& manager() const { return *manager_; }
+  const moveit::core::RobotModelConstPtr& model() const { return model_; }
+  /// Who a body of an answer is in MoveIt.
+  const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name); }
+  /// How often the robot was read: 1 as long as nothing asked for another tree.
+  int robotsRead() const { return robots_read_; }
+
+ private:
+  /// One shape of a body, as it is registered. A link has one entry for all of its shapes, unless they are apart.
+  struct Body {
+    std::string name;  ///< in the manager
+    BodyName moveit;
+    const moveit::core::LinkModel* link = nullptr;           ///< that carries it; null for an object
+    const moveit::core::AttachedBody* attached = nullptr;    ///< null for a link and an object
+    double padding = 0;                                      ///< of pairs with the world, m
+    bool moves = false;                                      ///< with the group
+    shapes::ShapeConstPtr shape;                             ///< null for a link
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the shape, in the world or in the link's frame
+    std::string carrier;                                     ///< link of the tree; empty for an object
+  };
+  /// What is registered beside the links, by its name in the manager.
+  struct Registered {
+    shapes::ShapeConstPtr shape;
+    Eigen::Isometry3d pose;
+    std::string carrier;
+    std::shared_ptr<fcl::CollisionObjectd> object;
+  };
+
+  void readRobot();
+  std::vector<Body> linkBodies(const collision_detection::CollisionEnv& env,
+                               const moveit::core::JointModelGroup* group) const;
+  void addAttached(const collision_detection::CollisionEnv& env, const moveit::core::RobotState& state,
+                   const moveit::core::JointModelGroup* group, std::vector<Body>& bodies);
+  void addObjects(const collision_detection::World& world, std::vector<Body>& bodies);
+  bool separate(const std::vector<Body>& bodies, const collision_detection::AllowedCollisionMatrix& acm);
+  void registerBodies(const std::vector<Body>& bodies);
+  void setPairs(const std::vector<Body>& bodies, const collision_detection::AllowedCollisionMatrix& acm);
+  void setMargins(const std::vector<Body>& bodies);
+  void requireChecked() const;
+  std::string unused(const std::string& name);
+  std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const shapes::ShapeConstPtr& shape, const std::string& owner);
+
+  moveit::core::RobotModelConstPtr model_;
+  std::set<std::string> apart_;   ///< links whose shapes are attached to them, so that neighbours are checked
+  std::set<std::string> mounts_;  ///< links that may not touch what they carry
+  RobotTree robot_;
+  std::unique_ptr<fcl_artic::ArticulatedCollisionManager> manager_;
+  int robots_read_ = 0;
+  std::map<std::string, BodyName> names_;
+  std::set<std::string> used_;  ///< names in the manager
+  std::map<std::string, Registered> registered_;
+  std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
+  std::map<std::string, double> body_margins_;
+  std::set<std::pair<std::string, std::string>> wanted_;  ///< pairs of what links carry that have to be checked
+};
+
+}  // namespace fcl_artic_moveit

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <fcl_artic/bracket.h>
+#include <moveit/collision_detection/collision_env.hpp>
+#include <moveit/collision_detection/collision_matrix.hpp>
+#include <moveit/robot_trajectory/robot_trajectory.hpp>
+
+#include "fcl_artic_moveit/cell.h"
+#include "fcl_artic_moveit/motion.h"
+
+namespace fcl_artic_moveit {
+
+struct CertifierOptions {
+  MotionOptions motion;
+  /// Distance that every checked pair has to keep, m, beyond the links' padding; finite, at least 0.
+  double margin = 0;
+  /// Number of tests after which the answer is `undecided`; 0: no limit.
+  std::uint64_t budget = 0;
+};
+
+/// The answer about one trajectory. Times are s from the trajectory's start, as in its message, or waypoints' numbers.
+struct Verdict : fcl_artic::Bracket {
+  Interpolation interpolation = Interpolation::linear;  ///< that was used
+  bool timed = false;                                   ///< whether times are seconds
+  std::size_t waypoints = 0;                            ///< number of them
+  std::size_t pairs = 0;                                ///< pairs of bodies that were checked
+  /// The first contact, if there is one.
+  struct Contact {
+    BodyName body1, body2;
+    std::size_t waypoint = 0;                          ///< the waypoint at or before it
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the model's frame, m
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from body 1 to body 2
+  } contact;
+  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
+  std::string message;             ///< verdict, contact and cure, for a log
+};
+
+/// Certifies trajectories of MoveIt: whether the motion that a controller makes of one touches, and when first. It
+/// keeps what was made of a robot from call to call. Its const members may be called from many threads at once.
+class Certifier {
+ public:
+  explicit Certifier(CertifierOptions options = {});
+  ~Certifier();
+
+  /// Certifies one trajectory.
+  /// @param env         of the planning scene (PlanningScene::getCollisionEnv()): its world and the links' padding.
+  /// @param acm         PlanningScene::getAllowedCollisionMatrix().
+  /// @param trajectory  whose first waypoint has the attached bodies.
+  /// @throws std::invalid_argument as toMotion() and Cell::update(), and for waypoints that carry other bodies than the
+  ///   first: nothing is claimed then.
+  Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
+                  const robot_trajectory::RobotTrajectory& trajectory) const;
+
+ private:
+  std::unique_ptr<Cell> idleCell(const moveit::core::RobotModelConstPtr& model) const;
+  void giveBack(std::unique_ptr<Cell> cell) const;
+  Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajectory) const;
+
+  CertifierOptions options_;
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<Cell>> idle_;  ///< one for each thread that was here at the same time
+};
+
+}  // namespace fcl_artic_moveit

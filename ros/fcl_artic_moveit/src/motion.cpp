@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl_artic_moveit/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <moveit/robot_model/planar_joint_model.hpp>
+
+namespace fcl_artic_moveit {
+namespace {
+
+using Eigen::VectorXd;
+using fcl_artic::Joint;
+using fcl_artic::JointTrajectory;
+using fcl_artic::JointType;
+using moveit::core::RobotState;
+using robot_trajectory::RobotTrajectory;
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kSame = 1e-6;  // rad or m: within it a joint outside the group counts as standing still
+
+const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
+                                                                         {"linear", Interpolation::linear},
+                                                                         {"cubic", Interpolation::cubic},
+                                                                         {"quintic", Interpolation::quintic}};
+const std::vector<std::pair<const char*, Turns>> kTurns{
+    {"ask", Turns::ask}, {"given", Turns::given}, {"shortest", Turns::shortest}};
+
+template <class T>
+T named(const std::vector<std::pair<const char*, T>>& all, const std::string& name, const char* what) {
+  std::string known;
+  for (const auto& one : all) {
+    if (name == one.first) return one.second;
+    known += (known.empty() ? "" : ", ") + std::string(one.first);
+  }
+  throw std::invalid_argument("'" + name + "' is no value of " + what + ": " + known + " are");
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+std::string shown(double value) {
+  std::ostringstream out;
+  out.precision(9);
+  out << value;
+  return out.str();
+}
+
+std::string waypoint(std::size_t k) {
+  return "waypoint " + std::to_string(k);
+}
+
+/// Variables of the tree that belong to the trajectory's group.
+std::vector<bool> variablesOf(const RobotTree& robot, const RobotTrajectory& trajectory) {
+  std::vector<bool> out;
+  const moveit::core::RobotModel& model = *trajectory.getRobotModel();
+  for (int v = 0; v < robot.tree->dof(); ++v) {
+    const std::string& joint = robot.tree->joint(robot.tree->variableJoint(v)).name;
+    out.push_back(movesWith(trajectory.getGroup(), *model.getJointModel(joint)));
+  }
+  return out;
+}
+
+std::vector<VectorXd> waypointsOf(const RobotTree& robot, const RobotTrajectory& trajectory,
+                                  const std::vector<bool>& in_group) {
+  std::vector<VectorXd> out;
+  for (std::size_t k = 0; k < trajectory.getWayPointCount(); ++k) {
+    try {
+      out.push_back(robot.configuration(trajectory.getWayPoint(k)));
+    } catch (const std::invalid_argument& error) {
+      refuse(waypoint(k) + ": " + error.what());
+    }
+    for (int v = 0; v < robot.tree->dof(); ++v) {
+      if (in_group[static_cast<std::size_t>(v)]) continue;
+      if (std::abs(out[k][v] - out[0][v]) > kSame) {
+        refuse(waypoint(k) + ": '" + robot.tree->variableName(v) + "' moves from " + shown(out[0][v]) + " to " +
+               shown(out[k][v]) + " and is not in the group '" + trajectory.getGroupName() +
+               "', whose joints alone are sent to a controller");
+      }
+      out[k][v] = out[0][v];
+    }
+  }
+  return out;
+}
+
+/// Rates of the group's variables; all others stand still.
+std::vector<VectorXd> ratesOf(const RobotTree& robot, const RobotTrajectory& trajectory,
+                              const std::vector<bool>& in_group, const char* what,
+                              const double* (RobotState::*values)() const) {
+  std::vector<VectorXd> out;
+  for (std::size_t k = 0; k < trajectory.getWayPointCount(); ++k) {
+    const double* all = (trajectory.getWayPoint(k).*values)();
+    VectorXd& rates = out.emplace_back(VectorXd::Zero(robot.tree->dof()));
+    for (int v = 0; v < robot.tree->dof(); ++v) {
+      if (!in_group[static_cast<std::size_t>(v)]) continue;
+      rates[v] = all[robot.variables[static_cast<std::size_t>(v)]];
+      if (!std::isfinite(rates[v])) {
+        refuse(waypoint(k) + ": the " + what + " of '" + robot.tree->variableName(v) + "' is " + shown(rates[v]));
+      }
+    }
+  }
+  return out;
+}
+
+/// How many waypoints have velocities or accelerations: all or none.
+bool allHave(const RobotTrajectory& trajectory, const char* what, bool (RobotState::*has)() const) {
+  const std::size_t n = trajectory.getWayPointCount();
+  std::size_t with = 0, without = 0;
+  for (std::size_t k = 0; k < n; ++k) ((trajectory.getWayPoint(k).*has)() ? with : without) = k + 1;
+  if (with && without) {
+    refuse(waypoint(with - 1) + " has " + what + ", " + waypoint(without - 1) +
+           " has none: the parameter `interpolation` says what is meant");
+  }
+  return with > 0;
+}
+
+Interpolation chosen(const RobotTrajectory& trajectory, Interpolation asked, bool timed) {
+  Interpolation kind = asked;
+  if (kind == Interpolation::automatic) {
+    if (!timed) return Interpolation::linear;  // rates say nothing without times
+    const bool velocities = allHave(trajectory, "velocities", &RobotState::hasVelocities);
+    const bool accelerations = allHave(trajectory, "accelerations", &RobotState::hasAccelerations);
+    if (accelerations && !velocities) {
+      refuse("the waypoints have accelerations and no velocities: the parameter `interpolation` says what is meant");
+    }
+    return accelerations ? Interpolation::quintic : velocities ? Interpolation::cubic : Interpolation::linear;
+  }
+  if (kind == Interpolation::linear) return kind;
+  const std::string name = toString(kind);
+  if (!timed) {
+    refuse("interpolation " + name + " needs times, the trajectory has none: put a time parameterization before");
+  }
+  if (!allHave(trajectory, "velocities", &RobotState::hasVelocities)) {
+    refuse("interpolation " + name + " needs velocities, the waypoints have none");
+  }
+  if (kind == Interpolation::quintic && !allHave(trajectory, "accelerations", &RobotState::hasAccelerations)) {
+    refuse("interpolation quintic needs accelerations, the waypoints have none");
+  }
+  return kind;
+}
+
+[[noreturn]] void refuseFloating(const Joint& joint) {
+  refuse("joint '" + joint.name +
+         "' floats and moves, and what the velocities of its quaternion mean is not defined: " +
+         "interpolation linear is the way to certify it");
+}
+
+void requireNoTurningRates(const RobotTree& robot, const std::vector<VectorXd>& velocities) {
+  for (fcl_artic::JointId j = 0; j < robot.tree->numJoints(); ++j) {
+    const int v = robot.tree->quaternionVariable(j);
+    for (const VectorXd& one : velocities) {
+      if (v >= 0 && !one.segment<4>(v).isZero(0)) refuseFloating(robot.tree->joint(j));
+    }
+  }
+}
+
+/// What MoveIt's joints mean that this library's do not, or the other way round.
+void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, const std::vector<VectorXd>& q,
+                 Interpolation kind, const MotionOptions& options) {
+  const auto& tree = *robot.tree;
+  const auto moves = [&](int v, int n) {
+    for (const VectorXd& one : q) {
+      if (one.segment(v, n) != q[0].segment(v, n)) return true;
+    }
+    return false;
+  };
+  for (int v = 0; v < tree.dof(); ++v) {
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    if (joint.type == JointType::floating && tree.jointVariable(tree.variableJoint(v)) == v && moves(v, 7) &&
+        kind != Interpolation::linear) {
+      refuseFloating(joint);
+    }
+    if (joint.type == JointType::planar && tree.isAngle(v) && moves(v - 2, 3) &&
+        options.interpolation == Interpolation::automatic) {
+      const auto* planar =
+          static_cast<const moveit::core::PlanarJointModel*>(trajectory.getRobotModel()->getJointModel(joint.name));
+      if (planar->getMotionModel() == moveit::core::PlanarJointModel::DIFF_DRIVE) {
+        refuse("joint '" + joint.name + "' has a differential drive, whose way between waypoints is no straight one: " +
+               "the parameter `interpolation` (linear, cubic, quintic) states what x, y and theta do");
+      }
+    }
+    const bool forever = joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(v));
+    for (std::size_t k = 1; forever && options.turns == Turns::ask && k < q.size(); ++k) {
+      const double step = q[k][v] - q[k - 1][v];
+      if (std::abs(step) < kHalfTurn) continue;
+      refuse("'" + tree.variableName(v) + "' turns forever and goes by " + shown(step) + " rad from waypoint " +
+             std::to_string(k - 1) + " to " + std::to_string(k) +
+             ": the parameter `turns` says whether as given or the shorter way round");
+    }
+  }
+}
+
+}  // namespace
+
+Interpolation interpolationNamed(const std::string& name) {
+  return named(kInterpolations, name, "interpolation");
+}
+
+Turns turnsNamed(const std::string& name) {
+  return named(kTurns, name, "turns");
+}
+
+const char* toString(Interpolation interpolation) {
+  for (const auto& known : kInterpolations) {
+    if (interpolation == known.second) return known.first;
+  }
+  return "";
+}
+
+bool movesWith(const moveit::core::JointModelGroup* group, const moveit::core::JointModel& joint) {
+  if (!group) return true;
+  return group->hasJointModel(joint.getName()) ||
+         (joint.getMimic() && group->hasJointModel(joint.getMimic()->getName()));
+}
+
+std::size_t Motion::waypointBefore(double t) const {
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  return after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
+}
+
+Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const MotionOptions& options) {
+  const std::size_t n = trajectory.getWayPointCount();
+  if (n == 0) refuse("the trajectory has no waypoint");
+  const std::vector<bool> in_group = variablesOf(robot, trajectory);
+  std::vector<VectorXd> q = waypointsOf(robot, trajectory, in_group);
+  std::vector<std::string> notes;
+  std::vector<double> times;
+  double t = 0;
+  for (std::size_t k = 0; k < n; ++k) times.push_back(t += trajectory.getWayPointDurationFromPrevious(k));
+  if (n == 1) {
+    notes.emplace_back("the trajectory has one waypoint: it stands still");
+    return {Interpolation::linear, false, {0, 1}, JointTrajectory::linear(*robot.tree, {0, 1}, {q[0], q[0]}), notes};
+  }
+  bool timed = false;
+  for (std::size_t k = 1; k < n; ++k) timed = timed || trajectory.getWayPointDurationFromPrevious(k) != 0;
+  if (!timed) {
+    notes.emplace_back("the trajectory has no times: they are the waypoints' numbers");
+    for (std::size_t k = 0; k < n; ++k) times[k] = static_cast<double>(k);
+  }
+  for (std::size_t k = 1; k < n; ++k) {
+    if (times[k] > times[k - 1] && std::isfinite(times[k])) continue;
+    refuse(waypoint(k) + ": its time " + shown(times[k]) + " is not later than that of waypoint " +
+           std::to_string(k - 1) + ", " + shown(times[k - 1]));
+  }
+  if (timed && times[0] > 0) {
+    notes.push_back("the first waypoint is at t = " + shown(times[0]) + ": the way to it is no part of the trajectory");
+  }
+  const Interpolation kind = chosen(trajectory, options.interpolation, timed);
+  judgeJoints(robot, trajectory, q, kind, options);
+  const auto unwrap = options.turns == Turns::shortest ? JointTrajectory::Unwrap::yes : JointTrajectory::Unwrap::no;
+  const auto rates = [&](const char* what, const double* (RobotState::*values)() const) {
+    return ratesOf(robot, trajectory, in_group, what, values);
+  };
+  const auto made = [&] {
+    if (kind == Interpolation::linear) return JointTrajectory::linear(*robot.tree, times, q, unwrap);
+    const std::vector<VectorXd> velocities = rates("velocity", &RobotState::getVariableVelocities);
+    requireNoTurningRates(robot, velocities);
+    if (kind == Interpolation::cubic) return JointTrajectory::cubic(*robot.tree, times, q, velocities, unwrap);
+    return JointTrajectory::quintic(*robot.tree, times, q, velocities,
+                                    rates("acceleration", &RobotState::getVariableAccelerations), unwrap);
+  };
+  JointTrajectory motion = made();
+  return {kind, timed, std::move(times), std::move(motion), std::move(notes)};
+}
+
+}  // namespace fcl_artic_moveit

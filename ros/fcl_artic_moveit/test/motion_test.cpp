@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lies between the waypoints, what is refused, and the verdict.
+#include <atomic>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <thread>
+
+#include "fcl_artic_moveit/certifier.h"
+#include "models.h"
+
+namespace fcl_artic_moveit {
+namespace {
+
+using fcl_artic::Status;
+using moveit::core::RobotState;
+
+/// Rail from 0 to 1 and back to 0 in 1 s and 2 s, with rates where they are given.
+robot_trajectory::RobotTrajectory railTrip(const Surroundings& all, bool velocities, bool accelerations) {
+  auto trip = all.trajectory("all", {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}});
+  trip.setWayPointDurationFromPrevious(2, 2);
+  const double v[] = {0, 0.5, 0}, a[] = {0, -1, 0.25};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (velocities) trip.getWayPointPtr(k)->setVariableVelocity("rail", v[k]);
+    if (accelerations) trip.getWayPointPtr(k)->setVariableAcceleration("rail", a[k]);
+  }
+  return trip;
+}
+
+double railAt(const Motion& motion, double t) {
+  return motion.trajectory.configuration(t)[0];
+}
+
+/// The polynomial's conditions at both ends, by differences: values, velocities, accelerations.
+TEST(Motion, AutoTakesTheMostThatTheWaypointsGive) {
+  const Surroundings all(slider());
+  const RobotTree robot = toTree(*all.model);
+  ASSERT_EQ(robot.tree->variableName(0), "rail");
+  const Motion linear = toMotion(robot, railTrip(all, false, false));
+  EXPECT_EQ(linear.interpolation, Interpolation::linear);
+  EXPECT_EQ(linear.times, (std::vector<double>{0, 1, 3}));
+  EXPECT_TRUE(linear.timed);
+  EXPECT_NEAR(railAt(linear, 0.25), 0.25, 1e-12);
+  EXPECT_NEAR(railAt(linear, 2), 0.5, 1e-12);
+  EXPECT_EQ(linear.waypointBefore(0.5), 0U);
+  EXPECT_EQ(linear.waypointBefore(1), 1U);
+  EXPECT_EQ(linear.waypointBefore(3), 2U);
+
+  const Motion cubic = toMotion(robot, railTrip(all, true, false));
+  EXPECT_EQ(cubic.interpolation, Interpolation::cubic);
+  // q = 3 s² - 2 s³ + 0.5 (s³ - s²): Hermite, with velocity 0.5 at the end; s = 0.5: 0.5 - 0.0625.
+  EXPECT_NEAR(railAt(cubic, 0.5), 0.4375, 1e-12);
+  EXPECT_EQ(toMotion(robot, railTrip(all, true, false), {Interpolation::linear, Turns::ask}).interpolation,
+            Interpolation::linear);
+
+  const Motion quintic = toMotion(robot, railTrip(all, true, true));
+  EXPECT_EQ(quintic.interpolation, Interpolation::quintic);
+  const double h = 1e-4;
+  EXPECT_NEAR(railAt(quintic, 1), 1, 1e-12);
+  EXPECT_NEAR((railAt(quintic, 1 + h) - railAt(quintic, 1 - h)) / (2 * h), 0.5, 1e-6);
+  EXPECT_NEAR((railAt(quintic, 1 + h) - 2 * railAt(quintic, 1) + railAt(quintic, 1 - h)) / (h * h), -1, 1e-2);
+  EXPECT_EQ(toMotion(robot, railTrip(all, true, true), {Interpolation::cubic, Turns::ask}).interpolation,
+            Interpolation::cubic);
+}
+
+TEST(Motion, WaypointsWithoutTimesAreNumbered) {
+  const Surroundings all(slider());
+  const RobotTree robot = toTree(*all.model);
+  const auto way = all.trajectory("all", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0);
+  const Motion motion = toMotion(robot, way);
+  EXPECT_FALSE(motion.timed);
+  EXPECT_EQ(motion.times, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(motion.interpolation, Interpolation::linear);
+  const auto one = all.trajectory("all", {{0.5, 0, 0}});
+  EXPECT_EQ(railAt(toMotion(robot, one), 0.7), 0.5);
+  auto late = all.trajectory("all", {{0, 0, 0}, {1, 0, 0}});
+  late.setWayPointDurationFromPrevious(0, 0.5);
+  EXPECT_EQ(toMotion(robot, late).times, (std::vector<double>{0.5, 1.5}));
+  expectContains(toMotion(robot, late).notes.at(0), "the first waypoint is at t = 0.5");
+}
+
+TEST(Motion, RefusalsNameWaypointAndJoint) {
+  const Surroundings all(slider());
+  const RobotTree robot = toTree(*all.model);
+  const auto why = [&](const robot_trajectory::RobotTrajectory& trajectory,
+                       Interpolation kind = Interpolation::automatic) {
+    return refusal([&] { (void)toMotion(robot, trajectory, {kind, Turns::ask}); });
+  };
+  const std::vector<std::vector<double>> three{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  expectContains(why(all.trajectory("all", {})), "no waypoint");
+  auto bad = all.trajectory("all", three);
+  bad.setWayPointDurationFromPrevious(2, 0);
+  expectContains(why(bad), "waypoint 2: its time 1 is not later than that of waypoint 1");
+  bad.setWayPointDurationFromPrevious(2, std::numeric_limits<double>::quiet_NaN());
+  expectContains(why(bad), "waypoint 2: its time nan");
+  bad = all.trajectory("all", three);
+  bad.getWayPointPtr(1)->setVariablePosition("turn", std::numeric_limits<double>::infinity());
+  expectContains(why(bad), "waypoint 1: joint variable 'turn' is inf");
+  expectContains(why(all.trajectory("rail_only", three)),
+                 "waypoint 2: 'turn' moves from 0 to 1 and is not in the group");
+  bad = all.trajectory("all", three);
+  bad.getWayPointPtr(1)->setVariableVelocity("turn", 1);
+  expectContains(why(bad), "waypoint 1 has velocities, waypoint 2 has none");
+  expectContains(why(all.trajectory("all", three), Interpolation::cubic), "cubic needs velocities");
+  expectContains(why(railTrip(all, true, false), Interpolation::quintic), "quintic needs accelerations");
+  expectContains(why(railTrip(all, false, true)), "accelerations and no velocities");
+  expectContains(why(all.trajectory("all", three, 0), Interpolation::cubic), "cubic needs times");
+  auto trip = railTrip(all, true, false);
+  trip.getWayPointPtr(1)->setVariableVelocity("turn", std::numeric_limits<double>::quiet_NaN());
+  expectContains(why(trip), "waypoint 1: the velocity of 'turn' is nan");
+  expectContains(refusal([] { (void)interpolationNamed("blends"); }), "auto, linear, cubic, quintic are");
+  expectContains(refusal([] { (void)turnsNamed("no"); }), "ask, given, shortest are");
+}
+
+/// A car that drives in the plane with a wheel on it that turns forever, on a base that floats.
+moveit::core::RobotModelConstPtr car(const std::string& drive = "") {
+  return modelOf("<robot name='car'>" + boxLink("base", 0.1, 0.1, 0.1) + boxLink("body", 0.4, 0.2, 0.2) +
+                     boxLink("wheel", 0.3, 0.05, 0.05, "0.15 0 0.3") + joint("drive", "planar", "base", "body") +
+                     joint("spin", "continuous", "body", "wheel", "<axis xyz='0 0 1'/>") + "</robot>",
+                 "<robot name='car'><virtual_joint name='fly' type='floating' parent_frame='odom' child_link='base'/>"
+                 "<group name='drives'><joint name='drive'/><joint name='spin'/></group>"
+                 "<group name='flies'><joint name='fly'/></group>" +
+                     drive + "</robot>");
+}
+
+/// The first values are the floating base's: at (1, 2, 3), turned by half a turn about z.
+std::vector<double> carAt(double x, double y, double theta, double spin, double fly_z = 3) {
+  return {1, 2, fly_z, 0, 0, 1, 0, x, y, theta, spin};
+}
+
+TEST(Motion, JointsThatTurnForever) {
+  const Surroundings all(car());
+  const RobotTree robot = toTree(*all.model);
+  const auto way = all.trajectory("drives", {carAt(0, 0, 0, 3), carAt(0, 0, 0, -3)});
+  expectContains(refusal([&] { (void)toMotion(robot, way); }), "'spin' turns forever and goes by -6 rad");
+  const int spin = robot.tree->jointVariable(robot.tree->jointId("spin"));
+  EXPECT_NEAR(toMotion(robot, way, {Interpolation::automatic, Turns::given}).trajectory.configuration(0.5)[spin], 0,
+              1e-12);
+  EXPECT_NEAR(
+      std::abs(toMotion(robot, way, {Interpolation::automatic, Turns::shortest}).trajectory.configuration(0.5)[spin]),
+      3.14159265358979, 1e-9);
+  const auto turn = all.trajectory("drives", {carAt(0, 0, 3, 0), carAt(0, 0, -3, 0)});
+  expectContains(refusal([&] { (void)toMotion(robot, turn); }), "'drive/theta' turns forever");
+}
+
+TEST(Motion, BaseThatFloatsAndStandsStill) {
+  const Surroundings all(car());
+  const RobotTree robot = toTree(*all.model);
+  auto way = all.trajectory("drives", {carAt(0, 0, 0, 0), carAt(1, 1, 1, 1)});
+  for (std::size_t k = 0; k < 2; ++k) {
+    way.getWayPointPtr(k)->setVariableVelocity("spin", 0.5);
+    way.getWayPointPtr(k)->setVariableAcceleration("spin", 1);
+  }
+  const Motion motion = toMotion(robot, way);
+  EXPECT_EQ(motion.interpolation, Interpolation::quintic);
+  const Eigen::VectorXd q = motion.trajectory.configuration(0.5);
+  for (int v = 0; v < 7; ++v) EXPECT_EQ(q[v], carAt(0, 0, 0, 0)[static_cast<std::size_t>(v)]);
+  EXPECT_NEAR(q[robot.tree->jointVariable(robot.tree->jointId("drive"))], 0.5, 1e-12);
+
+  auto moves = all.trajectory("flies", {carAt(0, 0, 0, 0), carAt(0, 0, 0, 0, 4)});
+  EXPECT_NEAR(toMotion(robot, moves).trajectory.configuration(0.5)[2], 3.5, 1e-12);
+  for (std::size_t k = 0; k < 2; ++k) moves.getWayPointPtr(k)->setVariableVelocity("fly/trans_z", 0.5);
+  expectContains(refusal([&] { (void)toMotion(robot, moves); }), "joint 'fly' floats and moves");
+  auto still = all.trajectory("flies", {carAt(0, 0, 0, 0), carAt(0, 0, 0, 0)});
+  for (std::size_t k = 0; k < 2; ++k) still.getWayPointPtr(k)->setVariableVelocity("fly/rot_x", 0.5);
+  expectContains(refusal([&] { (void)toMotion(robot, still); }), "joint 'fly' floats and moves");
+}
+
+TEST(Motion, DifferentialDriveHasToBeStated) {
+  const Surroundings all(car("<joint_property joint_name='drive' property_name='motion_model' value='diff_drive'/>"));
+  const RobotTree robot = toTree(*all.model);
+  const auto way = all.trajectory("drives", {carAt(0, 0, 0, 0), carAt(1, 0, 1, 0)});
+  expectContains(refusal([&] { (void)toMotion(robot, way); }), "joint 'drive' has a differential drive");
+  EXPECT_EQ(toMotion(robot, way, {Interpolation::linear, Turns::ask}).interpolation, Interpolation::linear);
+  const auto spins = all.trajectory("drives", {carAt(0, 0, 0, 0), carAt(0, 0, 0, 1)});
+  EXPECT_EQ(toMotion(robot, spins).interpolation, Interpolation::linear);
+}
+
+/// The finger's end is at x = rail + 1.15. A wall at x from 1.65 on is met when the rail is at 0.5.
+TEST(Certifier, FirstContactWorkedNumber) {
+  Surroundings all(slider());
+  all.add("wall", std::make_shared<shapes::Box>(0.1, 1, 1), {1.7, 0, 0});
+  const Certifier certifier;
+  auto trip = railTrip(all, false, false);
+  Verdict verdict = certifier.certify(*all.env, all.acm, trip);
+  EXPECT_EQ(verdict.status, Status::contact);
+  EXPECT_TRUE(verdict.certain);
+  EXPECT_NEAR(verdict.t_lower, 0.5, 1e-5);
+  EXPECT_LE(verdict.t_lower, 0.5);
+  EXPECT_EQ(verdict.contact.waypoint, 0U);
+  EXPECT_EQ(verdict.contact.body1.id, "finger");
+  EXPECT_EQ(verdict.contact.body2.id, "wall");
+  EXPECT_NEAR(verdict.contact.point.x(), 1.65, 1e-5);
+  EXPECT_NEAR(verdict.contact.normal.x(), 1, 1e-5);
+  expectContains(verdict.message, "link 'finger' and object 'wall' touch at t = 0.5");
+  expectContains(verdict.message, "after waypoint 0 of 3");
+  expectContains(verdict.message, "allow the pair");
+  // With a margin of 0.25 when the rail is at 0.25; with padding likewise. (Links of the robot are nearer to each
+  // other.)
+  auto links_may = all.acm;
+  links_may.setEntry("finger", std::vector<std::string>{"arm", "cart"}, true);
+  CertifierOptions options;
+  options.margin = 0.25;
+  EXPECT_NEAR(Certifier(options).certify(*all.env, links_may, railTrip(all, false, false)).t_lower, 0.25, 1e-5);
+  all.env->setLinkPadding("finger", 0.25);
+  EXPECT_NEAR(certifier.certify(*all.env, all.acm, trip).t_lower, 0.25, 1e-5);
+  all.env->setLinkPadding("finger", 0);
+  // Every waypoint of this one is free, MoveIt says so; between them the finger goes through a thin pole.
+  all.world->removeObject("wall");
+  all.add("pole", std::make_shared<shapes::Cylinder>(0.005, 1), {1.6, 0, 0});
+  for (std::size_t k = 0; k < trip.getWayPointCount(); ++k) {
+    // The finger is at 1.05 to 1.15 (waypoints 0 and 2) and 2.05 to 2.15 (waypoint 1); the arm ends at 2.
+    const bool theirs = all.moveitCollides(trip.getWayPoint(k), "all");
+    EXPECT_EQ(theirs, k == 1) << "the arm is in the pole at waypoint 1";
+  }
+  auto swing = all.trajectory("all", {{0.5, -1, 0}, {0.5, 1, 0}});
+  EXPECT_FALSE(all.moveitCollides(swing.getWayPoint(0), "all"));
+  EXPECT_FALSE(all.moveitCollides(swing.getWayPoint(1), "all"));
+  verdict = certifier.certify(*all.env, all.acm, swing);
+  EXPECT_EQ(verdict.status, Status::contact);
+  all.world->removeObject("pole");
+  verdict = certifier.certify(*all.env, all.acm, swing);
+  EXPECT_TRUE(verdict.isFree());
+  EXPECT_GE(verdict.pairs, 1U);
+  expectContains(verdict.message, "free: proven for");
+}
+
+TEST(Certifier, BudgetThatRunsOutIsUndecided) {
+  Surroundings all(slider());
+  for (int i = 0; i < 40; ++i) {
+    all.add("ball" + std::to_string(i), std::make_shared<shapes::Sphere>(0.05),
+            {1.2 * std::cos(0.1 * i - 2), 1.2 * std::sin(0.1 * i - 2), 0.11});
+  }
+  CertifierOptions options;
+  options.budget = 1;
+  const auto swing = all.trajectory("all", {{0, -1, 0}, {0, 1, 0}});
+  const Verdict verdict = Certifier(options).certify(*all.env, all.acm, swing);
+  EXPECT_EQ(verdict.status, Status::undecided);
+  expectContains(verdict.message, "the budget ran out");
+  EXPECT_TRUE(Certifier().certify(*all.env, all.acm, swing).isFree());
+  options.margin = -1;
+  expectContains(refusal([&] { Certifier bad(options); }), "margin -1");
+}
+
+TEST(Certifier, BodiesThatComeAndGoAreRefused) {
+  Surroundings all(slider());
+  const auto box = std::make_shared<shapes::Box>(0.1, 0.1, 0.1);
+  auto swing = all.trajectory("all", {{0, -1, 0}, {0, 0, 0}, {0, 1, 0}});
+  Surroundings::attach(*swing.getWayPointPtr(1), "tool", "finger", box, {0.2, 0, 0}, {"finger"});
+  const Certifier certifier;
+  expectContains(refusal([&] { (void)certifier.certify(*all.env, all.acm, swing); }),
+                 "waypoint 1 does not carry 'tool'");
+  for (const std::size_t k : {0, 2}) {
+    Surroundings::attach(*swing.getWayPointPtr(k), "tool", "finger", box, {0.2, k ? 0.01 : 0.0, 0}, {"finger"});
+  }
+  expectContains(refusal([&] { (void)certifier.certify(*all.env, all.acm, swing); }),
+                 "waypoint 2 does not carry 'tool'");
+  swing.removeWayPoint(2);
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, swing).isFree());
+}
+
+/// Threads with scenes and attached bodies of their own get the answers that one alone gets.
+TEST(Certifier, ThreadsGetTheSameAnswers) {
+  const auto model = slider();
+  const Certifier certifier;
+  const auto ask = [&](int i) {
+    Surroundings all(model);
+    all.add("block", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), {1.3, 0.02 * i, 0});
+    if (i % 3 == 0) all.attach("tool", "finger", std::make_shared<shapes::Box>(0.3, 0.1, 0.1), {0.3, 0, 0}, {"finger"});
+    const auto way = all.trajectory("all", {{0, -0.6 + 0.05 * (i % 10), 0}, {0.1, 0.2, 0.1}});
+    const Verdict verdict = certifier.certify(*all.env, all.acm, way);
+    return std::make_pair(verdict.status, verdict.t_lower);
+  };
+  std::vector<std::pair<Status, double>> alone, together(60);
+  for (int i = 0; i < 60; ++i) alone.push_back(ask(i));
+  std::atomic<int> next{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&] {
+      for (int i; (i = next++) < 60;) together[static_cast<std::size_t>(i)] = ask(i);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  int free = 0;
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(alone[i], together[i]) << i;
+    free += alone[i].first == Status::free;
+  }
+  std::cout << free << " of 60 free\n";
+  EXPECT_GE(free, 5);
+  EXPECT_LE(free, 55);
+}
+
+}  // namespace
+}  // namespace fcl_artic_moveit
