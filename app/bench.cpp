@@ -5,6 +5,7 @@
 
 #include "certify_bench.h"
 #include "planning_bench.h"
+#include "rigid_bench.h"
 #include "robot_bench.h"
 #include "table1.h"
 
@@ -61,10 +62,15 @@ void addBench(CLI::App& program, int& exit_status) {
   auto certify_options = std::make_shared<CertifyBenchOptions>();
   CertifyBenchOptions& c = *certify_options;
   CLI::App* certify = bench->add_subcommand(
-      "certify", "Plans of RRTConnect at OMPL's default resolution: how many collide, what certify finds and mends");
+      "certify",
+      "Plans of RRTConnect at OMPL's default resolution, or another planner's: how many collide, what certify\n"
+      "finds and mends");
   certify->footer(
       "The data is that of bench planning. Every plan is certified, looked at by FCL in steps 100 times finer than\n"
-      "OMPL's default, and mended where it touches.\n"
+      "OMPL's default, and mended where it touches. --plans takes plans that any planner made for these problems: "
+      "each\n"
+      "has the name ENVIRONMENT/PROBLEM, with the problem's index as its file has it, as in the JSON line\n"
+      "{\"name\": \"box/1\", \"waypoints\": [[...], [...]]}\n"
       "Exit status: 0, 1 a plan certified free is seen to collide, 2 error.");
   certify->add_option("--data", c.data, "Folder with robots/ and problems/")
       ->envname("FCL_ARTIC_DATA")
@@ -76,6 +82,14 @@ void addBench(CLI::App& program, int& exit_status) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   certify->add_option("--seeds", c.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  certify
+      ->add_option("--plans", c.plans,
+                   "Plans of another planner in place of RRTConnect's: a file or folder in a format that certify\n"
+                   "reads; straight between waypoints")
+      ->check(CLI::ExistingPath)
+      ->excludes("--problems")
+      ->excludes("--seeds")
+      ->type_name("FILE");
   certify->add_option("--time-limit", c.seconds, "Seconds for a plan, and for its simplification")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -84,6 +98,26 @@ void addBench(CLI::App& program, int& exit_status) {
       ->capture_default_str();
   certify->add_option("--csv", c.csv, "Write a row for each plan")->type_name("FILE");
   certify->callback([certify_options, &exit_status] { exit_status = benchCertify(*certify_options); });
+
+  auto rigid_options = std::make_shared<RigidBenchOptions>();
+  RigidBenchOptions& r = *rigid_options;
+  CLI::App* rigid = bench->add_subcommand(
+      "rigid", "A mesh among meshes, planned with OMPL's discrete validator over FCL, FCL's continuous one, and ours");
+  rigid->footer(
+      "PROBLEM is a file of OMPL.app (resources/3D of its sources): names of two meshes beside it, start, goal and "
+      "the\n"
+      "bounds of the position. Every plan is looked at by FCL in steps 100 times finer than OMPL's default.\n"
+      "Exit status: 0 no plan made with fcl_artic collides, 1 one does, 2 error.");
+  rigid->add_option("problems", r.problems, "Files of OMPL.app")
+      ->required()
+      ->check(CLI::ExistingFile)
+      ->type_name("PROBLEM.cfg...");
+  rigid->add_option("--seeds", r.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  rigid->add_option("--time-limit", r.seconds, "Seconds for a plan, and for its simplification")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  rigid->add_option("--csv", r.csv, "Write a row for each plan")->type_name("FILE");
+  rigid->callback([rigid_options, &exit_status] { exit_status = benchRigid(*rigid_options); });
 }
 
 }  // namespace fcl_artic::app

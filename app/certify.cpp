@@ -13,6 +13,7 @@
 #include "certification.h"
 #include "certify_report.h"
 #include "configuration.h"
+#include "edges/certify_edges.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "plans/write.h"
@@ -32,11 +33,29 @@ struct Options {
   bool clearance = false, json = false, failed_only = false, mend = false;
   ClearanceRequest clearance_request;
   MendOptions mending;
+  EdgesOptions edges;
+  bool merge = false, any = false;
 };
 
 plans::Turns turnsNamed(const std::string& name) {
   if (name == "given") return plans::Turns::given;
   return name == "shortest" ? plans::Turns::shortest : plans::Turns::ask;
+}
+
+int runEdges(Options& o) {
+  if (o.out.empty()) throw CLI::RequiredError("--out DIR, the folder of the run's blocks,");
+  if (o.merge) return mergeEdges(o.out, o.edges.partial, o.json);
+  if (o.world.robot.robot.empty()) throw CLI::RequiredError("--robot");
+  o.edges.out = o.out;
+  o.edges.columns.joints = o.joints;
+  o.edges.columns.turns = turnsNamed(o.turns);
+  o.edges.columns.ignore_limits = o.certify.motion.ignore_limits;
+  o.edges.state = o.state;
+  o.edges.request = o.certify.request;
+  o.edges.request.mode = o.any ? ContactMode::any : ContactMode::first;
+  o.edges.request.certificate = o.edges.certificates;
+  o.edges.threads = o.certify.threads;
+  return certifyEdges(o.world, o.edges);
 }
 
 /// The plans that are free, mended ones among them, as a file.
@@ -130,8 +149,10 @@ void addCertify(CLI::App& program, int& exit_status) {
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
       "before 3; with --mend a plan counts as what it is mended to.");
-  certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
+  CLI::Option* plans =
+      certify->add_option("PLAN", o.plans, "Files and folders of plans")->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");
+  certify->get_option("--robot")->required(false);  // --merge needs none
   // One value each, so that plans may stand after them.
   for (const char* name : {"--scene", "--attach", "--package", "--solid"}) {
     certify->get_option(name)->allow_extra_args(false);
@@ -186,9 +207,52 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->group("Mending")
       ->capture_default_str();
   certify
-      ->add_option("--out", o.out, "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...)")
+      ->add_option("--out", o.out,
+                   "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...); with --edges and "
+                   "--merge: the run's folder")
       ->group("Mending")
-      ->type_name("FILE");
+      ->type_name("FILE|DIR");
+
+  CLI::Option* edges = certify
+                           ->add_option("--edges", o.edges.edges,
+                                        "In place of plans: many edges or trajectories, HDF5, each in each scene; "
+                                        "answers go to the folder --out, and what is there is not computed again")
+                           ->check(requireInput)
+                           ->excludes(plans)
+                           ->group("Edges")
+                           ->type_name("FILE.h5");
+  CLI::Option* merge =
+      certify->add_flag("--merge", o.merge, "Merge the blocks of the folder --out: table.h5, summary.json")
+          ->excludes(plans)
+          ->excludes(edges)
+          ->group("Edges");
+  certify
+      ->add_option("--scenes", o.edges.scenes,
+                   "Scenes, one after the other: files as --scene takes them, folders of them, HDF5; what --scene "
+                   "names stands in all of them")
+      ->needs(edges)
+      ->allow_extra_args(false)
+      ->group("Edges")
+      ->type_name("PATH");
+  certify->add_option("--shard", o.edges.shard, "Only the blocks I, I + N, I + 2 N ... of a job array; I from 1 to N")
+      ->needs(edges)
+      ->group("Edges")
+      ->type_name("I/N");
+  certify->add_option("--block-rows", o.edges.block_rows, "Edges of a block: what is lost where a process is killed")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24))
+      ->needs(edges)
+      ->group("Edges")
+      ->capture_default_str();
+  certify->add_flag("--any", o.any, "Any contact, not the first: cheaper where only the verdict matters")
+      ->needs(edges)
+      ->group("Edges");
+  certify->add_flag("--certificates", o.edges.certificates, "Proofs of all answers, in the run's folder")
+      ->needs(edges)
+      ->group("Edges");
+  certify->add_flag("--partial", o.edges.partial, "Merge what is there: rows of blocks that are missing say so")
+      ->needs(merge)
+      ->group("Edges");
+  certify->add_flag("--quiet", o.edges.quiet, "No progress, no notes")->needs(edges)->group("Edges");
 
   certify->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   certify->add_option("--csv", o.csv, "Write a row for each plan")->group("Output")->type_name("FILE");
@@ -199,6 +263,12 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->type_name("FILE");
   certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
   certify->callback([options, &exit_status] {
+    if (!options->edges.edges.empty() || options->merge) {
+      exit_status = runEdges(*options);
+      return;
+    }
+    if (options->world.robot.robot.empty()) throw CLI::RequiredError("--robot");
+    if (options->plans.empty()) throw CLI::RequiredError("PLAN");
     if ((options->interpolation == "blends") != (options->blend > 0)) {
       throw CLI::RequiresError("--interpolation blends", "--blend");
     }

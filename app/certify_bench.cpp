@@ -2,9 +2,12 @@
 #include "certify_bench.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "averages.h"
 #include "certification.h"
 #include "exit_status.h"
 #include "files/files.h"
@@ -32,31 +35,38 @@ struct Row {
   std::string not_mended;
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 class Bench {
  public:
   explicit Bench(const CertifyBenchOptions& options)
       : options_(options), robot_(readRobot(options.data, options.robot)) {}
 
   void run() {
+    std::vector<CertifiedPlan> given;
+    if (!options_.plans.empty()) given = readPlans(*robot_.tree, {options_.plans}, std::nullopt);
     std::vector<std::string> names = options_.environments;
     if (names.empty()) names = environmentsOf(options_.data, options_.robot);
+    std::size_t taken = 0;
     ProgressBar bar;
     for (std::size_t e = 0; e < names.size(); ++e) {
       const Environment environment =
           readEnvironment(problemsPath(options_.data, options_.robot, names[e]), *robot_.tree);
-      const std::size_t problems = std::min(environment.problems.size(), static_cast<std::size_t>(options_.problems));
+      std::size_t problems = environment.problems.size();
+      if (given.empty()) problems = std::min(problems, static_cast<std::size_t>(options_.problems));
       for (std::size_t i = 0; i < problems; ++i) {
-        runProblem(environment, environment.problems[i]);
+        const Problem& problem = environment.problems[i];
+        if (given.empty()) {
+          planAndLook(environment, problem);
+        } else {
+          taken += lookAtGiven(environment, problem, given);
+        }
         bar.show((static_cast<double>(e) + static_cast<double>(i + 1) / static_cast<double>(problems)) /
                  static_cast<double>(names.size()));
       }
+    }
+    if (options_.environments.empty() && taken < given.size()) {
+      throw std::runtime_error(fmt::format(
+          "{}: {} of {} plans name no problem of {}'s: each needs a name ENVIRONMENT/PROBLEM, such as \"{}/1\"",
+          options_.plans, given.size() - taken, given.size(), options_.robot, names.front()));
     }
   }
 
@@ -68,11 +78,13 @@ class Bench {
 
   std::string table() const {
     std::string out = fmt::format(
-        "{}: plans of RRTConnect over FCL at OMPL's default of 1 %, simplified, certified and "
-        "mended\n\n{:<18}{:>7}{:>10}"
-        "{:>11}{:>9}{:>12}{:>12}{:>10}{:>10}{:>11}{:>10}{:>8}\n",
-        options_.robot, "environment", "plans", "sampling", "certify", "missed", "median us", "slowest us", "mended",
-        "median ms", "deviation", "longer", "hidden");
+        "{}: {}, certified and mended\n\n"
+        "{:<18}{:>7}{:>10}{:>11}{:>9}{:>12}{:>12}{:>10}{:>10}{:>11}{:>10}{:>8}\n",
+        options_.robot,
+        options_.plans.empty() ? "plans of RRTConnect over FCL at OMPL's default of 1 %, simplified"
+                               : "plans of " + options_.plans,
+        "environment", "plans", "sampling", "certify", "missed", "median us", "slowest us", "mended", "median ms",
+        "deviation", "longer", "hidden");
     std::vector<std::string> names;
     for (const Row& row : rows_) {
       if (std::find(names.begin(), names.end(), row.environment) == names.end()) names.push_back(row.environment);
@@ -100,51 +112,78 @@ class Bench {
   }
 
  private:
-  void runProblem(const Environment& environment, const Problem& problem) {
+  void planAndLook(const Environment& environment, const Problem& problem) {
     const planning::PlanningSetup ours = setUp(robot_, environment, problem);
-    FclStateCheck check(robot_, problem.scene);
     const auto theirs = discreteOverFcl(robot_, environment, problem, kResolution);
+    for (int seed = 1; seed <= options_.seeds; ++seed) {
+      const Plans made = plan(theirs, ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds);
+      if (!made.solved) continue;
+      CertifiedPlan one;
+      one.plan.positions = made.simplified;
+      look(environment, problem, seed, ours, one);
+    }
+  }
+
+  /// @return how many of the given plans are for this problem.
+  std::size_t lookAtGiven(const Environment& environment, const Problem& problem,
+                          const std::vector<CertifiedPlan>& given) {
+    const std::string name = fmt::format("{}/{}", environment.name, problem.index);
+    std::optional<planning::PlanningSetup> ours;
+    int count = 0;
+    for (const CertifiedPlan& each : given) {
+      if (each.plan.name.substr(each.plan.name.find_last_of(' ') + 1) != name) continue;  // after "line 3 "
+      if (!ours) ours = setUp(robot_, environment, problem);
+      CertifiedPlan one = each;
+      look(environment, problem, ++count, *ours, one);
+    }
+    return static_cast<std::size_t>(count);
+  }
+
+  void look(const Environment& environment, const Problem& problem, int seed, const planning::PlanningSetup& ours,
+            CertifiedPlan& one) {
+    FclStateCheck check(robot_, problem.scene);
     const auto collides = [&](const Way& way) {
       return firstSample(ours, way, [&](const std::vector<double>& q) {
                return check.collides(environment.configuration(*robot_.tree, q));
              }) >= 0;
     };
     CertifyOptions options;
+    options.motion.interpolation = plans::Interpolation::linear;
     options.motion.ignore_limits = true;  // the data's own starts are beyond some
-    for (int seed = 1; seed <= options_.seeds; ++seed) {
-      const Plans made = plan(theirs, ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds);
-      if (!made.solved) continue;
-      Row row;
-      row.environment = environment.name;
-      row.problem = problem.index;
-      row.seed = seed;
-      row.waypoints = made.simplified.size();
-      row.sampled = collides(made.simplified);
-      CertifiedPlan one;
-      one.plan.joints = environment.joints;
-      one.plan.positions = made.simplified;
-      one.plan.state = environment.locked;
-      for (int pass = 0; pass < kPasses; ++pass) {
-        certify(*ours.manager, options, one);
-        row.us = pass == 0 ? one.us : std::min(row.us, one.us);
-      }
-      if (!one.error.empty()) throw std::runtime_error(fmt::format("{}: {}", environment.name, one.error));
-      row.verdict = one.result.status;
-      std::vector<CertifiedPlan> all{one};
-      MendOptions mending;
-      mending.seconds = options_.mend_seconds;
-      mendAll(ours.manager, options, mending, all);
-      row.not_mended = all[0].not_mended;
-      if (const auto& again = all[0].as_mended) {
-        row.mended = again->exitStatus() == kExitFree;
-        if (!row.mended) row.not_mended = "certified again: not free";
-        row.mended_sampled = row.mended && collides(again->plan.positions);
-        row.mend_ms = all[0].mended->ms;
-        row.deviation = all[0].mended->deviation;
-        row.length_ratio = all[0].mended->length_ratio;
-      }
-      rows_.push_back(std::move(row));
+    if (one.plan.joints.empty()) one.plan.joints = environment.joints;
+    if (one.plan.joints != environment.joints) {
+      throw std::runtime_error(
+          fmt::format("{}: its joints are not {}, in this order", one.title(), fmt::join(environment.joints, ", ")));
     }
+    one.plan.state = environment.locked;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      const double least = one.us;
+      certify(*ours.manager, options, one);
+      if (!one.error.empty()) throw std::runtime_error(fmt::format("{}: {}", one.title(), one.error));
+      if (pass > 0) one.us = std::min(one.us, least);
+    }
+    Row row;
+    row.environment = environment.name;
+    row.problem = problem.index;
+    row.seed = seed;
+    row.waypoints = one.plan.positions.size();
+    row.sampled = collides(one.plan.positions);
+    row.us = one.us;
+    row.verdict = one.result.status;
+    std::vector<CertifiedPlan> all{one};
+    MendOptions mending;
+    mending.seconds = options_.mend_seconds;
+    mendAll(ours.manager, options, mending, all);
+    row.not_mended = all[0].not_mended;
+    if (const auto& again = all[0].as_mended) {
+      row.mended = again->exitStatus() == kExitFree;
+      if (!row.mended) row.not_mended = "certified again: not free";
+      row.mended_sampled = row.mended && collides(again->plan.positions);
+      row.mend_ms = all[0].mended->ms;
+      row.deviation = all[0].mended->deviation;
+      row.length_ratio = all[0].mended->length_ratio;
+    }
+    rows_.push_back(std::move(row));
   }
 
   std::string tableRow(const std::string& environment) const {

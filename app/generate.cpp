@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "edges/generate_edges.h"
 #include "exit_status.h"
 #include "generator.h"
 
@@ -40,6 +41,7 @@ void addGenerate(CLI::App& program, int& exit_status) {
     fmt::print("pipes written to {}\n", pipes->path);
     exit_status = kExitFree;
   });
+  addGenerateEdges(*generate, exit_status);
 }
 
 }  // namespace fcl_artic::app

@@ -13,16 +13,19 @@
 #include "check.h"
 #include "compare.h"
 #include "exit_status.h"
+#include "fcl_artic/instruction_set.h"
 #include "files/files.h"
 #include "generate.h"
 #include "info.h"
 #include "link_pairs.h"
+#include "roadmap/roadmap_verb.h"
 #include "usage.h"
 
 int main(int argc, char** argv) {
   using namespace fcl_artic::app;
   CLI::App program("Certified continuous collision detection for articulated robots.", "fcl_artic");
-  program.set_version_flag("--version", std::string("fcl_artic ") + FCL_ARTIC_VERSION);
+  program.set_version_flag(
+      "--version", fmt::format("fcl_artic {}\ninstruction set: {}", FCL_ARTIC_VERSION, fcl_artic::instructionSet()));
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   int exit_status = kExitError;
@@ -33,6 +36,7 @@ int main(int argc, char** argv) {
   addGenerate(program, exit_status);
   addSrdf(program, exit_status);
   addInfo(program, exit_status);
+  addRoadmap(program, exit_status);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -5,6 +5,7 @@
 #include "certify_bench.h"
 #include "mend.h"
 #include "planning_bench.h"
+#include "rigid_bench.h"
 
 namespace fcl_artic::app {
 
@@ -14,6 +15,10 @@ int benchPlanning(const PlanningBenchOptions&) {
 
 int benchCertify(const CertifyBenchOptions&) {
   throw std::runtime_error("bench certify: this program was built without OMPL (component ompl)");
+}
+
+int benchRigid(const RigidBenchOptions&) {
+  throw std::runtime_error("bench rigid: this program was built without OMPL (component ompl)");
 }
 
 void requireMending() {

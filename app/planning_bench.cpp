@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <ompl/base/ScopedState.h>
 
+#include "averages.h"
 #include "bars.h"
 #include "exit_status.h"
 #include "files/files.h"
@@ -50,16 +50,6 @@ struct Example {
   Eigen::VectorXd from, to;
   CertifiedResult contact;
 };
-
-double mean(const std::vector<double>& values) {
-  return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The motions of a way, each asked for its first contact. Null: none touches.
 std::optional<std::pair<std::size_t, CertifiedResult>> firstContact(const PlanningSetup& setup,

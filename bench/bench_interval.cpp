@@ -157,7 +157,7 @@ int main(int argc, char** argv) {
     }
     return apart;
   });
-  for (const char* name : {"portable", "sse2", "avx2", "avx512"}) {
+  for (const char* name : {"portable", "sse2", "avx2", "avx512", "neon"}) {
     const redon::BoxBatch* batch = redon::boxBatchNamed(name);
     if (!batch) continue;
     for (const int n : {1, 3, redon::BoxBatch::kPairs}) {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What is installed beside the program: headers, libraries, CMake package with its components, pkg-config files,
 # licence and data. Each component has an export set of its own, so that the package knows what it has. What is installed
-# together with what (COMPONENT): library, development, program, python, documentation.
+# together with what (COMPONENT): library, development, program, mpi, python, documentation.
 include(CMakePackageConfigHelpers)
 set(fcl_artic_cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/fcl_artic")
 
@@ -13,7 +13,7 @@ function(fcl_artic_install_library target)
 endfunction()
 fcl_artic_install_library(fcl_artic)
 set(absent_headers)
-foreach(component urdf ompl visibility)
+foreach(component urdf ompl visibility pinocchio tesseract)
   if(TARGET fcl_artic_${component})
     fcl_artic_install_library(fcl_artic_${component})
   else()
@@ -22,9 +22,13 @@ foreach(component urdf ompl visibility)
 endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/fcl_artic" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development
   ${absent_headers})
-if(TARGET fcl_artic_ompl)
-  install(FILES "${PROJECT_SOURCE_DIR}/cmake/FclArticOmpl.cmake" DESTINATION "${fcl_artic_cmake_dir}" COMPONENT development)
-endif()
+foreach(component Ompl Pinocchio Tesseract)  # what finds the library of each
+  string(TOLOWER ${component} target)
+  if(TARGET fcl_artic_${target})
+    install(FILES "${PROJECT_SOURCE_DIR}/cmake/FclArtic${component}.cmake" DESTINATION "${fcl_artic_cmake_dir}"
+      COMPONENT development)
+  endif()
+endforeach()
 
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fcl_articConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" INSTALL_DESTINATION "${fcl_artic_cmake_dir}")

@@ -9,6 +9,7 @@ set(rows
   "OMPL|BSD-3-Clause|libompl-dev|DYNAMIC_LINK" "CLI11|BSD-3-Clause|libcli11-dev|CONTAINS"
   "JSON for Modern C++|MIT|nlohmann-json3-dev|CONTAINS" "fmt|MIT|libfmt-dev|DYNAMIC_LINK"
   "libpng|libpng-2.0|libpng-dev|DYNAMIC_LINK" "yaml-cpp|MIT|libyaml-cpp-dev|DYNAMIC_LINK"
+  "HDF5|BSD-3-Clause|libhdf5-dev|DYNAMIC_LINK" "Open MPI|BSD-3-Clause|libopenmpi-dev|DYNAMIC_LINK"
   "zlib|Zlib|zlib1g-dev|DYNAMIC_LINK" "pybind11|BSD-3-Clause|pybind11-dev|CONTAINS"
   "GMP|LGPL-3.0-or-later OR GPL-2.0-or-later|libgmp-dev|DYNAMIC_LINK"
   "MPFR|LGPL-3.0-or-later|libmpfr-dev|DYNAMIC_LINK")

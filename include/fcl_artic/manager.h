@@ -65,6 +65,24 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const std::shared_ptr<const fcl::CollisionObjectd>& object) { unregisterObject(object.get()); }
 
+  /// Swaps the scene: takes these obstacles that stand still in place of all that there are, and makes that effective
+  /// without setup(): all or, if this throws, nothing. What was made of the robot stays as it is, and is not looked at
+  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move and attached objects
+  /// stay. (Changes that wait for setup() are made effective too.)
+  /// @param objects  kept alive as long as they are registered; one that was there before, the same in all that
+  ///   setup() compares, is not read again.
+  /// @param names  one for each object, unique among links and obstacles; none: "obstacle<N>", N counting from 0.
+  /// @throws std::invalid_argument as registerObject() and setup(), and for another number of names.
+  void replaceObstacles(const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects,
+                        const std::vector<std::string>& names = {});
+  /// Returns a manager of the same robot: geometry bound to links, attached objects, allowed pairs of these, margins
+  /// and proofs of pairs, without any obstacle that stands still or moves. What setup() has made of the robot, trees of
+  /// its meshes and tables of pairs of links, is shared by both, for good: changes of one are not seen by the other. So
+  /// scenes or threads have a manager each at the cost of their obstacles. Stage 2 is at its defaults
+  /// (setVisibility()). The objects must outlive both managers where only their pointers were given.
+  /// @throws std::logic_error if setup() has not been called since the last change.
+  [[nodiscard]] ArticulatedCollisionManager shareRobot() const;
+
   /// Adds an obstacle that moves. The time of its motion is the query's, t in [0, 1] (for a trajectory, all of it),
   /// whatever the robot does. Links are checked against it as against any obstacle (CertifiedRequest::check_scene);
   /// obstacles are not checked against each other. The geometry may be unbounded. Needs setup().

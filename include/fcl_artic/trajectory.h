@@ -71,7 +71,7 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   /// @param waypoints      at least two, of tree.dof() joint values each, rad or m.
   /// @param velocities     for each waypoint, rad or m per unit of time.
   /// @param accelerations  for each waypoint, rad or m per unit of time squared.
-  /// @throws std::invalid_argument as cubic(), and for a joint with a quaternion (use piecewise() there).
+  /// @throws std::invalid_argument as cubic(), and for a quaternion that does not stand still (use piecewise() there).
   static JointTrajectory quintic(const KinematicTree& tree, const std::vector<double>& times,
                                  const std::vector<Eigen::VectorXd>& waypoints,
                                  const std::vector<Eigen::VectorXd>& velocities,

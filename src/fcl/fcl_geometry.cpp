@@ -474,12 +474,17 @@ std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<S>& g
 }
 
 GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry) {
+  std::size_t size = 0;
+  visitContent(geometry, [&](const void*, std::size_t n) {
+    size += n;
+    return true;
+  });
+  bytes_.reserve(size);
   visitContent(geometry, [&](const void* data, std::size_t n) {
     const char* begin = static_cast<const char*>(data);
     bytes_.insert(bytes_.end(), begin, begin + n);
     return true;
   });
-  bytes_.shrink_to_fit();
 }
 
 bool GeometryContent::sameAs(const fcl::CollisionGeometryd& geometry) const {

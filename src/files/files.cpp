@@ -80,6 +80,37 @@ int createBeside(const std::string& path, std::string& name) {
   }
 }
 
+/// Has the system write a folder's list of names to the disk.
+bool syncFolder(const std::filesystem::path& folder) {
+  const Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some file systems sync no folder, and say so.
+  return at.good() && (::fsync(at.number()) == 0 || errno == EINVAL);
+}
+
+/// @param synced  it is on the disk when this returns.
+void writeRegular(const std::string& path, std::string_view content, bool synced) {
+  const std::string what = "'" + path + "'";
+  struct stat old {};
+  const bool exists = ::stat(path.c_str(), &old) == 0;
+  if (exists) requireRegular(path, old);
+  if (exists && ::access(path.c_str(), W_OK) != 0) failToWrite(what);  // a new file would take its place all the same
+  // Of a symbolic link the file that it points to is replaced.
+  std::error_code error;
+  const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
+  const std::filesystem::path target = error ? std::filesystem::path(path) : resolved;
+  std::string name;
+  Descriptor to(createBeside(target.string(), name));
+  if (!to.good()) failToWrite(what);
+  const bool done = writeAll(to, content) && (!exists || ::fchmod(to.number(), old.st_mode & 07777) == 0) &&
+                    (!synced || ::fsync(to.number()) == 0) && to.close() && ::rename(name.c_str(), target.c_str()) == 0;
+  if (done && (!synced || syncFolder(target.parent_path()))) return;
+  if (done) failToWrite(what);
+  const int reason = errno;
+  ::unlink(name.c_str());
+  errno = reason;
+  failToWrite(what);
+}
+
 }  // namespace
 
 std::string read(const std::string& path) {
@@ -112,20 +143,11 @@ void write(const std::string& path, std::string_view content) {
     if (!to.good() || !writeAll(to, content) || !to.close()) failToWrite(what);
     return;
   }
-  if (exists && ::access(path.c_str(), W_OK) != 0) failToWrite(what);  // a new file would take its place all the same
-  // Of a symbolic link the file that it points to is replaced.
-  std::error_code error;
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
-  std::string name;
-  Descriptor to(createBeside(error ? path : target.string(), name));
-  if (!to.good()) failToWrite(what);
-  const bool done = writeAll(to, content) && (!exists || ::fchmod(to.number(), old.st_mode & 07777) == 0) &&
-                    to.close() && ::rename(name.c_str(), (error ? path : target.string()).c_str()) == 0;
-  if (done) return;
-  const int reason = errno;
-  ::unlink(name.c_str());
-  errno = reason;
-  failToWrite(what);
+  writeRegular(path, content, false);
+}
+
+void writeSynced(const std::string& path, std::string_view content) {
+  writeRegular(path, content, true);
 }
 
 void flushStandardOutput() {

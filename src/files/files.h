@@ -19,6 +19,11 @@ std::string read(const std::string& path);
 /// @throws std::runtime_error naming the file and the system's reason; a file that was there is as before.
 void write(const std::string& path, std::string_view content);
 
+/// The same of a regular file, and it is on the disk when this returns, under its name too: after a power cut it is
+/// there as a whole, or what was there before.
+/// @throws std::runtime_error as write().
+void writeSynced(const std::string& path, std::string_view content);
+
 /// Hands everything printed so far over to the system. To be called before a program says by its exit status that all
 /// is well: what is printed is kept back until then, and errors with it.
 /// @throws std::runtime_error when it, or something before it, couldn't be written.

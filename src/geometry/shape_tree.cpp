@@ -341,6 +341,7 @@ engine::CoreBox ShapeTree::coreBox() const {
 }
 
 const engine::TreeView& ShapeTree::viewWithParts() const {
+  if (view_.num_pieces <= 1) return view_;  // nothing to cut: ConvexParts would show the same
   std::call_once(parts_once_, [this] { parts_ = std::make_unique<const ConvexParts>(view_); });
   return parts_->view();
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "interval/rounding.h"
+#include "numerics/pair.h"
 
 namespace fcl_artic {
 
@@ -18,31 +19,31 @@ class Interval {
   /// One number. NaN becomes the whole line.
   FCL_ARTIC_INLINE Interval(double x) : Interval(x, x) {}  // NOLINT: exact
   /// [lower, upper], lower <= upper. A NaN is no bound: it becomes an infinite end.
-  FCL_ARTIC_INLINE Interval(double lower, double upper) : v_(known(_mm_set_pd(upper, -lower))) {}
+  FCL_ARTIC_INLINE Interval(double lower, double upper) : v_(known(pairOf(-lower, upper))) {}
   static FCL_ARTIC_INLINE Interval entire() { return raw(infinities()); }
   /// From (-lower, upper), not NaN.
-  static FCL_ARTIC_INLINE Interval raw(__m128d v) {
+  static FCL_ARTIC_INLINE Interval raw(Pair v) {
     Interval o;
     o.v_ = v;
     return o;
   }
 
-  FCL_ARTIC_INLINE double lower() const { return -_mm_cvtsd_f64(v_); }
-  FCL_ARTIC_INLINE double upper() const { return _mm_cvtsd_f64(_mm_unpackhi_pd(v_, v_)); }
-  FCL_ARTIC_INLINE __m128d raw() const { return v_; }
+  FCL_ARTIC_INLINE double lower() const { return -pairLow(v_); }
+  FCL_ARTIC_INLINE double upper() const { return pairHigh(v_); }
+  FCL_ARTIC_INLINE Pair raw() const { return v_; }
 
   /// Upper bound of the width.
-  FCL_ARTIC_INLINE double width() const { return _mm_cvtsd_f64(directed::add(v_, swapped())); }
+  FCL_ARTIC_INLINE double width() const { return pairLow(directed::add(v_, swapped())); }
   /// A number in the interval near its middle; ends finite.
   FCL_ARTIC_INLINE double middle() const {
     const double m = 0.5 * lower() + 0.5 * upper();
     return m < lower() ? lower() : m > upper() ? upper() : m;
   }
   /// Largest |x|.
-  FCL_ARTIC_INLINE double magnitude() const { return _mm_cvtsd_f64(_mm_max_sd(v_, swapped())); }
+  FCL_ARTIC_INLINE double magnitude() const { return pairLow(pairMax(v_, swapped())); }
   /// Smallest |x|.
   FCL_ARTIC_INLINE double mignitude() const {
-    const double least = -_mm_cvtsd_f64(_mm_min_sd(v_, swapped()));
+    const double least = -pairLow(pairMin(v_, swapped()));
     return least > 0 ? least : 0;
   }
 
@@ -59,13 +60,12 @@ class Interval {
   static constexpr double kLargest = 1.7976931348623157e308;
 
  private:
-  static FCL_ARTIC_INLINE __m128d infinities() { return _mm_set1_pd(__builtin_inf()); }
-  /// MINPD gives its second operand where the first one is NaN.
-  static FCL_ARTIC_INLINE __m128d known(__m128d v) { return _mm_min_pd(v, infinities()); }
-  FCL_ARTIC_INLINE __m128d swapped() const { return _mm_shuffle_pd(v_, v_, 1); }
-  static FCL_ARTIC_INLINE __m128d negated(__m128d v) { return _mm_xor_pd(v, _mm_set1_pd(-0.0)); }
-  static Interval ofCorners(__m128d p, __m128d q, __m128d r, __m128d s);
-  __m128d v_;
+  static FCL_ARTIC_INLINE Pair infinities() { return pairOf(__builtin_inf()); }
+  /// pairMin() gives its second operand where the first one is NaN.
+  static FCL_ARTIC_INLINE Pair known(Pair v) { return pairMin(v, infinities()); }
+  FCL_ARTIC_INLINE Pair swapped() const { return pairSwap(v_); }
+  static Interval ofCorners(Pair p, Pair q, Pair r, Pair s);
+  Pair v_;
 
   friend Interval operator+(Interval a, Interval b);
   friend Interval operator-(Interval a, Interval b);
@@ -89,21 +89,20 @@ FCL_ARTIC_INLINE Interval operator-(Interval a) {
   return Interval::raw(a.swapped());
 }
 
-/// The ends of a product or quotient are among the four of ends. MAXPD gives its second operand where the first one is
-/// NaN: 0 * inf and inf / inf, which stand for some number that others cover, are dropped; the innermost makes an
+/// The ends of a product or quotient are among the four of ends. pairMax() gives its second operand where the first one
+/// is NaN: 0 * inf and inf / inf, which stand for some number that others cover, are dropped; the innermost makes an
 /// infinite end.
-FCL_ARTIC_INLINE Interval Interval::ofCorners(__m128d p, __m128d q, __m128d r, __m128d s) {
-  return raw(known(_mm_max_pd(p, _mm_max_pd(q, _mm_max_pd(r, s)))));
+FCL_ARTIC_INLINE Interval Interval::ofCorners(Pair p, Pair q, Pair r, Pair s) {
+  return raw(known(pairMax(p, pairMax(q, pairMax(r, s)))));
 }
 FCL_ARTIC_INLINE Interval operator*(Interval a, Interval b) {
-  const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
-  return Interval::ofCorners(directed::mul(n, c), directed::mul(Interval::negated(n), b.v_),
-                             directed::mul(Interval::negated(h), c), directed::mul(h, b.v_));
+  const Pair n = pairLows(a.v_), h = pairHighs(a.v_), c = b.swapped();
+  return Interval::ofCorners(directed::mul(n, c), directed::mul(pairNegate(n), b.v_), directed::mul(pairNegate(h), c),
+                             directed::mul(h, b.v_));
 }
 FCL_ARTIC_INLINE Interval operator*(Interval a, double b) {
-  const __m128d k = _mm_set1_pd(b);
-  return Interval::raw(
-      Interval::known(_mm_max_pd(directed::mul(a.swapped(), Interval::negated(k)), directed::mul(a.v_, k))));
+  const Pair k = pairOf(b);
+  return Interval::raw(Interval::known(pairMax(directed::mul(a.swapped(), pairNegate(k)), directed::mul(a.v_, k))));
 }
 FCL_ARTIC_INLINE Interval operator*(double a, Interval b) {
   return b * a;
@@ -112,41 +111,40 @@ FCL_ARTIC_INLINE Interval operator*(double a, Interval b) {
 /// The whole line where b contains 0.
 FCL_ARTIC_INLINE Interval operator/(Interval a, Interval b) {
   if (b.containsZero()) return Interval::entire();
-  const __m128d n = _mm_unpacklo_pd(a.v_, a.v_), h = _mm_unpackhi_pd(a.v_, a.v_), c = b.swapped();
-  return Interval::ofCorners(directed::div(n, c), directed::div(Interval::negated(n), b.v_),
-                             directed::div(Interval::negated(h), c), directed::div(h, b.v_));
+  const Pair n = pairLows(a.v_), h = pairHighs(a.v_), c = b.swapped();
+  return Interval::ofCorners(directed::div(n, c), directed::div(pairNegate(n), b.v_), directed::div(pairNegate(h), c),
+                             directed::div(h, b.v_));
 }
 
 /// Tighter than a * a where a straddles 0.
 FCL_ARTIC_INLINE Interval square(Interval a) {
   const Interval b = abs(a);
-  const __m128d h = b.v_;
-  return Interval::raw(directed::mul(h, _mm_xor_pd(h, _mm_set_pd(0.0, -0.0))));
+  const Pair h = b.v_;
+  return Interval::raw(directed::mul(h, pairNegateLow(h)));
 }
 
 /// Of the part of a that is not negative.
 FCL_ARTIC_INLINE Interval sqrt(Interval a) {
-  const __m128d x = _mm_max_pd(_mm_set_pd(a.upper(), a.lower()), _mm_setzero_pd());
-  const __m128d root = directed::sqrt(x);
+  const Pair x = pairMax(pairOf(a.lower(), a.upper()), pairOf(0));
+  const Pair root = directed::sqrt(x);
   // From above, so lower end's root is too high by less than one step, unless its square is not above it.
-  const __m128d squared = directed::mul(root, root);
-  const __m128d below = directed::add(Interval::negated(root), _mm_set1_pd(0x1p-1022));
-  const __m128d exact = _mm_cmple_pd(squared, x);
-  const __m128d lower = _mm_or_pd(_mm_and_pd(exact, Interval::negated(root)), _mm_andnot_pd(exact, below));
-  return Interval::raw(_mm_move_sd(root, lower));
+  const Pair squared = directed::mul(root, root);
+  const Pair below = directed::add(pairNegate(root), pairOf(0x1p-1022));
+  const Pair lower = pairWhereAtMost(squared, x, pairNegate(root), below);
+  return Interval::raw(pairMix(lower, root));
 }
 
 FCL_ARTIC_INLINE Interval abs(Interval a) {
   // -min|x| = min(0, max(lo's, hi's negative)) = min(0, max(lo, -hi) negated), max|x| = max(-lo, hi)
-  const __m128d s = a.swapped();
-  const __m128d least = _mm_min_pd(_mm_min_pd(a.v_, s), _mm_setzero_pd()), most = _mm_max_pd(a.v_, s);
-  return Interval::raw(_mm_move_sd(most, least));
+  const Pair s = a.swapped();
+  const Pair least = pairMin(pairMin(a.v_, s), pairOf(0)), most = pairMax(a.v_, s);
+  return Interval::raw(pairMix(least, most));
 }
 
 /// { max(x, y) }
 FCL_ARTIC_INLINE Interval max(Interval a, Interval b) {
-  const __m128d most = _mm_max_pd(a.v_, b.v_), least = _mm_min_pd(a.v_, b.v_);
-  return Interval::raw(_mm_move_sd(most, least));
+  const Pair most = pairMax(a.v_, b.v_), least = pairMin(a.v_, b.v_);
+  return Interval::raw(pairMix(least, most));
 }
 FCL_ARTIC_INLINE Interval min(Interval a, Interval b) {
   return -max(-a, -b);
@@ -159,11 +157,11 @@ FCL_ARTIC_INLINE Interval plusMinus(double radius) {
 
 /// The smallest interval that holds both.
 FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) {
-  return Interval::raw(_mm_max_pd(a.raw(), b.raw()));
+  return Interval::raw(pairMax(a.raw(), b.raw()));
 }
 /// What both hold; may be empty. No operation takes an empty interval.
 FCL_ARTIC_INLINE Interval intersection(Interval a, Interval b) {
-  return Interval::raw(_mm_min_pd(a.raw(), b.raw()));
+  return Interval::raw(pairMin(a.raw(), b.raw()));
 }
 
 FCL_ARTIC_INLINE bool certainlyLess(Interval a, Interval b) {

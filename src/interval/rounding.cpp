@@ -5,9 +5,9 @@ namespace fcl_artic {
 
 bool roundingModesWork() {
   const RoundUpward scope;
-  const auto twice = [](double x) { return _mm_set1_pd(x); };
-  const auto is = [](__m128d a, double x) { return _mm_movemask_pd(_mm_cmpeq_pd(a, _mm_set1_pd(x))) == 3; };
-  const __m128d tiny = twice(0x1p-600), one = twice(1), least = twice(0x1p-1074);
+  const auto twice = [](double x) { return pairOf(x); };
+  const auto is = [](Pair a, double x) { return pairLow(a) == x && pairHigh(a) == x; };
+  const Pair tiny = twice(0x1p-600), one = twice(1), least = twice(0x1p-1074);
   return is(directed::add(one, tiny), 1 + 0x1p-52) && is(directed::add(twice(-1), tiny), -1 + 0x1p-53) &&
          is(directed::mul(tiny, tiny), 0x1p-1074) && is(directed::mul(tiny, twice(-0x1p-600)), 0) &&
          is(directed::div(one, twice(3)), 0x1.5555555555556p-2) &&

@@ -5,19 +5,29 @@
 // every operation that relies on the mode is an instruction of its own here, which the compiler doesn't look into, and
 // which reads `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of changes
 // and operations.
+//
+// All that depends on the processor is in interval/processor_*.h. Such a file defines:
+//
+//   class FloatingPointControl    the processor's floating-point control, sticky flags of exceptions included
+//     enum class Rounding         nearest, upward
+//     static present()            as it is now
+//     is(rounding)                true only where it rounds so, traps nothing and keeps subnormals
+//     static set(rounding)        makes it so; writes rounding_mode
+//     restore()                   puts this one back, flags included; writes rounding_mode
+//   directed::add, mul, div (a, b), sqrt(a)   of two doubles at once, in the mode that is set; read rounding_mode
 #pragma once
-
-#if !defined(__x86_64__)
-#error "directed rounding is written for x86-64, as the engine is"
-#endif
-#include <immintrin.h>
 
 #include "numerics/inlined.h"
 
-namespace fcl_artic {
+#if defined(__x86_64__) && !defined(FCL_ARTIC_PORTABLE)
+#include "interval/processor_x86_64.h"
+#elif defined(__aarch64__) && !defined(FCL_ARTIC_PORTABLE)
+#include "interval/processor_aarch64.h"
+#else
+#include "interval/processor_any.h"
+#endif
 
-/// Stands for the processor's rounding mode where the compiler orders operations. Never read or written in fact.
-__attribute__((visibility("hidden"))) inline char rounding_mode = 0;
+namespace fcl_artic {
 
 /// Sets the processor's floating-point control while it lives; the caller's is put back at the end, sticky flags
 /// included.
@@ -27,74 +37,34 @@ class RoundingScope {
   RoundingScope& operator=(const RoundingScope&) = delete;
 
  protected:
-  explicit FCL_ARTIC_INLINE RoundingScope(unsigned control)
-      : before_(_mm_getcsr()), changes_((before_ & ~kFlags) != control) {
-    if (changes_) set(control);
+  explicit FCL_ARTIC_INLINE RoundingScope(FloatingPointControl::Rounding rounding)
+      : before_(FloatingPointControl::present()), changes_(!before_.is(rounding)) {
+    if (changes_) FloatingPointControl::set(rounding);
   }
   FCL_ARTIC_INLINE ~RoundingScope() {
-    if (changes_) set(before_);
+    if (changes_) before_.restore();
   }
-  static constexpr unsigned kFlags = 0x3f;
-  /// Exceptions masked, subnormals kept, rounding to nearest.
-  static constexpr unsigned kDefault = 0x1f80;
 
  private:
-  static FCL_ARTIC_INLINE void set(unsigned control) {
-    asm volatile("ldmxcsr %1" : "+m"(rounding_mode) : "m"(control) : "memory");
-  }
-  unsigned before_;
+  FloatingPointControl before_;
   bool changes_;
 };
 
 /// Rounds upward while it lives: all operations of Interval are enclosures then, in whatever mode the caller computes,
-/// flushes subnormals or traps exceptions. May be nested: only an outer one writes the control register, twice.
+/// flushes subnormals or traps exceptions. May be nested: an inner one writes no control register where
+/// FloatingPointControl knows it set.
 class RoundUpward : public RoundingScope {
  public:
-  FCL_ARTIC_INLINE RoundUpward() : RoundingScope(kUpward) {}
+  FCL_ARTIC_INLINE RoundUpward() : RoundingScope(FloatingPointControl::Rounding::upward) {}
   FCL_ARTIC_INLINE ~RoundUpward() {}  // inlined even where nothing is optimised: no copy for the linker to pick
-  static FCL_ARTIC_INLINE bool isOn() { return (_mm_getcsr() & ~kFlags) == kUpward; }
-
- private:
-  static constexpr unsigned kUpward = kDefault | _MM_ROUND_UP;
 };
 
 /// The usual mode, for code of others that is called meanwhile.
 class RoundToNearest : public RoundingScope {
  public:
-  FCL_ARTIC_INLINE RoundToNearest() : RoundingScope(kDefault) {}
+  FCL_ARTIC_INLINE RoundToNearest() : RoundingScope(FloatingPointControl::Rounding::nearest) {}
   FCL_ARTIC_INLINE ~RoundToNearest() {}
 };
-
-/// Two doubles at once, in the present rounding mode.
-namespace directed {
-#ifdef __AVX__
-#define FCL_ARTIC_DIRECTED(name)                                                   \
-  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {                            \
-    __m128d o;                                                                     \
-    asm("v" #name "pd %2, %1, %0" : "=x"(o) : "x"(a), "x"(b), "m"(rounding_mode)); \
-    return o;                                                                      \
-  }
-#else
-#define FCL_ARTIC_DIRECTED(name)                                   \
-  FCL_ARTIC_INLINE __m128d name(__m128d a, __m128d b) {            \
-    asm(#name "pd %1, %0" : "+x"(a) : "x"(b), "m"(rounding_mode)); \
-    return a;                                                      \
-  }
-#endif
-FCL_ARTIC_DIRECTED(add)
-FCL_ARTIC_DIRECTED(mul)
-FCL_ARTIC_DIRECTED(div)
-#undef FCL_ARTIC_DIRECTED
-FCL_ARTIC_INLINE __m128d sqrt(__m128d a) {
-  __m128d o;
-#ifdef __AVX__
-  asm("vsqrtpd %1, %0" : "=x"(o) : "x"(a), "m"(rounding_mode));
-#else
-  asm("sqrtpd %1, %0" : "=x"(o) : "x"(a), "m"(rounding_mode));
-#endif
-  return o;
-}
-}  // namespace directed
 
 /// True if a probe of every operation under RoundUpward rounds upward: not so on a machine, an emulator or under a tool
 /// that ignores rounding modes (valgrind does). Costs a microsecond; the result may be kept.

@@ -87,6 +87,23 @@ void refuseQuaternions(const KinematicTree& tree, const char* what) {
   }
 }
 
+/// A quaternion that stands still needs no words on how it turns: its rates are 0, its coefficients vanish.
+void requireStillQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& waypoints,
+                             const std::vector<VectorXd>& velocities, const std::vector<VectorXd>& accelerations) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const int v = tree.quaternionVariable(j);
+    if (v < 0) continue;
+    for (std::size_t k = 0; k < waypoints.size(); ++k) {
+      if (waypoints[k].segment<4>(v) == waypoints[0].segment<4>(v) && velocities[k].segment<4>(v).isZero(0) &&
+          accelerations[k].segment<4>(v).isZero(0)) {
+        continue;
+      }
+      throw std::invalid_argument("trajectory: joint '" + tree.joint(j).name + "' turns by a quaternion at waypoint " +
+                                  number(k) + ", which quintic() cannot describe");
+    }
+  }
+}
+
 /// Whole turns are added so that every step is the shorter way. A joint that mimics one that is unwrapped must come to
 /// the same pose with them.
 std::vector<VectorXd> unwrapped(const KinematicTree& tree, std::vector<VectorXd> waypoints) {
@@ -239,9 +256,9 @@ JointTrajectory JointTrajectory::quintic(const KinematicTree& tree, const std::v
                                          const std::vector<VectorXd>& velocities,
                                          const std::vector<VectorXd>& accelerations, Unwrap unwrap) {
   requireWaypoints(tree, times, waypoints);
-  refuseQuaternions(tree, "quintic()");
   requireRates(tree, velocities, waypoints.size(), "velocities");
   requireRates(tree, accelerations, waypoints.size(), "accelerations");
+  requireStillQuaternions(tree, waypoints, velocities, accelerations);
   const std::vector<VectorXd> q = waypointsOf(tree, waypoints, unwrap);
   std::vector<JointMotion> pieces;
   for (std::size_t k = 0; k + 1 < q.size(); ++k) {

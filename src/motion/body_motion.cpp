@@ -40,10 +40,9 @@ struct SineCosine {
 };
 SineCosine sineCosineOf(double a, double b) {
   if (!(std::abs(a) <= kLargestAngle && std::abs(b) <= kLargestAngle)) return {kNaN, kNaN, kNaN, kNaN};
-  __m128d sine, cosine;
-  sineCosine(_mm_set_pd(b, a), sine, cosine);
-  return {_mm_cvtsd_f64(sine), _mm_cvtsd_f64(cosine), _mm_cvtsd_f64(_mm_unpackhi_pd(sine, sine)),
-          _mm_cvtsd_f64(_mm_unpackhi_pd(cosine, cosine))};
+  Pair sine, cosine;
+  sineCosine(pairOf(a, b), sine, cosine);
+  return {pairLow(sine), pairLow(cosine), pairHigh(sine), pairHigh(cosine)};
 }
 
 /// c + (1 - c) z z^T + s [z], for a unit vector z.

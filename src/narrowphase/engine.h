@@ -20,13 +20,14 @@ struct Engine {
   void (*pairMotion)(void* workspace, int pair, double tm, double d, PairMotion& motion);
 };
 
-/// The widest engine that this processor runs; FCL_ARTIC_ISA=sse2|avx2|avx512 in the environment asks for less.
+/// The widest engine that this processor runs; FCL_ARTIC_ISA in the environment asks for another by its name.
 const Engine& engine();
-/// The engine named "sse2", "avx2" or "avx512"; null where the processor lacks it. Elsewhere than on x86-64 there is
-/// one, "portable".
+/// The engine of that name (numerics/instruction_sets.h); null where the build has none or the processor does not run
+/// it.
 const Engine* engineNamed(const char* name);
 
-extern const Engine kEnginePortable, kEngineSse2, kEngineAvx2, kEngineAvx512;
+/// Of these a build has those that numerics/instruction_sets.h lists.
+extern const Engine kEnginePortable, kEngineSse2, kEngineAvx2, kEngineAvx512, kEngineNeon;
 
 }  // namespace engine
 }  // namespace fcl_artic

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The engine for processors other than x86-64, where it is the only one.
+// The engine without any processor's own instructions, chosen at run time by dispatch.cpp.
 #define FCL_ARTIC_ISA portable
 #define FCL_ARTIC_ISA_BITS 0
 #define FCL_ARTIC_ISA_ENGINE kEnginePortable

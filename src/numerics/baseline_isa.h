@@ -4,8 +4,11 @@
 // compiled per instruction set elsewhere (numerics/lanes.h). Its names are in the namespace `baseline`.
 #pragma once
 
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(FCL_ARTIC_PORTABLE)
 #define FCL_ARTIC_ISA sse2
+#define FCL_ARTIC_ISA_BITS 128
+#elif defined(__aarch64__) && !defined(FCL_ARTIC_PORTABLE)
+#define FCL_ARTIC_ISA neon
 #define FCL_ARTIC_ISA_BITS 128
 #else
 #define FCL_ARTIC_ISA portable

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Eight doubles that go through together: eight time intervals, one per lane. Compiled once per instruction set: the
-// including file defines FCL_ARTIC_ISA (the namespace) and FCL_ARTIC_ISA_BITS (512, 256, 128, or 0 for no particular
-// one) first. Nothing here or in the files built on it may instantiate inline code of other libraries: the linker could
-// pick that copy for a processor that lacks the instructions.
-//
-// Every bound that uses lanes carries its rounding in a pad (doc/NUMERICS.md, "Pads") which holds in any rounding mode,
-// with or without FMA, so mulAdd() may round once or twice.
+// including file defines FCL_ARTIC_ISA (the namespace) and FCL_ARTIC_ISA_BITS (512, 256, 128; 0: none) first. Neither
+// this nor files built on it may instantiate inline code of other libraries: the linker could pick that copy for a
+// processor that lacks the instructions. Every bound that uses lanes carries its rounding in a pad (doc/NUMERICS.md,
+// "Pads") which holds in any rounding mode, with or without FMA, so mulAdd() may round once or twice.
 //
 // All that depends on the processor is in numerics/register_*.h, one file for each instruction set. For another
 // processor, such a file defines what follows; test/numerics/registers_test.cpp compares it with this list. All work
@@ -41,6 +39,8 @@
 #include "numerics/register_avx512.h"
 #elif FCL_ARTIC_ISA_BITS == 256
 #include "numerics/register_avx2.h"
+#elif FCL_ARTIC_ISA_BITS == 128 && defined(__aarch64__)
+#include "numerics/register_neon.h"
 #elif FCL_ARTIC_ISA_BITS == 128
 #include "numerics/register_sse2.h"
 #elif defined(FCL_ARTIC_ISA_BITS) && FCL_ARTIC_ISA_BITS == 0

@@ -47,6 +47,23 @@ void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::Collisi
   if (!objects.empty()) impl_->setup.obstaclesChanged();
 }
 
+void ArticulatedCollisionManager::replaceObstacles(
+    const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects, const std::vector<std::string>& names) {
+  impl_->registry.replaceObstacles(objects, names);
+  impl_->setup.obstaclesChanged();
+  impl_->use({});
+}
+
+ArticulatedCollisionManager ArticulatedCollisionManager::shareRobot() const {
+  impl_->requireReady();
+  ArticulatedCollisionManager other(impl_->registry.tree());
+  other.impl_->registry = impl_->registry.withoutObstacles();
+  other.impl_->setup = impl_->setup;
+  other.impl_->setup.obstaclesChanged();
+  other.impl_->use({});
+  return other;
+}
+
 void ArticulatedCollisionManager::unregisterObject(const fcl::CollisionObjectd* object) {
   const bool carried = impl_->registry.unregisterObject(object);
   carried ? impl_->setup.robotChanged() : impl_->setup.obstaclesChanged();

@@ -22,12 +22,13 @@ struct BoxBatch {
   unsigned (*apart)(const IntervalTransform& M, const ObbNode* const* a, const ObbNode* const* b, int n);
 };
 
-/// The widest that this processor runs; FCL_ARTIC_ISA=portable|sse2|avx2|avx512 in the environment asks for less.
+/// The widest that this processor runs; FCL_ARTIC_ISA in the environment asks for another by its name.
 const BoxBatch& boxBatch();
-/// The one named "portable", "sse2", "avx2" or "avx512"; null where the processor lacks it.
+/// The one of that name (numerics/instruction_sets.h); null where the build has none or the processor does not run it.
 const BoxBatch* boxBatchNamed(const char* name);
 
-extern const BoxBatch kBoxBatchPortable, kBoxBatchSse2, kBoxBatchAvx2, kBoxBatchAvx512;
+/// Of these a build has those that numerics/instruction_sets.h lists.
+extern const BoxBatch kBoxBatchPortable, kBoxBatchSse2, kBoxBatchAvx2, kBoxBatchAvx512, kBoxBatchNeon;
 
 }  // namespace redon
 }  // namespace fcl_artic

@@ -38,14 +38,14 @@ FCL_ARTIC_INLINE void sweep(const IntervalTransform& M, const ObbNode& box, Swep
 
 /// Upward: a * x + b * y, all >= 0.
 FCL_ARTIC_INLINE double sumOfProducts(double a, double x, double b, double y) {
-  const __m128d p = directed::mul(_mm_set_pd(b, a), _mm_set_pd(y, x));
-  return _mm_cvtsd_f64(directed::add(p, _mm_unpackhi_pd(p, p)));
+  const Pair p = directed::mul(pairOf(a, b), pairOf(x, y));
+  return pairLow(directed::add(p, pairHighs(p)));
 }
 FCL_ARTIC_INLINE double sumUp(double a, double b) {
-  return _mm_cvtsd_f64(directed::add(_mm_set_sd(a), _mm_set_sd(b)));
+  return pairLow(directed::add(pairOf(a, 0), pairOf(b, 0)));
 }
 FCL_ARTIC_INLINE double productUp(double a, double b) {
-  return _mm_cvtsd_f64(directed::mul(_mm_set_sd(a), _mm_set_sd(b)));
+  return pairLow(directed::mul(pairOf(a, 0), pairOf(b, 0)));
 }
 
 /// No point of the one box meets one of the other at any time of the interval.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "numerics/shown.h"
@@ -30,6 +31,13 @@ void NamedMargins::set(const std::string& a, const std::string& b, double margin
 void NamedMargins::clear() {
   of_body_.clear();
   of_pair_.clear();
+}
+
+void NamedMargins::keep(const std::function<bool(const std::string& body)>& isKept) {
+  for (auto at = of_body_.begin(); at != of_body_.end();) at = isKept(at->first) ? std::next(at) : of_body_.erase(at);
+  for (auto at = of_pair_.begin(); at != of_pair_.end();) {
+    at = isKept(at->first.first) && isKept(at->first.second) ? std::next(at) : of_pair_.erase(at);
+  }
 }
 
 double NamedMargins::ofBody(const std::string& name) const {

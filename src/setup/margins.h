@@ -24,6 +24,8 @@ class NamedMargins {
   void set(const std::string& body, double margin);
   void set(const std::string& a, const std::string& b, double margin);
   void clear();
+  /// Forgets those of other names than these.
+  void keep(const std::function<bool(const std::string& body)>& isKept);
 
   bool empty() const { return of_body_.empty() && of_pair_.empty(); }
   double ofBody(const std::string& name) const;  ///< -1: none of its own

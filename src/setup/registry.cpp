@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "fcl/fcl_geometry.h"
 #include "numerics/assertion.h"
@@ -183,6 +184,85 @@ void Registry::registerObjects(const std::vector<fcl::CollisionObjectd*>& object
     named_ = named;
     throw;
   }
+}
+
+void Registry::replaceObstacles(const std::vector<Owner>& objects, const std::vector<std::string>& names) {
+  if (!names.empty() && names.size() != objects.size()) {
+    throw std::invalid_argument("replaceObstacles: there are " + std::to_string(names.size()) + " names for " +
+                                std::to_string(objects.size()) + " objects");
+  }
+  requireLinks();
+  // What stays. (Sets are made anew: taking thousands out of them one by one takes longer than all the rest.)
+  std::unordered_set<const void*> known;
+  std::unordered_set<std::string> taken;
+  known.reserve(links_.size() + moving_.size() + objects.size());
+  taken.reserve(known.bucket_count());
+  for (const Bodies* bodies : {&links_, &moving_}) {
+    for (const ManagedBody& body : *bodies) {
+      known.insert(body.object ? static_cast<const void*>(body.object) : body.moving);
+      if (body.isObstacle()) taken.insert(body.name);
+    }
+  }
+  // What is read already. (Of another scene nothing is.)
+  std::unordered_map<const void*, const ManagedBody*> before;
+  const auto isKnown = [&](const auto& object) { return objects_.count(object.get()) > 0; };
+  if (std::any_of(objects.begin(), objects.end(), isKnown)) {
+    for (const ManagedBody& obstacle : obstacles_) before.emplace(obstacle.object, &obstacle);
+  }
+  Bodies fresh;
+  fresh.reserve(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const bool named = !names.empty() && !names[i].empty();
+    ManagedBody body;
+    body.name = named ? names[i] : "obstacle" + std::to_string(i);
+    const std::string what = "obstacle '" + body.name + "'";
+    if (!objects[i]) throw std::invalid_argument(what + ": the object is null");
+    if (!taken.insert(body.name).second) throw std::invalid_argument(what + ": the name is taken");
+    if (tree_->hasLink(body.name)) {
+      throw std::invalid_argument(what + ": the name is that of a link of robot '" + tree_->name() + "'");
+    }
+    if (!known.insert(objects[i].get()).second) throw std::invalid_argument(what + ": the object is there already");
+    const auto old = before.find(objects[i].get());
+    if (old != before.end() && old->second->isAsRead()) {
+      const std::string name = std::move(body.name);
+      body = *old->second;
+      body.name = name;
+      body.owner = objects[i];
+    } else {
+      body.object = objects[i].get();
+      body.owner = objects[i];
+      body.readObstacle();
+    }
+    fresh.push_back(std::move(body));
+  }
+  obstacles_ = std::move(fresh);
+  objects_ = std::move(known);
+  obstacle_names_ = std::move(taken);
+  named_ = objects.size() + moving_.size();
+}
+
+Registry Registry::withoutObstacles() const {
+  Registry robot = *this;
+  const auto isOfRobot = [&](const std::string& name) {
+    return tree_->hasLink(name) ||
+           std::any_of(links_.begin(), links_.end(), [&](const ManagedBody& b) { return b.name == name; });
+  };
+  robot.allowed_ = {};
+  for (const auto& [a, b] : allowed_.pairs()) {
+    if (isOfRobot(a) && isOfRobot(b)) robot.allowed_.allow(a, b);
+  }
+  robot.margins_.keep(isOfRobot);
+  for (const Bodies* bodies : {&obstacles_, &moving_}) {
+    for (const ManagedBody& body : *bodies) {
+      robot.objects_.erase(body.object);
+      robot.objects_.erase(body.moving);
+      robot.obstacle_names_.erase(body.name);
+    }
+  }
+  robot.obstacles_.clear();
+  robot.moving_.clear();
+  robot.named_ = 0;
+  return robot;
 }
 
 bool Registry::unregisterObject(const fcl::CollisionObjectd* object) {

@@ -56,6 +56,9 @@ class Registry {
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner = nullptr);
   void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name);
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
+  void replaceObstacles(const std::vector<Owner>& objects, const std::vector<std::string>& names);
+  /// A copy with the robot only. Allowed pairs and margins of obstacles' names stay behind.
+  Registry withoutObstacles() const;
   /// @return whether a link carried it.
   bool unregisterObject(const fcl::CollisionObjectd* object);
   void unregisterObject(const fcl::ContinuousCollisionObjectd* object);

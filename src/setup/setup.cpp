@@ -20,7 +20,9 @@ void Setup::build(const Registry& registry) {
   proven_.buildScene(registry);
   if (!tables_ready_) {
     proven_.buildSelf(registry, problem(), margins_, num_self_pairs_);
-    tables_.build(registry, problem(), margins_, num_self_pairs_, proven_);
+    auto tables = std::make_shared<LinkTables>(*tables_);  // what they know already stays of use
+    tables->build(registry, problem(), margins_, num_self_pairs_, proven_);
+    tables_ = std::move(tables);
   }
   if (obb_trees_) {
     parallelFor(bodies_.size(), 0,

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
@@ -45,7 +46,7 @@ class Setup {
   const PairMargins& margins() const { return margins_; }
   /// Of the problem's link pairs the first so many are two links, the others moving obstacles and links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
-  const LinkTables& tables() const { return tables_; }
+  const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
   const Eigen::MatrixXd& movingCoefficients() const { return moving_coefficients_; }
@@ -80,12 +81,13 @@ class Setup {
   Eigen::MatrixXd moving_coefficients_;
   PairMargins margins_;
   ProvenPairs proven_;
-  LinkTables tables_;
-  Fingerprint tree_;           ///< of what buildRobot() was made for
-  bool solids_ = false;        ///< a mesh that is a solid is among the bodies
-  bool robot_ready_ = false;   ///< what buildRobot() makes is up to date
-  bool tables_ready_ = false;  ///< so are the tables of two links
-  bool ready_ = false;         ///< all is
+  std::shared_ptr<const LinkTables> tables_ =
+      std::make_shared<LinkTables>();  ///< constant: set-ups of one robot share them
+  Fingerprint tree_;                   ///< of what buildRobot() was made for
+  bool solids_ = false;                ///< a mesh that is a solid is among the bodies
+  bool robot_ready_ = false;           ///< what buildRobot() makes is up to date
+  bool tables_ready_ = false;          ///< so are the tables of two links
+  bool ready_ = false;                 ///< all is
 };
 
 }  // namespace fcl_artic

@@ -102,6 +102,7 @@ void Setup::buildObstacles(const Registry& registry) {
   std::vector<BoxBounds> boxes(obstacles.size());
   obstacle_bodies_.resize(obstacles.size());
   still_bounds_.clear();
+  still_bounds_.reserve(obstacles.size());
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const ManagedBody& obstacle = obstacles[o];
     engine::Body& body = bodies_[first + o];
@@ -132,10 +133,14 @@ void Setup::allowScenePairs(const Registry& registry) {
   };
   const auto link = [&](std::size_t m) -> const ManagedBody& { return registry.body(movers_[m]); };
   std::map<std::string, std::size_t> obstacle_named;
-  if (!registry.allowed().pairs().empty()) {
+  // (Mostly they are of links alone.)
+  const auto& pairs = registry.allowed().pairs();
+  if (std::any_of(pairs.begin(), pairs.end(), [&](const auto& names) {
+        return registry.hasObstacle(names.first) || registry.hasObstacle(names.second);
+      })) {
     for (std::size_t o = 0; o < obstacles.size(); ++o) obstacle_named[obstacles[o].name] = o;
   }
-  for (const auto& [one, other] : registry.allowed().pairs()) {
+  for (const auto& [one, other] : pairs) {
     for (const auto& [obstacle_name, link_name] : {std::tie(one, other), std::tie(other, one)}) {
       const auto o = obstacle_named.find(obstacle_name);
       if (o == obstacle_named.end()) continue;
@@ -144,10 +149,13 @@ void Setup::allowScenePairs(const Registry& registry) {
       }
     }
   }
+  std::vector<std::size_t> empty_links;
+  for (std::size_t m = 0; m < num_links_; ++m) {
+    if (link(m).empty()) empty_links.push_back(m);
+  }
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    for (std::size_t m = 0; m < num_links_; ++m) {
-      if (obstacles[o].empty() || link(m).empty()) allow(m, o);
-    }
+    for (const std::size_t m : empty_links) allow(m, o);
+    for (std::size_t m = 0; m < num_links_ && obstacles[o].empty(); ++m) allow(m, o);
   }
 }
 

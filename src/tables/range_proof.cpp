@@ -267,10 +267,10 @@ void RangeProof::Joint::set(const engine::SweepStep& step, double variable) {
     slide = value;
     return;
   }
-  __m128d sines, cosines;
-  sineCosine(_mm_set1_pd(value), sines, cosines);
-  sine = _mm_cvtsd_f64(sines);
-  cosine = _mm_cvtsd_f64(cosines);
+  Pair sines, cosines;
+  sineCosine(pairOf(value), sines, cosines);
+  sine = pairLow(sines);
+  cosine = pairLow(cosines);
 }
 
 template <class Points>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verbs `bench table1`, `bench ideas` and `bench depth`, on a few steps, and `bench planning`, on a single problem.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -166,6 +167,54 @@ TEST_F(ProgramTest, BenchPlanningOnOneProblem) {
   EXPECT_EQ(heightsOfBars(read(path("planning/planning.svg"))).size(), 12u);  // four charts of three bars
 }
 
+/// A wall with a hole in the middle, and a bar that goes through it only straight.
+TEST_F(ProgramTest, BenchRigidPlansABarThroughAHole) {
+  const auto box = [](std::ostream& out, int& vertices, const double(&lo)[3], const double(&hi)[3]) {
+    for (int i = 0; i < 8; ++i) {
+      out << "v " << (i & 1 ? hi : lo)[0] << " " << (i & 2 ? hi : lo)[1] << " " << (i & 4 ? hi : lo)[2] << "\n";
+    }
+    for (const auto& quad :
+         {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
+      out << "f";
+      for (const int corner : quad) out << " " << vertices + corner;
+      out << "\n";
+    }
+    vertices += 8;
+  };
+  int vertices = 0;
+  std::ofstream bar(path("bar.obj"));
+  box(bar, vertices, {-0.4, -0.1, -0.1}, {0.4, 0.1, 0.1});
+  bar.close();
+  vertices = 0;
+  std::ofstream wall(path("wall.obj"));
+  box(wall, vertices, {-0.05, -2, -2}, {0.05, 2, -0.3});
+  box(wall, vertices, {-0.05, -2, 0.3}, {0.05, 2, 2});
+  box(wall, vertices, {-0.05, -2, -0.3}, {0.05, -0.3, 0.3});
+  box(wall, vertices, {-0.05, 0.3, -0.3}, {0.05, 2, 0.3});
+  wall.close();
+  const std::string problem =
+      "[problem]\nname = hole\nrobot = bar.obj\nworld = wall.obj\nstart.x = -1\nstart.y = 0.5\nstart.z = 0\n"
+      "start.theta = 0.3\nstart.axis.x = 0\nstart.axis.y = 0\nstart.axis.z = 1\ngoal.x = 1\ngoal.y = -0.5\ngoal.z = 0\n"
+      "goal.theta = 0\ngoal.axis.x = 1\ngoal.axis.y = 0\ngoal.axis.z = 0\n";
+  std::ofstream(path("hole.cfg")) << problem << "volume.min.x = -1.5\nvolume.min.y = -1.5\nvolume.min.z = -1.5\n"
+                                  << "volume.max.x = 1.5\nvolume.max.y = 1.5\nvolume.max.z = 1.5\n";
+  const Outcome run = this->run("bench rigid " + path("hole.cfg") + " --seeds 1 --csv " + path("rigid.csv"));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  std::istringstream csv(read(path("rigid.csv")));
+  std::string line;
+  std::getline(csv, line);
+  for (const std::string validator : {"FCL, OMPL's 1 %", "FCL, as OMPL.app", "fcl_artic"}) {
+    std::getline(csv, line);
+    expectContains(line, "hole,\"" + validator + "\",1,1,");
+  }
+  EXPECT_EQ(line.substr(line.size() - 4), ",0,0") << line;  // ours, seen to collide neither raw nor simplified
+
+  std::ofstream(path("hole.cfg")) << problem;
+  const Outcome unbounded = this->run("bench rigid " + path("hole.cfg"));
+  EXPECT_EQ(unbounded.status, 2);
+  expectContains(unbounded.err, "[problem] has no number 'volume.min.x'");
+}
+
 TEST_F(ProgramTest, BenchCertifyFindsWhatSamplingHides) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
   if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
@@ -183,6 +232,30 @@ TEST_F(ProgramTest, BenchCertifyFindsWhatSamplingHides) {
   }
   EXPECT_EQ(rows, 3);
   EXPECT_GE(touching, 1);
+}
+
+TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
+  const char* data = std::getenv("FCL_ARTIC_DATA");
+  if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
+    GTEST_SKIP() << "FCL_ARTIC_DATA does not name a folder with robots/ and problems/";
+  }
+  const std::string table_pick = R"({"name": "table_pick/1", "from": [0, -0.785, 0, -2.356, 0, 1.571, 0.785],)"
+                                 R"( "to": [0.1, -0.785, 0, -2.356, 0, 1.571, 0.785]})";
+  const std::string into_table = R"({"name": "table_pick/3", "from": [0, -0.785, 0, -2.356, 0, 1.571, 0.785],)"
+                                 R"( "to": [0, 1.7, 0, -0.3, 0, 1.571, 0.785]})";
+  std::ofstream(path("plans.jsonl")) << table_pick << "\n" << into_table << "\n";
+  const Outcome run =
+      this->run("bench certify --mend-time 1 --plans " + path("plans.jsonl") + " --csv " + path("given.csv"));
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  const std::string csv = read(path("given.csv"));
+  expectContains(csv, "panda,table_pick,1,1,2,0,free,");
+  expectContains(csv, "panda,table_pick,3,1,2,1,contact,");
+
+  std::ofstream(path("plans.jsonl")) << R"({"name": "tabel_pick/1", "from": [0, -0.785, 0, -2.356, 0, 1.571, 0.785],)"
+                                     << R"( "to": [0.1, -0.785, 0, -2.356, 0, 1.571, 0.785]})";
+  const Outcome misnamed = this->run("bench certify --plans " + path("plans.jsonl"));
+  EXPECT_EQ(misnamed.status, 2);
+  expectContains(misnamed.err, "1 of 1 plans name no problem of panda's");
 }
 
 #endif

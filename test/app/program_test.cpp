@@ -344,7 +344,13 @@ TEST_F(ProgramTest, ErrorsAreJsonToo) {
 TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   const Outcome version = this->run("--version");
   EXPECT_EQ(version.status, 0);
-  EXPECT_EQ(version.out, std::string("fcl_artic ") + FCL_ARTIC_VERSION + "\n");
+  const std::string head = std::string("fcl_artic ") + FCL_ARTIC_VERSION + "\ninstruction set: ";
+  const std::set<std::string> sets = {"avx512\n", "avx2\n", "sse2\n", "neon\n", "portable\n"};
+  ASSERT_EQ(version.out.rfind(head, 0), 0u) << version.out;
+  EXPECT_EQ(sets.count(version.out.substr(head.size())), 1u) << version.out;
+  ASSERT_EQ(setenv("FCL_ARTIC_ISA", "portable", 1), 0);
+  EXPECT_EQ(this->run("--version").out, head + "portable\n");
+  unsetenv("FCL_ARTIC_ISA");
   const Outcome help = this->run("check --help");
   EXPECT_EQ(help.status, 0);
   for (const char* option : {"--robot",

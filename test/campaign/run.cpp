@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -28,13 +29,17 @@ bool freeAtEnd(const Oracle& oracle) {
 }
 
 /// Runs one query and counts it; what is wrong goes to `findings`.
-void runOne(const std::string& family, std::uint64_t seed, const Options& options, Tally& tally,
+void runOne(std::uint64_t query, const std::string& family, std::uint64_t seed, const Options& options, Tally& tally,
             std::vector<Finding>& findings) {
   const auto begin = Clock::now();
   const Scene scene = makeScene(family, seed);
   const auto made = Clock::now();
-  const Oracle oracle(scene);
-  const Truth truth = oracle.judge(scene.every_pair);
+  std::unique_ptr<const Oracle> oracle;
+  Truth truth;
+  if (options.judge) {
+    oracle = std::make_unique<const Oracle>(scene);
+    truth = oracle->judge(scene.every_pair);
+  }
   const auto judged = Clock::now();
   Answer answer;
   try {
@@ -45,25 +50,34 @@ void runOne(const std::string& family, std::uint64_t seed, const Options& option
     ++tally.faults[static_cast<int>(Fault::fields)];
     return;
   }
+  if (options.answered) options.answered(query, scene, answer.result);
+  const fcl_artic::CertifiedResult& r = answer.result;
+  tally.generate_us += microseconds(begin, made);
+  tally.oracle_us += microseconds(made, judged);
+  tally.query_us += answer.elapsed_us;
+  if (!options.judge) {
+    ++tally.queries;
+    tally.answers_contact += r.status == Status::contact;
+    return;
+  }
   if (options.try_corruptions) {
     const fcl_artic::CertifiedResult original = answer.result;
     for (std::size_t c = 0; c < tally.spoilt.size(); ++c) {
       if (corrupt(static_cast<Corruption>(c), seed, scene, answer)) {
         ++tally.spoilt[c];
-        tally.spoilt_seen[c] += !examine(scene, oracle, truth, answer).empty();
+        tally.spoilt_seen[c] += !examine(scene, *oracle, truth, answer).empty();
       }
       answer.result = original;
     }
   }
   corrupt(options.corruption, seed, scene, answer);
-  findings = examine(scene, oracle, truth, answer);
+  findings = examine(scene, *oracle, truth, answer);
 
-  const fcl_artic::CertifiedResult& r = answer.result;
   ++tally.queries;
   tally.hits += truth.hit;
   tally.doubtful += !truth.hit && truth.doubtful;
   tally.starts += truth.hit && truth.time == 0;
-  tally.ends_free += truth.hit && truth.time > 0 && freeAtEnd(oracle);
+  tally.ends_free += truth.hit && truth.time > 0 && freeAtEnd(*oracle);
   tally.grazes += !truth.hit &&
                   std::any_of(truth.pairs.begin(), truth.pairs.end(), [](const PairTruth& p) { return p.gap < 1e-3; });
   tally.answers_contact += r.status == Status::contact;
@@ -76,9 +90,6 @@ void runOne(const std::string& family, std::uint64_t seed, const Options& option
   bool seen[kFaults] = {};
   for (const Finding& f : findings) seen[static_cast<int>(f.fault)] = true;
   for (int f = 0; f < kFaults; ++f) tally.faults[static_cast<std::size_t>(f)] += seen[f];
-  tally.generate_us += microseconds(begin, made);
-  tally.oracle_us += microseconds(made, judged);
-  tally.query_us += answer.elapsed_us;
 }
 
 }  // namespace
@@ -113,7 +124,7 @@ Report run(const Options& options) {
       const std::string& family = options.family.empty() ? familyOf(options.seed, i) : options.family;
       const std::uint64_t seed = Random::mix(options.seed, i);
       std::vector<Finding> findings;
-      runOne(family, seed, options, tallies[family], findings);
+      runOne(i, family, seed, options, tallies[family], findings);
       if (!findings.empty()) {
         const std::lock_guard<std::mutex> lock(mutex);
         failures.push_back({i, {family, seed, std::move(findings)}});

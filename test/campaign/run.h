@@ -21,8 +21,11 @@ struct Options {
   fcl_artic::CertifiedRequest how;                            ///< method and its options, stage 2
   std::shared_ptr<const fcl_artic::VisibilityCuller> culler;  ///< who does stage 2; null: the executor cpu
   Corruption corruption = Corruption::none;                   ///< spoils the answers before they are examined
+  bool judge = true;                                          ///< false: answers are only asked for, not examined
   bool try_corruptions = false;  ///< besides, spoils a copy of each answer in each way, and counts what is seen
   std::function<void(std::uint64_t done)> progress;  ///< called from any thread
+  /// Told each answer as it came, before it is spoilt; called from any thread, in any order.
+  std::function<void(std::uint64_t query, const Scene& scene, const fcl_artic::CertifiedResult& result)> answered;
 };
 
 /// Counts of one class, or of all.

@@ -2,11 +2,11 @@
 //
 // Sentences of doc/PROMISE.md that no other test has: what is a solid and what a surface, near misses with fine
 // tolerances, short separations after an ignored contact, and the processor's modes.
-#include <immintrin.h>
 
 #include <algorithm>
 #include <cfenv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -28,6 +28,7 @@
 #include <fcl/math/motion/translation_motion.h>
 #include <gtest/gtest.h>
 
+#include "control_bits.h"
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/fcl_artic.h"
 #include "random.h"
@@ -40,6 +41,10 @@ using Eigen::Vector3d;
 using fcl_artic::CertifiedPairResult;
 using fcl_artic::CertifiedRequest;
 using fcl_artic::Status;
+using fcl_artic::numerics_test::controlBits;
+using fcl_artic::numerics_test::kFlushing;
+using fcl_artic::numerics_test::kUsualControl;
+using fcl_artic::numerics_test::setControlBits;
 using GeometryPtr = std::shared_ptr<fcl::CollisionGeometryd>;
 using Mesh = fcl::BVHModel<fcl::OBBRSSd>;
 
@@ -410,13 +415,13 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
   const auto grain = std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2);
   int asked = 0, told = 0, certain = 0;
   for (const int rounding : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
-    for (const unsigned flush : {0u, 0x8040u}) {  // flush to zero, and subnormal operands are zero
-      const unsigned before = _mm_getcsr();
+    for (const std::uint64_t flush : {std::uint64_t{0}, kFlushing}) {
+      const std::uint64_t before = controlBits();
       const int rounding_before = std::fegetround();
       std::fesetround(rounding);
-      _mm_setcsr(_mm_getcsr() | flush);
-      const unsigned mode = _mm_getcsr() & ~0x3fu;
-      std::vector<unsigned> seen;
+      setControlBits(controlBits() | flush);
+      const std::uint64_t mode = controlBits();
+      std::vector<std::uint64_t> seen;
       std::vector<std::pair<double, double>> brackets;
       bool free = true;
       {
@@ -442,15 +447,15 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
               request.method = method;
               request.progress = [&](double) {
                 ++told;
-                const unsigned here = _mm_getcsr() & ~0x3fu;
-                seen.push_back(here == 0x1f80 ? mode : here);  // his own, or the usual one
+                const std::uint64_t here = controlBits();
+                seen.push_back(here == kUsualControl ? mode : here);  // his own, or the usual one
                 return true;
               };
               fcl_artic::CertifiedResult result;
               manager.continuousCollide(
                   fcl_artic::JointMotion::linear(*tree, Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, to)),
                   request, result);
-              seen.push_back(_mm_getcsr() & ~0x3fu);
+              seen.push_back(controlBits());
               ++asked;
               if (to < 0.5) free = free && result.isFree();
               if (to > 0.5) brackets.emplace_back(result.t_lower, result.certain ? result.t_upper : 2);
@@ -459,8 +464,8 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
         }
       }
       std::fesetround(rounding_before);
-      _mm_setcsr(before);
-      for (const unsigned m : seen) EXPECT_EQ(m, mode);
+      setControlBits(before);
+      for (const std::uint64_t m : seen) EXPECT_EQ(m, mode);
       EXPECT_TRUE(free);
       for (const auto& [lower, upper] : brackets) {
         EXPECT_LE(lower, 0.5);

@@ -27,7 +27,7 @@ struct Arithmetic {
   void (*sineCosine)(const Interval* x, int n, Interval* sine, Interval* cosine);
 };
 
-extern const Arithmetic kArithmeticPortable, kArithmeticSse2, kArithmeticAvx2, kArithmeticAvx512;
+extern const Arithmetic kArithmeticPortable, kArithmeticSse2, kArithmeticAvx2, kArithmeticAvx512, kArithmeticNeon;
 
 /// Those that this processor runs.
 std::vector<const Arithmetic*> arithmetics();

@@ -22,7 +22,7 @@ using redon::BoxBatch;
 
 std::vector<const BoxBatch*> batches() {
   std::vector<const BoxBatch*> all;
-  for (const char* name : {"portable", "sse2", "avx2", "avx512"}) {
+  for (const char* name : {"portable", "sse2", "avx2", "avx512", "neon"}) {
     if (const BoxBatch* b = redon::boxBatchNamed(name)) all.push_back(b);
   }
   return all;

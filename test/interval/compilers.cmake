@@ -2,7 +2,8 @@
 # Builds the hazard probes with every compiler of COMPILERS that is there, under flags that are known to break directed
 # rounding in ordinary code, and runs them. Needs SOURCE (the repository), WORK (a folder to write to), COMPILERS.
 set(flag_sets "-O0" "-O1" "-O2" "-O3" "-O3 -frounding-math" "-O3 -march=native" "-O3 -ffp-contract=fast -march=native"
-  "-O2 -flto" "-O3 -fno-trapping-math -fno-math-errno")
+  "-O2 -flto" "-O3 -fno-trapping-math -fno-math-errno" "-O0 -DFCL_ARTIC_PORTABLE" "-O2 -DFCL_ARTIC_PORTABLE"
+  "-O3 -ffp-contract=fast -march=native -DFCL_ARTIC_PORTABLE" "-O2 -flto -DFCL_ARTIC_PORTABLE")
 set(sources ${SOURCE}/test/interval/rounding_test.cpp ${SOURCE}/src/interval/rounding.cpp)
 file(MAKE_DIRECTORY ${WORK})
 set(tried 0)

@@ -11,6 +11,7 @@
 
 #include "arithmetic.h"
 #include "interval/sine_cosine.h"
+#include "numerics/instruction_sets.h"
 #include "operands.h"
 #include "redon/box_batch.h"
 
@@ -19,9 +20,11 @@ namespace numerics_test {
 
 std::vector<const Arithmetic*> arithmetics() {
   std::vector<const Arithmetic*> all;
-  for (const Arithmetic* s : {&kArithmeticPortable, &kArithmeticSse2, &kArithmeticAvx2, &kArithmeticAvx512}) {
+#define FCL_ARTIC_ONE(set, Set) &kArithmetic##Set,
+  for (const Arithmetic* s : {FCL_ARTIC_INSTRUCTION_SETS(FCL_ARTIC_ONE)}) {
     if (redon::boxBatchNamed(s->name)) all.push_back(s);
   }
+#undef FCL_ARTIC_ONE
   return all;
 }
 

@@ -2,9 +2,11 @@
 //
 // What compilers are known to break in directed rounding, tried on the library's own types.
 #include <cfenv>
+#include <cstdint>
 
 #include <gtest/gtest.h>
 
+#include "../numerics/control_bits.h"
 #include "interval/matrix.h"
 #include "interval/sine_cosine.h"
 
@@ -14,7 +16,7 @@ namespace {
 constexpr int kModes[4] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
 
 double opaque(double x) {
-  asm volatile("" : "+x"(x));
+  asm volatile("" : "+m"(x));
   return x;
 }
 
@@ -23,26 +25,31 @@ TEST(Rounding, ModesWorkHere) {
 }
 
 TEST(Rounding, ScopePutsTheCallersModeBack) {
-  const unsigned before = _mm_getcsr();
+  using numerics_test::controlBits, numerics_test::setControlBits;
+  const std::uint64_t before = controlBits();
+  const auto roundsUpward = [] {
+    const Interval sum = Interval(opaque(1)) + Interval(opaque(0x1p-60));
+    return sum.lower() == 1 && sum.upper() > 1;
+  };
   for (const int mode : kModes) {
-    for (const unsigned flush : {0x0000u, 0x8040u}) {
+    for (const std::uint64_t flush : {std::uint64_t{0}, numerics_test::kFlushing}) {
       std::fesetround(mode);
-      _mm_setcsr(_mm_getcsr() | flush);
-      const auto control = [] { return _mm_getcsr() & ~0x3fu; };  // not the sticky flags
-      const unsigned mine = control();
+      setControlBits(controlBits() | flush);
+      const std::uint64_t mine = controlBits();
+      EXPECT_EQ(roundsUpward(), mode == FE_UPWARD);
       {
         const RoundUpward outer;
-        EXPECT_TRUE(RoundUpward::isOn());
+        EXPECT_TRUE(roundsUpward());
         {
           const RoundUpward inner;
-          EXPECT_TRUE(RoundUpward::isOn());
+          EXPECT_TRUE(roundsUpward());
         }
-        EXPECT_TRUE(RoundUpward::isOn());
+        EXPECT_TRUE(roundsUpward());
         EXPECT_GT((Interval(0x1p-1074) + Interval(0.0)).upper(), 0);  // no flushing
       }
-      EXPECT_EQ(control(), mine);
-      std::fesetround(FE_TONEAREST);  // of the old floating-point unit, too
-      _mm_setcsr(before);
+      EXPECT_EQ(controlBits(), mine);
+      std::fesetround(FE_TONEAREST);  // of x86's old floating-point unit, too
+      setControlBits(before);
     }
   }
 }
@@ -114,9 +121,10 @@ TEST(Hazard, OperationsAreNotHoistedOutOfALoop) {
 TEST(Hazard, ProductsAreNotFused) {
   const RoundUpward scope;
   const Interval a(opaque(0.1)), b(opaque(0.7));
-  const __m128d p = directed::mul(a.raw(), b.raw()), q = directed::mul(a.raw(), b.raw());
-  const __m128d zero = directed::add(p, _mm_xor_pd(q, _mm_set1_pd(-0.0)));
-  EXPECT_EQ(_mm_movemask_pd(_mm_cmpeq_pd(zero, _mm_setzero_pd())), 3);
+  const Pair p = directed::mul(a.raw(), b.raw()), q = directed::mul(a.raw(), b.raw());
+  const Pair zero = directed::add(p, pairNegate(q));
+  EXPECT_EQ(pairLow(zero), 0);
+  EXPECT_EQ(pairHigh(zero), 0);
 }
 
 }  // namespace

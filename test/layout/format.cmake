@@ -2,7 +2,7 @@
 # Fails for sources that clang-format would write otherwise:  clang-format-14 -i FILE  mends them.
 cmake_policy(VERSION 3.25)
 set(files)
-foreach(part include src app bench data doc example python test verify)
+foreach(part include src app bench data doc example python ros test verify)
   file(GLOB_RECURSE found ${SOURCE_DIR}/${part}/*.h ${SOURCE_DIR}/${part}/*.cpp ${SOURCE_DIR}/${part}/*.inl)
   list(APPEND files ${found})
 endforeach()

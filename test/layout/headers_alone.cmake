@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Fails for a header that does not compile by itself: whoever includes it would have to know what else to include.
+# Fails for a header that does not compile by itself: whoever includes it would have to know what else to include. Public
+# ones also without a warning of conversions that may change a value or a sign.
 cmake_policy(VERSION 3.25)
 foreach(list PARTS INCLUDES SYSTEM_INCLUDES)
   string(REPLACE "|" ";" ${list} "${${list}}")
@@ -16,9 +17,18 @@ list(TRANSFORM PARTS PREPEND ${SOURCE_DIR}/)
 file(GLOB_RECURSE headers RELATIVE ${SOURCE_DIR} ${PARTS})
 set(faults)
 set(looked_at 0)
+set(of_others 0)
+execute_process(COMMAND ${COMPILER} -dumpmachine OUTPUT_VARIABLE processor)
+string(REGEX REPLACE "-.*" "" processor "${processor}")
 foreach(header IN LISTS headers)
   # Those of components with dependencies of their own.
-  if(header MATCHES "^include/fcl_artic/(ompl|visibility)/|^src/adapters/ompl/|^src/visibility/(gl|offscreen)_")
+  if(header MATCHES "^include/fcl_artic/(ompl|visibility|pinocchio|tesseract)/|^src/adapters/(ompl|tesseract)/|^src/visibility/(gl|offscreen)_")
+    continue()
+  endif()
+  # Another processor's: its compiler has their intrinsics.
+  if(header MATCHES "_(neon|aarch64)\\.h$" AND NOT processor STREQUAL aarch64
+     OR header MATCHES "_(sse2|avx2|avx512|x86_64)\\.h$" AND NOT processor STREQUAL x86_64)
+    math(EXPR of_others "${of_others} + 1")
     continue()
   endif()
   # What is compiled once per instruction set is told which by whoever includes it.
@@ -27,7 +37,11 @@ foreach(header IN LISTS headers)
   if(per_isa AND NOT header STREQUAL src/numerics/baseline_isa.h)
     set(isa -include ${SOURCE_DIR}/src/numerics/baseline_isa.h)
   endif()
-  execute_process(COMMAND ${COMPILER} ${flags} ${isa} ${SOURCE_DIR}/${header}
+  set(strict)
+  if(header MATCHES "^include/")  # callers may ask for more
+    set(strict -Wconversion -Wsign-conversion -Werror=conversion -Werror=sign-conversion)
+  endif()
+  execute_process(COMMAND ${COMPILER} ${flags} ${strict} ${isa} ${SOURCE_DIR}/${header}
                   RESULT_VARIABLE status ERROR_VARIABLE said)
   math(EXPR looked_at "${looked_at} + 1")
   if(NOT status EQUAL 0)
@@ -41,4 +55,4 @@ endif()
 if(faults)
   message(FATAL_ERROR "headers that do not compile by themselves:\n${faults}")
 endif()
-message("${looked_at} headers compile by themselves")
+message("${looked_at} headers compile by themselves; ${of_others} are for other processors than ${processor}")

@@ -27,7 +27,7 @@ struct RegisterFile {
   unsigned (*above)(const float* a, const float* b, const float* c, const float* d);
 };
 
-extern const RegisterFile kRegistersPortable, kRegistersSse2, kRegistersAvx2, kRegistersAvx512;
+extern const RegisterFile kRegistersPortable, kRegistersSse2, kRegistersAvx2, kRegistersAvx512, kRegistersNeon;
 
 /// Those that this processor runs.
 std::vector<const RegisterFile*> registerFiles();

@@ -12,18 +12,18 @@
 #include <gtest/gtest.h>
 
 #include "cases.h"
-#include "narrowphase/engine.h"
+#include "numerics/instruction_sets.h"
 
 namespace fcl_artic {
 namespace numerics_test {
 
 std::vector<const RegisterFile*> registerFiles() {
-  std::vector<const RegisterFile*> all = {&kRegistersPortable};
-#ifdef __x86_64__
-  for (const RegisterFile* file : {&kRegistersSse2, &kRegistersAvx2, &kRegistersAvx512}) {
-    if (engine::engineNamed(file->name)) all.push_back(file);
+  std::vector<const RegisterFile*> all;
+#define FCL_ARTIC_ONE(set, Set) &kRegisters##Set,
+  for (const RegisterFile* s : {FCL_ARTIC_INSTRUCTION_SETS(FCL_ARTIC_ONE)}) {
+    if (processorRuns(s->name)) all.push_back(s);
   }
-#endif
+#undef FCL_ARTIC_ONE
   return all;
 }
 

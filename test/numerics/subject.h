@@ -99,7 +99,7 @@ struct Subject {
   void (*boundVariable)(const engine::SweepStep& step, const engine::Query& query, double begin, double end, double* m);
 };
 
-extern const Subject kSubjectPortable, kSubjectSse2, kSubjectAvx2, kSubjectAvx512;
+extern const Subject kSubjectPortable, kSubjectSse2, kSubjectAvx2, kSubjectAvx512, kSubjectNeon;
 
 /// Those that this processor runs.
 std::vector<const Subject*> subjects();

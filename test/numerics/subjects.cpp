@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "subject.h"
 
-#include "narrowphase/engine.h"
+#include "numerics/instruction_sets.h"
 
 namespace fcl_artic {
 namespace numerics_test {
 
 std::vector<const Subject*> subjects() {
-  std::vector<const Subject*> all = {&kSubjectPortable};
-#ifdef __x86_64__
-  for (const Subject* s : {&kSubjectSse2, &kSubjectAvx2, &kSubjectAvx512}) {
-    if (engine::engineNamed(s->name)) all.push_back(s);
+  std::vector<const Subject*> all;
+#define FCL_ARTIC_ONE(set, Set) &kSubject##Set,
+  for (const Subject* s : {FCL_ARTIC_INSTRUCTION_SETS(FCL_ARTIC_ONE)}) {
+    if (processorRuns(s->name)) all.push_back(s);
   }
-#endif
+#undef FCL_ARTIC_ONE
   return all;
 }
 

@@ -68,8 +68,10 @@ if(CASE STREQUAL "install")
   endif()
 
 elseif(CASE STREQUAL "cmake")
-  run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" "-DWITH_URDF=${WITH_URDF}"
-      "-DWITH_OMPL=${WITH_OMPL}" "-DWITH_VISIBILITY=${WITH_VISIBILITY}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
+  string(REPLACE "|" ";" prefixes "${stage}|${PREFIXES}")  # where pinocchio and tesseract are found
+  run(COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${prefixes}" "-DWITH_URDF=${WITH_URDF}"
+      "-DWITH_OMPL=${WITH_OMPL}" "-DWITH_VISIBILITY=${WITH_VISIBILITY}" "-DWITH_PINOCCHIO=${WITH_PINOCCHIO}"
+      "-DWITH_TESSERACT=${WITH_TESSERACT}" "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}"
       -S "${SOURCE}/test/consumer" -B "${WORK}/build")
   run(COMMAND "${CMAKE_COMMAND}" --build "${WORK}/build")
   run(COMMAND "${WORK}/build/core")
@@ -83,6 +85,14 @@ elseif(CASE STREQUAL "cmake")
   endif()
   if(WITH_VISIBILITY)
     run(COMMAND "${WORK}/build/culler")
+  endif()
+  if(WITH_PINOCCHIO)
+    run(COMMAND "${WORK}/build/from_pinocchio")
+    expect_output("hand and post")
+  endif()
+  if(WITH_TESSERACT)
+    run(COMMAND "${WORK}/build/from_tesseract")
+    expect_output("hand/0 and post/0")
   endif()
   if(WITH_URDF)  # the project that the manual shows
     file(COPY "${SOURCE}/doc/manual/snippets/project/CMakeLists.txt" DESTINATION "${WORK}/project")
@@ -99,6 +109,12 @@ elseif(CASE STREQUAL "missing_component")
     "find_package(fcl_artic REQUIRED COMPONENTS no_such_component)\n")
   run(EXPECT_FAILURE COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" -S "${WORK}" -B "${WORK}/build")
   expect_output("was built without the component 'no_such_component'")
+  if(NOT WITH_PINOCCHIO)  # header-only: installed all the same
+    file(WRITE "${WORK}/library/CMakeLists.txt" "cmake_minimum_required(VERSION 3.22)\nproject(needs_more LANGUAGES CXX)\n"
+      "find_package(fcl_artic REQUIRED COMPONENTS pinocchio)\n")
+    run(EXPECT_FAILURE COMMAND ${configure} "-DCMAKE_PREFIX_PATH=${stage}" -S "${WORK}/library" -B "${WORK}/library/build")
+    expect_output("'pinocchio' needs pinocchio with coal, which is not found")
+  endif()
 
 elseif(CASE STREQUAL "pkg_config")
   set(ENV{PKG_CONFIG_PATH} "${stage}/${LIBDIR}/pkgconfig")
@@ -211,9 +227,9 @@ elseif(CASE STREQUAL "ros")
   set(names eigen=libeigen3-dev libfcl-dev=libfcl-dev libccd-dev=libccd-dev liboctomap-dev=liboctomap-dev tbb=libtbb-dev
     liburdfdom-dev=liburdfdom-dev liburdfdom-headers-dev=liburdfdom-headers-dev assimp=libassimp-dev
     tinyxml2=libtinyxml2-dev ompl=libompl-dev opengl=libgl-dev libosmesa6-dev=libosmesa6-dev cli11=libcli11-dev
-    nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev yaml-cpp=libyaml-cpp-dev zlib=zlib1g-dev libgmp=libgmp-dev mpfr=libmpfr-dev
+    nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev yaml-cpp=libyaml-cpp-dev hdf5=libhdf5-dev mpi=libopenmpi-dev zlib=zlib1g-dev libgmp=libgmp-dev mpfr=libmpfr-dev
     pybind11-dev=pybind11-dev python3-dev=python3-dev python3-numpy=python3-numpy gtest=libgtest-dev
-    benchmark=libbenchmark-dev python3-pytest=python3-pytest python3-mypy=mypy python3-tqdm=python3-tqdm
+    benchmark=libbenchmark-dev python3-pytest=python3-pytest python3-mypy=mypy python3-networkx=python3-networkx python3-tqdm=python3-tqdm
     doxygen=doxygen python3-sphinx=python3-sphinx python3-breathe=python3-breathe cmake=cmake pkg-config=pkg-config)
   file(READ "${SOURCE}/package.xml" xml)
   if(NOT xml MATCHES "<version>${VERSION}</version>")

@@ -574,10 +574,22 @@ TEST(Trajectory, RefusesWithPieceAndJoint) {
   ball.add("ball", JointType::spherical, "base", "a");
   const std::vector<VectorXd> q(2, ball.tree->neutralConfiguration()), v(2, VectorXd::Zero(4)),
       w(2, values({0, 0, 0, 1}));
-  expectContains(refusal([&] {
-                   JointTrajectory::quintic(*ball.tree, {0, 1}, q, v, v);
-                 }),
-                 "joint 'ball' turns by a quaternion");
+  // Only one that stands still needs no more than a quintic says.
+  const JointTrajectory at_rest = JointTrajectory::quintic(*ball.tree, {0, 1}, q, v, v);
+  EXPECT_EQ(at_rest.configuration(0.3), q[0]);
+  std::vector<VectorXd> turned = q, rates = v;
+  turned[1] = values({0, 0, 1, 0});
+  rates[1] = values({0.1, 0, 0, 0});
+  const auto refused = [&](const std::vector<VectorXd>& ways, const std::vector<VectorXd>& first,
+                           const std::vector<VectorXd>& second) {
+    expectContains(refusal([&] {
+                     JointTrajectory::quintic(*ball.tree, {0, 1}, ways, first, second);
+                   }),
+                   "joint 'ball' turns by a quaternion at waypoint 1");
+  };
+  refused(turned, v, v);
+  refused(q, rates, v);
+  refused(q, v, rates);
   expectContains(refusal([&] { JointTrajectory::cubic(*ball.tree, {0, 1}, q, w); }), "'ball/rot_w' is not 0");
 }
 

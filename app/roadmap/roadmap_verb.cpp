@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "roadmap/roadmap_verb.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "edges/inputs.h"
+#include "exit_status.h"
+#include "files/files.h"
+#include "plans/plan.h"
+#include "query_options.h"
+#include "roadmap/roadmap.h"
+#include "text/nearest_name.h"
+#include "usage.h"
+#include "world.h"
+
+namespace fcl_artic::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  WorldOptions world;
+  CertifiedRequest request;
+  RoadmapOptions make;
+  std::string given, roadmap, out;
+  bool valid_only = false, any = false;
+};
+
+double secondsSince(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Robot and allowed pairs, without a scene.
+void readRobot(World& world, const Options& o) {
+  world.readRobot();
+  const bool check_allowed = !o.world.robot.srdf.empty() && o.request.check_self;
+  if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
+}
+
+void tellNotes(const World& world) {
+  for (const std::string& note : world.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+}
+
+/// The waypoints of a file's plans; joints without a column stay at 0.
+std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const std::string& path) {
+  std::vector<Eigen::VectorXd> configurations;
+  std::vector<std::string> known;
+  for (int v = 0; v < tree.dof(); ++v) known.push_back(tree.variableName(v));
+  const auto fail = [&](const std::string& why) { throw std::invalid_argument(fmt::format("'{}': {}", path, why)); };
+  for (const plans::Plan& plan : plans::parsePlans(tree, files::read(path), plans::formatOf(path))) {
+    if (!plan.error.empty()) fail(plan.error);
+    const std::vector<std::string>& joints = plan.joints.empty() ? known : plan.joints;
+    for (const std::vector<double>& row : plan.positions) {
+      if (row.size() != joints.size())
+        fail(fmt::format("a row has {} values for {} joints", row.size(), joints.size()));
+      Eigen::VectorXd q = tree.neutralConfiguration();
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        const auto at = std::find(known.begin(), known.end(), joints[j]);
+        if (at == known.end())
+          fail(fmt::format("robot '{}' has no joint '{}'{}", tree.name(), joints[j],
+                           text::didYouMean(joints[j], known)));
+        q[at - known.begin()] = row[j];
+      }
+      configurations.push_back(std::move(q));
+    }
+  }
+  return configurations;
+}
+
+int make(Options& o) {
+  requireRoadmapEnding(o.out);
+  World world(o.world);
+  readRobot(world, o);
+  if (!o.given.empty()) o.make.given = readConfigurations(*world.robot.tree, o.given);
+  world.readScene();
+  tellNotes(world);
+  const ArticulatedCollisionManager manager = world.makeManager();
+  const auto begin = Clock::now();
+  std::size_t tried = 0;
+  Roadmap roadmap = makeRoadmap(manager, o.request, o.make, tried);
+  roadmap.robot = robotHash(o.world, world);
+  writeRoadmap(roadmap, o.out, false);
+  fmt::print("{} vertices, {} of {} edges proven free, in {:.1f} s: {}\n", roadmap.numVertices(), roadmap.numEdges(),
+             tried, secondsSince(begin), o.out);
+  return kExitFree;
+}
+
+int certify(Options& o) {
+  requireRoadmapEnding(o.out);
+  World world(o.world);
+  readRobot(world, o);
+  Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
+  world.readScene();
+  tellNotes(world);
+  if (o.request.check_self) {
+    // What was proven when the roadmap was made holds for every scene: of this robot, and no larger a margin.
+    const bool same = roadmap.robot == robotHash(o.world, world);
+    const bool holds = roadmap.self_proven && same && o.request.margin <= roadmap.self_margin;
+    if (!holds) {
+      fmt::print(stderr, "fcl_artic: note: links are checked against links again: {}\n",
+                 !roadmap.self_proven ? "the roadmap was made without that"
+                 : !same              ? "the roadmap is of another robot, other allowed pairs or another load"
+                                      : fmt::format("the roadmap was made for a margin of {} m", roadmap.self_margin));
+    }
+    o.request.check_self = !holds;
+  }
+  if (o.any) o.request.mode = ContactMode::any;
+  const ArticulatedCollisionManager manager = world.makeManager();
+  const auto begin = Clock::now();
+  certifyRoadmap(manager, o.request, o.make.threads, roadmap);
+  const double seconds = secondsSince(begin);
+  writeRoadmap(roadmap, o.out, o.valid_only);
+  Counts counts;
+  counts.add(roadmap.answers);
+  fmt::print("{} edges in {:.3f} s: {} free, {} contact, {} undecided: {}\n", roadmap.numEdges(), seconds,
+             counts[RowStatus::free], counts[RowStatus::contact], counts[RowStatus::undecided], o.out);
+  return kExitFree;
+}
+
+void addCommon(CLI::App& verb, Options& o) {
+  addWorldOptions(verb, o.world, "--robot,--urdf");
+  for (const char* name : {"--scene", "--attach", "--package", "--solid"})
+    verb.get_option(name)->allow_extra_args(false);
+  addQueryOptions(verb, o.request);
+  verb.add_option("--threads", o.make.threads, "Threads at most; 0: as many as the machine runs at once")
+      ->check(CLI::NonNegativeNumber)
+      ->group("Query")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void addRoadmap(CLI::App& program, int& exit_status) {
+  CLI::App* roadmap = program.add_subcommand(
+      "roadmap", "A probabilistic roadmap of a robot: made once, proven free again in each new scene");
+  roadmap->require_subcommand(1);
+
+  auto making = std::make_shared<Options>();
+  CLI::App* make_verb = roadmap->add_subcommand(
+      "make",
+      "Draw configurations, join the nearest ones; what is not proven free, of links against links, is left out");
+  addCommon(*make_verb, *making);
+  make_verb->add_option("--vertices", making->make.vertices, "Configurations")
+      ->check(CLI::PositiveNumber)
+      ->group("Roadmap")
+      ->capture_default_str();
+  make_verb->add_option("--neighbours", making->make.neighbours, "Nearest configurations that each is joined with")
+      ->check(CLI::PositiveNumber)
+      ->group("Roadmap")
+      ->capture_default_str();
+  make_verb->add_option("--seed", making->make.seed, "The same seed draws the same configurations")
+      ->group("Roadmap")
+      ->capture_default_str();
+  make_verb
+      ->add_option("--with", making->given,
+                   "Configurations that become the first vertices: the waypoints of plans, as `certify` takes them")
+      ->check(requireInput)
+      ->group("Roadmap")
+      ->type_name("FILE");
+  make_verb->add_option("--out", making->out, "File to write: .h5, .graphml or .csv")->required()->group("Output");
+  make_verb->callback([making, &exit_status] { exit_status = make(*making); });
+
+  auto asking = std::make_shared<Options>();
+  CLI::App* certify_verb = roadmap->add_subcommand(
+      "certify", "Which edges of a roadmap are free in a scene, and when the others touch first");
+  certify_verb->add_option("ROADMAP", asking->roadmap, "File of `roadmap make`, .h5")->required()->check(requireInput);
+  addCommon(*certify_verb, *asking);
+  certify_verb->add_flag("--any", asking->any, "Any contact, not the first: cheaper where only the verdict matters")
+      ->group("Query");
+  certify_verb->add_flag("--valid-only", asking->valid_only, "Write only edges that are proven free")->group("Output");
+  certify_verb->add_option("--out", asking->out, "File to write: .h5, .graphml or .csv")->required()->group("Output");
+  certify_verb->callback([asking, &exit_status] { exit_status = certify(*asking); });
+}
+
+}  // namespace fcl_artic::app
