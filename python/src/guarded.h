@@ -29,6 +29,14 @@ class Guarded {
     changed_ = true;
     change(manager_);
   }
+  /// The same for a change that takes effect by itself, or throws and changes nothing: no setup() follows.
+  template <class Change>
+  void changeAtOnce(const Change& change) {
+    if (isAskedByThisThread()) throw std::runtime_error("a world can't be changed from within its own query");
+    const py::gil_scoped_release release;
+    const std::unique_lock<std::shared_mutex> lock(mutex_);
+    change(manager_);
+  }
 
   /// Asks the manager, set up, while other threads may ask too. With the GIL held; `ask` runs without it.
   template <class Ask>

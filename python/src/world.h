@@ -48,6 +48,8 @@ class World {
 
   /// Copies the geometry's reference, so that the scene may go and its objects stay as they are.
   void addScene(const Scene& scene);
+  /// Puts a scene in place of all obstacles that stand still and are not carried.
+  void replaceScene(const Scene& scene);
   void add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose);
   void addMoving(const std::string& name, const Geometry& geometry, const Motion& motion);
   void remove(const std::string& name);

@@ -98,6 +98,8 @@ REACHABLE = {
     "combineScenes": "combine_scenes",
     "unitNotes": "unit_notes",
     "loadMesh": "load_mesh",
+    # instruction_set.h
+    "instructionSet": "instruction_set",
 }
 
 # C++ name: why Python has no need of it.
@@ -118,6 +120,8 @@ LEFT_OUT = {
     "BodyMotion": "internal, declared only",
     # OMPL: Debian 12 has no Python bindings of it, so that nothing could be tried
     "planning": "no Python bindings of OMPL are in Debian 12; World.is_free() is what a validity checker calls",
+    "pinocchio": "for programs in C++; load_urdf() reads the file that pinocchio's model was read from",
+    "tesseract": "a contact manager that Tesseract's own programs call",
 }
 
 # C++ class: where its members are, and members that are elsewhere or left out, with the reason.
@@ -128,6 +132,8 @@ MEMBERS = {
             "sharedTree": "tree",
             "registerObject": "add",
             "registerObjects": "add_scene",
+            "replaceObstacles": "replace_scene",
+            "shareRobot": "one world is asked by many threads; replace_scene() keeps what was made of the robot",
             "unregisterObject": "remove",
             "bind": "Robot.add_geometry()",
             "unbind": "a world's robot is what it was made of",
@@ -204,8 +210,9 @@ def headers():
 def public_names():
     names = {}
     for path, text in headers():
-        if path.parent.name == "ompl":
-            names["planning"] = path
+        component = {"ompl": "planning", "pinocchio": "pinocchio", "tesseract": "tesseract"}.get(path.parent.name)
+        if component:
+            names[component] = path
             continue
         for match in re.finditer(r"^\s*(?:class|struct|enum class)\s+(?:FCL_ARTIC_EXPORT\s+)?(\w+)\s*(?:final\s*)?[:{;]", text, re.M):
             if match[1] not in ("Impl", "Aspects", "Some", "Turn", "Start", "Step"):

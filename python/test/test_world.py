@@ -215,6 +215,43 @@ def test_obstacles_are_added_moved_and_removed(world, miss):
     assert world.check(*miss).free
 
 
+def test_a_replaced_scene_answers_as_a_new_world(robot, scene, hit, miss):
+    world = fcl_artic.World(robot)
+    world.add("bar", fcl_artic.box([0.02, 0.02, 0.1]), [5, 5, 5])
+    world.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=["wrist_roll"])
+    world.add_moving("ball", fcl_artic.sphere(0.01), fcl_artic.Motion.translation([6, 6, 6], [1, 0, 0]))
+    other = fcl_artic.Scene()
+    other.add("plate", fcl_artic.box([0.1, 0.1, 0.01]), world.tree.link_pose("wrist_roll", miss[0])[:3, 3])
+    verdicts = []
+    for obstacles in (scene, other, fcl_artic.Scene(), scene):
+        world.replace_scene(obstacles)
+        assert world.obstacles == obstacles.names and world.attached == {"bar": "wrist_roll"} and world.moving == ["ball"]
+        fresh = fcl_artic.World(robot, obstacles)
+        fresh.add("bar", fcl_artic.box([0.02, 0.02, 0.1]), [5, 5, 5])
+        fresh.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=["wrist_roll"])
+        for motion in (hit, miss):
+            answer, expected = world.check(*motion), fresh.check(*motion)
+            assert (answer.status, answer.pair, answer.t_lower) == (expected.status, expected.pair, expected.t_lower)
+            verdicts.append(answer.pair)
+    assert len(set(verdicts)) > 2  # or the scenes make no difference
+
+
+def test_a_scene_that_is_refused_replaces_nothing(world, scene, hit):
+    before = world.check(*hit)
+    taken = fcl_artic.Scene()
+    taken.add("far", fcl_artic.sphere(0.1), [9, 9, 9])
+    taken.add("wrist_roll", fcl_artic.sphere(0.1), [9, 9, 9])  # the name of a link
+    with pytest.raises(ValueError, match="wrist_roll"):
+        world.replace_scene(taken)
+    assert world.obstacles == scene.names and world.check(*hit).t_lower == before.t_lower
+    with pytest.raises(RuntimeError, match="from within its own query"):
+        world.check(*hit, progress=lambda _: world.replace_scene(scene))
+
+
+def test_the_instruction_set_has_a_name():
+    assert fcl_artic.instruction_set() in ("avx512", "avx2", "sse2", "neon", "portable")
+
+
 def test_what_a_link_carries_is_checked(world, miss):
     world.add("bar", fcl_artic.box([0.02, 0.02, 1.0]), [5, 5, 5])
     assert world.check(*miss).free
@@ -463,6 +500,18 @@ def test_visibility_does_not_change_answers(world, hit, miss):
     assert world.check(*miss, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
     with pytest.raises(ValueError, match="resolution"):
         world.set_visibility("cpu", resolution=3)
+
+
+def test_visibility_may_look_at_every_pair_of_links(world, robot):
+    motions = list(zip(*random_motions(robot, 30)))
+    alone = [world.check(q0, q1).status for q0, q1 in motions]
+    looked_at = []
+    for every in (False, True):
+        world.set_visibility("cpu", every_link_pair=every)
+        answers = [world.check(q0, q1, visibility="on") for q0, q1 in motions]
+        assert [answer.status for answer in answers] == alone
+        looked_at.append(sum(answer.statistics["visibility"]["link_pairs"] for answer in answers))
+    assert looked_at[0] < looked_at[1]
 
 
 def test_objects_are_kept_alive_as_long_as_they_are_used(data, miss):
