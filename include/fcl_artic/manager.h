@@ -67,8 +67,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
 
   /// Swaps the scene: takes these obstacles that stand still in place of all that there are, and makes that effective
   /// without setup(): all or, if this throws, nothing. What was made of the robot stays as it is, and is not looked at
-  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move and attached objects
-  /// stay. (Changes that wait for setup() are made effective too.)
+  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move, attached objects,
+  /// and allowed pairs and margins of names stay. (Changes that wait for setup() are made effective too.)
   /// @param objects  kept alive as long as they are registered; one that was there before, the same in all that
   ///   setup() compares, is not read again.
   /// @param names  one for each object, unique among links and obstacles; none: "obstacle<N>", N counting from 0.

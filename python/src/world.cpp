@@ -271,8 +271,8 @@ void bindChanges(py::class_<World>& world) {
       .def("add_scene", &World::addScene, "Adds all obstacles of a scene, or none if one is refused.", py::arg("scene"))
       .def("replace_scene", &World::replaceScene,
            "Puts a scene in place of all obstacles that stand still, or changes nothing if one is refused. What links\n"
-           "carry and what moves by itself stays; what was made of the robot is kept, so this takes microseconds where a\n"
-           "new World takes milliseconds.",
+           "carry and what moves by itself stays, and so do allowed pairs and margins, which go by names. What was\n"
+           "made of the robot is kept, so this takes microseconds where a new World takes milliseconds.",
            py::arg("scene"))
       .def(
           "add_moving",

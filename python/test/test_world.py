@@ -218,22 +218,22 @@ def test_obstacles_are_added_moved_and_removed(world, miss):
 def test_a_replaced_scene_answers_as_a_new_world(robot, scene, hit, miss):
     world = fcl_artic.World(robot)
     world.add("bar", fcl_artic.box([0.02, 0.02, 0.1]), [5, 5, 5])
-    world.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=["wrist_roll"])
+    world.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=world.tree.links)
     world.add_moving("ball", fcl_artic.sphere(0.01), fcl_artic.Motion.translation([6, 6, 6], [1, 0, 0]))
     other = fcl_artic.Scene()
     other.add("plate", fcl_artic.box([0.1, 0.1, 0.01]), world.tree.link_pose("wrist_roll", miss[0])[:3, 3])
-    verdicts = []
+    pairs = set()
     for obstacles in (scene, other, fcl_artic.Scene(), scene):
         world.replace_scene(obstacles)
         assert world.obstacles == obstacles.names and world.attached == {"bar": "wrist_roll"} and world.moving == ["ball"]
         fresh = fcl_artic.World(robot, obstacles)
         fresh.add("bar", fcl_artic.box([0.02, 0.02, 0.1]), [5, 5, 5])
-        fresh.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=["wrist_roll"])
+        fresh.attach("bar", "wrist_roll", [0, 0, 0.1], touch_links=world.tree.links)
         for motion in (hit, miss):
             answer, expected = world.check(*motion), fresh.check(*motion)
             assert (answer.status, answer.pair, answer.t_lower) == (expected.status, expected.pair, expected.t_lower)
-            verdicts.append(answer.pair)
-    assert len(set(verdicts)) > 2  # or the scenes make no difference
+            pairs.add(answer.pair)
+    assert len(pairs) > 2 and None in pairs  # or the scenes make no difference
 
 
 def test_a_scene_that_is_refused_replaces_nothing(world, scene, hit):
@@ -244,8 +244,6 @@ def test_a_scene_that_is_refused_replaces_nothing(world, scene, hit):
     with pytest.raises(ValueError, match="wrist_roll"):
         world.replace_scene(taken)
     assert world.obstacles == scene.names and world.check(*hit).t_lower == before.t_lower
-    with pytest.raises(RuntimeError, match="from within its own query"):
-        world.check(*hit, progress=lambda _: world.replace_scene(scene))
 
 
 def test_the_instruction_set_has_a_name():
@@ -390,6 +388,8 @@ def test_a_world_cannot_be_changed_from_within_its_query(world, robot):
     q0, q1 = random_motions(robot, 20000)
     with pytest.raises(RuntimeError, match="within its own query"):
         world.check_many(q0, q1, progress=lambda f: world.remove("pipes"))
+    with pytest.raises(RuntimeError, match="within its own query"):
+        world.check_many(q0, q1, progress=lambda f: world.replace_scene(fcl_artic.Scene()))
     seen = []
     answers = world.check_many(q0[:4000], q1[:4000], progress=lambda f: seen.append(world.check(q0[0], q1[0]).status))
     assert seen[0] == answers.status[0]
