@@ -310,7 +310,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   Answerer answerer(stage, edges, o, *folder, threads);
   const Cut cut = folder->cut();
   EdgeProgress progress(ranks.share() * static_cast<double>(cut.rows()), speaks);
-  std::vector<std::string> errors;
+  std::vector<std::string> errors;  // each once, whatever the number of blocks that meet it
+  std::set<std::string> told;
+  const auto tell = [&](const char* error) {
+    if (told.insert(error).second) errors.emplace_back(error);
+  };
   std::set<std::size_t> bad_scenes;
   Counts counts;
   std::int64_t here = 0, computed = 0;
@@ -329,11 +333,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
         counts.add(answerer.rows());
       }
     } catch (const SceneError& error) {
-      errors.emplace_back(error.what());
+      tell(error.what());
       if (!cut.scene_of_edge) bad_scenes.insert(cut.sceneOf(block));
       continue;
     } catch (const std::runtime_error& error) {
-      errors.emplace_back(error.what());
+      tell(error.what());
       continue;
     }
     if (is_new) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "certificate/sha256.h"
+#include "edges/first_rows.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic::app {
@@ -25,6 +26,13 @@ std::vector<std::string> variableNames(const KinematicTree& tree) {
 
 EdgeSource::EdgeSource(const KinematicTree& tree, const std::string& path, EdgeOptions options)
     : tree_(tree), file_(path), options_(std::move(options)) {
+  const bool ends = file_.has("from") || file_.has("to");
+  if (ends + file_.has("configurations") + file_.has("waypoints") > 1) {
+    throw std::runtime_error(
+        fmt::format("'{}': there are edges in more than one form: 'from' and 'to', 'configurations' and 'edges', "
+                    "'waypoints' and 'first'; a file holds one of them",
+                    path));
+  }
   if (file_.has("waypoints")) {
     kind_ = Kind::waypoints;
     readColumns("waypoints");
@@ -33,7 +41,13 @@ EdgeSource::EdgeSource(const KinematicTree& tree, const std::string& path, EdgeO
       throw std::runtime_error(fmt::format("'{}': dataset 'first' is to be one column of row numbers", path));
     }
     size_ = first[0] - 1;
+    requireAllRows(file_, "first", "waypoints");
     has_times_ = file_.has("times");
+    if (has_times_ && file_.shape("times") != std::vector<std::size_t>{file_.shape("waypoints")[0]}) {
+      throw std::runtime_error(
+          fmt::format("'{}': dataset 'times' is to be one column of {} rows, one for each waypoint", path,
+                      file_.shape("waypoints")[0]));
+    }
   } else if (file_.has("configurations")) {
     kind_ = Kind::numbers;
     readColumns("configurations");
@@ -45,7 +59,7 @@ EdgeSource::EdgeSource(const KinematicTree& tree, const std::string& path, EdgeO
     size_ = edges[0];
     num_vertices_ = file_.shape("configurations")[0];
     file_.read("configurations", 0, num_vertices_, vertices_);
-  } else if (file_.has("from") || file_.has("to")) {
+  } else if (ends) {
     readColumns("from");
     const std::vector<std::size_t> from = file_.shape("from"), to = file_.shape("to");
     if (from != to) {

@@ -18,4 +18,5 @@ struct FclArticMpi {
   void (*close)();
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): a symbol of C, looked up by name
 extern "C" __attribute__((visibility("default"))) const FclArticMpi* fcl_artic_mpi();

@@ -56,7 +56,7 @@ Json parse(const std::string& path) {
 
 }  // namespace
 
-RunFolder::RunFolder(std::string folder, Json run) : folder_(std::move(folder)) {
+RunFolder::RunFolder(std::string folder, const Json& run) : folder_(std::move(folder)) {
   run_["format"] = kFormat;
   run_.update(run);
   const std::string path = folder_ + "/run.json", text = textOf(run_);

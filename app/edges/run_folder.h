@@ -47,7 +47,7 @@ class RunFolder {
   /// @throws std::invalid_argument naming what differs from the run that the folder is of; std::runtime_error naming
   /// the
   ///   file.
-  RunFolder(std::string folder, nlohmann::ordered_json run);
+  RunFolder(std::string folder, const nlohmann::ordered_json& run);
   /// Of a run that is there.
   /// @throws std::runtime_error naming the file.
   explicit RunFolder(std::string folder);

@@ -14,7 +14,8 @@
 #include <fmt/format.h>
 
 #include "certificate/sha256.h"
-#include "files/files.h"
+#include "edges/first_rows.h"
+#include "edges/inputs.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
@@ -102,15 +103,7 @@ SceneSource::SceneSource(const std::vector<std::string>& paths, SceneOptions opt
 void SceneSource::addFile(const std::string& path, std::string& hashes) {
   if (isHdf5(path)) return addShapes(path, hashes);
   scenes_.push_back({fs::path(path).filename().string(), path, -1, 0});
-  hashes += certificate::sha256Text(files::read(path)) + "\n";
-  if (endingOf(path) != ".urdf") return;
-  UrdfOptions options;
-  options.packages = options_.packages;
-  for (const LinkGeometry& geometry : loadUrdf(path, options).geometry) {
-    std::error_code none;
-    if (fs::is_regular_file(geometry.source, none))
-      hashes += certificate::sha256Text(files::read(geometry.source)) + "\n";
-  }
+  hashes += sceneFileHash(path, options_.packages) + "\n";
 }
 
 void SceneSource::addShapes(const std::string& path, std::string& hashes) {
@@ -126,6 +119,7 @@ void SceneSource::addShapes(const std::string& path, std::string& hashes) {
     throw std::runtime_error(fmt::format("'{}': dataset '{}' is to have {} rows of {} columns, one for each obstacle",
                                          path, name, obstacles, columns));
   };
+  requireAllRows(file, "first", "kind");
   need("size", 3);
   need("position", 3);
   if (file.has("orientation")) need("orientation", 4);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "certificate/sha256.h"
 #include "files/files.h"
 #include "hdf5/hdf5.h"
 #include "roadmap/roadmap.h"
@@ -129,6 +130,14 @@ std::string verticesCsv(const Roadmap& roadmap) {
   return out;
 }
 
+/// Of what `self_margin` is said of.
+std::string edgesHash(const std::vector<double>& configurations, const std::vector<std::int64_t>& edges) {
+  const auto hashOf = [](const auto& values) {
+    return certificate::sha256Text({reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]});
+  };
+  return certificate::sha256Text(hashOf(configurations) + hashOf(edges));
+}
+
 std::string hdf5Bytes(const Roadmap& roadmap, const std::vector<std::size_t>& edges) {
   hdf5::Image image;
   image.add("configurations", {roadmap.numVertices(), roadmap.joints.size()}, roadmap.configurations.data());
@@ -146,6 +155,7 @@ std::string hdf5Bytes(const Roadmap& roadmap, const std::vector<std::size_t>& ed
   image.attribute("", "format", kFormat);
   image.attribute("", "robot", roadmap.robot);
   image.attribute("", "self_margin", roadmap.self_proven ? fmt::format("{}", roadmap.self_margin) : "none");
+  image.attribute("", "sha256", edgesHash(roadmap.configurations, ends));
   return image.bytes();
 }
 
@@ -186,7 +196,8 @@ Roadmap readRoadmap(const std::string& path, const KinematicTree& tree) {
   }
   roadmap.robot = text("robot");
   const std::string margin = text("self_margin");
-  roadmap.self_proven = !margin.empty() && margin != "none";
+  roadmap.changed = text("sha256") != edgesHash(roadmap.configurations, roadmap.edges);
+  roadmap.self_proven = !roadmap.changed && !margin.empty() && margin != "none";
   if (roadmap.self_proven) roadmap.self_margin = std::stod(margin);
   return roadmap;
 }

@@ -2,6 +2,7 @@
 #include "roadmap/roadmap.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <stdexcept>
 
@@ -39,6 +40,7 @@ double Roadmap::length(std::size_t edge) const {
 
 Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
                     const RoadmapOptions& options, std::size_t& tried) {
+  assert(!request.ignore_initial_contact);
   const KinematicTree& tree = manager.tree();
   Roadmap roadmap;
   std::vector<Range> ranges;
@@ -117,7 +119,7 @@ Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
     }
   }
   roadmap.self_margin = request.margin;
-  roadmap.self_proven = request.check_self;
+  roadmap.self_proven = request.check_self && !request.ignore_initial_contact;
   return roadmap;
 }
 

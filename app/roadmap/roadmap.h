@@ -19,6 +19,7 @@ struct Roadmap {
   std::string robot;                   ///< hash of robot and allowed pairs that it was made for
   double self_margin = 0;              ///< links are proven farther apart than this on all edges, m
   bool self_proven = false;            ///< they are
+  bool changed = false;                ///< somebody has edited the file that it was read from
 
   Columns answers;                  ///< of each edge; none: nobody has asked
   std::vector<std::string> bodies;  ///< of each edge's first contact, "link, obstacle"; empty: there is none
@@ -43,6 +44,7 @@ struct RoadmapOptions {
 /// Draws configurations within the joints' limits (those that turn forever within ±pi) that are proven free, joins each
 /// with its nearest ones, and leaves out edges that are not proven free.
 /// @param manager  of the robot, and of what always stands around it.
+/// @param request  must not ignore contact at the start: a vertex is to be free, and edges are gone along both ways.
 /// @param[out] tried  edges that were asked.
 /// @throws std::invalid_argument for joints that a roadmap has no distance for (planar, floating, spherical), lengths
 ///   without limits, a given configuration that is beyond limits or not proven free; std::runtime_error where hardly

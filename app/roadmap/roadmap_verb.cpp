@@ -105,9 +105,10 @@ int certify(Options& o) {
     const bool holds = roadmap.self_proven && same && o.request.margin <= roadmap.self_margin;
     if (!holds) {
       fmt::print(stderr, "fcl_artic: note: links are checked against links again: {}\n",
-                 !roadmap.self_proven ? "the roadmap was made without that"
-                 : !same              ? "the roadmap is of another robot, other allowed pairs or another load"
-                                      : fmt::format("the roadmap was made for a margin of {} m", roadmap.self_margin));
+                 roadmap.changed        ? "the roadmap was changed since it was made"
+                 : !roadmap.self_proven ? "the roadmap was made without that"
+                 : !same                ? "the roadmap is of another robot, other allowed pairs or another load"
+                         : fmt::format("the roadmap was made for a margin of {} m", roadmap.self_margin));
     }
     o.request.check_self = !holds;
   }
@@ -129,6 +130,7 @@ void addCommon(CLI::App& verb, Options& o) {
   for (const char* name : {"--scene", "--attach", "--package", "--solid"})
     verb.get_option(name)->allow_extra_args(false);
   addQueryOptions(verb, o.request);
+  verb.remove_option(verb.get_option("--ignore-initial-contact"));  // edges are gone along both ways
   verb.add_option("--threads", o.make.threads, "Threads at most; 0: as many as the machine runs at once")
       ->check(CLI::NonNegativeNumber)
       ->group("Query")

@@ -463,6 +463,70 @@ TEST_F(EdgesTest, ScenesOfShapesAreThoseOfFiles) {
   EXPECT_GT(touching, 10);
 }
 
+TEST_F(EdgesTest, FilesThatLeaveRowsOutAreRefused) {
+  arm();
+  writeScenes();
+  const double configurations[10] = {0, 0, 0.1, 0, 0.2, 0, 0.3, 0, 0.4, 0}, times[4] = {0, 1, 2, 3};
+  const std::int64_t pairs[2] = {0, 1};
+  const struct {
+    std::vector<std::int64_t> first;
+    bool times, ends;
+    const char* named;  ///< empty: the file is good
+  } trajectories[] = {
+      {{0, 2, 5}, false, false, ""},
+      {{1, 5}, false, false, "'first' goes from 1 to 5, and is to go from 0 to 5, the number of rows of 'waypoints'"},
+      {{0, 2}, false, false, "'first' goes from 0 to 2, and is to go from 0 to 5"},
+      {{0, 5}, true, false, "dataset 'times' is to be one column of 5 rows"},
+      {{0, 5}, false, true, "there are edges in more than one form"},
+  };
+  for (const auto& one : trajectories) {
+    Image image;
+    image.add("waypoints", {5, 2}, configurations);
+    image.add("first", {one.first.size()}, one.first.data());
+    if (one.times) image.add("times", {4}, times);
+    if (one.ends) {
+      image.add("configurations", {5, 2}, configurations);
+      image.add("edges", {1, 2}, pairs);
+    }
+    write("edges.h5", image.bytes());
+    const Outcome outcome = run(command("made" + std::to_string(&one - trajectories)));
+    EXPECT_EQ(outcome.status, *one.named ? 2 : 0) << one.named << outcome.err;
+    EXPECT_NE(outcome.err.find(one.named), std::string::npos) << outcome.err;
+  }
+
+  edges(20);
+  const std::int8_t kind[] = {1, 0};
+  const double size[] = {0.1, 0, 0, 0.3, 0.2, 0.2}, position[] = {0.3, 0.5, 0, 0.2, -0.7, 0};
+  for (const std::vector<std::int64_t>& first : {std::vector<std::int64_t>{0, 1}, {1, 2}, {2, 2}, {0, 1, 2}}) {
+    Image image;
+    image.add("first", {first.size()}, first.data());
+    image.add("kind", {2}, kind);
+    image.add("size", {2, 3}, size);
+    image.add("position", {2, 3}, position);
+    const Outcome outcome = run("certify --edges " + path("edges.h5") + " --robot " + path("arm.urdf") + " --scenes " +
+                                write("shapes.h5", image.bytes()) + " --out " + path("shapes"));
+    EXPECT_EQ(outcome.status, first.size() == 3 ? 0 : 2) << outcome.err;
+    EXPECT_EQ(outcome.err.find("is to go from 0 to 2, the number of rows of 'kind'") == std::string::npos,
+              first.size() == 3);
+  }
+}
+
+TEST_F(EdgesTest, WhatAllBlocksMeetIsSaidOnce) {
+  arm();
+  writeScenes();
+  const double configurations[4] = {0, 0, 0.1, 0};
+  const std::int64_t pairs[4] = {0, 1, 0, 2};
+  Image image;
+  image.add("configurations", {2, 2}, configurations);
+  image.add("edges", {2, 2}, pairs);
+  write("edges.h5", image.bytes());
+  const Outcome outcome = run(command("made"));
+  EXPECT_EQ(outcome.status, 2);
+  const std::string what = "edge 1: there is no configuration 2, they are numbered 0 to 1";
+  ASSERT_NE(outcome.err.find(what), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find(what), outcome.err.rfind(what)) << outcome.err;
+}
+
 #ifdef FCL_ARTIC_VERIFY
 TEST_F(EdgesTest, CertificatesOfBlocksAreProvenAgain) {
   arm();

@@ -142,6 +142,38 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   EXPECT_GT(loose.second, 50);
   EXPECT_EQ(counts("map.h5", "", err).second, 0);
   EXPECT_EQ(err, "");
+  // Edges are gone along both ways: contact at one end can't be left out.
+  for (const std::string& verb : {std::string("make"), "certify " + path("map.h5")}) {
+    const Outcome ignoring =
+        run("roadmap " + verb + " --robot " + robot + " --ignore-initial-contact --out " + path("x.h5"));
+    EXPECT_EQ(ignoring.status, 2);
+    EXPECT_NE(ignoring.err.find("--ignore-initial-contact"), std::string::npos) << ignoring.err;
+  }
+  // Edges that somebody has added are not those that were proven.
+  {
+    const File made(path("map.h5"));
+    std::vector<double> configurations;
+    std::vector<std::int64_t> edges;
+    const std::size_t vertices = made.shape("configurations")[0];
+    made.read("configurations", 0, vertices, configurations);
+    made.read("edges", 0, made.shape("edges")[0], edges);
+    for (std::int64_t v = 1; v < static_cast<std::int64_t>(vertices); ++v) edges.insert(edges.end(), {0, v});
+    fcl_artic::hdf5::Image image;
+    image.add("configurations", {vertices, 2}, configurations.data());
+    image.attribute("configurations", "joints", made.strings("configurations", "joints"));
+    image.add("edges", {edges.size() / 2, 2}, edges.data());
+    for (const char* name : {"format", "robot", "self_margin", "sha256"}) {
+      ASSERT_EQ(made.strings("", name).size(), 1u) << name;
+      image.attribute("", name, made.strings("", name)[0]);
+    }
+    write("more.h5", image.bytes());
+  }
+  EXPECT_GT(counts("more.h5", "", err).second, 0);
+  EXPECT_NE(err.find("the roadmap was changed since it was made"), std::string::npos) << err;
+  // What is certified again holds for the same edges.
+  ASSERT_EQ(run("roadmap certify " + path("map.h5") + " --robot " + robot + " --out " + path("again.h5")).status, 0);
+  EXPECT_EQ(counts("again.h5", "", err).second, 0);
+  EXPECT_EQ(err, "");
   // A larger margin than was proven, and another robot.
   EXPECT_GT(counts("map.h5", "--margin 0.05", err).second, 0);
   EXPECT_NE(err.find("margin of 0 m"), std::string::npos) << err;
@@ -150,6 +182,14 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   write("two.urdf", longer);
   EXPECT_GT(counts("map.h5", "", err).second, 0);
   EXPECT_NE(err.find("another robot"), std::string::npos) << err;
+  // Another load: points that are larger.
+  write("points.xyz", "0 0 0\n");
+  const std::string load = " --robot " + robot + " --attach left=" + path("points.xyz") + "@1,0,0 --point-radius ";
+  ASSERT_EQ(run("roadmap make" + load + "0.01 --out " + path("load.h5") + " " + options).status, 0);
+  EXPECT_EQ(run("roadmap certify " + path("load.h5") + load + "0.01 --out " + path("same.csv")).err, "");
+  EXPECT_NE(
+      run("roadmap certify " + path("load.h5") + load + "0.2 --out " + path("larger.csv")).err.find("another load"),
+      std::string::npos);
 }
 
 TEST_F(RoadmapTest, GraphMlIsReadByBoostGraph) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "hdf5/hdf5.h"
+
+namespace fcl_artic::app {
+
+/// Requires that a column of first rows, of trajectories or scenes, leaves out no row of what it divides: a scene with
+/// an obstacle less would be called free.
+/// @param first  the dataset of first rows, and at its end the number of all: not empty.
+/// @param rows  the dataset that it divides.
+/// @throws std::runtime_error naming the file.
+void requireAllRows(const hdf5::File& file, const std::string& first, const std::string& rows);
+
+}  // namespace fcl_artic::app
