@@ -229,7 +229,7 @@ elseif(CASE STREQUAL "ros")
     tinyxml2=libtinyxml2-dev ompl=libompl-dev opengl=libgl-dev libosmesa6-dev=libosmesa6-dev cli11=libcli11-dev
     nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev yaml-cpp=libyaml-cpp-dev hdf5=libhdf5-dev mpi=libopenmpi-dev zlib=zlib1g-dev libgmp=libgmp-dev mpfr=libmpfr-dev
     pybind11-dev=pybind11-dev python3-dev=python3-dev python3-numpy=python3-numpy gtest=libgtest-dev
-    benchmark=libbenchmark-dev python3-pytest=python3-pytest python3-mypy=mypy python3-networkx=python3-networkx python3-tqdm=python3-tqdm
+    benchmark=libbenchmark-dev boost=libboost-graph-dev python3-pytest=python3-pytest python3-mypy=mypy python3-networkx=python3-networkx python3-tqdm=python3-tqdm
     doxygen=doxygen python3-sphinx=python3-sphinx python3-breathe=python3-breathe cmake=cmake pkg-config=pkg-config)
   file(READ "${SOURCE}/package.xml" xml)
   if(NOT xml MATCHES "<version>${VERSION}</version>")
