@@ -70,10 +70,11 @@ std::int64_t add(int counter, std::int64_t number) {
   return before;
 }
 
-/// Waits without taking a processor from those that still compute.
-void waitFor(MPI_Request& request) {
+/// Sleeps until \p request is done: MPI_Wait alone would take a processor from
+/// those that still compute.
+void sleepUntilDone(MPI_Request& request) {
   for (int done = 0; !done;) {
-    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    MPI_Request_get_status(request, &done, MPI_STATUS_IGNORE);
     if (!done) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
@@ -83,9 +84,11 @@ int finish(int status, int* first) {
   *first = status;
   MPI_Request request;
   MPI_Iallreduce(&status, &most, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request);
-  waitFor(request);
+  sleepUntilDone(request);
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
   MPI_Ibcast(first, 1, MPI_INT, 0, MPI_COMM_WORLD, &request);
-  waitFor(request);
+  sleepUntilDone(request);
+  MPI_Wait(&request, MPI_STATUS_IGNORE);
   return most;
 }
 
