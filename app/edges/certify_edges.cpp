@@ -325,8 +325,8 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
     bool is_new = false;
     // What keeps this block from being computed is told, and the others are computed all the same.
     try {
-      if (const std::optional<Columns> finished = folder->readBlock(block)) {
-        counts.add(*finished);
+      if (const std::optional<Block> finished = folder->readBlock(block)) {
+        counts.add(finished->counts);
       } else {
         is_new = true;
         answerer.answer(block);
@@ -392,7 +392,9 @@ int certifyEdges(const WorldOptions& world, EdgesOptions& o) {
   if (ranks->rank() != 0 && !error.empty() && first != kFailed) {  // what all ranks find is said once
     fmt::print(stderr, "fcl_artic: rank {}: error: {}\n", ranks->rank(), error);
   }
-  if (worst != kFailed && ranks->rank() == 0 && o.shard.empty()) printSummary(*folder, folder->merge(false), false);
+  if (worst != kFailed && ranks->rank() == 0 && o.shard.empty()) {
+    printSummary(*folder, folder->merge(false, Read::summary), false);  // each block was written or read just now
+  }
   return worst == kDone ? kExitFree : kExitError;
 }
 

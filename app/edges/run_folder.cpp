@@ -42,6 +42,25 @@ void makeFolder(const std::string& path) {
   if (error) throw std::runtime_error(fmt::format("cannot make the folder '{}': {}", path, error.message()));
 }
 
+/// Counts as JSON says them, and back.
+void put(const Counts& counts, Json& to) {
+  for (std::int8_t s = 0; s < kNumRowStatuses; ++s) to[toString(static_cast<RowStatus>(s))] = counts.of[s];
+  to["contact_uncertain"] = counts.uncertain;
+  to["free_with_unproven_allowed_pairs"] = counts.with_unproven;
+}
+Counts countsOf(const Json& json) {
+  Counts counts;
+  for (std::int8_t s = 0; s < kNumRowStatuses; ++s) counts.of[s] = json.at(toString(static_cast<RowStatus>(s)));
+  counts.uncertain = json.at("contact_uncertain");
+  counts.with_unproven = json.at("free_with_unproven_allowed_pairs");
+  return counts;
+}
+Json jsonOf(const Counts& counts) {
+  Json json;
+  put(counts, json);
+  return json;
+}
+
 Json parse(const std::string& path) {
   const std::string content = files::read(path);
   try {
@@ -95,7 +114,7 @@ std::string RunFolder::worldPath(std::size_t scene) const {
   return fmt::format("{}/certificates/scene-{:07}.world", folder_, scene);
 }
 
-std::optional<Columns> RunFolder::readBlock(std::size_t block) const {
+std::optional<Block> RunFolder::readBlock(std::size_t block, Read what) const {
   const std::string path = blockPath(block);
   if (!fs::exists(path)) return std::nullopt;
   const auto damaged = [&](const std::string& why) -> DamagedBlock {
@@ -103,9 +122,7 @@ std::optional<Columns> RunFolder::readBlock(std::size_t block) const {
         fmt::format("block {} is damaged: {}; remove '{}' and run again, only it is computed anew", block, why, path));
   };
   const std::size_t count = cut().count(block);
-  Columns rows;
-  rows.assign(count, certificates());
-  std::string stored;
+  Block read;
   try {
     const hdf5::File file(files::read(path), path);
     const auto text = [&](const char* name) {
@@ -115,10 +132,14 @@ std::optional<Columns> RunFolder::readBlock(std::size_t block) const {
     if (text("run") != hash_) throw std::runtime_error(fmt::format("'{}': it is of another run", path));
     if (text("block") != std::to_string(block))
       throw std::runtime_error(fmt::format("'{}': it is block {}", path, text("block")));
-    stored = text("sha256");
+    read.sha256 = text("sha256");
+    read.counts = countsOf(Json::parse(text("counts")));
+    if (read.counts.rows() != count) throw std::runtime_error(fmt::format("'{}': it has not {} rows", path, count));
+    if (what == Read::summary) return read;
+    read.rows.assign(count, certificates());
     std::vector<double> doubles;
     std::vector<std::int64_t> numbers;
-    forEachColumn(rows, [&](const char* name, hdf5::Type type, auto& values) {
+    forEachColumn(read.rows, [&](const char* name, hdf5::Type type, auto& values) {
       if (file.shape(name) != std::vector<std::size_t>{count}) {
         throw std::runtime_error(fmt::format("'{}': column '{}' has not {} rows", path, name, count));
       }
@@ -131,14 +152,18 @@ std::optional<Columns> RunFolder::readBlock(std::size_t block) const {
         for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<T>(numbers[i]);
       }
     });
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     throw damaged(error.what());
   }
-  if (hashOf(rows) != stored) throw damaged("its rows are not those that were written, their SHA-256 differs");
-  for (const std::int8_t status : rows.status) {
+  if (hashOf(read.rows) != read.sha256)
+    throw damaged("its rows are not those that were written, their SHA-256 differs");
+  for (const std::int8_t status : read.rows.status) {
     if (status <= 0 || status >= kNumRowStatuses) throw damaged(fmt::format("a row has the status {}", status));
   }
-  return rows;
+  Counts counts;
+  counts.add(read.rows);
+  if (jsonOf(counts) != jsonOf(read.counts)) throw damaged("its counts are not those of its rows");
+  return read;
 }
 
 void RunFolder::writeBlock(std::size_t block, const Columns& rows, const std::string& records) const {
@@ -150,10 +175,13 @@ void RunFolder::writeBlock(std::size_t block, const Columns& rows, const std::st
   image.attribute("", "run", hash_);
   image.attribute("", "block", std::to_string(block));
   image.attribute("", "sha256", hashOf(rows));
+  Counts counts;
+  counts.add(rows);
+  image.attribute("", "counts", jsonOf(counts).dump());
   files::writeSynced(blockPath(block), image.bytes());
 }
 
-Json RunFolder::merge(bool partial) const {
+Json RunFolder::merge(bool partial, Read what) const {
   const Cut cut = this->cut();
   Counts all;
   std::vector<Counts> by_scene(cut.scene_of_edge ? 0 : cut.scenes);
@@ -162,18 +190,16 @@ Json RunFolder::merge(bool partial) const {
   std::string hashes;
   for (std::size_t block = 0; block < cut.blocks(); ++block) {
     try {
-      const std::optional<Columns> rows = readBlock(block);
-      if (!rows) {
+      const std::optional<Block> read = readBlock(block, what);
+      if (!read) {
         missing.push_back(block);
         hashes += "missing\n";
         continue;
       }
-      Counts counts;
-      counts.add(*rows);
-      all.add(counts);
-      if (!cut.scene_of_edge) by_scene[cut.sceneOf(block)].add(counts);
+      all.add(read->counts);
+      if (!cut.scene_of_edge) by_scene[cut.sceneOf(block)].add(read->counts);
       finished.push_back(block);
-      hashes += hashOf(*rows) + "\n";
+      hashes += read->sha256 + "\n";
     } catch (const DamagedBlock& error) {
       damaged.push_back(error.what());
     }
@@ -217,12 +243,7 @@ Json RunFolder::merge(bool partial) const {
 
   Json summary = {{"format", kFormat},  {"run", hash_},           {"table_sha256", certificate::sha256Text(hashes)},
                   {"rows", cut.rows()}, {"blocks", cut.blocks()}, {"missing_blocks", missing.size()}};
-  const auto add = [](const Counts& counts, Json& to) {
-    for (std::int8_t s = 0; s < kNumRowStatuses; ++s) to[toString(static_cast<RowStatus>(s))] = counts.of[s];
-    to["contact_uncertain"] = counts.uncertain;
-    to["free_with_unproven_allowed_pairs"] = counts.with_unproven;
-  };
-  add(all, summary);
+  put(all, summary);
   constexpr std::size_t kScenesShown = 10000;
   if (!by_scene.empty() && by_scene.size() <= kScenesShown) {
     Json& scenes = summary["scenes"] = Json::array();
@@ -230,7 +251,7 @@ Json RunFolder::merge(bool partial) const {
       by_scene[s].of[0] = cut.edges - by_scene[s].rows();
       Json& scene = scenes.emplace_back(
           Json{{"name", run_.at("scenes").contains("names") ? run_.at("scenes").at("names").at(s) : Json(s)}});
-      add(by_scene[s], scene);
+      put(by_scene[s], scene);
     }
   }
   files::writeSynced(folder_ + "/summary.json", textOf(summary));

@@ -40,6 +40,19 @@ class DamagedBlock : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A block as its file holds it.
+struct Block {
+  Columns rows;        ///< empty where only the summary was read
+  Counts counts;       ///< of the rows
+  std::string sha256;  ///< hashOf(rows)
+};
+
+/// How much of a block's file is read.
+enum class Read {
+  rows,    ///< all of it, and its summary is checked against the rows
+  summary  ///< counts and hash as the file says them
+};
+
 class RunFolder {
  public:
   /// Of a run that begins or goes on.
@@ -60,18 +73,20 @@ class RunFolder {
   std::string certificatePath(std::size_t block) const;
   std::string worldPath(std::size_t scene) const;
 
-  /// The rows of a block that is finished; nothing of one that isn't there.
+  /// A block that is finished; nothing of one that isn't there.
   /// @throws DamagedBlock naming the file and the cure: of another run, not whole, or not what was written.
-  std::optional<Columns> readBlock(std::size_t block) const;
+  std::optional<Block> readBlock(std::size_t block, Read what = Read::rows) const;
   /// @param records  of certificates; written first.
   /// @throws std::runtime_error naming the file.
   void writeBlock(std::size_t block, const Columns& rows, const std::string& records) const;
 
   /// Writes the table of all blocks (table.h5, a virtual one) and summary.json.
   /// @param partial  blocks that are missing are no error: their rows say so.
+  /// @param what     Read::summary for who has written all blocks or read their rows: the time that one process takes
+  ///   here is time that all ranks wait.
   /// @return the summary.
   /// @throws std::runtime_error naming blocks that are missing or damaged.
-  nlohmann::ordered_json merge(bool partial) const;
+  nlohmann::ordered_json merge(bool partial, Read what = Read::rows) const;
 
   const std::string& path() const { return folder_; }
 

@@ -276,6 +276,18 @@ TEST_F(EdgesTest, ADamagedBlockIsNamedAndTheOthersStay) {
   damaged.push_back(whole.substr(0, whole.size() / 2));
   damaged.emplace_back();
   damaged.push_back(read(block("made", 2)));
+  // One more free, one less in contact: rows and their hash as they were.
+  const auto at = whole.find("{\"missing\":0,\"free\":");
+  ASSERT_NE(at, std::string::npos);
+  const std::string counts = whole.substr(at, whole.find('}', at) - at);
+  const auto changed = [&](const char* key, int by) {
+    const auto value = counts.find(std::string("\"") + key + "\":") + std::string(key).size() + 3;
+    const std::string now = std::to_string(std::stoi(counts.substr(value)) + by);
+    std::string text = whole;
+    return text.replace(at + value, now.size(), now);
+  };
+  damaged.push_back(changed("free", 1));               // another sum
+  damaged.push_back(changed("contact_uncertain", 1));  // other counts of as many rows
   for (std::size_t k = 0; k < damaged.size(); ++k) {
     write("made/blocks/block-0000001.h5", damaged[k]);
     const Outcome merged = run("certify --merge --out " + path("made"));
