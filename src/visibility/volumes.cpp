@@ -46,7 +46,7 @@ void Bounds::join(const Bounds& other) {
 }
 
 Bounds boundsOf(const double* points, int count, double radius) {
-  Bounds b;
+  Bounds b = Bounds::none();
   double size = radius;
   for (int i = 0; i < count; ++i) {
     const double* p = points + 3 * i;
