@@ -119,9 +119,12 @@ double depthIn(const Piece& piece, const Vector3d& x) {
       return (1 - Vector3d(d[0] / e[0], d[1] / e[1], d[2] / e[2]).norm()) * std::min({e[0], e[1], e[2]});
     case PieceKind::halfspace:
       return piece.center[0] - Vector3d::Map(e).dot(x);
-    default:
-      return -1;
+    case PieceKind::vertices:
+    case PieceKind::hull:
+    case PieceKind::plane:
+      return -1;  // no inequality of its size
   }
+  return -1;
 }
 
 double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c) {

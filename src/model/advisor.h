@@ -7,6 +7,8 @@
 
 #include <cstdint>
 
+#include "model/pair_id.h"
+
 namespace fcl_artic {
 namespace engine {
 
@@ -23,7 +25,7 @@ struct SweptLink {
 
 /// A pair of a link and another body that stage 1 left.
 struct CullCandidate {
-  std::int32_t pair;
+  PairId pair;
   std::int32_t swept;   ///< links[8 * swept + k]: what the link sweeps in part k
   std::int32_t still;   ///< the other body, which stands still in the frame of these
   const Placement* at;  ///< of its tree in that frame

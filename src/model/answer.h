@@ -7,6 +7,7 @@
 
 #include "fcl_artic/bracket.h"
 #include "fcl_artic/statistics.h"
+#include "model/pair_id.h"
 
 namespace fcl_artic {
 namespace engine {
@@ -20,7 +21,8 @@ constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7, kVolume = 9;
 
 /// Two leaves that meet, or come too near to be told apart.
 struct LeafContact {
-  std::int32_t pair, body_a, body_b;
+  PairId pair;
+  std::int32_t body_a, body_b;
   std::int32_t piece_a, piece_b;  ///< -1: proven of what a mesh encloses, of no triangle
   bool certain;
   double t_lower, t_upper;    ///< this leaf pair's own bracket
@@ -44,7 +46,8 @@ static inline bool comesBefore(const LeafContact& x, const LeafContact& y) {
 
 /// A pair in contact at t = 0 and the time from which it is watched again; 2: never.
 struct Ignored {
-  std::int32_t pair, body_a, body_b;
+  PairId pair;
+  std::int32_t body_a, body_b;
   double watch_from;
 };
 

@@ -48,6 +48,20 @@ static inline double provenBy(const Bracket& bracket) {
   return bracket.status != Status::free && (bracket.certain || bracket.t_upper < 1) ? bracket.t_upper : kNever;
 }
 
+/// The answer of a trajectory, as far as it is known, takes in that of its next piece, carried into its time.
+/// @param whole  free as far as the piece begins, or, if contact_found, with the first contact.
+static inline void joinNextPiece(Bracket& whole, const Bracket& piece, bool contact_found) {
+  if (!contact_found) {
+    whole = piece;
+  } else if (piece.status != Status::free) {
+    if (piece.t_upper < whole.t_upper) whole.t_upper = piece.t_upper;
+    if (piece.status == Status::undecided) {  // not of every pair
+      whole.status = Status::undecided;
+      whole.certain = false;
+    }
+  }
+}
+
 /// Takes in that a contact of this answer is proven by t_upper.
 static inline void sharpen(Bracket& bracket, double t_upper, double tolerance_time, bool any) {
   if (bracket.status == Status::free || t_upper >= bracket.t_upper) return;

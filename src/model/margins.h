@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "model/pair_id.h"
+
 namespace fcl_artic {
 namespace engine {
 
@@ -23,7 +25,7 @@ class Margins {
                                      double largest) {
     scene_ = scene;
     link_ = link;
-    num_scene_pairs_ = num_scene_pairs;
+    pairs_.num_scene_pairs = num_scene_pairs;
     largest_ = largest + added_ > requested_ ? largest + added_ : requested_;
   }
   /// For a problem whose link pairs begin so many later.
@@ -32,18 +34,16 @@ class Margins {
   }
 
   /// Of a pair by its number in the problem.
-  [[gnu::always_inline]] double of(std::int32_t pair) const {
-    const std::int32_t link_pair = pair - num_scene_pairs_;
-    const double* own = link_pair < 0 ? scene_ : link_;
-    const double margin = own ? own[link_pair < 0 ? pair : link_pair] : -1;
-    return margin >= 0 ? margin + added_ : requested_;
+  [[gnu::always_inline]] double of(PairId pair) const {
+    const double* own = pairs_.in(scene_, link_, pair);
+    return own && *own >= 0 ? *own + added_ : requested_;
   }
   /// No pair has a larger one.
   [[gnu::always_inline]] double largest() const { return largest_; }
 
  private:
   const double *scene_ = nullptr, *link_ = nullptr;
-  std::int32_t num_scene_pairs_ = 0;
+  PairNumbering pairs_;
   double requested_, added_, largest_;  ///< the first and the last with what is added
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "model/pair_id.h"
 #include "model/sweep.h"
 #include "model/tree_view.h"
 
@@ -76,8 +77,8 @@ struct PairParts {
   const Placement *inverse_a, *placement_b;
 };
 
-/// Everything that stays the same from query to query.
-struct Problem {
+/// Everything that stays the same from query to query. (Of the pairs' numbers: PairNumbering.)
+struct Problem : PairNumbering {
   const Body* bodies = nullptr;
   std::int32_t num_bodies = 0;
   const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first, then moving obstacles
@@ -85,38 +86,29 @@ struct Problem {
   std::int32_t num_scene_movers = 0;  ///< the first so many are checked against the obstacles that stand still
   const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
   std::int32_t num_sweeps = 0;
-  /// Pair m * num_obstacles + o is mover m and obstacle o; pair num_scene_pairs + i is link pair i.
   const LinkPair* link_pairs = nullptr;
   const MoverPair* link_movers = nullptr;  ///< of each link pair: most are done with once these are seen, side by side
   std::int32_t num_link_pairs = 0;
-  const std::uint8_t* link_allowed = nullptr;  ///< per link pair: 1 = may touch; null: none may
-  std::int32_t num_scene_pairs = 0;
+  const std::uint8_t* link_allowed = nullptr;   ///< per link pair: 1 = may touch; null: none may
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
   const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
   const StillBounds* still_bounds = nullptr;    ///< of obstacle o
-  std::int32_t num_obstacles = 0;
   const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
 
-  // Pairs by their numbers: all arithmetic with these is here. (Inlined always: each instruction set has its own.)
   [[gnu::always_inline]] std::int32_t numPairs() const { return num_scene_pairs + num_link_pairs; }
-  [[gnu::always_inline]] bool isScenePair(std::int32_t pair) const { return pair < num_scene_pairs; }
-  [[gnu::always_inline]] std::int32_t scenePair(std::int32_t mover, std::int32_t obstacle) const {
-    return mover * num_obstacles + obstacle;
-  }
-  [[gnu::always_inline]] std::int32_t linkPair(std::int32_t i) const { return num_scene_pairs + i; }
-  [[gnu::always_inline]] std::int32_t moverOf(std::int32_t scene_pair) const { return scene_pair / num_obstacles; }
-  [[gnu::always_inline]] std::int32_t obstacleOf(std::int32_t scene_pair) const { return scene_pair % num_obstacles; }
+  /// All of them, in their order.
+  [[gnu::always_inline]] PairRange pairs() const { return {numPairs()}; }
   /// The pair may touch: nobody asks for it.
-  [[gnu::always_inline]] bool isAllowed(std::int32_t pair) const {
-    const std::uint8_t* allowed = isScenePair(pair) ? scene_allowed : link_allowed;
-    return allowed && allowed[isScenePair(pair) ? pair : pair - num_scene_pairs];
+  [[gnu::always_inline]] bool isAllowed(PairId pair) const {
+    const std::uint8_t* allowed = in(scene_allowed, link_allowed, pair);
+    return allowed && *allowed;
   }
-  [[gnu::always_inline]] PairParts parts(std::int32_t pair) const {
+  [[gnu::always_inline]] PairParts parts(PairId pair) const {
     if (!isScenePair(pair)) {
-      const LinkPair& links = link_pairs[pair - num_scene_pairs];
+      const LinkPair& links = link_pairs[linkPairOf(pair)];
       return {links.a, links.b, links.sweep, links.step_b, &links.inverse_a, &links.placement_b};
     }
     const std::int32_t a = obstacles[obstacleOf(pair)], b = movers[moverOf(pair)];

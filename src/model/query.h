@@ -35,7 +35,7 @@ struct Query {
   bool any = false;               ///< stop at the first contact that is proven, wherever on the way it is
   std::int32_t max_contacts = 1;  ///< each of another pair; the search does not depend on it
   /// With ignore_initial: the only pairs whose initial contact may be ignored.
-  const std::int32_t* may_ignore = nullptr;
+  const PairId* may_ignore = nullptr;
   std::int32_t num_may_ignore = -1;  ///< -1: that of all pairs may
   std::uint64_t work_budget = 0;
   /// Told now and then up to when the motion is proven free; false ends the query, which is undecided then.

@@ -17,10 +17,6 @@ bool runs(const Engine& engine) {
 
 }  // namespace
 
-const Engine* engineNamed(const char* name) {
-  return findNamed(kEngines, name, &runs);
-}
-
 const Engine& engine() {
   static const Engine& chosen = chooseWidest(kEngines, &runs);
   return chosen;

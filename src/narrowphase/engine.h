@@ -17,14 +17,11 @@ struct Engine {
   /// One workspace serves one thread at a time; nothing in it reaches the next answer.
   void (*solve)(void* workspace, const Problem& problem, const Query& query, Answer& answer);
   /// Motion of a pair of the problem that this workspace solved last; problem and query must still be there.
-  void (*pairMotion)(void* workspace, int pair, double tm, double d, PairMotion& motion);
+  void (*pairMotion)(void* workspace, PairId pair, double tm, double d, PairMotion& motion);
 };
 
 /// The widest engine that this processor runs; FCL_ARTIC_ISA in the environment asks for another by its name.
 const Engine& engine();
-/// The engine of that name (numerics/instruction_sets.h); null where the build has none or the processor does not run
-/// it.
-const Engine* engineNamed(const char* name);
 
 /// Of these a build has those that numerics/instruction_sets.h lists.
 extern const Engine kEnginePortable, kEngineSse2, kEngineAvx2, kEngineAvx512, kEngineNeon;

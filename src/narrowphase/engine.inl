@@ -27,7 +27,7 @@ void solve(void* workspace, const Problem& problem, const Query& query, Answer& 
   static_cast<Solver*>(workspace)->solve(problem, query, answer);
 }
 
-void pairMotion(void* workspace, int pair, double tm, double d, engine::PairMotion& motion) {
+void pairMotion(void* workspace, PairId pair, double tm, double d, engine::PairMotion& motion) {
   static_cast<Solver*>(workspace)->pairMotion(pair, tm, d, motion);
 }
 

@@ -49,7 +49,7 @@ void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& 
   answer.num_contacts = static_cast<std::int32_t>(contacts_.size());
 }
 
-PairMotion EngineWorkspace::pairMotion(int pair, double tm, double d) const {
+PairMotion EngineWorkspace::pairMotion(PairId pair, double tm, double d) const {
   PairMotion motion;
   engine_.pairMotion(memory_, pair, tm, d, motion);
   return motion;

@@ -25,7 +25,7 @@ class EngineWorkspace {
   void addWitness(const Problem& problem, const Query& query, LeafContact& contact) const;
 
  private:
-  PairMotion pairMotion(int pair, double tm, double d) const;
+  PairMotion pairMotion(PairId pair, double tm, double d) const;
   void nameFeatures(const Problem& problem, const Query& query, LeafContact& contact) const;
 
   const Engine& engine_;

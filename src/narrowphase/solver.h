@@ -20,7 +20,7 @@ class Solver : SolverParts {
   void solve(const Problem& problem, const Query& query, Answer& answer);
   /// Motion of one pair over [tm - d, tm + d], for the report. The problem and the query of the last solve() must still
   /// be there.
-  void pairMotion(int pair, double tm, double d, engine::PairMotion& seen);
+  void pairMotion(PairId pair, double tm, double d, engine::PairMotion& seen);
 
  private:
   void answerWithWhatIsFound(Answer& answer);
@@ -84,7 +84,7 @@ inline void Solver::answerWithWhatIsFound(Answer& answer) {
   answer.statistics = task.statistics;
 }
 
-inline void Solver::pairMotion(int pair, double tm, double d, engine::PairMotion& seen) {
+inline void Solver::pairMotion(PairId pair, double tm, double d, engine::PairMotion& seen) {
   motion.set(pair, TimeBatch::around(tm, d));
   const RigidLanes& m = motion.seenFromA();
   for (int order = 0; order < 3; ++order) {

@@ -17,8 +17,8 @@ struct ArticulatedCollisionManager::Aspects {
   TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
   bool own_margins = true;  ///< pairs may have margins of their own; false: all have the request's
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
-  const std::vector<std::int32_t>* may_ignore = nullptr;
-  std::vector<std::int32_t>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
+  const std::vector<engine::PairId>* may_ignore = nullptr;
+  std::vector<engine::PairId>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
   /// What a certificate says beyond the public answer.
   struct Details {
     std::vector<engine::Ignored> ignored;        ///< all ignored pairs

@@ -118,17 +118,17 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   }
   result = CertifiedPairResult();
   result.certificate = none;
-  result.status = Status::contact;
   // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
   // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then
   // anything may follow: that is left open, as a contact that is not certain.
   const bool never_apart = (alike && stay_parallel) || ((!parallel || alike) && heading1.analytic && heading2.analytic);
   result.ignored_initial_contact = request.ignore_initial_contact && never_apart;
-  if (result.ignored_initial_contact) result.status = Status::free;
-  result.t_lower = result.status == Status::free ? 1 : 0;
-  const bool left_open = request.ignore_initial_contact && !never_apart;
-  result.certain = result.status == Status::contact && (!parallel || alike) && !left_open;
-  result.t_upper = result.certain ? 0 : 1;
+  engine::FirstContact first;
+  if (!result.ignored_initial_contact) {
+    const bool left_open = request.ignore_initial_contact;  // they do touch at the start
+    first = {0, (parallel && !alike) || left_open ? engine::kNever : 0};
+  }
+  static_cast<Bracket&>(result) = engine::bracketOf(first, request.tolerance_time, false);
   setPoses(body1.motion, body2.motion, result);
   if (result.status == Status::free || request.max_contacts == 0) return;
   CertifiedContact contact;

@@ -20,6 +20,7 @@
 
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
+#include "model/bracket.h"
 #include "model/trajectory_time.h"
 #include "query/aspects.h"
 #include "query/claim_nothing.h"
@@ -36,6 +37,14 @@ TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
     return k == trajectory.numPieces() ? 1 : std::min(1.0, (trajectory.times()[k] - begin) / duration);
   };
   return {at(piece), at(piece + 1)};
+}
+
+/// A piece's answer in the trajectory's time: what is free is free to the end, as far as is known; a contact that is
+/// not proven may be as late as that.
+Bracket inTrajectoryTime(const Bracket& part, const PieceTime& clock, double end) {
+  if (part.isFree()) return {Status::free, end, end, false};
+  const double proven_by = engine::provenBy(part);
+  return {part.status, clock.lower(part.t_lower), proven_by <= 1 ? clock.upper(proven_by) : end, part.certain};
 }
 
 void add(QueryStatistics& sum, const QueryStatistics& s) {
@@ -69,7 +78,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   CertifiedResult sum;
   sum.t_upper = trajectory.endTime();
   certificate::Claim claim;
-  std::vector<std::int32_t> in_contact;  // pairs of which the initial contact has not ended yet
+  std::vector<engine::PairId> in_contact;  // pairs of which the initial contact has not ended yet
   bool contact_found = false;
   CertifiedResult part;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) {
@@ -92,7 +101,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       break;
     }
     if (request.work_budget) own.work_budget = request.work_budget - used;
-    std::vector<std::int32_t> still_in_contact;
+    std::vector<engine::PairId> still_in_contact;
     Aspects aspects;
     aspects.time = partOfTime(trajectory, k);
     aspects.own_margins = own_margins;
@@ -108,21 +117,9 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
     in_contact = std::move(still_in_contact);
 
-    if (part.status == Status::free) {
-      if (contact_found) continue;
-      sum.status = Status::free;
-      sum.t_lower = sum.t_upper = trajectory.endTime();
-      sum.certain = part.certain;
-      continue;
-    }
-    if (!contact_found) {
-      sum.status = part.status;
-      sum.t_lower = clock.lower(part.t_lower);
-      sum.certain = part.certain;
-      sum.M_0_at_lower = part.M_0_at_lower;
-    }
-    const double proven_by = engine::provenBy(part);
-    if (proven_by <= 1) sum.t_upper = std::min(sum.t_upper, clock.upper(proven_by));
+    engine::joinNextPiece(sum, inTrajectoryTime(part, clock, trajectory.endTime()), contact_found);
+    if (part.isFree()) continue;
+    if (!contact_found) sum.M_0_at_lower = part.M_0_at_lower;
     for (CertifiedContact& contact : part.contacts) {
       contact.t_lower = clock.lower(contact.t_lower);
       contact.t_upper = contact.certain ? clock.upper(contact.t_upper) : trajectory.endTime();
@@ -130,10 +127,6 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       sum.contacts.push_back(std::move(contact));
     }
     keepFirstOfEachPair(sum.certain, sum.contacts);
-    if (contact_found && part.status == Status::undecided) {
-      sum.status = Status::undecided;
-      sum.certain = false;
-    }
     contact_found = contact_found || part.status == Status::contact;
     if (!every_pair || part.status == Status::undecided || sum.contacts.size() >= request.max_contacts) {
       break;

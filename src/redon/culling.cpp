@@ -138,10 +138,10 @@ std::uint64_t Culling::meetingParts(std::int32_t a, std::int32_t b, int level) {
   return mask;
 }
 
-void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf,
+void Culling::bodyPairs(const std::function<bool(engine::PairId)>& wanted, const TreeOf& treeOf,
                         std::vector<BodyPair>& out) {
   out.clear();
-  const auto add = [&](std::int32_t index, int level, std::uint64_t mask) {
+  const auto add = [&](engine::PairId index, int level, std::uint64_t mask) {
     BodyPair pair;
     pair.index = index;
     pair.parts = problem_->parts(index);
@@ -169,7 +169,7 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
           stack.push_back(node.left());
           continue;
         }
-        const std::int32_t pair = problem_->scenePair(m, node.piece());
+        const engine::PairId pair = problem_->scenePair(m, node.piece());
         if (!wanted(pair)) continue;
         const int coarse = std::min(kCoarse, level);
         std::uint64_t mask = divide(m, 0, 1, coarse, lo, hi);
@@ -180,7 +180,7 @@ void Culling::bodyPairs(const std::function<bool(std::int32_t)>& wanted, const T
   }
   if (!query_->check_self) return;
   for (int p = 0; p < problem_->num_link_pairs; ++p) {
-    const std::int32_t index = problem_->linkPair(p);
+    const engine::PairId index = problem_->linkPair(p);
     if (!wanted(index)) continue;
     if (!problem_->num_movers) {
       add(index, 0, 1);

@@ -18,7 +18,7 @@ namespace redon {
 
 /// A pair of bodies that may touch.
 struct BodyPair {
-  std::int32_t index = -1;  ///< in the problem
+  engine::PairId index = engine::kNoPair;  ///< in the problem
   engine::PairParts parts;
   const ObbTree *a = nullptr, *b = nullptr;
   IntervalTransform inverse_a, placement_b;
@@ -43,8 +43,8 @@ class Culling {
 
   void begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
   /// Pairs of bodies that may touch, of those wanted.
-  /// @param wanted  by index of the pair in the problem.
-  void bodyPairs(const std::function<bool(std::int32_t)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out);
+  /// @param wanted  asked of each pair of the problem.
+  void bodyPairs(const std::function<bool(engine::PairId)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out);
   /// To be called next.
   void start(const std::vector<BodyPair>& pairs);
   /// The finest sub-intervals of all pairs: [0, 1] in so many equal parts.

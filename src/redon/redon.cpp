@@ -17,7 +17,9 @@ namespace {
 
 using engine::Answer;
 using engine::FirstContact;
+using engine::indexOf;
 using engine::LeafContact;
+using engine::PairId;
 using engine::Problem;
 using engine::Query;
 using Clock = std::chrono::steady_clock;
@@ -92,9 +94,9 @@ class Run {
   void solve(Answer& answer);
 
  private:
-  int numPairs() const { return problem_.numPairs(); }
-  bool asked(std::int32_t pair) const;
-  bool ours(std::int32_t pair) const;
+  std::size_t numPairs() const { return static_cast<std::size_t>(problem_.numPairs()); }
+  bool asked(PairId pair) const;
+  bool ours(PairId pair) const;
   bool choosePairs();
   bool touchesAtStart(Answer& answer);
   void solveRest(const Query& query, Answer& answer);
@@ -103,9 +105,9 @@ class Run {
   Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
   Found solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
   void keepFirst(std::size_t begin, double bracket);
-  void provenFree(std::int32_t pair, double until) {
-    FCL_ARTIC_ASSERT(pair >= 0 && pair < numPairs() && until >= 0 && until <= 1);
-    double& known = w_.free_until[static_cast<std::size_t>(pair)];
+  void provenFree(PairId pair, double until) {
+    FCL_ARTIC_ASSERT(indexOf(pair) < numPairs() && until >= 0 && until <= 1);
+    double& known = w_.free_until[indexOf(pair)];
     known = std::max(known, until);
   }
 
@@ -118,12 +120,12 @@ class Run {
   Counts& counts_;
 };
 
-bool Run::asked(std::int32_t pair) const {
+bool Run::asked(PairId pair) const {
   return (problem_.isScenePair(pair) ? query_.check_scene : query_.check_self) && !problem_.isAllowed(pair);
 }
 
 /// Triangles on both sides, no margin, and a motion by joints.
-bool Run::ours(std::int32_t pair) const {
+bool Run::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
@@ -132,14 +134,14 @@ bool Run::ours(std::int32_t pair) const {
 
 /// @return whether any pair is the paper's.
 bool Run::choosePairs() {
-  w_.by_engine.assign(static_cast<std::size_t>(numPairs()), 0);
-  w_.free_until.assign(static_cast<std::size_t>(numPairs()), 1);  // of pairs that nobody asks for
+  w_.by_engine.assign(numPairs(), 0);
+  w_.free_until.assign(numPairs(), 1);  // of pairs that nobody asks for
   bool any = false;
-  for (std::int32_t p = 0; p < numPairs(); ++p) {
+  for (const PairId p : problem_.pairs()) {
     if (!asked(p)) continue;
-    w_.free_until[static_cast<std::size_t>(p)] = 0;
+    w_.free_until[indexOf(p)] = 0;
     const bool own = ours(p);
-    w_.by_engine[static_cast<std::size_t>(p)] = !own;
+    w_.by_engine[indexOf(p)] = !own;
     any = any || own;
   }
   return any;
@@ -168,7 +170,7 @@ bool Run::touchesAtStart(Answer& answer) {
   if (still.ignore_initial) still.tolerance_time = 1;
   engine_.solve(problem_, still, answer);
   if (!answer.isFree()) return true;
-  for (int i = 0; i < answer.num_ignored; ++i) w_.by_engine[static_cast<std::size_t>(answer.ignored[i].pair)] = 1;
+  for (int i = 0; i < answer.num_ignored; ++i) w_.by_engine[indexOf(answer.ignored[i].pair)] = 1;
   return false;
 }
 
@@ -177,10 +179,9 @@ void Run::solveRest(const Query& query, Answer& answer) {
   w_.scene_allowed.assign(static_cast<std::size_t>(problem_.num_scene_pairs), 1);
   w_.link_allowed.assign(static_cast<std::size_t>(problem_.num_link_pairs), 1);
   std::uint64_t left = 0;
-  for (std::int32_t p = 0; p < numPairs(); ++p) {
-    if (!w_.by_engine[static_cast<std::size_t>(p)]) continue;
-    (problem_.isScenePair(p) ? w_.scene_allowed[static_cast<std::size_t>(p)]
-                             : w_.link_allowed[static_cast<std::size_t>(p - problem_.num_scene_pairs)]) = 0;
+  for (const PairId p : problem_.pairs()) {
+    if (!w_.by_engine[indexOf(p)]) continue;
+    *problem_.in(w_.scene_allowed.data(), w_.link_allowed.data(), p) = 0;
     ++left;
   }
   counts_.pairs_by_standard = left;
@@ -189,15 +190,15 @@ void Run::solveRest(const Query& query, Answer& answer) {
   w_.rest.link_allowed = w_.link_allowed.data();
   engine_.solve(w_.rest, query, answer);
   const double until = answer.isFree() ? 1 : answer.t_lower;
-  for (std::int32_t p = 0; p < numPairs(); ++p) {
-    if (w_.by_engine[static_cast<std::size_t>(p)]) provenFree(p, until);
+  for (const PairId p : problem_.pairs()) {
+    if (w_.by_engine[indexOf(p)]) provenFree(p, until);
   }
 }
 
 /// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
 void Run::findPairs() {
   StageClock clock(query_.measure_times);
-  const auto wanted = [this](std::int32_t p) { return asked(p) && !w_.by_engine[static_cast<std::size_t>(p)]; };
+  const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
   w_.culling.begin(problem_, query_, options_, counts_);
   w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
   clock.lap(counts_.culling_us);
@@ -205,10 +206,10 @@ void Run::findPairs() {
     w_.volumes.refine(problem_, query_, options_, w_.pairs, counts_);
     clock.lap(counts_.visibility_us);
   }
-  w_.left.assign(static_cast<std::size_t>(numPairs()), 0);
-  for (const BodyPair& pair : w_.pairs) w_.left[static_cast<std::size_t>(pair.index)] = 1;
-  for (std::int32_t p = 0; p < numPairs(); ++p) {
-    if (wanted(p) && !w_.left[static_cast<std::size_t>(p)]) provenFree(p, 1);
+  w_.left.assign(numPairs(), 0);
+  for (const BodyPair& pair : w_.pairs) w_.left[indexOf(pair.index)] = 1;
+  for (const PairId p : problem_.pairs()) {
+    if (wanted(p) && !w_.left[indexOf(p)]) provenFree(p, 1);
   }
 }
 
@@ -296,7 +297,7 @@ void Run::keepFirst(std::size_t begin, double bracket) {
   // It begins with the earliest of its pair: before that none of the pair's pieces touch.
   for (auto group = first; group != all.end();) {
     const auto next = std::find_if(group, all.end(), [&](const LeafContact& c) { return c.pair != group->pair; });
-    double t_lower = w_.free_until[static_cast<std::size_t>(group->pair)];
+    double t_lower = w_.free_until[indexOf(group->pair)];
     for (auto c = group; c != next; ++c) t_lower = std::min(t_lower, c->t_lower);
     group->t_lower = t_lower;
     group = next;
@@ -311,7 +312,7 @@ void Run::solve(Answer& answer) {
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) {
     counts_.pairs_by_standard = 0;
-    for (std::int32_t p = 0; p < numPairs(); ++p) counts_.pairs_by_standard += asked(p);
+    for (const PairId p : problem_.pairs()) counts_.pairs_by_standard += asked(p);
     engine_.solve(problem_, query_, answer);
     return;
   }
@@ -339,28 +340,27 @@ void Run::solve(Answer& answer) {
   findPairs();
   if (!query_.every_pair) {
     progress.others = answer.isFree() ? 1 : answer.t_lower;
-    take(w_.pairs, search(w_.pairs, contact ? (answer.certain ? answer.t_upper : answer.t_lower) : 2));
+    take(w_.pairs, search(w_.pairs, contact ? (answer.certain ? answer.t_upper : answer.t_lower) : engine::kNever));
   } else {
     std::sort(w_.pairs.begin(), w_.pairs.end(), [](const BodyPair& x, const BodyPair& y) { return x.index < y.index; });
     for (std::size_t i = 0; i < w_.pairs.size() && !out_of_budget; ++i) {
       const std::size_t before = w_.contacts.size();
       w_.one.assign(1, w_.pairs[i]);
-      const Found found = search(w_.one, 2);
+      const Found found = search(w_.one, engine::kNever);
       take(w_.one, found);
       keepFirst(before, latestBegin(found, query_.tolerance_time));
     }
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
-  const bool certain = contact && engine::isCertain(FirstContact{t_lower, t_upper}, query_.tolerance_time, false);
-  // Nothing is dropped before t_lower and t_upper are known.
-  if (!query_.every_pair) keepFirst(0, certain ? t_upper : t_lower + query_.tolerance_time);
   const bool undecided = out_of_budget || (!contact && t_lower < 1);
   const FirstContact first = contact || undecided ? FirstContact{t_lower, t_upper} : FirstContact();
   static_cast<Bracket&>(answer) =
       undecided ? engine::undecidedBracket(t_lower, first) : engine::bracketOf(first, query_.tolerance_time, false);
+  // Nothing is dropped before t_lower and t_upper are known.
+  if (!query_.every_pair) keepFirst(0, answer.certain ? answer.t_upper : t_lower + query_.tolerance_time);
   if (answer.status != Status::contact) w_.contacts.clear();
   for (LeafContact& own : w_.contacts) {
-    if (!w_.by_engine[static_cast<std::size_t>(own.pair)]) engine_.addWitness(problem_, query_, own);
+    if (!w_.by_engine[indexOf(own.pair)]) engine_.addWitness(problem_, query_, own);
   }
   answer.contacts = w_.contacts.data();
   answer.num_contacts = static_cast<std::int32_t>(w_.contacts.size());

@@ -231,7 +231,7 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
   };
   std::vector<Root> roots;
   std::size_t kept = task.first;
-  double first_lo = 2;
+  double first_lo = engine::kNever;
   for (std::size_t i = task.first; i < end; ++i) {
     const Active active = active_[i];
     const Equation& q = set_->equations()[static_cast<std::size_t>(active.equation)];
@@ -246,7 +246,7 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
       for (const Interval& x : set_->elements()[static_cast<std::size_t>(e)].middle.v)
         known = std::max(known, x.width());
     }
-    Root root{active, false, 2};
+    Root root{active, false, engine::kNever};
     root.certain = certify(q, active.lo, active.hi, root.t_upper);
     const bool near = gap <= kNoGap * known && gap <= query_->tolerance_distance;
     if (root.certain || near || narrowest) roots.push_back(root);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/answer.h"
+#include "model/bracket.h"
 #include "redon/equations.h"
 
 namespace fcl_artic {
@@ -15,13 +16,13 @@ namespace redon {
 /// What a search has proven: nothing, until it says so.
 struct Found {
   bool contact = false, out_of_budget = false;
-  double free_until = 0;  ///< no contact before; what was not looked at is not free
-  double t_upper = 2;     ///< 2: no contact is proven
+  double free_until = 0;            ///< no contact before; what was not looked at is not free
+  double t_upper = engine::kNever;  ///< contact is proven to be no later; kNever: none is
 };
 
 /// What begins later than this is not the first contact, where this one is found.
 inline double latestBegin(const Found& found, double tolerance_time) {
-  return found.t_upper < 2 ? found.t_upper : found.free_until + tolerance_time;
+  return found.t_upper < engine::kNever ? found.t_upper : found.free_until + tolerance_time;
 }
 
 class Solver {

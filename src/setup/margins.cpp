@@ -76,8 +76,8 @@ PairMargins PairMargins::of(const NamedMargins& margins, const engine::Problem& 
         if (other < first_obstacle) {
           own[{link, other}] = margin;
         } else if (link < problem.num_scene_movers) {
-          const std::int32_t pair = problem.scenePair(problem.bodies[link].mover, other - first_obstacle);
-          of.scene_[static_cast<std::size_t>(pair)] = margin;
+          const engine::PairId pair = problem.scenePair(problem.bodies[link].mover, other - first_obstacle);
+          of.scene_[engine::indexOf(pair)] = margin;
         }
       }
     }

@@ -164,14 +164,14 @@ TEST(ContactList, OneGateForAllProofs) {
   world.asPair().query.ignore_initial = true;
   world.begin();
   ContactList& contacts = world.contacts;
-  EXPECT_FALSE(contacts.takeProof(0, 0.5));  // it is not known yet what is ignored
+  EXPECT_FALSE(contacts.takeProof(TwoBalls::kPair, 0.5));  // it is not known yet what is ignored
   EXPECT_EQ(world.horizon.end(), kNever);
-  contacts.ignore(0, 0.25);
+  contacts.ignore(TwoBalls::kPair, 0.25);
   contacts.beginWatching();
-  EXPECT_FALSE(contacts.takeProof(0, 0.2));
-  EXPECT_EQ(contacts.record(0, 0, 0, 0.2), nullptr);
+  EXPECT_FALSE(contacts.takeProof(TwoBalls::kPair, 0.2));
+  EXPECT_EQ(contacts.record(TwoBalls::kPair, 0, 0, 0.2), nullptr);
   EXPECT_EQ(world.horizon.first().t_upper, kNever);
-  const LeafContact* contact = contacts.record(0, 0, 0, 0.5);
+  const LeafContact* contact = contacts.record(TwoBalls::kPair, 0, 0, 0.5);
   ASSERT_NE(contact, nullptr);
   EXPECT_EQ(contact->t_lower, 0.25);
   EXPECT_EQ(contact->t_upper, 0.5);
@@ -185,9 +185,9 @@ TEST(ContactList, KeepsTheFirstOfEachPairInOrder) {
   world.asPair().query.max_contacts = 2;
   world.begin();
   const double times[6] = {0.6, 0.2, 0.9, 0.4, 0.3, 0.5};
-  const int pairs[6] = {1, 0, 0, 0, 0, 1};
+  const PairId pairs[6] = {PairId{1}, {}, {}, {}, {}, PairId{1}};
   for (int i = 0; i < 6; ++i) {
-    LeafContact& contact = world.contacts.grow(0, 0, 0);
+    LeafContact& contact = world.contacts.grow(TwoBalls::kPair, 0, 0);
     contact.pair = pairs[i];
     contact.t_lower = times[i];
     contact.t_upper = 1;
@@ -195,15 +195,15 @@ TEST(ContactList, KeepsTheFirstOfEachPairInOrder) {
   world.contacts.order(0, 0.7);
   ASSERT_EQ(world.contacts.size(), 2);
   EXPECT_EQ(world.contacts.data()[0].t_lower, 0.2);
-  EXPECT_EQ(world.contacts.data()[0].pair, 0);
+  EXPECT_EQ(world.contacts.data()[0].pair, PairId{0});
   EXPECT_EQ(world.contacts.data()[1].t_lower, 0.5);
-  EXPECT_EQ(world.contacts.data()[1].pair, 1);
+  EXPECT_EQ(world.contacts.data()[1].pair, PairId{1});
   world.contacts.order(0, 0.7);
   EXPECT_EQ(world.contacts.size(), 2);
   world.query.max_contacts = 1;
   world.contacts.order(0, 0.7);
   ASSERT_EQ(world.contacts.size(), 1);
-  EXPECT_EQ(world.contacts.data()[0].pair, 0);
+  EXPECT_EQ(world.contacts.data()[0].pair, PairId{0});
 }
 
 TEST(SweptFrames, AreMadeOncePerBatch) {
@@ -228,7 +228,7 @@ TEST(SweptFrames, AreMadeOncePerBatch) {
 TEST(RelativeMotion, SeesEachBodyFromTheOther) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   const DifferenceBody at = world.motion.differenceAt(world.pieces[0], world.pieces[1], 3);
   EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.task.whole.at[3], 1e-14);
   EXPECT_NEAR(world.motion.differenceAt(world.pieces[0], world.pieces[1], 3, 1).pose.c[2], 0, 1e-12);  // t = 0.5
@@ -241,7 +241,7 @@ TEST(RelativeMotion, SeesEachBodyFromTheOther) {
   EXPECT_EQ(lanesOf(greater(box.lo[2], below)) & 1, 0u);  // lane 0: from -2.25 to -1.25
   EXPECT_EQ(lanesOf(greater(above, box.hi[2])) & 1, 0u);
   EXPECT_TRUE(world.motion.isSwept(0, 0));
-  world.motion.set(0, TimeBatch::middles());
+  world.motion.set(TwoBalls::kPair, TimeBatch::middles());
   EXPECT_FALSE(world.motion.isSwept(0, 0));
 }
 
@@ -249,14 +249,14 @@ TEST(RelativeMotion, WitnessIsThePairs) {
   TwoBalls world;
   world.asPair().begin();
   const Vec3 up(0, 0, 1);
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
   world.motion.setWitness(up);
-  world.motion.set(0, TimeBatch::middles());  // another batch: it serves still
+  world.motion.set(TwoBalls::kPair, TimeBatch::middles());  // another batch: it serves still
   ASSERT_NE(world.motion.witness(), nullptr);
   EXPECT_EQ((*world.motion.witness())[2], 1);
   world.begin();
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   EXPECT_EQ(world.motion.witness(), nullptr);
 }
 
@@ -264,12 +264,12 @@ TEST(Traversal, LeavesNoLaneWithContactOut) {
   for (const double shift : {0.0, 0.1, 0.37, 1.9}) {
     TwoBalls world(-2 - shift, 2 - shift);
     world.asPair().begin();
-    world.motion.set(0, world.task.whole);
+    world.motion.set(TwoBalls::kPair, world.task.whole);
     const unsigned touching = TwoBalls::touching(TwoBalls::kFirst + shift / 4, TwoBalls::kLast + shift / 4);
-    const unsigned blocked = world.traversal.blockedLanes(0, kAllLanes);
+    const unsigned blocked = world.traversal.blockedLanes(TwoBalls::kPair, kAllLanes);
     EXPECT_EQ(blocked & touching, touching) << shift;
     EXPECT_NE(blocked, kAllLanes) << shift;
-    world.traversal.descend({0, 0, 0, kAllLanes}, Aim::leaves, world.open);
+    world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
     unsigned left = 0;
     for (int i = 0; i < world.open.size(); ++i) left |= world.open[i].mask;
     EXPECT_EQ(left & touching, touching) << shift;
@@ -279,9 +279,9 @@ TEST(Traversal, LeavesNoLaneWithContactOut) {
 TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   world.horizon.suspect(0.2);
-  world.traversal.descend({0, 0, 0, kAllLanes}, Aim::split, world.open);
+  world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::split, world.open);
   unsigned put_off = 0, looked_at = 0;
   for (int i = 0; i < world.open.size(); ++i) {
     (world.open[i].put_off ? put_off : looked_at) |= world.open[i].mask;
@@ -293,11 +293,11 @@ TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
 TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   const std::uint64_t none = 0, root = 1;
-  world.traversal.knowFreeNodes(0, &root);
-  world.traversal.knowFreeNodes(0, &none);  // another advisor, which knows nothing
-  world.traversal.descend({0, 0, 0, kAllLanes}, Aim::leaves, world.open);
+  world.traversal.knowFreeNodes(TwoBalls::kPair, &root);
+  world.traversal.knowFreeNodes(TwoBalls::kPair, &none);  // another advisor, which knows nothing
+  world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
   EXPECT_EQ(world.open.size(), 0);
 }
 
@@ -305,10 +305,10 @@ TEST(PoseProofs, ProveContactWhereItIs) {
   TwoBalls world;
   world.asPair().query.any = true;
   world.begin();
-  world.motion.set(0, world.task.whole);
+  world.motion.set(TwoBalls::kPair, world.task.whole);
   for (int k = 0; k < kLanes; ++k) {
     world.begin();
-    world.motion.set(0, world.task.whole);
+    world.motion.set(TwoBalls::kPair, world.task.whole);
     const bool touch = k == 3 || k == 4;  // at 0.4375 and 0.5625; 0.3125 and 0.6875 are the very ends
     EXPECT_EQ(world.proofs.leaves(0, 0, k), touch) << k;
     ASSERT_EQ(world.contacts.size(), touch) << k;
@@ -323,7 +323,7 @@ TEST(Follower, FindsTheRootAndProvesTheContact) {
   TwoBalls world;
   world.asPair().begin();
   Candidate f = {};
-  f.entry = {0, 0, 0, kAllLanes};
+  f.entry = {TwoBalls::kPair, 0, 0, kAllLanes};
   EXPECT_FALSE(world.follower.followToRoot(f, 1, true));
   EXPECT_TRUE(f.stuck);
   EXPECT_LE(f.t_lower, TwoBalls::kFirst);
@@ -345,7 +345,7 @@ TEST(Follower, ComesToTheEndOfWhatIsFree) {
   TwoBalls world;
   world.asPair().begin();
   Candidate f = {};
-  f.entry = {0, 0, 0, kAllLanes};
+  f.entry = {TwoBalls::kPair, 0, 0, kAllLanes};
   EXPECT_TRUE(world.follower.followToRoot(f, 0.3, false));
   EXPECT_FALSE(f.stuck);
   EXPECT_GE(f.t_lower, 0.3);
@@ -355,14 +355,14 @@ TEST(AnyContact, TriesWhatIsGuessedAndBelievesNothing) {
   TwoBalls world;
   world.asPair().query.any = true;
   world.begin();
-  EXPECT_FALSE(world.any.tryOverlaps(world.open));  // nothing is guessed
-  world.any.guessOverlap(0, 0b10000001);            // free at both
+  EXPECT_FALSE(world.any.tryOverlaps(world.open));      // nothing is guessed
+  world.any.guessOverlap(TwoBalls::kPair, 0b10000001);  // free at both
   EXPECT_FALSE(world.any.tryOverlaps(world.open));
   EXPECT_EQ(world.contacts.size(), 0);
   EXPECT_EQ(world.horizon.live(), kAllLanes);
   EXPECT_EQ(world.open.size(), 0);
   world.any.forgetOverlaps();
-  world.any.guessOverlap(0, 0b1000);
+  world.any.guessOverlap(TwoBalls::kPair, 0b1000);
   EXPECT_TRUE(world.any.tryOverlaps(world.open));
   ASSERT_EQ(world.contacts.size(), 1);
   EXPECT_EQ(world.contacts.data()[0].t_upper, world.task.whole.at[3]);
@@ -533,16 +533,16 @@ TEST(InitialContacts, AreIgnoredUntilTheyHaveSeparated) {
   world.stage_one.cull(world.open);
   world.initial.collect(world.open);
   EXPECT_TRUE(world.contacts.watching());
-  ASSERT_TRUE(world.contacts.isIgnored(0));
-  EXPECT_GE(world.contacts.watchFrom(0), 0.1875);
-  EXPECT_LE(world.contacts.watchFrom(0), 0.1875 + 2.0 / 512);
+  ASSERT_TRUE(world.contacts.isIgnored(TwoBalls::kPair));
+  EXPECT_GE(world.contacts.watchFrom(TwoBalls::kPair), 0.1875);
+  EXPECT_LE(world.contacts.watchFrom(TwoBalls::kPair), 0.1875 + 2.0 / 512);
 
   TwoBalls apart;
   apart.asPair().query.ignore_initial = true;
   apart.begin();
   apart.stage_one.cull(apart.open);
   apart.initial.collect(apart.open);
-  EXPECT_FALSE(apart.contacts.isIgnored(0));
+  EXPECT_FALSE(apart.contacts.isIgnored(TwoBalls::kPair));
 }
 
 TEST(Containment, AsksOfSolidsOnlyAndReportsAtTheStart) {
@@ -560,8 +560,8 @@ TEST(Containment, AsksOfSolidsOnlyAndReportsAtTheStart) {
   world.bodies[0].space = reinterpret_cast<const SolidSpace*>(&world);  // only that there is one matters here
   world.containment.findAtStart();
   ASSERT_EQ(world.containment.size(), 1);
-  EXPECT_TRUE(world.containment.isContainedAtStart(0));
-  EXPECT_FALSE(world.containment.mayBeContained(0, 0.5));
+  EXPECT_TRUE(world.containment.isContainedAtStart(TwoBalls::kPair));
+  EXPECT_FALSE(world.containment.mayBeContained(TwoBalls::kPair, 0.5));
   world.containment.report(world.open);
   EXPECT_EQ(world.horizon.end(), 0);
   ASSERT_EQ(world.contacts.size(), 1);

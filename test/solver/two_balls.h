@@ -15,6 +15,7 @@ namespace FCL_ARTIC_ISA {
 /// t in [0, 1]: from -2 it touches at z = -0.75, t = 0.3125, and leaves at z = 0.75, t = 0.6875.
 class TwoBalls : public SolverParts {
  public:
+  static constexpr engine::PairId kPair{};  ///< their only one, by its number
   static constexpr double kFirst = 0.3125, kLast = 0.6875;
 
   explicit TwoBalls(double from = -2, double to = 2) {

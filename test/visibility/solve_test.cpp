@@ -35,7 +35,7 @@ class SolveTwice : public testing::Test {
         }
         links[k].radius = 0.05;
       }
-      engine::CullCandidate pair = {0, 0, 0, &body_.placement, 0xff, query.margins.of(0)};
+      engine::CullCandidate pair = {{}, 0, 0, &body_.placement, 0xff, query.margins.of({})};
       query.advisors[0].clear(query.advisors[0].self, problem_, links, &pair, 1);
     }
     now_us_ += !query.num_advisors ? without_us_ : own_ran_ ? own_us_ : with_us_;

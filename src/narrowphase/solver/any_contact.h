@@ -72,16 +72,16 @@ class AnyContact : PartOfSolver {
 
   bool tryLikely();
   /// Hulls of a pair overlap, or so it seems, in the middles of these lanes of [0, 1].
-  void guessOverlap(int pair, unsigned lanes) { overlap_guesses_.push({pair, 0, 0, lanes}); }
+  void guessOverlap(PairId pair, unsigned lanes) { overlap_guesses_.push({pair, 0, 0, lanes}); }
   void forgetOverlaps() { overlap_guesses_.clear(); }
-  bool tryObstacle(int pair, int lane, const Vec3& near, bool thin);
-  void considerLinks(int pair, Lanes square, double radii);
+  bool tryObstacle(PairId pair, int lane, const Vec3& near, bool thin);
+  void considerLinks(PairId pair, Lanes square, double radii);
   bool tryLinks();
   bool tryDeepLinks(const Buffer<Entry>& open);
   bool tryOverlaps(Buffer<Entry>& open);
 
  private:
-  bool tryTriangles(int pair, int lane);
+  bool tryTriangles(PairId pair, int lane);
 
   SweptFrames& frames_;
   RelativeMotion& motion_;
@@ -93,7 +93,8 @@ class AnyContact : PartOfSolver {
   Buffer<Entry> overlap_guesses_;
   /// A pose at which contact of two links is expected.
   struct PoseGuess {
-    std::int32_t pair, lane;
+    PairId pair;
+    std::int32_t lane;
     double distance;  ///< of their line swept spheres' segments, as part of the radii
     unsigned near;    ///< other lanes in which balls inside them may meet
   };
@@ -110,7 +111,7 @@ class AnyContact : PartOfSolver {
     for (std::int32_t i = 0; i < count; ++i) {
       const auto [link_pair, part] = likely[i];
       FCL_ARTIC_ASSERT(link_pair >= 0 && link_pair < problem().num_link_pairs && part >= 0 && part < kLanes);
-      const int pair = problem().linkPair(link_pair);
+      const PairId pair = problem().linkPair(link_pair);
       if (!problem().isAllowed(pair) && balls_.inLinks(pair, part)) return true;
     }
   }
@@ -120,7 +121,7 @@ class AnyContact : PartOfSolver {
 /// A link whose line swept sphere is deep in a solid: a ball inside the link, a vertex in the solid, and a chord of the
 /// solid, the chord first where the solid is thin.
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
-inline bool AnyContact::tryObstacle(int pair, int lane, const Vec3& near, bool thin) {
+inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, bool thin) {
   if (balls_.inSolid(pair, lane)) return true;
   motion_.set(pair, whole());
   if (thin && proofs_.chordPierces(lane, near)) return true;
@@ -131,7 +132,7 @@ inline bool AnyContact::tryObstacle(int pair, int lane, const Vec3& near, bool t
 /// Two links whose line swept spheres meet: balls inside them are tried at the pose at which these are deepest in each
 /// other. That pose is put down, and the others at which balls may meet.
 /// @param square  of their segments' distance in the middle of each lane.
-inline void AnyContact::considerLinks(int pair, Lanes square, double radii) {
+inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   const double least = minLane(square), distance = sqrt(least) / radii;
   const int lane = __builtin_ctz(kAllLanes & ~greater(square, Lanes(least)));
   const double reach = balls_.reach(pair);
@@ -173,7 +174,7 @@ inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
 }
 
 /// The triangles of two links at a lane's middle, those in boxes whose middles are near each other first.
-inline bool AnyContact::tryTriangles(int pair, int lane) {
+inline bool AnyContact::tryTriangles(PairId pair, int lane) {
   motion_.set(pair, whole());
   const TreeView &A = motion_.a(), &B = motion_.b();
   const BoxesAtPose boxes(motion_.differenceAt(A.pieces[0], B.pieces[0], lane).pose);

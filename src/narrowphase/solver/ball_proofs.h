@@ -76,9 +76,9 @@ class BallProofs : PartOfSolver {
   BallProofs(Task& task, SweptFrames& frames, ContactList& contacts)
       : PartOfSolver(task), frames_(frames), contacts_(contacts) {}
 
-  double reach(int pair) const;
-  bool inLinks(int pair, int lane);
-  bool inSolid(int pair, int lane);
+  double reach(PairId pair) const;
+  bool inLinks(PairId pair, int lane);
+  bool inSolid(PairId pair, int lane);
 
  private:
   PlacedLink placedLink(int index, int lane);
@@ -102,7 +102,7 @@ inline PlacedLink BallProofs::placedLink(int index, int lane) {
 }
 
 /// Distance of two links' line swept spheres' segments below which balls inside them may meet; 0: none can.
-inline double BallProofs::reach(int pair) const {
+inline double BallProofs::reach(PairId pair) const {
   const PairParts bodies = problem().parts(pair);
   const InnerBalls *a = body(bodies.a).balls, *b = body(bodies.b).balls;
   return a && b ? a->reach + b->reach : 0;
@@ -110,7 +110,7 @@ inline double BallProofs::reach(int pair) const {
 
 /// Two links at a lane's middle: a ball inside the one and a ball inside the other meet, and both parts reach out of
 /// each other.
-inline bool BallProofs::inLinks(int pair, int lane) {
+inline bool BallProofs::inLinks(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &A = body(bodies.a), &B = body(bodies.b);
   const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
@@ -167,7 +167,7 @@ inline Vec3Lanes farPoints(const TreeView& solid) {
 
 /// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid, and that, being of one piece,
 /// reaches out of the mesh's part.
-inline bool BallProofs::inSolid(int pair, int lane) {
+inline bool BallProofs::inSolid(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &solid = body(bodies.a), &link = body(bodies.b);
   if (!link.balls) return false;

@@ -14,7 +14,7 @@ using engine::Ignored;
 using engine::LeafContact;
 
 /// A contact of these pieces; all else is left to the caller.
-inline LeafContact contactOf(const Problem& problem, int pair, int piece_a, int piece_b) {
+inline LeafContact contactOf(const Problem& problem, PairId pair, int piece_a, int piece_b) {
   const PairParts bodies = problem.parts(pair);
   LeafContact contact = {};
   contact.pair = pair;
@@ -37,22 +37,22 @@ class ContactList : PartOfSolver {
 
   /// It is known from when on each pair is watched. Before, with initial contacts to be ignored, no contact counts.
   bool watching() const { return watching_; }
-  void ignore(int pair, double watch_from) {
+  void ignore(PairId pair, double watch_from) {
     const PairParts bodies = problem().parts(pair);
     ignored_.push({pair, bodies.a, bodies.b, watch_from});
   }
-  bool isIgnored(int pair) const { return find(pair) != nullptr; }
+  bool isIgnored(PairId pair) const { return find(pair) != nullptr; }
   /// All initial contacts that are to be ignored are known.
   void beginWatching() { watching_ = true; }
   /// Time from which a pair is watched: 0 but for ignored initial contacts.
-  double watchFrom(int pair) const {
+  double watchFrom(PairId pair) const {
     const Ignored* ignored = find(pair);
     return ignored ? ignored->watch_from : 0;
   }
 
   /// Takes the proof that a pair is in contact at time t, whoever has proven it: all proofs come through here.
   /// @return false where that contact does not count: it is one to be ignored, or it is not known yet which are.
-  bool takeProof(int pair, double t) {
+  bool takeProof(PairId pair, double t) {
     FCL_ARTIC_ASSERT(t >= 0 && t <= 1);
     if (!watching_ || t < watchFrom(pair)) return false;
     horizon_.closeAt(t);
@@ -62,7 +62,7 @@ class ContactList : PartOfSolver {
   /// Records a contact proven at one time, where any will do: it ends the search. Point and normal are left to the
   /// caller.
   /// @return null where the contact does not count (takeProof()).
-  LeafContact* record(int pair, int piece_a, int piece_b, double t) {
+  LeafContact* record(PairId pair, int piece_a, int piece_b, double t) {
     if (!takeProof(pair, t)) return nullptr;
     LeafContact& contact = grow(pair, piece_a, piece_b);
     contact.certain = true;
@@ -72,7 +72,7 @@ class ContactList : PartOfSolver {
     return &contact;
   }
   /// A new contact of these pieces; all else is left to the caller.
-  LeafContact& grow(int pair, int piece_a, int piece_b) {
+  LeafContact& grow(PairId pair, int piece_a, int piece_b) {
     return contacts_.grow() = contactOf(problem(), pair, piece_a, piece_b);
   }
   void push(const LeafContact& contact) { contacts_.push(contact); }
@@ -112,7 +112,7 @@ class ContactList : PartOfSolver {
   }
 
  private:
-  const Ignored* find(int pair) const {
+  const Ignored* find(PairId pair) const {
     for (int i = 0; i < ignored_.size(); ++i) {
       if (ignored_[i].pair == pair) return &ignored_[i];
     }

@@ -19,18 +19,18 @@ class Containment : PartOfSolver {
   /// Finds all pairs of which one body lies within the other at t = 0, or may do.
   void findAtStart();
   /// Whether one body of a pair may lie within the other at time t.
-  bool mayBeContained(int pair, double t);
+  bool mayBeContained(PairId pair, double t);
   /// This is one of the pairs that findAtStart() has found.
-  bool isContainedAtStart(int pair) const;
+  bool isContainedAtStart(PairId pair) const;
   int size() const { return contained_.size(); }
-  int pair(int i) const { return contained_[i].pair; }
+  PairId pair(int i) const { return contained_[i].pair; }
   /// What lies within another body at t = 0 is in contact there, but for the initial contacts that are ignored.
   void report(Buffer<Entry>& open);
 
  private:
   bool isSolid(const PairParts& bodies) const { return body(bodies.a).space || body(bodies.b).space; }
-  engine::Containment contained(int pair, double t);
-  void testAtStart(int pair);
+  engine::Containment contained(PairId pair, double t);
+  void testAtStart(PairId pair);
 
   RelativeMotion& motion_;
   Horizon& horizon_;
@@ -40,7 +40,7 @@ class Containment : PartOfSolver {
 };
 
 /// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
-[[gnu::noinline]] inline engine::Containment Containment::contained(int pair, double t) {
+[[gnu::noinline]] inline engine::Containment Containment::contained(PairId pair, double t) {
   motion_.set(pair, TimeBatch::around(t));
   const PairParts bodies = problem().parts(pair);
   const Body &a = body(bodies.a), &b = body(bodies.b);
@@ -57,12 +57,12 @@ class Containment : PartOfSolver {
   return found;
 }
 
-inline bool Containment::mayBeContained(int pair, double t) {
+inline bool Containment::mayBeContained(PairId pair, double t) {
   return problem().contained && isSolid(problem().parts(pair)) &&
          contained(pair, t).verdict != engine::Containment::kNone;
 }
 
-inline void Containment::testAtStart(int pair) {
+inline void Containment::testAtStart(PairId pair) {
   if (!isSolid(problem().parts(pair))) return;
   const engine::Containment found = contained(pair, 0);
   if (found.verdict == engine::Containment::kNone) return;
@@ -84,7 +84,7 @@ inline void Containment::testAtStart(int pair) {
     for (int m = 0; m < problem().num_scene_movers; ++m) {
       const Buffer<BoxHit>& met = stage_one_.meetObstacles(m);
       for (int i = 0; i < met.size(); ++i) {
-        const int pair = problem().scenePair(m, met[i].obstacle);
+        const PairId pair = problem().scenePair(m, met[i].obstacle);
         if (!(met[i].mask & 1) || problem().isAllowed(pair)) continue;
         testAtStart(pair);
       }
@@ -100,7 +100,7 @@ inline void Containment::testAtStart(int pair) {
   }
 }
 
-inline bool Containment::isContainedAtStart(int pair) const {
+inline bool Containment::isContainedAtStart(PairId pair) const {
   for (int i = 0; i < contained_.size(); ++i) {
     if (contained_[i].pair == pair) return true;
   }

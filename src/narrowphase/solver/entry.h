@@ -3,14 +3,18 @@
 
 #include <cstdint>
 
+#include "model/pair_id.h"
 #include "model/tree_view.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
+using engine::PairId;
+
 /// A pair of nodes that is not yet decided in the lanes of `mask`.
 struct Entry {
-  std::int32_t pair, a, b;
+  PairId pair;
+  std::int32_t a, b;
   unsigned mask;
   bool put_off = false;  ///< not looked at, as contact was suspected before these lanes
   bool within = false;   ///< the one body is within the bounds of the other, a large mesh: hulls say nothing

@@ -2,9 +2,12 @@
 #pragma once
 
 #include "convex/gjk.h"
+#include "model/pair_id.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
+
+using engine::PairId;
 
 /// The last simplices that GJK found between pairs' hulls, to begin with next time: a small direct-mapped cache; what
 /// is pushed out is found again. Nothing rests on them.
@@ -13,8 +16,8 @@ class HullSimplices {
   /// A new query: none is known.
   void begin() { ++query_; }
   /// That of a pair in this query; empty at first.
-  Simplex& of(int pair) {
-    Kept& kept = kept_[pair & (kKept - 1)];
+  Simplex& of(PairId pair) {
+    Kept& kept = kept_[engine::indexOf(pair) & (kKept - 1)];
     if (kept.pair != pair || kept.query != query_) {
       kept.pair = pair;
       kept.query = query_;
@@ -26,7 +29,7 @@ class HullSimplices {
  private:
   static constexpr int kKept = 32;
   struct Kept {
-    std::int32_t pair;
+    PairId pair;
     std::uint64_t query;
     Simplex simplex;
   };

@@ -27,8 +27,8 @@ class InitialContacts : PartOfSolver {
   void collect(const Buffer<Entry>& open);
 
  private:
-  bool mayIgnore(int pair) const;
-  double firstFreeTime(int pair, double start, double width);
+  bool mayIgnore(PairId pair) const;
+  double firstFreeTime(PairId pair, double start, double width);
 
   RelativeMotion& motion_;
   Horizon& horizon_;
@@ -38,7 +38,7 @@ class InitialContacts : PartOfSolver {
 };
 
 /// Time from which a pair in contact at t = 0 is watched: the start of its first free lane. kNever: it never separates.
-inline double InitialContacts::firstFreeTime(int pair, double start, double width) {
+inline double InitialContacts::firstFreeTime(PairId pair, double start, double width) {
   const TimeBatch batch = TimeBatch::partsOf(start, width);
   ++statistics().batches;
   horizon_.watch(batch);
@@ -58,7 +58,7 @@ inline double InitialContacts::firstFreeTime(int pair, double start, double widt
   return kNever;
 }
 
-inline bool InitialContacts::mayIgnore(int pair) const {
+inline bool InitialContacts::mayIgnore(PairId pair) const {
   if (query().num_may_ignore < 0) return true;
   for (int i = 0; i < query().num_may_ignore; ++i) {
     if (query().may_ignore[i] == pair) return true;
@@ -69,7 +69,7 @@ inline bool InitialContacts::mayIgnore(int pair) const {
 inline void InitialContacts::collect(const Buffer<Entry>& open) {
   const TimeBatch at_start = TimeBatch::around(0);
   for (int i = 0; i < open.size(); ++i) {
-    const int pair = open[i].pair;
+    const PairId pair = open[i].pair;
     if (!mayIgnore(pair)) continue;
     horizon_.watch(at_start);
     motion_.set(pair, at_start);
@@ -79,7 +79,7 @@ inline void InitialContacts::collect(const Buffer<Entry>& open) {
   }
   // One within the other, with surfaces that are proven apart over the whole motion: that does not end.
   for (int i = 0; i < containment_.size(); ++i) {
-    const int pair = containment_.pair(i);
+    const PairId pair = containment_.pair(i);
     if (mayIgnore(pair) && !contacts_.isIgnored(pair)) contacts_.ignore(pair, kNever);
   }
   contacts_.beginWatching();

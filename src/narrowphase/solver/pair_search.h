@@ -77,7 +77,7 @@ class PairSearch : PartOfSolver {
   Candidate candidateOf(const Entry& e, double start) const;
   double restingGapOfHulls(int lane, GjkResult& g);
   bool stayNear(const Candidate& f);
-  bool restsAt(int pair, double t);
+  bool restsAt(PairId pair, double t);
   bool touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane);
   bool recordTouching(double t, bool may_rest);
   void search(Buffer<Entry>& open, int begin, int end);
@@ -208,7 +208,7 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 /// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
 /// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
-inline bool PairSearch::restsAt(int pair, double t) {
+inline bool PairSearch::restsAt(PairId pair, double t) {
   const PairParts parts = problem().parts(pair);
   const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
   if (contacts_.watchFrom(pair) > t) return false;
@@ -242,7 +242,8 @@ inline bool PairSearch::restsAt(int pair, double t) {
 /// @param begin, end  entries of `open` that are left of one pair, those of this lane.
 /// @return false where others may touch earlier.
 inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane) {
-  const int pair = open[begin].pair, out_begin = open.size();
+  const PairId pair = open[begin].pair;
+  const int out_begin = open.size();
   if (contacts_.watchFrom(pair) > 0) return false;
   const TimeBatch batch = TimeBatch::partsOf(0, finestWidth());
   watch(batch);
@@ -405,9 +406,10 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
   const bool suspected = lane == 0 && horizon_.contactLane() == 1;  // in this lane
   for (int i = begin; i < end && !horizon_.isOver();) {
     // A run of entries of one pair.
-    const int first = open.size(), pair_index = open[i].pair;
+    const int first = open.size();
+    const PairId pair_id = open[i].pair;
     bool leaves = true;
-    for (; i < end && open[i].pair == pair_index; ++i) {
+    for (; i < end && open[i].pair == pair_id; ++i) {
       const Entry e = open[i];
       if (lane >= 0 && !(e.mask >> lane & 1)) continue;
       leaves = leaves && isLeafPair(e);
@@ -420,10 +422,10 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     f.count = count;
     // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or
     // parts of them that the first batch has come to already.
-    const PairParts pair = problem().parts(pair_index);
+    const PairParts pair = problem().parts(pair_id);
     const bool hulls = f.entry.isWhole() && !leaves && body(pair.a).tree->outer && body(pair.b).tree->outer;
     f.target = hulls ? Target::hulls : leaves && count == 1 ? Target::leafPair : Target::subtrees;
-    if (hulls) f.simplex = traversal_.simplexOf(pair_index);
+    if (hulls) f.simplex = traversal_.simplexOf(pair_id);
     if (f.t_lower >= stop || (f.target != Target::subtrees && follower_.followToRoot(f, stop, false, first_lanes))) {
       open.truncate(first);
       continue;

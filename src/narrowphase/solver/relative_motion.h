@@ -18,7 +18,8 @@ class RelativeMotion : PartOfSolver {
 
   /// A new query: nothing is known.
   void begin() {
-    pair_ = of_batch_ = witness_pair_ = -1;
+    pair_ = witness_pair_ = engine::kNoPair;
+    of_batch_ = -1;
     // Epochs only ever grow; long before they overflow the stamps are made new.
     if (epoch_ > 1 << 30) {
       epoch_ = 0;
@@ -27,8 +28,8 @@ class RelativeMotion : PartOfSolver {
   }
 
   /// From now on this is the motion of `pair` over `batch`.
-  void set(int pair, const TimeBatch& batch) {
-    FCL_ARTIC_ASSERT(pair >= 0 && pair < problem().numPairs());
+  void set(PairId pair, const TimeBatch& batch) {
+    FCL_ARTIC_ASSERT(engine::indexOf(pair) < static_cast<std::size_t>(problem().numPairs()));
     frames_.set(batch);
     if (pair_ == pair && of_batch_ == frames_.number()) return;
     pair_ = pair;
@@ -40,7 +41,7 @@ class RelativeMotion : PartOfSolver {
     witness_pair_ = pair;
   }
 
-  int pair() const { return pair_; }
+  PairId pair() const { return pair_; }
   const TimeBatch& batch() const { return frames_.batch(); }
   /// Another batch has another number.
   std::int32_t batchNumber() const { return frames_.number(); }
@@ -85,7 +86,7 @@ class RelativeMotion : PartOfSolver {
     have_witness_ = true;
   }
   /// That of a pair that is to be set next; null: none.
-  void setWitness(int pair, const Vec3* direction) {
+  void setWitness(PairId pair, const Vec3* direction) {
     witness_pair_ = pair;
     have_witness_ = false;
     if (direction) setWitness(*direction);
@@ -127,13 +128,14 @@ class RelativeMotion : PartOfSolver {
   void relate();
 
   SweptFrames& frames_;
-  std::int32_t pair_ = -1, of_batch_ = -1;
+  PairId pair_ = engine::kNoPair;
+  std::int32_t of_batch_ = -1;
   Side side_[2];
   bool side_ready_[2] = {false, false};
   double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
   Vec3 witness_;
   bool have_witness_ = false;
-  std::int32_t witness_pair_ = -1;
+  PairId witness_pair_ = engine::kNoPair;
 
   /// Swept boxes by node of the moving tree of each side: a small direct-mapped cache stays in the processor's own;
   /// what is pushed out is made again.

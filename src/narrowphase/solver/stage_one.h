@@ -52,10 +52,10 @@ class StageOne : PartOfSolver {
   void cullObstacles(int mover, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
-  void expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
+  void expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
                      const Vec3Lanes& nearest);
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
-  void sweptInPartner(int pair, const double* lss, engine::SweptLink* parts);
+  void sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
@@ -142,7 +142,7 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
 /// sphere.
 /// @param[out] direction  from the obstacle to the link, as in direction().
 inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction) {
-  const int pair = problem().scenePair(mover, obstacle_number);
+  const PairId pair = problem().scenePair(mover, obstacle_number);
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   const SweptLss& lss = mover_lss_[mover];
   Lanes square;
@@ -154,8 +154,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
 
 /// Where a line swept sphere is deep in a solid contact is expected: lanes after it are put off, or, where any contact
 /// will do, it is looked for at once, and the pose is put down where the link's axis is very near.
-inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask,
-                                    Lanes square, const Vec3Lanes& nearest) {
+inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle,
+                                    unsigned mask, Lanes square, const Vec3Lanes& nearest) {
   const auto nearer = [&](double part) {
     return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
   };
@@ -174,7 +174,7 @@ inline void StageOne::expectContact(int pair, const SweptLss& lss, const engine:
 inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   const Buffer<BoxHit>& met = meetObstacles(mover);
   for (int i = 0; i < met.size() && !horizon_.isOver(); ++i) {
-    const int pair = problem().scenePair(mover, met[i].obstacle);
+    const PairId pair = problem().scenePair(mover, met[i].obstacle);
     if (problem().isAllowed(pair)) continue;
     Vec3Lanes direction;
     if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction)) {
@@ -198,7 +198,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (advisor.freePartsOf) advisors[num_advisors++] = &advisor;
   }
   for (int p = 0; p < problem().num_link_pairs && !horizon_.isOver(); ++p) {
-    const int pair = problem().linkPair(p);
+    const PairId pair = problem().linkPair(p);
     unsigned mask = problem().isAllowed(pair) ? 0 : kAllLanes;
     for (int n = 0; n < num_free; ++n) mask &= ~static_cast<unsigned>(free[n][p]);
     if (!mask) continue;
@@ -209,7 +209,11 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (mask && links) {
       mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair), square);
     }
-    for (int n = 0; n < num_advisors && mask; ++n) mask &= ~advisors[n]->freePartsOf(advisors[n]->self, p);
+    for (int n = 0; n < num_advisors && mask; ++n) {
+      const unsigned parts = advisors[n]->freePartsOf(advisors[n]->self, p);
+      FCL_ARTIC_ASSERT(!(parts & ~kAllLanes));  // it may clear parts, nothing else
+      mask &= ~parts;
+    }
     if (!mask) continue;
     if (links && look) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
     open.push({pair, 0, 0, mask});
@@ -237,7 +241,7 @@ inline void StageOne::cull(Buffer<Entry>& open) {
       cullLinks(open);
     } else {  // no stage 1: pairs of free bodies
       for (int p = 0; p < problem().num_link_pairs; ++p) {
-        const int pair = problem().linkPair(p);
+        const PairId pair = problem().linkPair(p);
         if (!problem().isAllowed(pair)) open.push({pair, 0, 0, kAllLanes});
       }
     }
@@ -265,7 +269,7 @@ inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
 
 /// The same of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands still.
 /// @param lss  in B's tree frame.
-inline void StageOne::sweptInPartner(int pair, const double* lss, engine::SweptLink* parts) {
+inline void StageOne::sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts) {
   motion_.set(pair, whole());
   PointLanes ends[2];
   double radius = 0;

@@ -15,6 +15,7 @@ namespace FCL_ARTIC_ISA {
 
 using engine::Body;
 using engine::LinkPair;
+using engine::PairId;
 using engine::PairParts;
 using engine::Placement;
 using engine::Problem;

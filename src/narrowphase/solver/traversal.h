@@ -73,8 +73,8 @@ class Traversal : PartOfSolver {
     roots_tested_ = -1;
   }
   /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
-  void knowFreeNodes(int pair, const std::uint64_t* nodes) { free_nodes_.push({pair, nodes}); }
-  Simplex& simplexOf(int pair) { return simplices_.of(pair); }
+  void knowFreeNodes(PairId pair, const std::uint64_t* nodes) { free_nodes_.push({pair, nodes}); }
+  Simplex& simplexOf(PairId pair) { return simplices_.of(pair); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
   unsigned nodesMayTouch(int a, int b, unsigned mask);
@@ -91,7 +91,7 @@ class Traversal : PartOfSolver {
   /// Goes down from a pair of nodes in the lanes of `mask`. What stays undecided is appended to `open`.
   void descend(const Entry& root, Aim aim, Buffer<Entry>& open);
   /// Lanes of `mask` in which the pair's bodies are not certainly apart.
-  unsigned blockedLanes(int pair, unsigned mask);
+  unsigned blockedLanes(PairId pair, unsigned mask);
 
  private:
   unsigned traverse(const Entry& root, Aim aim, Buffer<Entry>& open);
@@ -117,7 +117,7 @@ class Traversal : PartOfSolver {
 
   HullSimplices simplices_;
   struct FreeNodes {
-    std::int32_t pair;
+    PairId pair;
     const std::uint64_t* nodes;
   };
   Buffer<FreeNodes> free_nodes_;
@@ -295,7 +295,7 @@ inline void Traversal::descend(const Entry& root, Aim aim, Buffer<Entry>& open) 
   traverse(root, aim, open);
 }
 
-inline unsigned Traversal::blockedLanes(int pair, unsigned mask) {
+inline unsigned Traversal::blockedLanes(PairId pair, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes);  // all are looked at
   mask = nodesMayTouch(0, 0, mask);
   if (mask) mask = hullsMayTouch(mask, false, {}).mask;
