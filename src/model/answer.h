@@ -18,7 +18,7 @@ struct Statistics : StandardStatistics {
 /// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.
 constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7, kVolume = 9;
 
-/// Two leaves that meet, or come too near to be told apart.
+/// Two leaves that meet, or come too near to be separated.
 struct LeafContact {
   std::int32_t pair, body_a, body_b;
   std::int32_t piece_a, piece_b;  ///< -1: proven of what a mesh encloses, of no triangle

@@ -123,7 +123,7 @@ class FCL_ARTIC_EXPORT TesseractContactManager : public ::tesseract::collision::
 
   /// Finds the contacts of the motion, or proves that there are none, and adds them to `collisions`.
   ///
-  /// A contact that can't be excluded within the tolerances counts as one, too; result() tells of it.
+  /// A contact that can't be excluded within the tolerances counts as one, too; result() says which.
   /// @throws std::invalid_argument for poses that are not finite or farther than 1e5 m away, and for margins that are
   ///   not finite.
   void contactTest(::tesseract::collision::ContactResultMap& collisions,

@@ -12,8 +12,8 @@ namespace FCL_ARTIC_ISA {
 
 /// Links are expected to touch whose line swept spheres' segments are nearer than this part of the radii.
 constexpr double kDeepLinks = 0.7;
-/// So many pairs of boxes are looked at in one pose. Measured: twice as many prove more contacts of a UR5, and make its
-/// free motions 5 % slower.
+/// Maximum number of pairs of boxes that are tested in one pose. Measured: twice as many prove more contacts of a UR5,
+/// and make its free motions 5 % slower.
 constexpr int kMostAtPose = 512;
 
 /// Two bodies' boxes at one pose: nothing rests on what is said of them.

@@ -34,7 +34,7 @@ struct Candidate {
   double speed;                   ///< of the one body seen from the other, about
   bool have_normal;
   Simplex simplex;  ///< GJK's last
-  bool stuck;       ///< the gap is gone at t_lower, as far as can be told
+  bool stuck;       ///< the gap is gone at t_lower, within rounding
   bool certain;
   double t_upper;  ///< of a proven contact
   Vec3 point;      ///< likewise

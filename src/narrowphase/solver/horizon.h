@@ -55,7 +55,7 @@ class Horizon : PartOfSolver {
   /// Asked at every step of the search: its budget is spent, or its caller ends it. (With every pair this is the
   /// present pair's search: of those that are still to come nothing is known.)
   bool mustEnd() { return task_.mustEnd(query().every_pair ? 0 : freeUntil()); }
-  /// Contact at t is proven, or assumed as it can be told no better: later times don't matter.
+  /// Ends the search at t, where contact is proven, or assumed as no proof can decide: later times don't matter.
   void closeAt(double t) {
     end_ = min(end_, t);
     update();

@@ -13,7 +13,7 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// So many leaf pairs in a lane are followed one by one; more are split in time first.
+/// Maximum number of leaf pairs in a lane that are followed one by one; if there are more, the lane is split first.
 constexpr int kFewLeaves = 12;
 /// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion
 /// covers in it.
@@ -22,11 +22,11 @@ constexpr double kFirstWindow = 0.4;
 /// looked at.
 constexpr double kLongMotion = 0.2;
 
-/// Leaf pairs of one lane of which nothing can be proven: so many are enough.
+/// Maximum number of leaf pairs of one lane that are recorded although nothing can be proven of them.
 constexpr int kEnoughUncertain = 16;
-/// Hulls are looked at for rest that are no deeper in each other than this part of the smaller body's radius, about.
+/// Hulls may rest on each other if their depth is at most about this part of the smaller body's radius.
 constexpr double kShallow = 0.01;
-/// So many pieces of a body are looked at about a point where it may rest.
+/// Maximum number of a body's pieces that are examined around a point where it may rest.
 constexpr int kMostAround = 4;
 
 class PairSearch : PartOfSolver {
@@ -66,9 +66,9 @@ class PairSearch : PartOfSolver {
   /// Of the present pair's bodies.
   double smallerRadius() const { return min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius); }
 
-  /// Points of both bodies are so near that no proof tells them from contact. (A direction along which little is proven
-  /// says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow enough to
-  /// prove such a gap.
+  /// Whether points of both bodies are so near that no proof can separate them. (A direction along which little is
+  /// proven says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow
+  /// enough to prove such a gap.
   bool isNear(double apart) const { return apart <= max(0.5 * query().tolerance_distance, motion_.pad()); }
 
   /// Of a window in which nothing is divided on.
@@ -101,7 +101,7 @@ class PairSearch : PartOfSolver {
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
-  int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAtStart()
+  int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before touchesAtStart() is asked
 };
 
 /// What an entry stands for, to be followed from `start`.
@@ -204,7 +204,7 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 }
 
 /// A pair whose hulls touch at t, before which all is free, may rest there, as what stands on a table. Pieces about the
-/// hulls' witness are looked at by themselves: where contact of two of them at t is proven, or can't be told from it,
+/// hulls' witness are looked at by themselves: where contact of two of them at t is proven, or no proof separates them,
 /// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
 /// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
@@ -260,7 +260,7 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
 }
 
 /// Of leaf pairs of `touching_`: whether one touches at t, which is recorded.
-/// @param may_rest  one that can't be told from contact will do.
+/// @param may_rest  also record one that no proof can separate from contact.
 inline bool PairSearch::recordTouching(double t, bool may_rest) {
   const double stop = t + finestWidth();
   Candidate resting = {};
