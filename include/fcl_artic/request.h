@@ -145,8 +145,8 @@ struct CertifiedPairRequest : Tolerances, Effort {
 /// Request of a certified continuous query of an ArticulatedCollisionManager: what a query of two bodies has, which
 /// pairs are checked, and whether stage 2 takes part. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest : CertifiedPairRequest, Scope {
-  /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects who does
-  /// it.
+  /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects the
+  /// culler.
   VisibilityMode visibility = VisibilityMode::off;
 };
 

@@ -115,7 +115,8 @@ class FCL_ARTIC_EXPORT TesseractContactManager : public ::tesseract::collision::
   void setCollisionMarginPair(const ObjectId& id1, const ObjectId& id2, double collision_margin) override;
   void incrementCollisionMargin(double increment) override;  ///< Adds to all margins, m.
 
-  /// Sets who allows pairs to touch; null: no pair may. It is asked about every pair by each contactTest().
+  /// Sets the validator, which decides the pairs that may touch; null: no pair may. Each contactTest() asks it about
+  /// every pair.
   void setContactAllowedValidator(
       std::shared_ptr<const ::tesseract::common::ContactAllowedValidator> validator) override;
   /// Who allows pairs to touch.

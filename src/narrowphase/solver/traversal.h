@@ -161,12 +161,12 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
   return apart;
 }
 
-/// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are those that GJK finds for whole
-/// lanes, where it is to, and its witnesses at the middles of lanes, each frozen in one frame and in the other; all are
-/// tried on all lanes.
+/// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
+/// lanes and, if `search` wants them, those that it finds for whole lanes. Each is frozen in one frame and in the
+/// other, and tried on all lanes.
 /// @param most  number of lanes with overlap at the middle that ends the search.
 /// @param last  in: the simplex that GJK begins with; out: the one it ends with.
-/// @param search  wanted for bodies' hulls; for parts of them, and for leaves, it does not pay.
+/// @param search  for whole lanes. It pays for bodies' hulls, not for parts of them, nor for leaves.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
 inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
