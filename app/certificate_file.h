@@ -19,7 +19,7 @@ class CertificateFile {
   std::string worldPath() const { return path_ + ".world"; }
 
   /// Adds an answer's certificate, if it has a proof.
-  /// @return what to tell the user of it, one line.
+  /// @return one line for the user.
   std::string add(const Certificate& certificate);
   /// Writes both files; if nothing was added, removes them: without a proof no file is left that could be taken for
   /// one.

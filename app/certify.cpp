@@ -74,7 +74,7 @@ void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
 }
 
 /// Writes a record for each plan, as it was mended, that has a proof.
-/// @return what to tell of it, one line.
+/// @return one line for the user.
 std::string writeCertificates(CertificateFile& certificates, const std::vector<CertifiedPlan>& all) {
   std::size_t proofs = 0;
   std::string note;

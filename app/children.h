@@ -21,7 +21,7 @@ struct TaskResult {
 /// Runs tasks 0 .. count - 1 in child processes, in order. A child goes on to the next task until one kills it; the
 /// next child goes on from there. What a task throws is `refused`; children print nothing.
 /// @param limit_s  time that one task may take.
-/// @param done     told the number of tasks finished, now and then.
+/// @param done     called with the number of tasks finished, now and then.
 /// @throws std::runtime_error when no child can be made.
 std::vector<TaskResult> runInChildren(std::size_t count, double limit_s,
                                       const std::function<TaskResult(std::size_t)>& task,

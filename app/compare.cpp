@@ -30,7 +30,7 @@ using pairs::Bodies;
 using pairs::Judge;
 using pairs::PairQuery;
 
-// What counts as right; told in the help text. FCL's own tolerances are 1e-5 and 1e-4 m.
+// What counts as right; printed in the help text. FCL's own tolerances are 1e-5 and 1e-4 m.
 constexpr double kLate = 1e-4;       ///< in t
 constexpr double kEarly = 1e-3;      ///< in t
 constexpr double kNear = 1e-4;       ///< m
@@ -161,8 +161,8 @@ struct Known {
   double gap = 0;  ///< least sampled one
 };
 
-/// Sampled truth. A contact that the library shows and the samples have passed over counts too, when the bodies do
-/// touch at the time it names as far as the judge can tell; the library's word alone counts nothing.
+/// Sampled truth. A contact that the library shows and the samples have passed over counts too, if the judge finds the
+/// bodies in contact at the time it names; the library's word alone counts nothing.
 Known know(const PairQuery& query, const TaskResult& certified, std::size_t& added) {
   const Judge judge(query);
   const pairs::Truth truth = judge.firstContact();

@@ -121,7 +121,7 @@ void drawTouching(const Robot& robot, const LinkPairReport& report, const std::s
   }
 }
 
-/// Status for what is told of pairs: those that an SRDF disables, or all.
+/// Exit status for the pairs reported: those that an SRDF disables, or all.
 int exitStatusOf(const LinkPairReport& disabled) {
   if (disabled.count(LinkPairKind::sometimes) > 0) return kExitContact;
   return disabled.count(LinkPairKind::unproven) > 0 ? kExitUndecided : kExitFree;

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
       fmt::print(stderr, "fcl_artic: error: {}\nRun with --help for more information.\n", usageError(program, error));
     }
   } catch (const std::exception& error) {
-    // (What can't be printed is told below.)
+    // (What can't be printed is reported below.)
     if (!std::ferror(stdout)) fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
     exit_status = kExitError;
   }

@@ -63,8 +63,8 @@ struct TimedRow {
   double slowest() const { return quantile(1); }
 };
 
-/// The motions that the 99.9 % and the slowest of a row rest on are asked about so many times more: one pass in which
-/// the machine did something else must not look like a slow query.
+/// Number of further passes over the motions that the 99.9 % and the slowest of a row rest on: one pass in which the
+/// machine did something else must not look like a slow query.
 constexpr int kPassesOfSlowest = 10;
 
 /// Asks about all motions in all ways, `passes` times in turns, and holds the answers to what drawMotions() found.

@@ -323,7 +323,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
     const auto rows = static_cast<std::int64_t>(cut.count(block));
     if (!cut.scene_of_edge && bad_scenes.count(cut.sceneOf(block))) continue;
     bool is_new = false;
-    // What keeps this block from being computed is told, and the others are computed all the same.
+    // What keeps this block from being computed is reported, and the others are computed all the same.
     try {
       if (const std::optional<Block> finished = folder->readBlock(block)) {
         counts.add(finished->counts);

@@ -20,8 +20,8 @@ struct Segment {
   std::size_t scene = 0, begin = 0, count = 0;  ///< edges [begin, begin + count)
 };
 
-/// How scenes and edges are cut into blocks: blocks of one scene and `block_rows` edges at most, or, where each edge
-/// has a scene of its own, of so many edges.
+/// How scenes and edges are cut into blocks of at most `block_rows` edges. A block has one scene, except where each
+/// edge has a scene of its own.
 struct Cut {
   std::size_t scenes = 1, edges = 0, block_rows = 1;
   bool scene_of_edge = false;
@@ -58,8 +58,7 @@ class RunFolder {
   /// Of a run that begins or goes on.
   /// @param run  what it is about. Its hash marks each block.
   /// @throws std::invalid_argument naming what differs from the run that the folder is of; std::runtime_error naming
-  /// the
-  ///   file.
+  ///   the file.
   RunFolder(std::string folder, const nlohmann::ordered_json& run);
   /// Of a run that is there.
   /// @throws std::runtime_error naming the file.

@@ -70,8 +70,7 @@ std::int64_t add(int counter, std::int64_t number) {
   return before;
 }
 
-/// Sleeps until \p request is done: MPI_Wait alone would take a processor from
-/// those that still compute.
+/// Sleeps until `request` is done: MPI_Wait alone would take a processor from those that still compute.
 void sleepUntilDone(MPI_Request& request) {
   for (int done = 0; !done;) {
     MPI_Request_get_status(request, &done, MPI_STATUS_IGNORE);

@@ -41,7 +41,7 @@ vec3 facing_normal(vec3 p, vec3 n, vec3 view) {
 }
 )";
 
-/// Normals for the ambient occlusion; alpha tells whether ghosts keep clear of the body.
+/// Normals for the ambient occlusion; alpha says whether ghosts keep clear of the body.
 constexpr const char* kNormalFragment = R"(
 uniform vec3 eye;
 uniform float clear_of_ghosts;
@@ -199,7 +199,7 @@ void main() {
 })";
 
 /// Lays a layer over the picture, paler where it would cover what ghosts keep clear of. `outline` > 0: all of it, with
-/// a light rim of so many pixels around what the layer holds.
+/// a light rim of `outline` pixels around what the layer holds.
 constexpr const char* kLayerFragment = R"(#version 330 core
 uniform sampler2D layer, normal_map;
 uniform vec2 pixel_size;

@@ -191,7 +191,7 @@ class Shapes {
   Json json_ = Json::array();
 };
 
-/// Times at which poses are told: evenly over the motion, and the ends of brackets.
+/// Times of the poses on the page: evenly over the motion, and the ends of brackets.
 std::vector<double> timesOfPoses(const Report& report) {
   const std::size_t count = std::clamp(kPosesForPiece * report.pieces, kFewestPoses, kMostPoses);
   std::set<double> times{report.begin, report.end};

@@ -72,7 +72,7 @@ std::string entry(const std::string& label, const std::string& text) {
   return out + "\n";
 }
 
-/// The shortest decimals that still tell the ends of the bracket apart.
+/// The shortest decimals in which the ends of the bracket still differ.
 std::string bracketText(double lower, double upper) {
   return fmt::format("[{:.12g}, {:.12g}]", lower, upper);
 }

@@ -24,7 +24,8 @@ struct Report {
   double begin = 0, end = 1;             ///< of the motion
   const Clearance* clearance = nullptr;  ///< null: not asked for
   std::size_t pieces = 1;                ///< of a trajectory
-  /// Whether `request` is what `result` answers. If not, as of an answer that comes from elsewhere, it is not told.
+  /// Whether `request` is what `result` answers. If not, as with an answer that comes from elsewhere, it is not
+  /// printed.
   bool request_known = true;
 };
 

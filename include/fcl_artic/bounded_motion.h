@@ -7,7 +7,7 @@
 
 namespace fcl_artic {
 
-/// Base class for motions of your own: it tells queries what they must know of a motion to decide contact along it with
+/// Base class for motions of your own: it gives queries what they must know of a motion to decide contact along it with
 /// proof. All of fcl_artic's queries take a class that derives from fcl::MotionBase<double> (or `float`) and from this
 /// one. They refuse any other unknown motion, as nothing can be certified from poses alone.
 ///

@@ -56,9 +56,9 @@ struct LinkPairFinding {
   /// Whether the kind is proven for all configurations within the joints' limits: so for `never`, `sometimes` and
   /// `neighbours`, and for `always` if no joint moves the two links apart.
   bool proven = false;
-  /// Number of configurations tried, all joints at 0 and others spread evenly over the joints' limits, and of those in
-  /// contact for certain. (0 where there is a proof.) Where none of them is in contact, the one that a search for a
-  /// contact found, if it did, counts as one more.
+  /// `tried`: number of configurations tried, which are all joints at 0 and others spread evenly over the joints'
+  /// limits; 0 where there is a proof. If none of them is in contact and a search then finds one that is, it counts as
+  /// well. `touching`: number of those in which the links are in contact for certain.
   std::size_t tried = 0, touching = 0;
   /// Joint values, rad or m: `always` and `sometimes`: a configuration in contact for certain; `unproven`: where the
   /// links come near each other, if that is known; else empty.

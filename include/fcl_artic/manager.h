@@ -219,8 +219,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Forgets all margins of bodies and pairs. Needs setup().
   void resetMargins();
 
-  /// Selects who does stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, the default.
-  /// Effective at once. What VisibilityMode::automatic has measured is forgotten.
+  /// Selects the culler of stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, which
+  /// is the default. Effective at once. What VisibilityMode::automatic has measured is forgotten.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
   /// Makes all changes effective. Needed before the first query, after every member that says so, and after the tree

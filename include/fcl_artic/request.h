@@ -103,10 +103,11 @@ struct Effort {
   Method method = Method::standard;
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
-  /// Maximum number of node and leaf tests, for Method::redon2004 also of box tests, leaf pairs, equations and
-  /// evaluations; 0: no limit. When
-  /// it is exceeded, the answer is `undecided` (its t_lower is the begin with `firstOfEveryPair`, and may be with
-  /// ignore_initial_contact). It counts work, not time, so that the answer does not depend on the machine's speed. The
+  /// Maximum amount of work; 0: no limit. It is counted in node and leaf tests, for Method::redon2004 also in box
+  /// tests, leaf pairs, equations and evaluations, so that the answer does not depend on the machine's speed.
+  ///
+  /// When it is exceeded, the answer is `undecided`, and what it has proven holds: the motion is free up to t_lower.
+  /// (With `firstOfEveryPair` t_lower is the motion's begin then, and with ignore_initial_contact it may be.) The
   /// pieces of a trajectory, and the pairs of a ContinuousCollisionManager, share one budget.
   std::uint64_t work_budget = 0;
   /// Whether to measure the time of each stage (QueryStatistics). Counts are always kept.
@@ -127,9 +128,9 @@ struct CertifiedPairRequest : Tolerances, Effort {
   /// account, also with 0. With `first` each contact reported may be the first: none begins after t_upper. If there are
   /// too many, the earliest are kept. A query of two bodies has one contact at most.
   std::size_t max_contacts = 1;
-  /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. They are left out
-  /// until the first time interval, among those examined (1/8, 1/64, 1/512 of the motion), on which they are proven
-  /// apart, and watched from its start on. Shorter separations are not looked for.
+  /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. Such a pair is
+  /// not checked until it is proven apart over a whole time interval of 1/8, 1/64 or 1/512 of the motion; from the
+  /// start of the first such interval on it is checked as any other. Shorter separations are not looked for.
   bool ignore_initial_contact = false;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
   /// `firstOfEveryPair` the motion's or piece's begin, after the first contact its t_lower). May be empty. If it
@@ -144,8 +145,8 @@ struct CertifiedPairRequest : Tolerances, Effort {
 /// Request of a certified continuous query of an ArticulatedCollisionManager: what a query of two bodies has, which
 /// pairs are checked, and whether stage 2 takes part. All defaults are safe: nothing has to be tuned.
 struct CertifiedRequest : CertifiedPairRequest, Scope {
-  /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects who does
-  /// it.
+  /// Whether stage 2, culling by visibility, takes part. ArticulatedCollisionManager::setVisibility() selects the
+  /// culler.
   VisibilityMode visibility = VisibilityMode::off;
 };
 

@@ -22,8 +22,8 @@ class FCL_ARTIC_EXPORT SolidMark {
 /// link, an obstacle or an attached object, into a ContinuousCollisionManager, into fcl_artic::continuousCollide(). FCL
 /// itself takes it for the BVHModel that it is.
 ///
-///     auto solid = std::make_shared<fcl_artic::SolidMesh<fcl::OBBRSSd>>(*mesh);   // copies mesh
-///     manager.registerObject(new fcl::CollisionObjectd(solid));
+///     auto solid = std::make_shared<fcl_artic::SolidMesh<fcl::OBBRSSd>>(*mesh);  // copies mesh
+///     manager.registerObject(std::make_shared<fcl::CollisionObjectd>(solid));    // and keeps it alive
 ///
 /// The body is the surface and the points that the surface winds around a number of times other than 0. So each of
 /// several closed parts is a solid, whichever way its triangles face; a part inside another one that faces the other

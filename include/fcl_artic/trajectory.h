@@ -8,9 +8,9 @@
 
 namespace fcl_artic {
 
-/// A trajectory in joint space: motions one after the other, each a JointMotion: polynomials of time up to the fifth
-/// degree, or angles by a tangent half-angle law. Times
-/// are in any unit, mostly seconds; they are finite and increase, and the whole duration is finite.
+/// A trajectory in joint space: motions one after the other. Each is a JointMotion: polynomials of time up to the fifth
+/// degree, or angles by a tangent half-angle law. Times are in any unit, mostly seconds; they are finite and increase,
+/// and the whole duration is finite.
 ///
 /// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. The end
 /// of one piece and the beginning of the next may differ by rounding: by 1e-9 rad or m plus 1e-12 of the values. More

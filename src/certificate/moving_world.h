@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A world in motion, in doubles: where its frames are, how far its bodies reach along a direction, how fast they can
-// turn away. Nothing here is proven: it tells the emitter which hints are worth writing down.
+// turn away. Nothing here is proven: the emitter uses it to choose the hints that it writes.
 #pragma once
 
 #include <map>

@@ -21,7 +21,7 @@ class ProofBytes {
     for (; n >= 128; n >>= 7) byte(static_cast<int>(n & 127) | 128);
     byte(static_cast<int>(n));
   }
-  /// Little endian, in so many bytes.
+  /// Appends x in `bytes` bytes, little endian.
   void fixed(std::int64_t x, int bytes) {
     for (int i = 0; i < bytes; ++i) byte(static_cast<int>(static_cast<std::uint64_t>(x) >> (8 * i) & 255));
   }

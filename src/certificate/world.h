@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The world of a certificate (doc/CERTIFICATES.md): what stands and moves and what is checked, as plain data and as the
-// text that proofs are about. It is made of what callers told the manager, not of what the engine made of it.
+// text that proofs are about. It is made from what callers gave the manager, not from what the engine made of that.
 #pragma once
 
 #include <array>

@@ -53,7 +53,7 @@ inline int pieceAt(const TreeView& mesh, const Vec3& x) {
   return found;
 }
 
-/// The segment from `start` to start + along among boxes and triangles, as far as can be told.
+/// The segment from `start` to start + along among boxes and triangles, as far as doubles can decide.
 struct Probe {
   Vec3 start, along;
   float per[3], offset[3];  ///< x * per - offset is the part of the way at which a coordinate is x

@@ -35,7 +35,7 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
 /// A segment certainly meets a triangle: the differences of their points are a prism, and one of the three tetrahedra
 /// that it is cut into certainly holds the origin (doc/NUMERICS.md, Lemma 5).
 /// @param a, b  the segment's ends and the triangle's corners in one frame; their differences are off by eps at most.
-/// @param weights  of the corners, where they meet, about, and `part` of the segment: they tell the tetrahedron.
+/// @param weights  of the corners, about where they meet, and `part` of the segment: they choose the tetrahedron.
 inline bool certainlyPierces(const Vec3* a, const Vec3* b, double eps, const Vec3& weights, double part) {
   static const int kTetrahedra[3][4][2] = {
       {{0, 0}, {1, 0}, {2, 0}, {2, 1}}, {{0, 0}, {1, 0}, {1, 1}, {2, 1}}, {{0, 0}, {0, 1}, {1, 1}, {2, 1}}};
@@ -81,7 +81,7 @@ inline bool originWeights(Simplex& s) {
   return best < 1e300;
 }
 
-/// The points of both pieces, in A's frame, that the weights tell.
+/// The points of both pieces, in A's frame, that belong to the weights.
 inline void combine(const DifferenceBody& body, const Simplex& s, Vec3& a, Vec3& b) {
   Vec3 x(0, 0, 0);
   a = {0, 0, 0};

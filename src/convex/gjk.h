@@ -95,7 +95,7 @@ inline Vec3 nearestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {1 - vb * f - vc * f, vb * f, vc * f};
 }
 
-/// The combination that the simplex' weights tell.
+/// The combination of the simplex' vertices by its weights.
 inline Vec3 combined(const Simplex& s) {
   Vec3 w(0, 0, 0);
   for (int i = 0; i < s.n; ++i) w = w + s.v[i].w * s.weight[i];
@@ -203,7 +203,7 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
   out.distance = max(0.0, out.lower);
 }
 
-/// The search itself, in any bounded convex body that tells its support points.
+/// The search itself, in any bounded convex body with a function for its support points.
 /// @param enough  a direction along which the gap is larger ends the search.
 /// The other parameters are gjk()'s.
 template <class ConvexBody>
@@ -214,7 +214,7 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
   const double given = norm(guess);
   const bool usable = given > 1e-100;  // far from underflow
   double best_length = usable ? given : 1;
-  Vec3 best = usable ? guess : Vec3(1, 0, 0);  // the direction that tells the largest lower bound
+  Vec3 best = usable ? guess : Vec3(1, 0, 0);  // the direction with the largest lower bound so far
   Vec3 v;
   double size2 = 0;  // the largest |w|^2 seen
   Simplex& s = out.simplex;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All that the library knows of a kind of convex piece: one struct a kind, with one answer to each question. Every
-// geometry is made of pieces, and no pair of kinds has code of its own, so that this file and the reader of a geometry
-// (fcl/fcl_geometry.cpp) are all that a new kind needs.
+// All that queries know of a kind of convex piece: one struct a kind, with one answer to each question. Every geometry
+// is made of pieces, and no pair of kinds has code of its own, so that this file and the reader of a geometry
+// (fcl/fcl_geometry.cpp) are all that queries of a new kind need. Certificates need three things more: its text in
+// certificate/world.cpp, its inside in certificate/witness.cpp, and in verify/, which shares no code with the
+// library, a Geometry::Kind (support.h) with its own reader, support bound and contact.
 //
 // A new kind: its value in PieceKind, a struct here, a case in withKind(). A case or an answer that is missing does not
 // compile; where a kind has no simple answer `Unknown` has one that is always right.
@@ -496,7 +498,7 @@ FCL_ARTIC_INLINE void coreRange(const TreeView& tree, const Piece& piece, const 
   upper = m + up;
 }
 
-/// Of so few lanes each goes through a hull's vertices by itself, eight vertices at once.
+/// Up to this number of lanes, each goes through a hull's vertices by itself, eight vertices at once.
 constexpr int kFewLanes = 3;
 
 /// The same where only `lanes` matter: nothing need be known of the others.

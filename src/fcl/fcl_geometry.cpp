@@ -45,7 +45,7 @@ struct Mesh {
   bool solid;
 };
 
-/// A mesh that is a SolidMesh. (Most are BVHModels themselves, which one comparison tells.)
+/// A mesh that is a SolidMesh. (Most are BVHModels themselves, which one comparison shows.)
 template <class BV>
 bool isSolid(const fcl::CollisionGeometry<typename BV::S>& geometry) {
   return typeid(geometry) != typeid(fcl::BVHModel<BV>) && dynamic_cast<const SolidMark*>(&geometry);
@@ -102,7 +102,7 @@ std::shared_ptr<const ShapeTree> readMesh(const Mesh<S>& mesh) {
   for (std::size_t i = 0; i < mesh.num_triangles; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t index = mesh.triangles[i][static_cast<int>(k)];
-      triangles[i][k] = index < mesh.num_vertices ? static_cast<int>(index) : -1;  // ShapeTree tells
+      triangles[i][k] = index < mesh.num_vertices ? static_cast<int>(index) : -1;  // ShapeTree refuses it
     }
   }
   return ShapeTree::fromTriangles(toDouble(mesh.vertices, mesh.num_vertices), triangles, mesh.solid);

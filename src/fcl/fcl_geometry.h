@@ -34,9 +34,8 @@ std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<S>&
 constexpr std::size_t kMeshCacheBytes = std::size_t{256} << 20;
 
 /// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place: its type, the
-/// numbers of a shape, a mesh's vertices and triangles and whether it is a solid, an OcTree's occupied cells, a
-/// cloud's points and radii. Equal
-/// contents give equal trees.
+/// numbers of a shape, a mesh's vertices and triangles and whether it is a solid, an OcTree's occupied cells, a cloud's
+/// points and radii. Equal contents give equal trees.
 class GeometryContent {
  public:
   /// The geometry must have been read, that is, not refused.

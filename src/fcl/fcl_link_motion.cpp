@@ -129,7 +129,7 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
             addStep(Vector3d::Unit(k), true, motion.variables()(v + k, 0), motion.variables()(v + k, 1));
           }
           break;
-        case JointFactor::Kind::turn: {  // about one axis, behind it the orientation at the start
+        case JointFactor::Kind::turn: {  // about one axis, applied to the orientation at the start
           const Vector3d w = motion.variables().block<3, 1>(v, 1);
           if (const double angle = w.norm(); angle > 0) addStep(w / angle, false, 0, angle);
           using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

@@ -142,7 +142,7 @@ BodyMotion lineWithTurn(const Isometry3d& begin, const Vector3d& o, const Vector
 ///
 ///   u(t) = t (axis . o) axis + sin(angle t) b - (1 - cos(angle t)) w,   b = axis x w,
 ///
-/// which in powers of t needs only angle w and angle b, both of the size of o. Cut off behind t^5 it is in error by at
+/// which in powers of t needs only angle w and angle b, both of the size of o. Cut off after t^5 it is in error by at
 /// most (angle^7 / 5040) |b| + (angle^6 / 720) |w| < angle^5 |o_| / 700, which for angle <= 1e-3 is 1.5e-18 |o_|.
 BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axis, double angle) {
   constexpr double kSmallAngle = 1e-3;

@@ -26,7 +26,7 @@ namespace fcl_artic {
 ///   displacement d of its end poses (0.5 m ends at 0.25 m, 6 m at 36 m).
 /// - InterpMotion(tf1, tf2) and (R1, T1, R2, T2) leave the reference point, whose path is a straight line, as whatever
 ///   was in memory before. It is read as FCL reads it; only where its coordinates are not finite or beyond 1e9 m can
-///   the mistake be told. Use the constructor (R1, T1, R2, T2, O).
+///   the mistake be seen. Use the constructor (R1, T1, R2, T2, O).
 /// For the motion that is meant between two poses see motionBetween().
 ///
 /// @throws std::invalid_argument naming the type: for one that is not known; for values that are not finite, beyond

@@ -50,7 +50,7 @@ class Descriptor {
 
   int number() const { return number_; }
   bool good() const { return number_ >= 0; }
-  /// Some systems tell only now that there was no room.
+  /// Some systems report only now that there was no room.
   bool close() {
     const int number = number_;
     number_ = -1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The one way in which this project reads and writes files. Whatever goes wrong on the way is an error that names the
-// file: what a half-read file describes must not be checked, a half-written one not be left behind.
+// file: what a half-read file describes must not be checked, a half-written one must not be left.
 #pragma once
 
 #include <string>
@@ -14,8 +14,8 @@ namespace fcl_artic::files {
 /// @throws std::runtime_error naming the file and the system's reason, also for an error after the first bytes.
 std::string read(const std::string& path);
 
-/// Writes a file, all or nothing: a new one beside it is filled and takes its place (its permissions stay; behind a
-/// symbolic link the file it points to). What is no regular file, a device or a pipe, is written to.
+/// Writes a file, all or nothing: a new one beside it is filled and takes its place (its permissions stay; of a
+/// symbolic link, the file it points to is replaced). What is no regular file, a device or a pipe, is written to.
 /// @throws std::runtime_error naming the file and the system's reason; a file that was there is as before.
 void write(const std::string& path, std::string_view content);
 

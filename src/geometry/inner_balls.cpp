@@ -23,7 +23,7 @@ using engine::PieceKind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Points looked at in a mesh, and in its smallest part at least.
 constexpr int kSamples = 400, kFewestSamples = 40;
-/// Parts that get balls: so many, none of which is smaller than this part of the largest.
+/// Parts that get balls: at most kMostParts, none smaller than kLeastPart of the largest.
 constexpr std::size_t kMostParts = 8;
 constexpr double kLeastPart = 0.1;
 /// Steps by which a ball is moved away from where it touches.

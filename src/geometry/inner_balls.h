@@ -21,14 +21,14 @@ class EnclosedSpace {
 
   const ClosedParts& parts() const { return parts_; }
   /// Lower bound of x's distance from a part's triangles.
-  /// @param[out] nearest  where that is, about.
+  /// @param[out] nearest  about where that is.
   double clearance(std::int32_t part, const Eigen::Vector3d& x, Eigen::Vector3d& nearest) const;
   /// The part certainly goes around x an odd number of times.
   bool certainlyEncloses(std::int32_t part, const Eigen::Vector3d& x) const;
 
   using Crossing = LineCrossing;
   /// All of a part's triangles that the line through x along an axis crosses. False where it comes too near an edge to
-  /// tell.
+  /// decide.
   bool crossings(std::int32_t part, const Eigen::Vector3d& x, int axis, std::vector<Crossing>& found) const;
 
  private:

@@ -19,11 +19,12 @@ using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The search looks at the points that are farthest along so many directions, of at most about so many points.
+/// The search works on extreme points: the farthest ones along kDirections directions, among about kSampled points
+/// at most.
 constexpr int kDirections = 100;
 constexpr std::size_t kSampled = 20000;
-/// Its steps from each axis. Measured on a Panda: 35 % less volume than about the principal axis, and of 1,000
-/// obstacles about it stage 1 leaves 9.4 pairs in place of 14.8; 150 leave 9.6, 2000 as many as 400.
+/// Steps of the search from each axis. Measured on a Panda: 35 % less volume than about the principal axis, and of
+/// 1,000 obstacles about it stage 1 leaves 9.4 pairs in place of 14.8; 150 leave 9.6, 2000 as many as 400.
 constexpr int kSteps = 400;
 
 struct Segment {

@@ -27,7 +27,7 @@ using engine::TreeView;
 /// it, too.
 constexpr double kSlack = 0x1p-20;
 
-/// Gives equal points and equal edges one number each. Open addressing over the tables of who asks.
+/// Gives equal points and equal edges one number each. Open addressing over tables that the caller provides.
 template <class Key, class Hash>
 class Numbering {
  public:

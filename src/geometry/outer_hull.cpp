@@ -13,7 +13,7 @@
 namespace fcl_artic {
 namespace {
 
-/// With so many points, or so many different ones, the body must be a scene.
+/// A body with more points than this, or more different ones, must be a whole scene: it gets no hull.
 constexpr std::size_t kMaxPoints = 1000000, kMaxDifferent = 60000;
 constexpr int kDirections = 32;
 /// Points that are nearer to the hull than this part of the body's size are left to its radius.

@@ -13,8 +13,9 @@ struct OuterHull {
   double radius = 0;
 };
 
-/// A hull of all points where they are at most `most_exact` different ones, its radius 0; else of at most `most` of
-/// them. Empty for fewer than 4 points, and for so many that the body must be a scene.
+/// Makes the hull of all points, of radius 0, if at most `most_exact` of them differ; else the hull of at most `most`
+/// of them, with a radius that makes up for the others. Empty for fewer than 4 points, and for more than any single
+/// body has (kMaxPoints, kMaxDifferent): those are whole scenes.
 OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& points, std::size_t most_exact = 160,
                         std::size_t most = 96);
 

@@ -24,11 +24,11 @@ using engine::PairPose;
 using engine::Piece;
 using engine::PieceKind;
 
-/// So many points near one that is looked at are tried, along each axis: a line through one of them meets an edge, as
-/// far as doubles can tell, by bad luck only.
+/// Number of points near the given one that are tried along each axis. A line through one of them meets an edge, within
+/// the precision of doubles, by bad luck only.
 constexpr int kTrials = 8;
 
-/// The nearest point of an edge, about.
+/// Approximately the nearest point of an edge.
 Vector3d nearestOfEdge(const Vector3d& a, const Vector3d& b, const Vector3d& x) {
   const Vector3d along = b - a;
   const double square = along.squaredNorm();

@@ -21,8 +21,8 @@ class SolidSpace {
   explicit SolidSpace(const engine::TreeView& mesh) : mesh_(mesh) {}
 
   enum class Side { outside, inside, unknown };
-  /// Where all points within `error` of x lie. Unknown where the surface is as near, or too near to be told.
-  /// @param[out] nearest  a point of the surface near x, when it lies inside: the shortest way out, about.
+  /// Where all points within `error` of x lie. Unknown where the surface is as near, or too near to decide.
+  /// @param[out] nearest  a point of the surface near x, when it lies inside: about the shortest way out.
   Side sideOf(const Eigen::Vector3d& x, double error, Eigen::Vector3d& nearest) const;
   /// Lower bound of x's distance from the surface.
   double clearance(const Eigen::Vector3d& x, Eigen::Vector3d& nearest) const;

@@ -3,7 +3,7 @@
 // Intervals side by side, one per lane of a register: operation by operation what interval.h does, so that every lane
 // has the bits of Interval. Compiled once per instruction set: the including file defines FCL_ARTIC_ISA (the namespace)
 // and FCL_ARTIC_ISA_BITS (512, 256 or 128) first. AVX-512 names the direction of rounding in each instruction; the
-// others take it from RoundUpward, as interval/rounding.h tells.
+// others take it from RoundUpward, as interval/rounding.h says.
 //
 // All that depends on the instruction set is in interval/ends_*.h. Such a file defines, lane by lane:
 //

@@ -26,7 +26,7 @@ class FloatingPointControl {
     std::fegetenv(&o.environment_);
     return o;
   }
-  /// Not known: whether subnormals are kept and exceptions trap is no part of what C tells. So every scope sets it.
+  /// Always false: C has no way to ask whether subnormals are kept and exceptions trap. So every scope sets the mode.
   FCL_ARTIC_INLINE bool is(Rounding) const { return false; }
   static FCL_ARTIC_INLINE void set(Rounding rounding) {
     order();

@@ -23,7 +23,7 @@ struct JointFactor {
     revolute,   ///< rotation about `axis` by the variable
     prismatic,  ///< translation along `axis` by the variable
     slide,      ///< translation by a vector of three variables
-    turn,       ///< the three variables' rotation vector, behind it the orientation at t = 0: exp([w]) R0
+    turn,       ///< the three variables' rotation vector, after the orientation at t = 0: exp([w]) R0
   };
   Kind kind;
   int variable;                                     ///< offset of its first variable from the joint's

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whoever may advise the solver: tables of two links, grids of where balls meet, culling by visibility, yours. An
+// Advisors of the solver: tables of two links, grids of where balls meet, culling by visibility, or your own. An
 // advisor may clear parts of the motion in which it has proven a pair free, and may suggest where contact is likely;
-// nothing else. What it clears is trusted, what it suggests is not. Plain data.
+// nothing else. The solver trusts what an advisor clears, and checks what it suggests. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct CullCandidate {
   const Placement* at;  ///< of its tree in that frame
   std::uint32_t lanes;  ///< parts of the motion in which their bounds meet
   double margin;        ///< of the pair
-  /// Nodes of the other body's tree, a bit each, that are proven free of the link over the whole motion; null: none.
-  /// There until the solver returns.
+  /// One bit per node of the other body's tree: the node is proven free of the link over the whole motion; null: none
+  /// is. Must stay valid until the solver returns.
   const std::uint64_t* free_nodes = nullptr;
 };
 
@@ -44,17 +44,18 @@ struct LikelyContact {
 /// Each function may be null.
 struct Advisor {
   void* self = nullptr;
-  /// Per link pair, bit k: it is proven free over the part [k/8, (k+1)/8] of this motion. Asked when the pairs are come
-  /// to, which contact with an obstacle may spare. Null: nothing is known. There until the solver returns.
+  /// One byte per link pair; bit k: the pair is proven free over the part [k/8, (k+1)/8] of this motion. Null: nothing
+  /// is known. Called when the solver reaches the link pairs, which a contact with an obstacle may make needless. The
+  /// array must stay valid until the solver returns.
   const std::uint8_t* (*freeParts)(void* self) = nullptr;
-  /// The same of one link pair, for what costs more to look up: asked of those that stage 1's own bounds leave.
+  /// The same for one link pair, for answers that cost more: called for the pairs that stage 1's own bounds leave.
   unsigned (*freePartsOf)(void* self, std::int32_t link_pair) = nullptr;
-  /// Asked between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
-  /// `free_nodes`. The pairs with the same `swept` lie together and share a frame. Pairs come in the order of their
-  /// numbers but for those of links and still obstacles, which come first, by link.
+  /// Called between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
+  /// `free_nodes`. Pairs with the same `swept` lie together and share a frame. Pairs of links and still obstacles come
+  /// first, ordered by link, then the others in the order of their numbers.
   void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
                 std::int32_t num_pairs) = nullptr;
-  /// With Query::any: where balls inside links are likely to meet. Asked before all else.
+  /// Where balls inside links are likely to meet. Called with Query::any, before all else.
   const LikelyContact* (*suggest)(void* self, std::int32_t& count) = nullptr;
 };
 

@@ -19,7 +19,7 @@ struct Statistics : StandardStatistics {
 /// Values of FeatureKind for the engine's code, which is compiled for several instruction sets and includes no Eigen.
 constexpr std::int32_t kEdgeFace = 6, kFaceEdge = 7, kVolume = 9;
 
-/// Two leaves that meet, or come too near to be told apart.
+/// Two leaves that meet, or come too near to be separated.
 struct LeafContact {
   PairId pair;
   std::int32_t body_a, body_b;

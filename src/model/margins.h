@@ -28,7 +28,7 @@ class Margins {
     pairs_.num_scene_pairs = num_scene_pairs;
     largest_ = largest + added_ > requested_ ? largest + added_ : requested_;
   }
-  /// For a problem whose link pairs begin so many later.
+  /// For a problem that leaves out the first n link pairs.
   [[gnu::always_inline]] void skipLinkPairs(std::int32_t n) {
     if (link_) link_ += n;
   }

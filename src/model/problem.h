@@ -33,7 +33,7 @@ struct Body {
 };
 
 /// What stage 1 asks of an obstacle that stands still, in three cache lines: in a large scene most of its time went
-/// into fetching these numbers one behind the other.
+/// into fetching these numbers one after the other.
 struct alignas(64) StillBounds {
   Placement inverse;  ///< Body::inverse
   CoreBox box;
@@ -83,7 +83,7 @@ struct Problem : PairNumbering {
   std::int32_t num_bodies = 0;
   const std::int32_t* movers = nullptr;  ///< bodies bound to links, distal first, then moving obstacles
   std::int32_t num_movers = 0;
-  std::int32_t num_scene_movers = 0;  ///< the first so many are checked against the obstacles that stand still
+  std::int32_t num_scene_movers = 0;  ///< that many of them, from the first on, are checked against still obstacles
   const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
   std::int32_t num_sweeps = 0;
   const LinkPair* link_pairs = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What one query asks: the motion, tolerances, and who may advise the solver. Plain data.
+// What one query asks: the motion, tolerances, and the solver's advisors. Plain data.
 #pragma once
 
 #include <cstdint>

@@ -43,10 +43,10 @@ constexpr std::int32_t kMaxDegree = 5;
 struct SweepStep {
   std::int32_t parent = -1;  ///< step before this one, -1: the base frame
   StepKind kind = StepKind::revolute;
-  double C[9], p[3];           ///< constant transform from the parent step's frame
-  double perp = 0, axial = 0;  ///< |p| across and along the axis of a revolute parent (axial 0, perp |p| behind others)
-  double length = 0, ulps = 0;            ///< of C and p, as in Placement
-  std::int32_t variable = -1;             ///< revolute, prismatic: the variable; slide, turn: the first of three
+  double C[9], p[3];            ///< constant transform from the parent step's frame
+  double perp = 0, axial = 0;   ///< |p| across and along the axis of a revolute parent (others: axial 0, perp |p|)
+  double length = 0, ulps = 0;  ///< of C and p, as in Placement
+  std::int32_t variable = -1;   ///< revolute, prismatic: the variable; slide, turn: the first of three
   double multiplier = 1, offset = 0;      ///< q = multiplier * q_variable + offset; slide, turn: offset 0
   std::int32_t orientation = -1;          ///< turn: number of its R0 among Query::orientations; -1: none
   const BoundedSource* source = nullptr;  ///< bounded

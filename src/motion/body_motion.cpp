@@ -272,7 +272,7 @@ void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d
   reach += 0x1p-46 * (motion.after.translation().norm() + lower.norm() + upper.norm());
   const PathBounds path = boundPath(motion, reach);
 
-  // So many pieces that the boxes grow by 1/500 of the path's size, were they no more than 256. Infinity and NaN choose
+  // The number of pieces with which the boxes grow by 1/500 of the path's size, 256 at most. Infinity and NaN choose
   // 256.
   constexpr int kMostPieces = 256;
   const double growth = 2e-3 * (std::min(path.speed, path.extent) + (upper - lower).norm());

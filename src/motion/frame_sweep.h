@@ -39,18 +39,18 @@ class FrameSweep {
   /// Adds the steps on the way to the link where they are not there yet.
   Carrier carrier(LinkId link);
 
-  /// Goes on into a tree that stands in the world: for carrier(), behind the elements of a body's motion.
+  /// Goes on into a tree that stands in the world: for carrier(), after the elements of a body's motion.
   /// @param world  where the world is carried.
   void enterTree(const KinematicTree& tree, const Carrier& world);
 
   /// Crosses one element of a body's motion, outwards (down) or back towards the world.
   /// @param variable  of its first row of coefficients.
   /// @param source  of a bounded element; the view keeps the pointer.
-  /// @param orientation  of a turn: number of the rotation behind it, among those of the query; -1: none.
+  /// @param orientation  of a turn: number, among those of the query, of the rotation that it is applied to; -1: none.
   Carrier cross(const Carrier& from, const MotionElement& element, int variable, const engine::BoundedSource* source,
                 bool down, int orientation = -1);
 
-  /// The motion of the step crossed last is off by so much: an angle in 2^-52 rad, a length in 2^-52 m.
+  /// Adds an error to the motion of the step crossed last: an angle in units of 2^-52 rad, a length in 2^-52 m.
   void allowError(double angle, double length);
 
   engine::SweepView view() const;
@@ -60,8 +60,8 @@ class FrameSweep {
   explicit FrameSweep(const KinematicTree& tree, LinkId base) : tree_(&tree), base_(base) {}
   /// Crosses a joint: downwards (parent to child) or upwards.
   Carrier cross(const Carrier& from, JointId joint, bool down);
-  /// Adds a step behind `at` and goes there: its frame is turned so that the axis is z. What moves it is still to be
-  /// set.
+  /// Adds a step after `at` and goes there: its frame is turned so that the axis is z. The caller still has to set what
+  /// moves it.
   engine::SweepStep& append(Carrier& at, const Eigen::Vector3d& axis);
 
   const KinematicTree* tree_ = nullptr;

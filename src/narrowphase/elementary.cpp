@@ -149,8 +149,8 @@ struct Nearest {
   Foot foot;
 
   double distance() const { return (x - a).norm(); }
-  /// x - a. The difference has lost digits to cancellation, an angle of rounding / distance; what the features' own
-  /// directions tell brings them back, which lets gaps below the root of the rounding error be seen.
+  /// x - a. The difference has lost digits to cancellation, an angle of rounding / distance; the features' own
+  /// directions restore them, so that gaps below the root of the rounding error are seen.
   Vector3d direction() const {
     Vector3d n = x - a, f = foot.f;
     removeAlong(foot.e, n);

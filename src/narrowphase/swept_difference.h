@@ -2,8 +2,8 @@
 //
 // Directions for a whole time interval. A direction n that is fixed in the still body's frame certifies an interval
 // (certificate.h) if all points of the moving piece, at the three Bernstein poses R_k p + c_k, lie far enough along n.
-// So it does what tells the still piece from the convex hull of these three placed pieces, and GJK between the two
-// finds such an n where there is one; the witness at the interval's middle is one only where the bodies move little
+// Any n that separates the still piece from the convex hull of these three placed pieces does so, and GJK between the
+// two finds one where there is one. The witness at the interval's middle is such an n only where the bodies move little
 // (doc/NUMERICS.md, section 4). A heuristic, as gjk.h: the certificate checks what it finds.
 #pragma once
 

@@ -3,7 +3,7 @@
 // The instruction sets for which this build has an engine and batches, and the choice among them at run time. What one
 // more takes: a line here, numerics/register_*.h and where it has directed rounding interval/processor_*.h, a file of
 // its own for what is compiled for it (narrowphase/engine_*.cpp, redon/box_batch_*.cpp), and a name in
-// cmake/InstructionSets.cmake, which says what the compiler is told.
+// cmake/InstructionSets.cmake, which lists the compiler's flags.
 #pragma once
 
 #include <cstddef>

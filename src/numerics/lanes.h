@@ -183,8 +183,8 @@ FCL_ARTIC_INLINE Lanes whereGreater(Lanes a, Lanes b, Lanes x, Lanes y) {
   return o;
 }
 
-/// Values whose lowest bits are replaced by their number, `first` + lane: the largest one then tells which it is. They
-/// change by less than 2^-42 of themselves.
+/// Values whose lowest bits are replaced by their number, `first` + lane: the largest one then carries its own number.
+/// They change by less than 2^-42 of themselves.
 constexpr int kNumbered = 1024;  ///< numbers lie below
 FCL_ARTIC_INLINE Lanes numbered(Lanes a, int first) {
   typedef long long Bits __attribute__((vector_size(sizeof(Register))));

@@ -43,7 +43,7 @@ FCL_ARTIC_INLINE double regMaxLane(Register a) {
 
 using Integers = int32x2_t;
 FCL_ARTIC_INLINE Integers regTruncate(Register a) {
-  // Conversion ends at the largest and least integer of 64 bits, and makes NaN 0: what is out of range is told before.
+  // Conversion saturates at the ends of 64 bits, and makes NaN 0: so what is out of range is found before.
   const uint64x2_t inside = vandq_u64(vcgtq_f64(a, regSet(-0x1p31 - 1)), vcltq_f64(a, regSet(0x1p31)));
   return vmovn_s64(vbslq_s64(inside, vcvtq_s64_f64(a), vdupq_n_s64(INT32_MIN)));
 }

@@ -164,7 +164,7 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
   if (!(tolerance >= 0) || !std::isfinite(tolerance)) {
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
-  constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: what doubles can tell apart
+  constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
   // Narrower brackets than these are no dearer, wider ones are: more of the bodies is looked at in a wider interval
   // (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked for.
   constexpr double kCoarsest = 1e-4;

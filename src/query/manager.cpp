@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manager as users hold it: changes go to the registry, and the set-up is told what they make out of date.
+// The manager as users hold it: changes go to the registry, and mark what they make out of date in the set-up.
 #include "fcl_artic/manager.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manager inside: what callers told it (Registry), what is made of that for queries (Setup), and who does stage 2.
-// manager.cpp forwards changes to them, manager_query.cpp asks and reports.
+// The manager inside: what callers gave it (Registry), what is made of that for queries (Setup), and the culler of
+// stage 2. manager.cpp forwards changes to them, manager_query.cpp asks and reports.
 #pragma once
 
 #include <memory>

@@ -2,7 +2,7 @@
 //
 // The continuous overlap test (redon/overlap.h) for several pairs of boxes at once: intervals side by side in vector
 // registers, compiled once per instruction set and picked at run time. All but "portable" do what the test does,
-// operation by operation; "portable" needs no rounding mode, and what it tells apart is apart. Callers need no
+// operation by operation; "portable" needs no rounding mode, and what it separates is apart. Callers need no
 // RoundUpward: each call sees to it.
 #pragma once
 

@@ -29,7 +29,7 @@ FCL_ARTIC_INLINE Intervals along(const Vec3<Intervals>& x, const T* v) {
   return (x[0] * v[0] + x[1] * v[1]) + x[2] * v[2];
 }
 
-/// One box per lane; behind the end the last one again.
+/// One box per lane; lanes after the last box repeat it.
 struct Boxes {
   Ends axis[3][3], center[3], half[3];
 

@@ -150,7 +150,7 @@ IntervalVec3 vectorWithin(const double* x, double part) {
   return o;
 }
 
-/// What the author of a motion tells, over T: its state at the middle and how far bounds let that go; or the inverse
+/// What the author of a motion states, over T: its state at the middle and how far bounds let that go; or the inverse
 /// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
 void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
   const double middle = T.middle();

@@ -35,7 +35,7 @@ struct LeafPair {
   double from, until;  ///< to be looked at in this time
 };
 
-/// Goes through the sub-intervals in the order of time, so that nothing is spent on boxes behind the first contact.
+/// Goes through the sub-intervals in the order of time, so that nothing is spent on boxes after the first contact.
 /// Bounds are made when they are first asked for: what is far from everything is bounded over the whole motion only.
 class Culling {
  public:
@@ -47,7 +47,7 @@ class Culling {
   void bodyPairs(const std::function<bool(engine::PairId)>& wanted, const TreeOf& treeOf, std::vector<BodyPair>& out);
   /// To be called next.
   void start(const std::vector<BodyPair>& pairs);
-  /// The finest sub-intervals of all pairs: [0, 1] in so many equal parts.
+  /// Number of the finest sub-intervals of all pairs, equal parts of [0, 1].
   int numSlots() const { return 1 << finest_; }
   double slotBegin(int slot) const { return timeOf(finest_, slot); }
   /// Pairs of triangles whose boxes meet from the beginning of this slot on. Slots are asked for one after the other.

@@ -70,7 +70,7 @@ Interval derivativeOver(const Equation& equation, const Element* elements);
 /// A direction keeps the two features apart all over T: no root there is a contact. Where the function vanishes for
 /// good (parallel edges, coplanar features, edges and faces without extent) this decides instead of it.
 /// @param h  T - m.
-/// @param[out] gap  between the features in the middle, about.
+/// @param[out] gap  about the gap between the features in the middle.
 bool certainlyApart(const Equation& equation, const Element* elements, Interval h, double& gap);
 
 /// The features themselves meet wherever the function has a root in T: the vertex is inside the face, the edges cross.

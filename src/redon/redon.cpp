@@ -147,8 +147,8 @@ bool Run::choosePairs() {
   return any;
 }
 
-/// The paper starts without contact. Whether that is so, the certificate tells, at rest at t = 0: surfaces that cross,
-/// and solids that hold others. A pair of which it can't be proven is the engine's.
+/// The paper starts without contact. The certificate, at rest at t = 0, decides whether that is so: surfaces that
+/// cross, and solids that hold others. A pair of which it can't be proven is the engine's.
 /// @return true when all pairs are: there is contact at t = 0 where the first one is asked for, or it is not known
 ///   which pairs touch.
 bool Run::touchesAtStart(Answer& answer) {

@@ -13,7 +13,7 @@ namespace {
 
 /// Time intervals are not divided below this.
 constexpr double kNarrowest = 0x1p-46;
-/// A gap is taken for none when it is no more than so many times what its own ends are known to.
+/// A gap counts as none when it is at most this many times the error of its own ends.
 constexpr double kNoGap = 8;
 
 }  // namespace

@@ -66,7 +66,7 @@ class Solver {
 
   SweepChains over_, middle_;  ///< of the present interval T, and of the middle of it
   double begin_ = 0, end_ = 0, mid_ = 0;
-  double free_else_ = 0;  ///< progress tells of no later time
+  double free_else_ = 0;  ///< progress reports no later time
   std::int32_t stamp_ = 0;
   std::vector<PairBounds> motions_;
   std::vector<std::int32_t> motion_stamps_;

@@ -40,7 +40,7 @@ class LinkPairProofs {
 class ProvenPairs {
  public:
   /// @param margins  of the pairs' own.
-  /// @param num_self_pairs  the first so many of the problem's link pairs.
+  /// @param num_self_pairs  number of the problem's link pairs, from the first on, that are two links.
   void buildSelf(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
                  std::size_t num_self_pairs);
   /// What depends on the obstacles.

@@ -24,7 +24,7 @@ class LinkTables {
   /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.) Of robots
   /// that could have many thousands only about the first kMost pairs get one, those of the largest links: what tables
   /// save is lost again where they don't fit in a cache.
-  /// @param num_self_pairs  the first so many of the problem's link pairs.
+  /// @param num_self_pairs  number of the problem's link pairs, from the first on, that are two links.
   /// @param proven  pairs that need no table.
   void build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
              std::size_t num_self_pairs, const ProvenPairs& proven);

@@ -6,7 +6,7 @@
 namespace fcl_artic {
 namespace {
 
-/// Whether the joint lets its link go anywhere in the world: a planar or floating one, on what stands still.
+/// Whether the joint lets its link go anywhere in the world: a planar or floating joint whose parent stands still.
 bool isFree(const KinematicTree& tree, JointId joint) {
   const JointType type = tree.joint(joint).type;
   if (type != JointType::planar && type != JointType::floating) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What callers told the manager: the robot, geometry bound to its links, obstacles, allowed pairs and margins. Every
+// What callers gave the manager: the robot, geometry bound to its links, obstacles, allowed pairs and margins. Every
 // change is checked here, and one that throws changes nothing. What is made of it for queries is the Setup's.
 #pragma once
 
@@ -50,7 +50,7 @@ class Registry {
     return !a.empty() && !b.empty() && !allowed_.allowed(a.name, b.name);
   }
 
-  // The public manager's functions of the same names tell what they throw.
+  // The public manager's functions of the same names say what they throw.
   using Owner = std::shared_ptr<const fcl::CollisionObjectd>;
   /// @param owner  keeps the object alive as long as it is here; null: the caller does.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner = nullptr);

@@ -44,7 +44,8 @@ class Setup {
   engine::Problem problem() const;
   /// Of all of the problem's pairs.
   const PairMargins& margins() const { return margins_; }
-  /// Of the problem's link pairs the first so many are two links, the others moving obstacles and links.
+  /// Number of the problem's link pairs, from the first on, that are two links; the others are moving obstacles and
+  /// links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }

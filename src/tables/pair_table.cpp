@@ -26,7 +26,7 @@ constexpr double kMostMargin = 0.03;
 constexpr int kPlanes = 3;
 // Of a plane's cells that are not proven, PairTable::free counts those in a box of at most one turn.
 static_assert(kColumns * kMostRows < 1 << 16);
-/// Joints may stand at their limits: cells go on behind them by this part of the range.
+/// Joints may stand at their limits: cells extend beyond them by this part of the range.
 constexpr double kBeyondLimits = 1e-3;
 /// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint
 /// values.
@@ -196,7 +196,7 @@ class PairTable::Builder {
     FCL_ARTIC_ASSERT(cells > 0 && answer.t_lower >= 0 && answer.t_lower <= 1);
     if (answer.isFree()) return cells;
     if (query_.any) return 0;
-    // Apart before t_lower: the cells' own slack behind the last of them is in it.
+    // Apart before t_lower, which includes the slack after the last cell.
     return std::max(0, static_cast<int>(answer.t_lower * (cells + 2 * kCellSlack) - 3 * kCellSlack));
   }
 

@@ -16,18 +16,18 @@ namespace fcl_artic {
 namespace {
 
 constexpr double kUlp = 0x1p-52;
-/// Joints may stand at their limits: ranges go on behind them by this part of themselves.
+/// Joints may stand at their limits: ranges extend beyond them by this part of their width.
 constexpr double kBeyondLimits = 1e-3;
 /// Variables, factors and offsets beyond, rad or m, are left alone: the pads below are for these.
 constexpr double kMostValue = 100;
-/// Counts as so many tests: a look at witnesses.
+/// Work of a look at the witnesses (mustFail()), in tests of nodes and leaves.
 constexpr std::uint64_t kGlanceWork = 15;
 /// Tests of nodes and leaves for one box; what needs more is cut in two, each of which may take twice as many. Measured
 /// on the Panda: 120 take 1.5 times as long, 3000 as long.
 constexpr std::uint64_t kWorkOfBox = 600;
 /// What the margin pays for a box that is not cut any further, m: links that come as near are not proven apart.
 constexpr double kFinest = 2e-5;
-/// A proof is given up when at its pace so far it would take so many times the work allowed.
+/// A proof is given up when, at its pace so far, it would take more than this many times the work allowed.
 constexpr double kMostHope = 8;
 /// The way of the variable that the engine moves, as compared with ways that the margin pays for: where it is longer
 /// by more than this, it is halved first. Measured on the Panda: 0.3 takes 1.4 times as long, 1 and 2 take 1.2 times as

@@ -23,9 +23,9 @@ ValueRange wholeRange(const KinematicTree& tree, int variable);
 /// Two links and the joint variables between them.
 class RangeProof {
  public:
-  /// Steps at both ends of the path, each with the link behind it, that a ball about the joint next to them stands for:
-  /// it holds the link for all values of these steps' variables (Lemma 10). Without them there is less to prove: fewer
-  /// variables, of bodies that are larger.
+  /// Steps at both ends of the path that are replaced, together with the links they carry, by a ball about the joint
+  /// next to them. It holds the link for all values of these steps' variables (Lemma 10). Without them there is less to
+  /// prove: fewer variables, of bodies that are larger.
   struct Cut {
     std::size_t of_a, of_b;
   };
@@ -51,7 +51,7 @@ class RangeProof {
   enum class Contact : std::uint8_t {
     none,     ///< more than the margin apart
     touch,    ///< in contact, or nearer than the margin
-    unknown,  ///< too near to be told
+    unknown,  ///< too near to decide
   };
   /// @param margin  m, in place of the one that is proven.
   Contact at(const std::vector<double>& values, double margin);
@@ -72,7 +72,7 @@ class RangeProof {
   /// Proves the links apart over the whole ranges, with `work` at most; or gives up.
   Finding prove(std::uint64_t work);
 
-  /// Counts as so many tests: what a query costs before its first one.
+  /// Work of a query before its first test, in tests of nodes and leaves.
   static constexpr std::uint64_t kQueryWork = 40;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Whether stage 2 pays, and by which executor (doc/VISIBILITY.md, "Automatic"): by what queries cost with it and
-// without. Time only: no answer depends on it. It has no clock: who asks it tells it times.
+// without. Only time depends on it, no answer does. It has no clock: callers pass the times.
 #pragma once
 
 #include <atomic>
@@ -66,7 +66,7 @@ class Choice {
     double cost_us;                                     ///< that a query's trial is expected to take
     double spent_us = 0;                                ///< by trials
     double on_us = 0, off_us = 0, stage_us = 0, n = 0;  ///< sums over trials; old ones are forgotten
-    int trials = 0;                                     ///< telling ones
+    int trials = 0;                                     ///< only those whose times count
     bool pays() const;
     bool isFarFromPaying() const;
   };

@@ -15,10 +15,10 @@ constexpr double kDouble = 0x1p-48, kFloat = 0x1p-20;
 constexpr double kLargest = 1e24;
 /// Steeper bounds, in windows per pixel, bound nothing.
 constexpr double kSteepest = 4;
-/// Of so few points all pairs are tried as edges of the hull.
+/// Up to this number of points, all pairs are tried as edges of the hull.
 constexpr int kFewPoints = 8;
 
-int pixelAtOrAfter(double x, int resolution) {  // the first pixel whose centre is at x or behind
+int pixelAtOrAfter(double x, int resolution) {  // the first pixel whose centre is at x or after it
   return static_cast<int>(std::ceil(std::min(std::max(x - 0.5, 0.0), static_cast<double>(resolution))));
 }
 int pixelAtOrBefore(double x, int resolution) {

@@ -77,7 +77,8 @@ void GlExecutor::requireNoError(const char* what) const {
   }
 }
 
-/// Room for so many tiles: an interval of depth per pixel, a depth buffer, and a colour to have something for objects.
+/// Makes room for columns * rows tiles: an interval of depth per pixel, a depth buffer, and a colour to have something
+/// for objects.
 void GlExecutor::resizeAtlas(int columns, int rows, int resolution) {
   columns_ = columns;
   if (columns * resolution <= width_ && rows * resolution <= height_) return;

@@ -13,7 +13,7 @@ namespace visibility {
 std::unique_ptr<OffscreenContext> createOsmesaContext(int major, int minor);
 std::unique_ptr<OffscreenContext> createEglContext(int major, int minor);
 
-/// Held by who makes, uses or destroys a context. Mesa's software rasteriser looks through what the other contexts of
+/// Held while a context is made, used or destroyed. Mesa's software rasteriser looks through what the other contexts of
 /// a display are drawing without a lock (doc/VISIBILITY.md, "Contexts"): of ours one is at work at a time.
 std::mutex& openGlTurn();
 

@@ -21,8 +21,8 @@ namespace visibility {
 
 class Together {
  public:
-  /// Objects of a pass, and pixels in the views of its windows, of which an executor keeps some ten bytes each: each of
-  /// both is some tens of megabytes.
+  /// Maximum number of objects of a pass, and of pixels in the views of its windows. An executor keeps some ten bytes
+  /// of each, so that both take some tens of megabytes.
   static constexpr std::size_t kManyObjects = 200000, kManyPixels = std::size_t{1} << 23;
 
   /// Borrows an executor for as long as this lives.

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Fails where a public header does not compile in a user's project of another C++ standard, compiler or set of warnings:
-# all of
-# them in one source, in each standard, with conversions that may change a value or a sign as errors (that each compiles by
-# itself is headers_alone.cmake's). Headers of others are system headers.
+# Fails where a public header does not compile in a user's project of another C++ standard, compiler or set of warnings.
+# All of them are compiled in one source, in each standard, with conversions that may change a value or a sign as
+# errors. (headers_alone.cmake compiles each one by itself.) Headers of others are system headers.
 #   cmake -D SOURCE_DIR=... -D COMPILER=... -D STANDARDS=17|20|... -D PARTS=...|... -D SYSTEM_INCLUDES=...|... -D WORK=... -P ...
 cmake_policy(VERSION 3.25)
 foreach(list STANDARDS PARTS SYSTEM_INCLUDES)

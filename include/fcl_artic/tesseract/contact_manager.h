@@ -115,7 +115,8 @@ class FCL_ARTIC_EXPORT TesseractContactManager : public ::tesseract::collision::
   void setCollisionMarginPair(const ObjectId& id1, const ObjectId& id2, double collision_margin) override;
   void incrementCollisionMargin(double increment) override;  ///< Adds to all margins, m.
 
-  /// Sets who allows pairs to touch; null: no pair may. It is asked about every pair by each contactTest().
+  /// Sets the validator, which decides the pairs that may touch; null: no pair may. Each contactTest() asks it about
+  /// every pair.
   void setContactAllowedValidator(
       std::shared_ptr<const ::tesseract::common::ContactAllowedValidator> validator) override;
   /// Who allows pairs to touch.
@@ -123,7 +124,7 @@ class FCL_ARTIC_EXPORT TesseractContactManager : public ::tesseract::collision::
 
   /// Finds the contacts of the motion, or proves that there are none, and adds them to `collisions`.
   ///
-  /// A contact that can't be excluded within the tolerances counts as one, too; result() tells of it.
+  /// A contact that can't be excluded within the tolerances counts as one, too; result() says which.
   /// @throws std::invalid_argument for poses that are not finite or farther than 1e5 m away, and for margins that are
   ///   not finite.
   void contactTest(::tesseract::collision::ContactResultMap& collisions,

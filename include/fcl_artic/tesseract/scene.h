@@ -31,8 +31,7 @@ struct TesseractScene {
   /// @param others  dof() joint values, rad or m, at which joints that no state names stay; empty: the neutral
   ///   configuration.
   /// @throws std::invalid_argument, naming the state: fewer than two states, a joint that is unknown, fixed, a mimic,
-  /// of
-  ///   more than one variable or named twice, another number of positions than names, a value that is not finite.
+  ///   of more than one variable or named twice, another number of positions than names, a value that is not finite.
   FCL_ARTIC_EXPORT JointTrajectory trajectory(const ::tesseract::common::JointTrajectory& trajectory,
                                               const Eigen::VectorXd& others = {}) const;
 
@@ -51,8 +50,7 @@ struct TesseractScene {
 /// @param graph    a tree; copied.
 /// @param margins  m; below 0 they count as 0. They replace CertifiedRequest::margin if any is above 0.
 /// @throws std::invalid_argument naming link or joint: a graph that is no tree, a joint of unknown type, a geometry
-/// that
-///   is not supported or empty, a plane that moves.
+///   that is not supported or empty, a plane that moves.
 FCL_ARTIC_EXPORT TesseractScene fromTesseract(const ::tesseract::scene_graph::SceneGraph& graph,
                                               const ::tesseract::common::CollisionMarginData& margins = {});
 

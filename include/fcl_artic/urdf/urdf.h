@@ -174,10 +174,10 @@ FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& op
 /// so, with a note. (Allowed pairs and margins go by name.) Objects are shared with the scenes.
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
-/// Compares the extents of a scene with the reach of a robot, and tells what suggests that one of them is in other
+/// Compares the extents of a scene with the reach of a robot, and reports what suggests that one of them is in other
 /// units than metres: no obstacle can be reached, or one is a hundred times as large as the reach. The reach is that of
-/// any point of the robot's geometry from its root, whatever the joint values within their limits; nothing is told of a
-/// robot that slides or floats without limits, nor of unbounded obstacles.
+/// any point of the robot's geometry from its root, whatever the joint values within their limits; nothing is reported
+/// of a robot that slides or floats without limits, nor of unbounded obstacles.
 /// @return one line each, naming obstacle, both lengths in m and the cure; none if all is as usual.
 FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene);
 

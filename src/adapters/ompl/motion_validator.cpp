@@ -126,7 +126,7 @@ bool ContinuousMotionValidator::provenFree(const JointMotion& motion, const ob::
 }
 
 /// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
-/// leaves, and that can't be told from one in contact. So the time is asked for with more margin; the verdict is not.
+/// leaves, and that no proof separates from contact. So the time is asked for with more margin; the verdict is not.
 /// What is ignored as it is within that at the start must not touch without it.
 /// @return a time up to which the motion is proven free; 1: all of it.
 double ContinuousMotionValidator::timeWithRoom(const JointMotion& motion, bool ignoring) const {

@@ -168,7 +168,7 @@ void TesseractContactManager::Impl::setMargins() {
   }
 }
 
-/// @param anew  whether to tell the manager in any case.
+/// @param anew  pass the pairs to the manager even if none has changed.
 void TesseractContactManager::Impl::askValidator(bool anew) {
   std::vector<bool> now;
   for (std::size_t i = 0; i < objects.size(); ++i) {

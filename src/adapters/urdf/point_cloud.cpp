@@ -84,7 +84,7 @@ struct Scalar {
   }
 };
 
-/// LZF (Marc Lehmann's): a byte below 32 begins a run of so many bytes and one, any other a copy of what was written.
+/// LZF (Marc Lehmann's): a byte n below 32 begins a run of n + 1 bytes, any other one a copy of what was written.
 std::string decompress(std::string_view in, std::size_t size, const std::string& where) {
   std::string out;
   const auto next = [&] {

@@ -50,8 +50,8 @@ class ParserMessages : public console_bridge::OutputHandler {
   std::vector<std::string> warnings_, errors_;
 };
 
-/// What urdfdom does not tell: the order of the file (it sorts by name), and what the file holds in collision geometry
-/// (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
+/// What urdfdom does not report: the order of the file (it sorts by name), and what the file holds in collision
+/// geometry (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
 struct Document {
   struct Link {
     std::string name;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where any contact will do: poses at which contact is likely, gathered by stage 1 and tried before anything is
-// followed. Nothing rests on the guesses; what is reported is proven.
+// For queries that any contact answers: stage 1 gathers poses at which contact is likely, and they are tried before any
+// pair is followed. Nothing rests on the guesses; what is reported is proven.
 #pragma once
 
 #include "narrowphase/solver/ball_proofs.h"
@@ -10,10 +10,10 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Links are expected to touch whose line swept spheres' segments are nearer than this part of the radii.
+/// Two links are expected to touch if the segments of their line swept spheres are nearer than this part of the radii.
 constexpr double kDeepLinks = 0.7;
-/// So many pairs of boxes are looked at in one pose. Measured: twice as many prove more contacts of a UR5, and make its
-/// free motions 5 % slower.
+/// Maximum number of pairs of boxes that are tested in one pose. Measured: twice as many prove more contacts of a UR5,
+/// and make its free motions 5 % slower.
 constexpr int kMostAtPose = 512;
 
 /// Two bodies' boxes at one pose: nothing rests on what is said of them.
@@ -118,8 +118,8 @@ class AnyContact : PartOfSolver {
   return false;
 }
 
-/// A link whose line swept sphere is deep in a solid: a ball inside the link, a vertex in the solid, and a chord of the
-/// solid, the chord first where the solid is thin.
+/// For a link whose line swept sphere is deep in a solid: tries a ball inside the link, a vertex in the solid, and a
+/// chord of the solid; the chord first where the solid is thin.
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
 inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, bool thin) {
   if (balls_.inSolid(pair, lane)) return true;
@@ -129,8 +129,8 @@ inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, boo
   return !thin && proofs_.chordPierces(lane, near);
 }
 
-/// Two links whose line swept spheres meet: balls inside them are tried at the pose at which these are deepest in each
-/// other. That pose is put down, and the others at which balls may meet.
+/// For two links whose line swept spheres meet: tries balls inside them at the pose at which the spheres are deepest in
+/// each other. Stores that pose, and the others at which balls may meet, as guesses.
 /// @param square  of their segments' distance in the middle of each lane.
 inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   const double least = minLane(square), distance = sqrt(least) / radii;
@@ -142,7 +142,7 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   if (near || distance < kDeepLinks) pose_guesses_.push({pair, lane, distance, near});
 }
 
-/// Balls inside links whose line swept spheres meet, at all poses at which these may meet.
+/// Tries balls inside links whose line swept spheres meet, at all poses at which the balls may meet.
 inline bool AnyContact::tryLinks() {
   frames_.set(whole());
   for (int i = 0; i < pose_guesses_.size(); ++i) {
@@ -153,8 +153,9 @@ inline bool AnyContact::tryLinks() {
   return false;
 }
 
-/// Links whose line swept spheres are deep in each other: triangles of each pair at the pose at which they are deepest.
-/// @param open  what is not proven apart by now: other pairs, and other lanes of these, are not tried.
+/// For links whose line swept spheres are deep in each other: tries each pair's triangles at the pose at which they are
+/// deepest.
+/// @param open  what is not proven apart by now; only these pairs, in these lanes, are tried.
 inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
   for (int done = 0; done < pose_guesses_.size(); ++done) {
     int first = done;
@@ -173,7 +174,7 @@ inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
   return false;
 }
 
-/// The triangles of two links at a lane's middle, those in boxes whose middles are near each other first.
+/// Tries the triangles of two links at a lane's middle: first those in boxes whose middles are near each other.
 inline bool AnyContact::tryTriangles(PairId pair, int lane) {
   motion_.set(pair, whole());
   const TreeView &A = motion_.a(), &B = motion_.b();
@@ -213,9 +214,9 @@ inline bool AnyContact::tryTriangles(PairId pair, int lane) {
   return false;
 }
 
-/// The poses in the middles of the lanes in which hulls overlap, pieces and all.
-/// @param open  for what the traversals leave; as before afterwards.
-/// @return the search is over: contact is proven, or the query has ended.
+/// Tries the poses in the middles of the lanes in which hulls overlap, with all pieces.
+/// @param open  scratch for what the traversals leave; as before on return.
+/// @return true when the search is over: contact is proven, or the query has ended.
 inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   if (overlap_guesses_.size() == 0) return false;
   const TimeBatch middles = TimeBatch::middles();

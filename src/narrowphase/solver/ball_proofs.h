@@ -31,7 +31,7 @@ struct PlacedLink {
   double error() const { return kUlp * (ulps + kPoseUlps) * sizes + kLeastLength; }
 };
 
-/// The same behind one more placement.
+/// The same, seen through one more placement.
 inline PlacedLink seenFrom(const Placement& P, const PlacedLink& link) {
   PlacedLink seen = {P, 0};
   seen.c = seen.place(link.c);

@@ -35,7 +35,8 @@ class ContactList : PartOfSolver {
     watching_ = !query().ignore_initial;
   }
 
-  /// It is known from when on each pair is watched. Before, with initial contacts to be ignored, no contact counts.
+  /// Whether it is known from when on each pair is watched. Before that, if initial contacts are to be ignored, no
+  /// contact counts.
   bool watching() const { return watching_; }
   void ignore(PairId pair, double watch_from) {
     const PairParts bodies = problem().parts(pair);
@@ -82,8 +83,8 @@ class ContactList : PartOfSolver {
   const Ignored* ignored() const { return ignored_.data(); }
   int numIgnored() const { return ignored_.size(); }
 
-  /// Of those from `begin` on that begin until t keeps the first of each pair, in their order, as many as are asked
-  /// for. It begins with the earliest of its pair: before that none of the pair's pieces touch.
+  /// Of the contacts from `begin` on that start until t, keeps the first of each pair, in their order, as many as are
+  /// asked for. The one kept starts with the earliest of its pair: before that none of the pair's pieces touch.
   void order(int begin, double t) {
     int kept = begin;
     for (int i = begin; i < contacts_.size(); ++i) {

@@ -34,7 +34,7 @@ struct Candidate {
   double speed;                   ///< of the one body seen from the other, about
   bool have_normal;
   Simplex simplex;  ///< GJK's last
-  bool stuck;       ///< the gap is gone at t_lower, as far as can be told
+  bool stuck;       ///< the gap is gone at t_lower, within rounding
   bool certain;
   double t_upper;  ///< of a proven contact
   Vec3 point;      ///< likewise
@@ -217,8 +217,8 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
   return !f.stuck;
 }
 
-/// Where any contact will do: the lanes of a followed pair reach beyond the contact that is expected. The pieces that
-/// the last witness lies on are tried there; where they touch, f becomes their contact.
+/// For queries that any contact answers: the lanes of a followed pair reach beyond the contact that is expected. The
+/// pieces that hold the last witness are tried there; where they touch, f becomes their contact.
 inline bool Follower::proveAhead(Candidate& f, int lane) {
   const TreeView &A = motion_.a(), &B = motion_.b();
   const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
@@ -237,7 +237,7 @@ inline bool Follower::proveAhead(Candidate& f, int lane) {
   return true;
 }
 
-/// Decides a leaf pair that is stuck, as far as can be. True: it is free after all. False: f.certain says whether
+/// Decides a leaf pair that is stuck, if a proof is found. True: it is free after all. False: f.certain says whether
 /// contact is proven.
 inline bool Follower::decide(Candidate& f, double stop) {
   if (prove(f)) return false;

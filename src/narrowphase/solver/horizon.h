@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is known of when the first contact is, and so which lanes are worth work. Nothing else writes these times.
+// What is known of the time of the first contact, and so which lanes are worth work. Nothing else writes these times.
 #pragma once
 
 #include "model/bracket.h"
@@ -33,7 +33,7 @@ class Horizon : PartOfSolver {
     update();
   }
 
-  /// The batch whose lanes live() is of.
+  /// Sets the batch: live() and contactLane() name lanes of it.
   void watch(const TimeBatch& batch) {
     if (suspected_ <= batch.start[0]) suspected_ = kNever;  // all is proven free up to here: it was no contact
     start_ = batch.start;
@@ -41,21 +41,21 @@ class Horizon : PartOfSolver {
     finest_ = batch.width <= max(query().tolerance_time, kNarrowestLane);
     update();
   }
-  /// Its lanes are as narrow as the tolerance: none of them is put off.
+  /// Whether the batch's lanes are as narrow as the tolerance: then none of them is put off.
   bool isFinest() const { return finest_; }
   /// Lanes that are worth work: not after a contact that is proven or suspected.
   unsigned live() const { return live_; }
-  /// The lane in which that contact is: it is split whatever else is found in it.
+  /// The lane that holds this contact: it is split whatever else is found in it.
   unsigned contactLane() const { return contact_lane_; }
 
   /// What is later than this can't change the answer.
   double end() const { return end_; }
   /// Nothing is left to search: any contact will do and one is found, or the query has ended.
   bool isOver() const { return task_.ended() || isFound(); }
-  /// Asked at every step of the search: its budget is spent, or its caller ends it. (With every pair this is the
-  /// present pair's search: of those that are still to come nothing is known.)
+  /// Whether the search must end, as its budget is spent or its caller ends it; asked at every step. (With every pair
+  /// searched by itself nothing is known of the pairs that are still to come.)
   bool mustEnd() { return task_.mustEnd(query().every_pair ? 0 : freeUntil()); }
-  /// Contact at t is proven, or assumed as it can be told no better: later times don't matter.
+  /// Ends the search at t, where contact is proven, or assumed as no proof can decide: later times don't matter.
   void closeAt(double t) {
     end_ = min(end_, t);
     update();
@@ -67,7 +67,7 @@ class Horizon : PartOfSolver {
     suspected_ = t;
     update();
   }
-  /// It was no contact, or is looked at now.
+  /// Withdraws the suspicion: it was no contact, or it is examined now.
   void dropSuspicion() { suspected_ = kNever; }
 
   /// All pairs of this search are proven free before.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs that touch at t = 0 and are ignored until they have separated. Solid meshes have where their surfaces are apart
-// and neither body lies within the other.
+// Pairs that touch at t = 0 and are ignored until they have separated. Solid meshes have separated when their surfaces
+// are apart and neither body lies within the other.
 #pragma once
 
 #include "narrowphase/solver/containment.h"

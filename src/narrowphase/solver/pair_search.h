@@ -13,20 +13,20 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// So many leaf pairs in a lane are followed one by one; more are split in time first.
+/// Maximum number of leaf pairs in a lane that are followed one by one; if there are more, the lane is split first.
 constexpr int kFewLeaves = 12;
-/// The first window of time in which pieces are looked at, as the part of the smaller body's radius that the motion
-/// covers in it.
+/// Length of the first window of time in which pieces are examined: the motion covers this part of the smaller body's
+/// radius in it.
 constexpr double kFirstWindow = 0.4;
-/// Motion in half a lane of the first batch, as part of the smaller body's radius, above which its pieces are not
-/// looked at.
+/// A body's pieces are not examined in lanes of the first batch if half a lane moves it by more than this part of the
+/// smaller body's radius.
 constexpr double kLongMotion = 0.2;
 
-/// Leaf pairs of one lane of which nothing can be proven: so many are enough.
+/// Maximum number of leaf pairs of one lane that are recorded although nothing can be proven of them.
 constexpr int kEnoughUncertain = 16;
-/// Hulls are looked at for rest that are no deeper in each other than this part of the smaller body's radius, about.
+/// Hulls may rest on each other if their depth is at most about this part of the smaller body's radius.
 constexpr double kShallow = 0.01;
-/// So many pieces of a body are looked at about a point where it may rest.
+/// Maximum number of a body's pieces that are examined around a point where it may rest.
 constexpr int kMostAround = 4;
 
 class PairSearch : PartOfSolver {
@@ -41,11 +41,12 @@ class PairSearch : PartOfSolver {
         follower_(follower),
         any_(any) {}
 
-  /// Boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`; those that are apart go.
+  /// Tests boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`, and removes those
+  /// that are apart.
   /// @param directionOf  (i) -> the i-th pair's direction, null where there is none (LaneSearch::towards).
   template <class DirectionOf>
   void testHulls(Buffer<Entry>& open, const DirectionOf& directionOf);
-  /// The first contact of all pairs of `open`, or of each of them.
+  /// Finds the first contact of all pairs of `open`, or of each of them.
   void run(Buffer<Entry>& open);
 
  private:
@@ -60,15 +61,15 @@ class PairSearch : PartOfSolver {
     const PairParts pair = problem().parts(e.pair);
     return body(pair.a).tree->nodes[e.a].isLeaf() && body(pair.b).tree->nodes[e.b].isLeaf();
   }
-  /// A lane takes the present pair so far that little can be said of its pieces before the lane is split; of its hulls
-  /// can.
+  /// Whether the present pair moves so far in a lane that only its hulls can be separated, and hardly its pieces,
+  /// before the lane is split.
   bool movesFar() const { return motion_.amplitude() > kLongMotion * smallerRadius(); }
-  /// Of the present pair's bodies.
+  /// Radius of the smaller of the present pair's bodies.
   double smallerRadius() const { return min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius); }
 
-  /// Points of both bodies are so near that no proof tells them from contact. (A direction along which little is proven
-  /// says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow enough to
-  /// prove such a gap.
+  /// Whether points of both bodies are so near that no proof can separate them. (A direction along which little is
+  /// proven says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow
+  /// enough to prove such a gap.
   bool isNear(double apart) const { return apart <= max(0.5 * query().tolerance_distance, motion_.pad()); }
 
   /// Of a window in which nothing is divided on.
@@ -101,7 +102,7 @@ class PairSearch : PartOfSolver {
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
-  int splits_at_start_ = 0;       ///< so many times the lane that begins at 0 is divided before touchesAtStart()
+  int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before touchesAtStart() is asked
 };
 
 /// What an entry stands for, to be followed from `start`.
@@ -203,8 +204,8 @@ inline bool PairSearch::stayNear(const Candidate& f) {
   return isNear(-(dot(f.normal, lowest.w) - A.outer->radius - B.outer->radius - motion_.margin()));
 }
 
-/// A pair whose hulls touch at t, before which all is free, may rest there, as what stands on a table. Pieces about the
-/// hulls' witness are looked at by themselves: where contact of two of them at t is proven, or can't be told from it,
+/// A pair whose hulls touch at t, before which all is free, may rest there, like a cup on a table. Pieces around the
+/// hulls' witness are examined by themselves: where contact of two of them at t is proven, or no proof separates them,
 /// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
 /// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
@@ -236,8 +237,8 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
   return recordTouching(t, true);
 }
 
-/// Bodies that are in each other at t = 0: the first leaves that touch there are the contact, and nobody needs to know
-/// how many others do. (Without it all of them are divided down to the finest lanes.) Where no contact of them is
+/// For bodies that overlap at t = 0: the first leaves that touch there are the contact, and it does not matter how many
+/// others do. (Without it all of them are divided down to the finest lanes.) Where no contact of them is
 /// proven, one of all others may be.
 /// @param begin, end  entries of `open` that are left of one pair, those of this lane.
 /// @return false where others may touch earlier.
@@ -260,8 +261,8 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
   return recordTouching(0, false);
 }
 
-/// Of leaf pairs of `touching_`: whether one touches at t, which is recorded.
-/// @param may_rest  one that can't be told from contact will do.
+/// Whether a leaf pair of `touching_` touches at t; it is recorded.
+/// @param may_rest  also record one that no proof can separate from contact.
 inline bool PairSearch::recordTouching(double t, bool may_rest) {
   const double stop = t + finestWidth();
   Candidate resting = {};
@@ -350,7 +351,7 @@ inline void PairSearch::search(Buffer<Entry>& open, int begin, int end) {
   }
 }
 
-/// Goes down from open[begin, end) over the first batch. What stays undecided is appended.
+/// Traverses the trees from open[begin, end) on, over the first batch. What stays undecided is appended.
 inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int end) {
   for (int i = begin; i < end && !horizon_.isOver(); ++i) {
     const Entry e = open[i];
@@ -372,8 +373,8 @@ inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int en
   }
 }
 
-/// Of open[begin, ...) looks after all at what was put off, if that is so in the next lane: the contact that was
-/// suspected is none.
+/// Examines the entries of open[begin, ...) that were put off after all, if there are any in the next lane: the contact
+/// that was suspected is none.
 /// @param later  lanes of the first batch that are still to come.
 inline void PairSearch::lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later) {
   const int end = open.size();
@@ -394,7 +395,7 @@ inline void PairSearch::lookAtPutOff(Buffer<Entry>& open, int begin, unsigned la
   }
 }
 
-/// Part of the motion: the pairs that may touch in it, those that meet first before the others.
+/// Searches one part of the motion: the pairs that may touch in it, in the order in which they meet.
 /// @param lane  of the first batch, whose entries count; -1: all do.
 /// @param first_lanes  see Follower::followToRoot().
 inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop, int lane, int begin, int end,
@@ -457,8 +458,8 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
   if (!horizon_.isOver()) horizon_.provenFree(stop);
 }
 
-/// The pieces of one pair, in a lane of the first batch. Windows of time start short, as the surfaces are not far where
-/// hulls meet: the smaller body moves kFirstWindow of its radius. They grow eightfold.
+/// Searches the pieces of one pair, in a lane of the first batch. Windows of time start short, since surfaces are near
+/// where hulls meet: the smaller body moves kFirstWindow of its radius. They grow eightfold.
 inline void PairSearch::solvePieces(Buffer<Entry>& open, const Candidate& f, double stop, int lane) {
   const int begin = f.first, end = f.first + f.count, roots = open.size();
   if (f.target == Candidate::Target::subtrees) {
@@ -508,8 +509,8 @@ inline PairSearch::Step PairSearch::solveInterval(Buffer<Entry>& open, double st
   return Step::free;
 }
 
-/// A lane that open[begin, end) of one pair leave undecided, some of them: few leaf pairs are followed one by one, else
-/// the lane is split.
+/// Decides a lane that some of open[begin, end), of one pair, leave undecided: few leaf pairs are followed one by one;
+/// else the lane is split.
 inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double start, double width, int begin, int end,
                                                   int lane, bool finest) {
   int count = 0;

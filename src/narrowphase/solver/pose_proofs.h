@@ -13,8 +13,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// All are of the present pair, at a lane's middle. What is proven is recorded, with point and normal, and true is
-/// returned; false: nothing is proven, or it does not count.
+/// Proofs for the present pair, at a lane's middle. Each returns true if it has proven a contact, which it records with
+/// point and normal; false if nothing is proven, or the contact does not count.
 class PoseProofs : PartOfSolver {
  public:
   PoseProofs(Task& task, RelativeMotion& motion, ContactList& contacts)
@@ -40,8 +40,8 @@ inline void cornersOf(const TreeView& mesh, const Piece& triangle, Vec3* corners
   for (int i = 0; i < 3; ++i) corners[i] = Vec3(VerticesKind::points(mesh, triangle) + 3 * i);
 }
 
-/// Where any contact is asked for: a vertex of the one body's mesh that lies within the other, a single solid piece, at
-/// a lane's middle. The vertex of the mesh's hull that lies deepest in the solid's box is tried.
+/// For queries that any contact answers: proves that a vertex of the one body's mesh lies within the other body, a
+/// single solid piece, at a lane's middle. It tries the vertex of the mesh's hull that lies deepest in the solid's box.
 inline bool PoseProofs::vertexInside(int lane) {
   for (int s = 0; s < 2; ++s) {
     const TreeView &mesh = motion_.moving(s), &solid = motion_.still(s);
@@ -105,8 +105,8 @@ inline bool PoseProofs::vertexInside(int lane) {
   return false;
 }
 
-/// Where any contact is asked for: a triangle of B's mesh that a chord of A, a single solid piece, pierces at a lane's
-/// middle.
+/// For queries that any contact answers: proves that a chord of A, a single solid piece, pierces a triangle of B's mesh
+/// at a lane's middle.
 /// @param near  a point of A's frame that the chord should pass near to.
 inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
   const TreeView &solid = motion_.a(), &mesh = motion_.b();
@@ -140,7 +140,7 @@ inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
       });
 }
 
-/// Two triangles, of which an edge of the one may pierce the other at a lane's middle.
+/// Two triangles: an edge of the one may pierce the other at a lane's middle.
 inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
   const TreeView* trees[2] = {&motion_.a(), &motion_.b()};
   const int pieces[2] = {piece_a, piece_b};

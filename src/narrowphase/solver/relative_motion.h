@@ -48,8 +48,8 @@ class RelativeMotion : PartOfSolver {
   const TreeView& a() const { return *side_[0].still; }
   const TreeView& b() const { return *side_[0].moving; }
 
-  /// One body seen from the other, ready for certificates: 0: B from A, 1: A from B. What is missing is made: many a
-  /// look needs one of both only, or none.
+  /// One body seen from the other, ready for certificates: 0: B from A, 1: A from B. Made when first asked for, as many
+  /// a pair needs only one of them, or none.
   const Side& side(int s) {
     if (!side_ready_[s]) {
       if (s) invert(side_[0].m, side_[1].m);
@@ -60,7 +60,7 @@ class RelativeMotion : PartOfSolver {
   }
   /// B seen from A, as it is evaluated: without what certificates need.
   const RigidLanes& seenFromA() const { return side_[0].m; }
-  /// Where a point p of B, in its tree frame, is seen from A's. @return radius about it that holds the point.
+  /// Where A's tree frame sees a point p of B's. @return radius about it that holds the point.
   double seePoint(const Vec3& p, PointLanes& x) const {
     const RigidLanes& m = side_[0].m;
     for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
@@ -76,7 +76,7 @@ class RelativeMotion : PartOfSolver {
   double pad() const { return pad_; }
   /// Bound on the error of a pose, for proofs of contact.
   double poseError() const { return pose_error_; }
-  /// How far the motion takes the body in half an interval: B seen from A, or A from a B that is unbounded. About.
+  /// About how far the body moves in half an interval: B seen from A, or A seen from an unbounded B.
   double amplitude() const { return amplitude_; }
 
   /// The last direction that GJK found between pieces of this pair; null: none.
@@ -118,7 +118,7 @@ class RelativeMotion : PartOfSolver {
     }
     return pool_[cached.slot];
   }
-  /// Its box is there already.
+  /// Whether a node's swept box is there already.
   bool isSwept(int s, int node) const {
     const Cached& cached = cached_[s][node & (kCached - 1)];
     return cached.epoch == epoch_ && cached.node == node;

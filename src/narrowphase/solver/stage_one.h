@@ -10,7 +10,7 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A body is expected to touch what is nearer to its line swept sphere's segment than this part of the radius.
+/// A body is expected to touch whatever is nearer to its line swept sphere's segment than this part of the radius.
 /// Measured: from 0.7 on to 1 it makes no difference, below contacts are found later.
 constexpr double kDeep = 0.7;
 /// And where no ball or vertex of it is inside, its triangles may meet at that pose if it is as deep as this part.
@@ -107,8 +107,8 @@ inline unsigned StageOne::boxesApart(int mover_a, int mover_b) const {
   return lanesOf(out);
 }
 
-/// Obstacles whose boxes meet that of a mover, and when. Level by level, so that what is looked at next is fetched
-/// meanwhile.
+/// Obstacles whose boxes meet that of a mover, and when. The tree is traversed level by level, so that the next nodes
+/// are fetched meanwhile.
 inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
   const SweptBox& box = mover_box_[mover];
   const Node* nodes = problem().obstacle_tree;
@@ -152,8 +152,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   return mask;
 }
 
-/// Where a line swept sphere is deep in a solid contact is expected: lanes after it are put off, or, where any contact
-/// will do, it is looked for at once, and the pose is put down where the link's axis is very near.
+/// Contact is expected where a line swept sphere is deep in a solid. Lanes after it are put off; or, where any contact
+/// will do, it is looked for at once, and the pose is kept as a guess if the link's axis is very near.
 inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle,
                                     unsigned mask, Lanes square, const Vec3Lanes& nearest) {
   const auto nearer = [&](double part) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Links' line swept spheres over eight time intervals (Redon 2004, Section 4): certificates between them, and with
-// boxes, along a direction per interval. Most pairs whose boxes in the world meet are told apart here, before any hull
-// is looked at.
+// boxes, along a direction per interval. Most pairs whose boxes in the world meet are separated here, before any hull
+// is examined.
 #pragma once
 
 #include "model/problem.h"
@@ -72,8 +72,8 @@ FCL_ARTIC_INLINE unsigned greaterThanRoot(Lanes a, double b, Lanes square) {
   return greater(a, Lanes(0.0)) & greater(a * a, square * Lanes(b * b));
 }
 
-/// Steps by which a nearest point of a segment is looked for. Nothing rests on it. Measured: 3 tell no more apart that
-/// counts, and take 5 to 10 % longer.
+/// Steps by which a nearest point of a segment is looked for. Nothing rests on it. Measured: 3 separate hardly more
+/// and take 5 to 10 % longer.
 constexpr int kNearestSteps = 1;
 
 /// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
@@ -84,7 +84,7 @@ constexpr int kNearestSteps = 1;
 /// a point of the segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both
 /// balls (doc/NUMERICS.md, "Line swept spheres").
 /// @param inverse  the world in the body's tree frame.
-/// @param[out] square  of the segment's distance from the box in the middle of each lane, about.
+/// @param[out] square  about the square of the segment's distance from the box in the middle of each lane.
 /// @param[out] nearest  the segment's point there, in the body's tree frame.
 /// @param[out] l  the direction.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
@@ -121,7 +121,7 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
 
 /// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction
 /// between the segments' nearest points, with the four differences of their ends.
-/// @param[out] square  of the segments' distance in the middle of each lane, about.
+/// @param[out] square  about the square of the segments' distance in the middle of each lane.
 inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin, Lanes& square) {
   // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.
   const Vec3Lanes x = a.end[1].c[0] - a.end[0].c[0], y = b.end[1].c[0] - b.end[0].c[0],

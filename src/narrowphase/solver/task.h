@@ -41,8 +41,8 @@ class Task {
 
   /// The budget is spent, or the caller has ended the query.
   bool ended() const { return ended_; }
-  /// Looks whether the budget is spent, and tells the caller, every so much work, up to when all is proven free: it may
-  /// end the query.
+  /// Whether the query must end: its budget is spent, or the caller has cancelled it. Every kToldEvery tests the caller
+  /// learns up to which time all is proven free.
   bool mustEnd(double proven_free_until) {
     const std::uint64_t work = statistics.node_tests + statistics.leaf_tests;
     if (query->work_budget && work > query->work_budget) ended_ = true;
@@ -68,7 +68,7 @@ class Task {
   /// Tests from one report of progress to the next: a fraction of a millisecond.
   static constexpr std::uint64_t kToldEvery = 1024;
   bool ended_ = false;
-  std::uint64_t told_at_ = 0;  ///< so many tests
+  std::uint64_t told_at_ = 0;  ///< number of tests at the last report of progress
 };
 
 /// A part of the solver: it reads the query at hand and counts its work.

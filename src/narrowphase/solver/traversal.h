@@ -12,20 +12,20 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A node so many times larger than its partner is not seen from that one, unless it has been already. Measured: a
-/// quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
+/// A node that is larger than its partner by this factor is not examined in the partner's frame, unless its box there
+/// is known already. Measured: a quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
 /// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
 constexpr double kSplitTime = 0.7;
-/// Hulls that overlap in so many lanes are left to their triangles.
+/// Hulls that overlap in this number of lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;
-/// The same of convex parts: of these there are many, and their parts are next.
+/// The same for convex parts. There are many of them, and their own parts come next.
 constexpr int kMostPartOverlaps = 1;
-/// A traversal that has left so many pairs open leaves the others as they are: that lane is to be split anyway.
+/// A traversal that has left this number of pairs open leaves the rest unexamined: that lane will be split anyway.
 /// Measured: 128 are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
 constexpr int kMostOpen = 512;
-/// The same of leaves at single poses that are neither proven apart nor in contact, as where bodies rest on each other.
+/// The same for leaves at single poses, neither proven apart nor in contact, as where bodies rest on each other.
 constexpr int kMostOpenAtPoses = 16;
 /// A body less deep in another one's hull, as part of its radius, may rest on it.
 constexpr double kBarely = 1e-6;
@@ -134,7 +134,7 @@ inline unsigned Traversal::nodesMayTouch(int a, int b, unsigned mask) {
   const auto box = [&](int s) { return apart(motion_.sweptNode(s, s ? a : b), s ? B : A); };
   mask &= ~box(known);
   if (!mask) return 0;
-  // A node that is larger than the other seldom tells more, and its box has to be made.
+  // The swept box of a node that is larger than the other seldom separates more, and it would have to be computed.
   const int other = 1 - known;
   if (motion_.isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
     mask &= ~box(other);
@@ -161,12 +161,12 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
   return apart;
 }
 
-/// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are those that GJK finds for whole
-/// lanes, where it is to, and its witnesses at the middles of lanes, each frozen in one frame and in the other; all are
-/// tried on all lanes.
-/// @param most  so many overlapping middles end the search.
-/// @param last  what GJK begins with, and ends with.
-/// @param search  wanted for bodies' hulls; for parts of them, and for leaves, it does not pay.
+/// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
+/// lanes and, if `search` wants them, those that it finds for whole lanes. Each is frozen in one frame and in the
+/// other, and tried on all lanes.
+/// @param most  number of lanes with overlap at the middle that ends the search.
+/// @param last  in: the simplex that GJK begins with; out: the one it ends with.
+/// @param search  for whole lanes. It pays for bodies' hulls, not for parts of them, nor for leaves.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
 inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
