@@ -52,14 +52,6 @@ void readFile(const KinematicTree& tree, const std::string& file, const std::opt
   }
 }
 
-void requireCarried(const plans::Plan& plan, bool carries) {
-  if (plan.carried.empty() || carries) return;
-  std::string names;
-  for (const std::string& name : plan.carried) names += (names.empty() ? "'" : ", '") + name + "'";
-  throw std::invalid_argument(
-      fmt::format("the message says that the robot carries {}: --attach says what that is", names));
-}
-
 }  // namespace
 
 std::string CertifiedPlan::title() const {
@@ -83,7 +75,7 @@ std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vecto
 void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan) {
   try {
     plan.motion = plans::toMotion(manager.tree(), plan.plan, options.motion);
-    requireCarried(plan.plan, options.carries);
+    plans::requireCarried(manager.tree(), plan.plan, options.attached, "--attach says what that is");
     const auto begin = Clock::now();
     manager.continuousCollide(plan.motion->trajectory, options.request, plan.result);
     plan.us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
@@ -142,7 +134,6 @@ void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, 
       CertifyOptions straight = options;
       straight.motion.interpolation = plans::Interpolation::linear;
       straight.motion.turns = plans::Turns::given;  // its steps are what was proven
-      straight.carries = true;                      // as was said for the plan itself
       certify(*manager, straight, *again);
       plan->as_mended = again;
     } catch (const std::runtime_error& error) {

@@ -10,6 +10,7 @@
 
 #include "fcl_artic/manager.h"
 #include "mend.h"
+#include "plans/carried.h"
 #include "plans/motion.h"
 #include "plans/plan.h"
 
@@ -39,8 +40,8 @@ struct CertifyOptions {
   plans::MotionOptions motion;
   CertifiedRequest request;
   std::optional<ClearanceRequest> clearance;
-  bool carries = false;  ///< the caller has said what the robot carries
-  int threads = 0;       ///< 0: as many as the machine runs at once
+  std::vector<plans::Attached> attached;  ///< what the caller has said the robot carries
+  int threads = 0;                        ///< 0: as many as the machine runs at once
 };
 
 /// The plans of files and folders (those of its files whose ending names a format, by name), in their order.

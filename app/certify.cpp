@@ -2,6 +2,8 @@
 #include "certify.h"
 
 #include <chrono>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,6 +60,20 @@ int runEdges(Options& o) {
   return certifyEdges(o.world, o.edges);
 }
 
+/// By file, as a message's objects are looked for.
+std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::vector<Attachment>& attachments) {
+  std::map<std::size_t, plans::Attached> of_option;
+  for (const Attachment& a : attachments) {
+    plans::Attached& file = of_option[a.option];
+    file.file = std::filesystem::path(a.file).stem().string();
+    file.objects.push_back(a.name);
+    file.link = tree.linkId(a.link);
+  }
+  std::vector<plans::Attached> out;
+  for (auto& one : of_option) out.push_back(std::move(one.second));
+  return out;
+}
+
 /// The plans that are free, mended ones among them, as a file.
 void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
   std::vector<plans::Plan> out;
@@ -101,12 +117,12 @@ int run(Options& o) {
   o.certify.motion.blend = o.blend;
   o.certify.motion.joints = o.joints;
   o.certify.motion.state = parseValues(tree, o.state, "--state");
-  o.certify.carries = !o.world.robot.attached.empty();
   if (o.clearance) o.certify.clearance = o.clearance_request;
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format);
   world.readScene();
+  o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
 
   o.certify.request.measure_times = all.size() == 1;  // the one that is shown in full

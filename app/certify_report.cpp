@@ -77,6 +77,24 @@ std::string verdictText(const CertifiedPlan& plan) {
   return out.str();
 }
 
+/// What the columns of plans without names are taken for: the same for all of them, so that it is said once. Empty
+/// where all have names.
+std::string columnsText(const CertifyReport& r) {
+  std::size_t unnamed = 0;
+  std::string names;
+  for (const CertifiedPlan& plan : r.plans) {
+    if (!plan.motion || plan.motion->named) continue;
+    if (unnamed++ > 0) continue;
+    for (const std::string& name : plan.motion->joints) names += (names.empty() ? "" : ", ") + name;
+  }
+  if (unnamed == 0) return {};
+  const std::string who = r.plans.size() == 1
+                              ? "the plan names no joints: its"
+                              : fmt::format("{} of {} plans name{} no joints: {}", unnamed, r.plans.size(),
+                                            unnamed == 1 ? "s" : "", unnamed == 1 ? "its" : "their");
+  return fmt::format("note: {} columns are taken for {}\n", who, names);
+}
+
 std::string mendedText(const CertifiedPlan& plan) {
   if (!plan.not_mended.empty()) return "not mended: " + plan.not_mended;
   if (!plan.as_mended) return {};
@@ -115,6 +133,8 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   out["waypoint"] = free ? Json() : Json(motion.waypointBefore(plan.result.t_lower));
   out["interpolation"] = toString(motion.interpolation);
   out["waypoints"] = motion.times.size();
+  out["joints"] = motion.joints;
+  out["joints_named"] = motion.named;
   out["timed"] = motion.timed;
   out["contacts"] = all.at("contacts");
   if (!free) out["q_at_t_lower"] = all.at("q_at_t_lower");
@@ -154,7 +174,7 @@ std::string textReport(const CertifyReport& r) {
     text += textReport(reportOf(r, plan));
     if (const std::string mended = mendedText(plan); !mended.empty()) text += mended + "\n";
     for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
-    return text;
+    return text + columnsText(r);
   }
   for (const CertifiedPlan& plan : r.plans) {
     if (r.failed_only && plan.exitStatus() == kExitFree) continue;
@@ -167,7 +187,7 @@ std::string textReport(const CertifyReport& r) {
     }
   }
   for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
-  return text + sumText(r);
+  return text + columnsText(r) + sumText(r);
 }
 
 nlohmann::ordered_json jsonReport(const CertifyReport& r) {

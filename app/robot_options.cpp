@@ -173,11 +173,13 @@ Attachment parseAttachment(const KinematicTree& tree, const std::string& text) {
 std::vector<Attachment> readAttachments(const RobotOptions& options, const KinematicTree& tree,
                                         const SceneOptions& scene_options, std::vector<Scene>& scenes) {
   std::vector<Attachment> attachments;
-  for (const std::string& text : options.attached) {
-    const Attachment attachment = parseAttachment(tree, text);
+  for (std::size_t option = 0; option < options.attached.size(); ++option) {
+    Attachment attachment = parseAttachment(tree, options.attached[option]);
+    attachment.option = option;
     scenes.push_back(loadScene(attachment.file, scene_options));
     for (const Scene::Obstacle& obstacle : scenes.back().obstacles) {
       attachments.push_back(attachment);
+      attachments.back().name = obstacle.name;
       attachments.back().pose = attachment.pose * obstacle.object->getTransform();
     }
   }

@@ -51,6 +51,8 @@ struct Attachment {
   std::string link;
   std::vector<std::string> touch_links;  ///< further links that it may touch
   std::string file;
+  std::size_t option = 0;                                  ///< which --attach it is of
+  std::string name;                                        ///< of the object, in its file; empty before that is read
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the file's frame in the link's
 };
 

@@ -7,6 +7,7 @@
 
 #include "files/files.h"
 #include "kinematics.h"
+#include "plans/carried.h"
 #include "plans/motion.h"
 #include "plans/plan.h"
 #include "world.h"
@@ -70,12 +71,11 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
 
 CertifiedResult certify(const World& world, const LoadedPlan& plan, const py::kwargs& options) {
   const plans::PlanMotion& motion = plan.require();
-  const bool carries = std::any_of(world.bodies().begin(), world.bodies().end(),
-                                   [](const World::Body& body) { return body.carrier >= 0; });
-  if (!plan.plan.carried.empty() && !carries) {
-    valueError("the plan's message says that the robot carries '" + plan.plan.carried[0] +
-               "', and nothing is attached in the world");
+  std::vector<plans::Attached> attached;
+  for (const World::Body& body : world.bodies()) {
+    if (body.carrier >= 0) attached.push_back({{}, {body.name}, body.carrier});
   }
+  plans::requireCarried(*world.tree(), plan.plan, attached, "World.attach() says what that is");
   return answer(world, motion.trajectory, readRequest(options));
 }
 
@@ -118,7 +118,17 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
           "Of the waypoints; 0, 1, 2 ... where the plan has none.")
       .def_property_readonly("waypoints", &arrayOfWaypoints, "(N, n): all joints of the robot.")
       .def_property_readonly(
-          "carried", [](const LoadedPlan& p) { return p.plan.carried; },
+          "joints",
+          [](const LoadedPlan& p) -> py::object { return p.motion ? py::cast(p.motion->joints) : py::none(); },
+          "What the file's columns are taken for, in their order: as it names them, else by the option `joints`, else\n"
+          "the robot's order.")
+      .def_property_readonly(
+          "carried",
+          [](const LoadedPlan& p) {
+            std::vector<std::string> names;
+            for (const plans::Carried& one : p.plan.carried) names.push_back(one.name);
+            return names;
+          },
           "Objects that the message says the robot carries.")
       .def_property_readonly(
           "notes", [](const LoadedPlan& p) { return p.motion ? p.motion->notes : p.plan.notes; },

@@ -29,13 +29,14 @@ std::vector<std::string_view> splitLine(std::string_view line) {
   }
 }
 
-double parseNumber(std::string_view text, const std::string& where, const std::string& column) {
+double parseNumber(std::string_view text, const std::string& where, const std::string& column, std::size_t row) {
   const std::string whole(text);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes no plus
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw std::invalid_argument(fmt::format("{}, column '{}': '{}' is not a finite number", where, column, whole));
+    throw std::invalid_argument(
+        fmt::format("{}, column '{}': '{}' is not a finite number (waypoint {})", where, column, whole, row));
   }
   return value;
 }
@@ -122,11 +123,14 @@ Table parseTable(std::string_view content, const std::string& file) {
       continue;
     }
     if (fields.size() != out.columns.size()) {
-      throw std::invalid_argument(
-          fmt::format("{} has {} columns, the first line names {}", where, fields.size(), out.columns.size()));
+      throw std::invalid_argument(fmt::format("{} has {} columns, the first line names {} (waypoint {})", where,
+                                              fields.size(), out.columns.size(), out.rows.size()));
     }
+    const std::size_t number_of_row = out.rows.size();
     std::vector<double>& row = out.rows.emplace_back();
-    for (std::size_t i = 0; i < fields.size(); ++i) row.push_back(parseNumber(fields[i], where, out.columns[i]));
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      row.push_back(parseNumber(fields[i], where, out.columns[i], number_of_row));
+    }
     out.lines.push_back(number);
   }
   return out;

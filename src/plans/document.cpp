@@ -19,6 +19,7 @@ namespace {
 constexpr int kDeepest = 20;        // messages within messages
 constexpr double kFlat = 1e-6;      // of a planar joint's pose: m out of its plane, and part of the quaternion
 constexpr double kIdentity = 1e-9;  // a pose that nobody has to know of
+constexpr double kFollows = 1e-6;   // rad or m: within it a mimic joint is where the joint that it follows has it
 
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument(what);
@@ -27,7 +28,8 @@ constexpr double kIdentity = 1e-9;  // a pose that nobody has to know of
 /// Of a message's start state.
 struct Start {
   std::map<std::string, double> state;
-  std::vector<std::string> carried, notes;
+  std::vector<Carried> carried;
+  std::vector<std::string> notes;
 };
 
 std::string shown(const Json& value) {
@@ -148,11 +150,41 @@ bool isVariable(const KinematicTree& tree, const std::string& name) {
   return false;
 }
 
+bool isMimic(const KinematicTree& tree, const std::string& name) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    if (tree.joint(j).name == name) return tree.joint(j).mimics;
+  }
+  return false;
+}
+
 bool isJoint(const KinematicTree& tree, const std::string& name) {
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     if (tree.joint(j).name == name) return true;
   }
   return false;
+}
+
+/// Mimic joints stand where those that they follow have them, here and all along the plan.
+void requireFollowing(const KinematicTree& tree, const std::map<std::string, double>& followers, const Start& start,
+                      const std::string& where) {
+  Eigen::VectorXd q = tree.neutralConfiguration();
+  for (int v = 0; v < tree.dof(); ++v) {
+    const auto value = start.state.find(tree.variableName(v));
+    if (value != start.state.end()) q[v] = value->second;
+  }
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    const auto value = followers.find(joint.name);
+    if (value == followers.end()) continue;
+    if (!start.state.count(joint.mimic.master)) {
+      refuse(fmt::format("{}: joint '{}' is at {}, and the joint that it mimics, '{}', has no value there", where,
+                         joint.name, value->second, joint.mimic.master));
+    }
+    const double wanted = tree.jointValue(j, q);
+    if (std::abs(value->second - wanted) <= kFollows) continue;
+    refuse(fmt::format("{}: joint '{}' is at {}, where the joint that it mimics, '{}', has it at {}", where, joint.name,
+                       value->second, joint.mimic.master, wanted));
+  }
 }
 
 /// moveit_msgs/RobotState. Names that the robot lacks are noted.
@@ -166,12 +198,15 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
     if (names.size() != values.size()) {
       refuse(fmt::format("{}: {} positions of {} joints", where, values.size(), names.size()));
     }
+    std::map<std::string, double> followers;
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (isVariable(tree, names[i])) start.state[names[i]] = values[i];
+      if (isMimic(tree, names[i])) followers[names[i]] = values[i];
       if (!isJoint(tree, names[i])) {
         start.notes.push_back(fmt::format("{} has a joint '{}', which the robot lacks", where, names[i]));
       }
     }
+    requireFollowing(tree, followers, start, where);
   }
   if (const Json* poses = find(robot_state, {"multi_dof_joint_state"}); poses && poses->is_object()) {
     const std::vector<std::string> names = textsOf(listOf(*poses, "joint_names", where), where);
@@ -200,7 +235,9 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
   for (const Json& object : listOf(robot_state, "attached_collision_objects", where)) {
     const Json* body = object.is_object() ? find(object, {"object"}) : nullptr;
     const Json* id = body && body->is_object() ? find(*body, {"id"}) : nullptr;
-    start.carried.push_back(id && id->is_string() ? id->get<std::string>() : "without a name");
+    const Json* link = object.is_object() ? find(object, {"link_name"}) : nullptr;
+    start.carried.push_back({id && id->is_string() ? id->get<std::string>() : "",
+                             link && link->is_string() ? link->get<std::string>() : ""});
   }
   return start;
 }

@@ -17,6 +17,9 @@ using Eigen::VectorXd;
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kSameStart = 1e-6;  // rad or m, within which a plan begins at its start state
+// Cosine of half the angle between two quaternions, below which no sense of rotation is sure: of two senses the
+// rounding of a file decides, 1e-6 with the six digits that OMPL and ROS print.
+constexpr double kNearHalfTurn = 2e-6;
 
 const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
                                                                          {"linear", Interpolation::linear},
@@ -164,6 +167,22 @@ JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, 
   return JointTrajectory::Unwrap::no;
 }
 
+/// The shorter way round is no way where both are as long; which one a planner or controller takes is its own rule.
+void requireSenses(const KinematicTree& tree, const std::vector<VectorXd>& q) {
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const int v = tree.quaternionVariable(j);
+    for (std::size_t k = 1; v >= 0 && k < q.size(); ++k) {
+      const Eigen::Vector4d from = q[k - 1].segment<4>(v), to = q[k].segment<4>(v);
+      if (!(std::abs(from.dot(to)) <= kNearHalfTurn * from.norm() * to.norm())) continue;
+      if (from.isZero(0) || to.isZero(0)) continue;  // refused as no rotation
+      refuse(
+          fmt::format("waypoint {}: joint '{}' turns by half a turn from waypoint {}, which says not which way round: "
+                      "a waypoint between them says it",
+                      k, tree.joint(j).name, k - 1));
+    }
+  }
+}
+
 Interpolation chosen(const Plan& plan, const MotionOptions& options) {
   Interpolation kind = options.interpolation;
   if (kind == Interpolation::automatic) {
@@ -241,6 +260,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
   noteStart(plan, columns, notes);
 
   std::vector<VectorXd> q = spread(plan.positions, columns, rest);
+  requireSenses(tree, q);
   const VectorXd zero = VectorXd::Zero(tree.dof());
   const auto trajectory = [&]() -> JointTrajectory {
     switch (kind) {
@@ -263,8 +283,15 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
     if (!named) others[tree.variableName(v)] = rest[v];
   }
   JointTrajectory motion = trajectory();
-  return {kind,  columns.names,   std::move(others), std::move(times), std::move(q), std::move(motion),
-          timed, std::move(notes)};
+  return {kind,
+          columns.names,
+          !plan.joints.empty(),
+          std::move(others),
+          std::move(times),
+          std::move(q),
+          std::move(motion),
+          timed,
+          std::move(notes)};
 }
 
 }  // namespace fcl_artic::plans

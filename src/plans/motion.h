@@ -63,7 +63,8 @@ struct MotionOptions {
 /// The motion of a plan.
 struct PlanMotion {
   Interpolation interpolation;             ///< that was used
-  std::vector<std::string> joints;         ///< names of the plan's columns
+  std::vector<std::string> joints;         ///< what the plan's columns are taken for, in their order
+  bool named;                              ///< the plan says so itself; else by MotionOptions::joints or the robot
   std::map<std::string, double> rest;      ///< values of all other variables
   std::vector<double> times;               ///< of the waypoints, s; 0, 1, 2 ... where `timed` is false
   std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them
@@ -78,7 +79,8 @@ struct PlanMotion {
 /// @throws std::invalid_argument naming waypoint and joint: the plan's own error; fewer than two waypoints, rows of
 ///   another length than joints; a joint that is unknown, named twice, or without a value; values that are not finite,
 ///   or beyond the joint's limits; times that do not increase; an interpolation for which velocities or accelerations
-///   are missing, or that has no times; a turn that has to be asked for.
+///   are missing, or that has no times; a turn that has to be asked for; a quaternion that turns by half a turn from
+///   one waypoint to the next, which says not which way round.
 PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options);
 
 }  // namespace fcl_artic::plans

@@ -13,14 +13,14 @@ namespace {
 constexpr std::string_view kBlank = " \t\r";
 
 /// Numbers between blanks, appended.
-void addNumbers(std::string_view text, int line, std::vector<double>& out) {
+void addNumbers(std::string_view text, int line, std::size_t waypoint, std::vector<double>& out) {
   for (std::size_t at = 0; (at = text.find_first_not_of(kBlank, at)) != std::string_view::npos;) {
     const std::size_t end = std::min(text.find_first_of(kBlank, at), text.size());
     const std::string_view word = text.substr(at, end - at);
     double value = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size()) {
-      throw std::invalid_argument(fmt::format("line {}: '{}' is not a number", line, word));
+      throw std::invalid_argument(fmt::format("line {}: '{}' is not a number (waypoint {})", line, word, waypoint));
     }
     out.push_back(value);
     at = end;
@@ -48,18 +48,23 @@ Plan parseOmplPath(std::string_view content) {
     if (line.substr(0, 14) == "Geometric path") continue;
     const std::size_t open = line.find('['), close = line.rfind(']');
     if (line == "]") {
-      if (--depth < 0) throw std::invalid_argument(fmt::format("line {}: a bracket that nothing opens", number));
+      if (--depth < 0)
+        throw std::invalid_argument(
+            fmt::format("line {}: a bracket that nothing opens (waypoint {})", number, plan.positions.size()));
     } else if (line.substr(0, 14) == "Compound state" && open != std::string_view::npos &&
                close == std::string_view::npos) {
       ++depth;
     } else if (open != std::string_view::npos && close != std::string_view::npos && close > open) {
-      addNumbers(line.substr(open + 1, close - open - 1), number, row);
+      addNumbers(line.substr(open + 1, close - open - 1), number, plan.positions.size(), row);
     } else {
-      addNumbers(line, number, row);
+      addNumbers(line, number, plan.positions.size(), row);
     }
     end();
   }
-  if (depth > 0 || !row.empty()) throw std::invalid_argument("the last state has no end: the file is cut short");
+  if (depth > 0 || !row.empty()) {
+    throw std::invalid_argument(
+        fmt::format("waypoint {}, the last state, has no end: the file is cut short", plan.positions.size()));
+  }
   return plan;
 }
 

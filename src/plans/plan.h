@@ -12,6 +12,12 @@
 
 namespace fcl_artic::plans {
 
+/// An object that a message says the robot carries.
+struct Carried {
+  std::string name;  ///< empty: the message has none
+  std::string link;  ///< that carries it; empty: the message does not say
+};
+
 /// A plan as its file says it. Only what a format itself demands has been checked; toMotion() checks the rest.
 /// Waypoints are counted from 0.
 struct Plan {
@@ -23,7 +29,7 @@ struct Plan {
   Rows positions;                   ///< rad or m
   Rows velocities, accelerations;   ///< rad/s, m/s, and per s²; empty: none are given
   std::map<std::string, double> state;  ///< values of other joints all the time, as a message's start state has them
-  std::vector<std::string> carried;     ///< objects that the message says the robot carries
+  std::vector<Carried> carried;         ///< what requireCarried() holds against what is attached
   std::vector<std::string> notes;       ///< what was accepted though unusual, one line each
   std::string error;                    ///< what is wrong with this plan; empty: nothing was found
 };

@@ -212,6 +212,57 @@ TEST_F(CertifyProgramTest, OtherJointsAndCarriedObjectsAreAskedFor) {
       1);
 }
 
+/// Another object than the message's, or one of two, is no answer about what the robot carries.
+TEST_F(CertifyProgramTest, EveryCarriedObjectIsAttachedByItsName) {
+  const auto thing = [](const std::string& link) {
+    return "<link name=\"" + link + R"("><collision><geometry><sphere radius="0.01"/></geometry></collision></link>)";
+  };
+  const auto message = [](const std::string& carried) {
+    return R"({"trajectory": [{"joint_trajectory": {"joint_names": ["rail", "hinge"], "points": [
+      {"positions": [0, 0], "time_from_start": 0}, {"positions": [0, 0.25], "time_from_start": 1}]}}],
+      "trajectory_start": {"attached_collision_objects": [)" +
+           carried + "]}}";
+  };
+  const auto refused = [&](const std::string& carried, const std::string& attach, const std::string& reason) {
+    const Outcome run = certifyFile("way.json", message(carried), attach);
+    EXPECT_EQ(run.status, 2) << run.out << run.err;
+    EXPECT_NE(run.out.find(reason), std::string::npos) << run.out;
+  };
+  const std::string cup = R"({"link_name": "slide", "object": {"id": "cup"}})",
+                    spoon = R"({"object": {"id": "spoon"}})", nameless = R"({"object": {}})";
+  const std::string cup_file =
+                        " --attach slide=" + write("cup.urdf", "<robot name=\"cup\">" + thing("body") + "</robot>"),
+                    cup_link = " --attach slide=" + write("x.urdf", "<robot name=\"x\">" + thing("cup") + "</robot>"),
+                    spoon_file =
+                        " --attach slide=" + write("spoon.urdf", "<robot name=\"s\">" + thing("s") + "</robot>"),
+                    moved = " --attach arm=" + path("cup.urdf") + "@0,0,9";
+  EXPECT_EQ(certifyFile("way.json", message(cup), cup_file).status, 0);
+  EXPECT_EQ(certifyFile("way.json", message(cup), cup_link).status, 0);
+  EXPECT_EQ(certifyFile("way.json", message(cup + ", " + spoon), cup_file + spoon_file).status, 0);
+  EXPECT_EQ(certifyFile("way.json", message(nameless + ", " + cup), spoon_file + cup_link).status, 0);
+  refused(cup, spoon_file, "carries 'cup': --attach says what that is; what is attached is 's'");
+  refused(cup + ", " + spoon, cup_file, "carries 'spoon': --attach says what that is");
+  refused(cup + ", " + nameless, cup_file, "carries an object without a name: --attach says what that is");
+  refused(cup, moved, "link 'slide' carries 'cup', and it is attached to 'arm', which moves against it");
+}
+
+TEST_F(CertifyProgramTest, ColumnsWithoutNamesAreSaid) {
+  const Outcome text = certifyFile("way.path", "0 0\n0.25 0\n");
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("note: the plan names no joints: its columns are taken for hinge, rail\n"), std::string::npos)
+      << text.out;
+  const Outcome named = certifyFile("way.csv", "rail,hinge\n0,0\n0,0.25\n", "--json");
+  EXPECT_EQ(Json::parse(named.out).at("plans").at(0).at("joints"), (Json{"rail", "hinge"}));
+  EXPECT_EQ(Json::parse(named.out).at("plans").at(0).at("joints_named"), true);
+  const Outcome unnamed = certifyFile("way.path", "0 0\n0 0.25\n", "--json --joints rail,hinge");
+  EXPECT_EQ(Json::parse(unnamed.out).at("plans").at(0).at("joints"), (Json{"rail", "hinge"}));
+  EXPECT_EQ(Json::parse(unnamed.out).at("plans").at(0).at("joints_named"), false);
+  const Outcome table = certify(path("way.path") + " " + path("way.csv"));
+  EXPECT_NE(table.out.find("note: 1 of 2 plans names no joints: its columns are taken for hinge, rail\n"),
+            std::string::npos)
+      << table.out;
+}
+
 #ifdef FCL_ARTIC_HAS_PLANS
 /// The way around the ball is looked at in closed form: the block is a square of side 0.1 in the ball's plane.
 TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {

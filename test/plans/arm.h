@@ -37,6 +37,21 @@ inline KinematicTree armTree() {
   return tree;
 }
 
+/// The same, and a finger that goes half as far as the rail, the other way, from 0.1 on.
+inline KinematicTree gripperTree() {
+  KinematicTree tree = armTree();
+  tree.addLink("finger");
+  Joint joint;
+  joint.name = "finger";
+  joint.type = JointType::prismatic;
+  joint.parent = "arm";
+  joint.child = "finger";
+  joint.mimics = true;
+  joint.mimic = {"rail", -0.5, 0.1};
+  tree.addJoint(joint);
+  return tree;
+}
+
 /// A wheel that turns forever, on a cart that drives in a plane, and a drone.
 inline KinematicTree cartTree() {
   KinematicTree tree("cart");

@@ -127,6 +127,39 @@ TEST(PlanMotionTest, LongTurnsAreAskedFor) {
   EXPECT_EQ(toMotion(tree, plan, {}).waypoints[1][0], -1);
 }
 
+/// OMPL prints x, y, z and the quaternion, a state a line.
+TEST(PlanMotionTest, HalfTurnsOfQuaternionsHaveNoSense) {
+  KinematicTree tree("body");
+  tree.addLink("world");
+  tree.addLink("body");
+  addJoint(tree, "fly", JointType::floating, "world", "body");
+  for (const Interpolation kind : {Interpolation::linear, Interpolation::automatic}) {
+    MotionOptions options;
+    options.interpolation = kind;
+    options.turns = Turns::shortest;
+    expectContains(refusalOf(tree, "0 0 0 0 0 0 1\n1 0 0 0 0 0.6 0.8\n2 0 0 0 0 -0.8 0.6\n", Format::ompl, options),
+                   "waypoint 2: joint 'fly' turns by half a turn from waypoint 1");
+  }
+  const PlanMotion said =
+      toMotion(tree, parsePlans(tree, "0 0 0 0 0 0 1\n1 0 0 0 0 0.6 0.8\n2 0 0 0 0 1 0\n", Format::ompl).at(0), {});
+  EXPECT_EQ(said.waypoints.size(), 3u);  // a waypoint between says it
+}
+
+TEST(PlanMotionTest, ColumnsWithoutNamesAreSaid) {
+  const KinematicTree tree = armTree();
+  Plan plan;
+  plan.positions = {{0, 0}, {1, 0.5}};
+  const PlanMotion motion = toMotion(tree, plan, {});
+  EXPECT_FALSE(motion.named);
+  EXPECT_EQ(motion.joints, (std::vector<std::string>{"hinge", "rail"}));
+  MotionOptions options;
+  options.joints = {"rail", "hinge"};
+  EXPECT_FALSE(toMotion(tree, plan, options).named);
+  EXPECT_EQ(toMotion(tree, plan, options).joints, options.joints);
+  plan.joints = {"rail", "hinge"};
+  EXPECT_TRUE(toMotion(tree, plan, {}).named);
+}
+
 TEST(PlanMotionTest, OtherJointsKeepTheirState) {
   const KinematicTree tree = armTree();
   Plan plan;

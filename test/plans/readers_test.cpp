@@ -7,6 +7,7 @@
 
 #include "arm.h"
 #include "numpy_sample.h"
+#include "plans/carried.h"
 #include "plans/write.h"
 
 namespace fcl_artic::plans {
@@ -176,7 +177,11 @@ TEST(PlanReadersTest, OmplText) {
   expectContains(refusalOf(tree, "0 0 1\n0 0 1\n", Format::ompl),
                  "waypoint 0 has 3 values and no names; robot 'arm' has 2");
   expectContains(refusalOf(tree, "0 0\n0\n", Format::ompl), "waypoint 1 has 1 positions for 2 joints");
-  expectContains(refusalOf(tree, "0 0\n0 x\n", Format::ompl), "line 2: 'x' is not a number");
+  expectContains(refusalOf(tree, "0 0\n0 x\n", Format::ompl), "line 2: 'x' is not a number (waypoint 1)");
+  expectContains(refusalOf(tree, "0 0\n0.5 nan\n", Format::ompl), "waypoint 1, joint 'rail': nan");
+  expectContains(refusalOf(tree, "0 0\n0.5 3\n", Format::ompl), "waypoint 1: joint 'rail' at 3 is beyond its limits");
+  expectContains(refusalOf(tree, "0 0\n]\n", Format::ompl), "line 2: a bracket that nothing opens (waypoint 1)");
+  expectContains(refusalOf(tree, "0 0\nCompound state [\nSO2State [0]\n", Format::ompl), "waypoint 1, the last state");
   expectContains(refusalOf(tree, "Compound state [\nSO2State [0]\n", Format::ompl), "cut short");
 }
 
@@ -217,7 +222,8 @@ TEST(PlanReadersTest, Arrays) {
 
 TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
   const KinematicTree tree = cartTree();
-  const auto message = [](const std::string& second_pose) {
+  const auto message = [](const std::string& second_pose,
+                          const std::string& drone = R"({"x": 0, "y": 0, "z": 0.96, "w": -0.28})") {
     return R"({"joint_trajectory": {"joint_names": ["wheel"], "points": [
         {"positions": [0], "time_from_start": {"sec": 0, "nanosec": 0}},
         {"positions": [1], "time_from_start": {"sec": 2, "nanosec": 500000000}}]},
@@ -226,7 +232,7 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
                         {"translation": {"x": 1, "y": 2, "z": 3}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}}],
          "time_from_start": {"sec": 0, "nanosec": 0}},
         {"transforms": [)" +
-           second_pose + R"(, {"translation": {"x": 1, "y": 2, "z": 4}, "rotation": {"x": 0, "y": 0, "z": 1, "w": 0}}],
+           second_pose + R"(, {"translation": {"x": 1, "y": 2, "z": 4}, "rotation": )" + drone + R"(}],
          "time_from_start": {"sec": 2, "nanosec": 500000000}}]}})";
   };
   const std::string turned =
@@ -239,8 +245,15 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
   EXPECT_NEAR(q[2], M_PI / 2, 1e-15);
   EXPECT_EQ(q[3], 1);  // the wheel
   EXPECT_EQ(q[6], 4);
-  EXPECT_EQ(q[9], 1);  // half a turn
-  EXPECT_EQ(q[10], 0);
+  EXPECT_EQ(q[9], 0.96);
+  EXPECT_EQ(q[10], -0.28);
+  // Half a turn, and as near to one as a file of six digits can say: which way round?
+  for (const char* half : {R"({"x": 0, "y": 0, "z": 1, "w": 0})", R"({"x": 0, "y": 0, "z": 1, "w": 0.000001})",
+                           R"({"x": 0.6, "y": 0.8, "z": 0, "w": -1e-9})", R"({"x": 0, "y": 3, "z": 0, "w": 0})"}) {
+    expectContains(refusalOf(tree, message(turned, half), Format::json),
+                   "waypoint 1: joint 'fly' turns by half a turn from waypoint 0, which says not which way round");
+  }
+  EXPECT_EQ(only(tree, message(turned, R"({"x": 0, "y": 0, "z": 1, "w": 0.0001})"), Format::json).waypoints.size(), 2u);
   const std::string tilted =
       R"({"translation": {"x": 0.5, "y": 1, "z": 0}, "rotation": {"x": 0.6, "y": 0, "z": 0, "w": 0.8}})";
   expectContains(refusalOf(tree, message(tilted), Format::json),
@@ -272,9 +285,68 @@ TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
                  "--base");
   const std::string carrying =
       R"("trajectory_start": {"attached_collision_objects": [{"link_name": "arm", "object": {"id": "cup"}}]})";
-  EXPECT_EQ(
-      parsePlans(tree, "{\"trajectory\": [" + part("hinge", 1) + "], " + carrying + "}", Format::json).at(0).carried,
-      std::vector<std::string>{"cup"});
+  const std::vector<Carried> carried =
+      parsePlans(tree, "{\"trajectory\": [" + part("hinge", 1) + "], " + carrying + "}", Format::json).at(0).carried;
+  ASSERT_EQ(carried.size(), 1u);
+  EXPECT_EQ(carried[0].name, "cup");
+  EXPECT_EQ(carried[0].link, "arm");
+}
+
+/// What follows another joint in the tree stands elsewhere in the message: the plan is of another robot than the tree.
+TEST(PlanReadersTest, MimicJointsOfTheStartStandWhereTheirMastersHaveThem) {
+  const KinematicTree tree = gripperTree();
+  const auto message = [](const std::string& names, const std::string& positions) {
+    return R"({"trajectory": [{"joint_trajectory": {"joint_names": ["hinge"], "points": [
+        {"positions": [0], "time_from_start": 0}, {"positions": [1], "time_from_start": 1}]}}],
+      "trajectory_start": {"joint_state": {"name": [)" +
+           names + R"(], "position": [)" + positions + "]}}}";
+  };
+  const std::string all = R"("finger", "hinge", "rail")";
+  EXPECT_EQ(only(tree, message(all, "-0.1, 0, 0.4"), Format::json).waypoints[0][1], 0.4);
+  EXPECT_EQ(only(tree, message(all, "-0.1000005, 0, 0.4"), Format::json).waypoints[0][1], 0.4);
+  expectContains(refusalOf(tree, message(all, "0.02, 0, 0.4"), Format::json),
+                 "trajectory_start: joint 'finger' is at 0.02, where the joint that it mimics, 'rail', has it at -0.1");
+  expectContains(refusalOf(tree, message(all, "NaN, 0, 0.4"), Format::json), "joint 'finger' is at nan");
+  expectContains(refusalOf(tree, message(R"("finger", "hinge")", "0.02, 0"), Format::json),
+                 "joint 'finger' is at 0.02, and the joint that it mimics, 'rail', has no value there");
+}
+
+/// Every object that is carried is attached by its name, to its link; none stands for two.
+TEST(PlanReadersTest, CarriedObjectsAreThoseThatAreAttached) {
+  KinematicTree tree = armTree();
+  for (const char* link : {"hand", "flange"}) {
+    tree.addLink(link);
+    tree.addJoint(Joint::fixed(link, "arm", link));
+  }
+  const LinkId arm = tree.linkId("arm"), hand = tree.linkId("hand"), slide = tree.linkId("slide");
+  const auto require = [&](const std::vector<Carried>& carried, const std::vector<Attached>& attached) {
+    Plan plan;
+    plan.carried = carried;
+    requireCarried(tree, plan, attached, "say what");
+  };
+  const auto refused = [&](const std::vector<Carried>& carried, const std::vector<Attached>& attached,
+                           const std::string& reason) {
+    expectContains(refusal([&] { require(carried, attached); }), reason);
+  };
+  const Attached cup{"mug", {"cup", "cup#2"}, hand}, saucer{"saucer", {"plate"}, hand};
+  EXPECT_NO_THROW(require({}, {cup}));
+  EXPECT_NO_THROW(require({{"cup", "hand"}}, {saucer, cup}));
+  EXPECT_NO_THROW(require({{"cup", "flange"}}, {cup}));  // stands still against the hand
+  EXPECT_NO_THROW(require({{"mug", ""}, {"saucer", "arm"}}, {cup, saucer}));
+  EXPECT_NO_THROW(require({{"", ""}, {"cup", ""}}, {cup, saucer}));
+  EXPECT_NO_THROW(require({{"plate", "arm"}, {"cup", ""}}, {{"things", {"cup", "plate"}, arm}}));
+  refused({{"cup", ""}}, {}, "the robot carries 'cup': say what");
+  refused({{"cup", ""}, {"saucer", ""}}, {cup},
+          "the robot carries 'saucer': say what; what is attached is 'cup', 'cup#2'");
+  refused({{"saucer", ""}}, {cup}, "the robot carries 'saucer'");
+  refused({{"cup", ""}, {"mug", ""}}, {cup}, "the robot carries 'mug'");  // one object for two
+  refused({{"mug", ""}, {"cup", ""}}, {cup}, "the robot carries 'mug'");  // in either order
+  refused({{"cup", ""}, {"cup", ""}}, {saucer, cup}, "the robot carries 'cup'");
+  refused({{"cup", ""}, {"", ""}}, {cup}, "the robot carries an object without a name: say what");
+  refused({{"cup", "slide"}}, {cup},
+          "link 'slide' carries 'cup', and it is attached to 'hand', which moves against it");
+  refused({{"plate", "hand"}}, {{"", {"plate"}, slide}}, "link 'hand' carries 'plate', and it is attached to 'slide'");
+  refused({{"cup", "hnd"}}, {cup}, "robot 'arm' has no such link; did you mean 'hand'?");
 }
 
 TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
@@ -318,8 +390,12 @@ TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
   expectContains(refusalOf(tree, "", Format::csv), "it is empty");
   expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n0,1,0\n", Format::csv),
                  "waypoint 1: its time 0 is not later");
-  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,0\n", Format::csv), "line 3 has 2 columns");
-  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,nan,0\n", Format::csv), "line 3, column 'hinge': 'nan'");
+  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,0\n", Format::csv),
+                 "line 3 has 2 columns, the first line names 3 (waypoint 1)");
+  expectContains(refusalOf(tree, "time,hinge,rail\n0,0,0\n1,nan,0\n", Format::csv),
+                 "line 3, column 'hinge': 'nan' is not a finite number (waypoint 1)");
+  expectContains(refusalOf(tree, "hinge,rail\n# from\n0,0\n\n1,0\n0,inf\n", Format::csv),
+                 "line 6, column 'rail': 'inf' is not a finite number (waypoint 2)");
   expectContains(refusalOf(tree, "time,hinge,rail,hinge_vel\n0,0,0,0\n1,1,0,0\n", Format::csv),
                  "line 1: joint 'rail' has no column of its velocity");
   expectContains(refusalOf(tree, "time,hinge,elbow\n0,0,0\n1,1,0\n", Format::csv), "no joint 'elbow'");
