@@ -301,6 +301,90 @@ TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
   EXPECT_EQ(world.open.size(), 0);
 }
 
+/// Balls of these radii in the middle of the two bodies' trees, each in a closed part that reaches as far as its body.
+struct BallsInside {
+  BallsInside(TwoBalls& world, double radius_a, double radius_b) {
+    const double radius[2] = {radius_a, radius_b};
+    for (int i = 0; i < 2; ++i) {
+      const double reach = world.pieces[i].radius;
+      for (int k = 0; k < 3; ++k) {
+        parts[i].lo[k] = -reach;
+        parts[i].hi[k] = reach;
+        for (int n = 0; n < 8; ++n) parts[i].points[k][n] = n / 2 == k ? (n % 2 ? reach : -reach) : 0;
+      }
+      for (int n = 0; n < InnerBalls::kMost; ++n) balls[i].radius[n] = -1e300;
+      balls[i].radius[0] = radius[i];
+      balls[i].count = 1;
+      balls[i].reach = radius[i];
+      balls[i].parts = &parts[i];
+      world.bodies[i].balls = &balls[i];
+    }
+  }
+  InnerBalls balls[2] = {};
+  ClosedPart parts[2] = {};
+};
+
+TEST(BallProofs, ABallInALinkMeetsASolid) {
+  TwoBalls world;
+  world.asLinkAndObstacle().query.any = true;
+  BallsInside inside(world, 0.4, 0.2);
+  for (int k = 0; k < kLanes; ++k) {
+    world.begin();
+    world.frames.set(world.task.whole);
+    const double z = -2 + 4 * world.task.whole.at[k];
+    EXPECT_EQ(world.balls.inSolid(TwoBalls::kPair, k), std::abs(z) < 0.5 + 0.2) << k;
+    EXPECT_EQ(world.contacts.size(), std::abs(z) < 0.5 + 0.2) << k;
+  }
+  // A solid that is within what the mesh encloses need not meet its surface.
+  for (int k = 0; k < 3; ++k) {
+    inside.parts[1].lo[k] = -10;
+    inside.parts[1].hi[k] = 10;
+  }
+  world.begin();
+  world.frames.set(world.task.whole);
+  EXPECT_FALSE(world.balls.inSolid(TwoBalls::kPair, 3));
+  world.bodies[1].balls = nullptr;
+  EXPECT_FALSE(world.balls.inSolid(TwoBalls::kPair, 3));
+}
+
+TEST(BallProofs, BallsInLinksMeetAndNeitherLinkIsWithinTheOther) {
+  TwoBalls world(-2.2, 1.8);  // B's middles: lane 2: -0.95, lane 3: -0.45, lane 4: 0.05, lane 5: 0.55
+  const std::int32_t movers[2] = {0, 1};
+  world.asPair().query.any = true;
+  world.problem.movers = movers;
+  world.problem.num_movers = world.problem.num_scene_movers = 2;
+  world.bodies[0].mover = 0;
+  world.bodies[1].mover = 1;
+  world.bodies[1].step = 0;
+  const BallsInside inside(world, 0.4, 0.2);
+  EXPECT_EQ(world.problem.parts(TwoBalls::kPair).b, 1);
+  for (int k = 0; k < kLanes; ++k) {
+    world.begin();
+    world.frames.set(world.task.whole);
+    EXPECT_DOUBLE_EQ(world.balls.reach(TwoBalls::kPair), 0.4 + 0.2);
+    const bool meet = k == 3 || k == 5;  // in lane 4 B lies within A
+    EXPECT_EQ(world.balls.inLinks(TwoBalls::kPair, k), meet) << k;
+    ASSERT_EQ(world.contacts.size(), meet) << k;
+    if (meet) EXPECT_EQ(world.horizon.first().t_upper, world.task.whole.at[k]);
+  }
+  world.bodies[0].balls = nullptr;
+  EXPECT_EQ(world.balls.reach(TwoBalls::kPair), 0);
+}
+
+TEST(HullSimplices, AreOfThePairAndTheQuery) {
+  HullSimplices simplices;
+  simplices.begin();
+  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
+  simplices.of(PairId{3}).n = 2;
+  EXPECT_EQ(simplices.of(PairId{4}).n, 0);
+  EXPECT_EQ(simplices.of(PairId{3}).n, 2);
+  EXPECT_EQ(simplices.of(PairId{3 + 32}).n, 0);  // pushes the other out
+  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
+  simplices.of(PairId{3}).n = 2;
+  simplices.begin();
+  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
+}
+
 TEST(PoseProofs, ProveContactWhereItIs) {
   TwoBalls world;
   world.asPair().query.any = true;
