@@ -66,3 +66,26 @@ def test_a_carried_object_is_asked_for(robot, tmp_path):
     world = fcl_artic.World(robot)
     with pytest.raises(ValueError, match="carries 'cup'"):
         world.certify(plan)
+
+
+def test_every_carried_object_is_attached_by_its_name(robot, tmp_path):
+    points = [{"positions": FROM, "time_from_start": 0}, {"positions": ASIDE, "time_from_start": 1}]
+    message = {"trajectory": [{"joint_trajectory": {"joint_names": list(robot.tree.variables), "points": points}}],
+               "trajectory_start": {"attached_collision_objects": [
+                   {"link_name": "flange", "object": {"id": "cup"}}, {"link_name": "flange", "object": {"id": "spoon"}}]}}
+    (tmp_path / "plan.json").write_text(json.dumps(message))
+    (plan,) = fcl_artic.load_plans(tmp_path / "plan.json", robot)
+    assert plan.carried == ["cup", "spoon"] and plan.joints == list(robot.tree.variables)
+    world = fcl_artic.World(robot)
+    for name in ("cup", "plate"):
+        world.add(name, fcl_artic.sphere(0.01), [0, 0, 9])
+        world.attach(name, "flange", [0, 0, 0.3])
+    with pytest.raises(ValueError, match=r"carries 'spoon': World.attach\(\) says what that is; .* 'cup', 'plate'"):
+        world.certify(plan)
+    world.add("spoon", fcl_artic.sphere(0.01), [0, 0, 9])
+    world.attach("spoon", "upper_arm", [0, 0, 0.9])
+    with pytest.raises(ValueError, match="link 'flange' carries 'spoon', and it is attached to 'upper_arm'"):
+        world.certify(plan)
+    world.detach("spoon")
+    world.attach("spoon", "flange", [0, 0, 0.5])
+    assert world.certify(plan).status is not None

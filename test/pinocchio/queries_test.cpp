@@ -23,6 +23,9 @@ namespace {
 
 using test::Random;
 
+/// These ask for added margins only, or none.
+const PinocchioOptions kSweptAsMargins{true};
+
 /// Configurations that coal looks at on the way of a motion; more with FCL_ARTIC_SAMPLES.
 int samples() {
   const char* asked = std::getenv("FCL_ARTIC_SAMPLES");
@@ -104,7 +107,7 @@ Tally randomQueries(std::uint64_t seed, const std::vector<JointType>& kinds) {
     pinocchio::Model model;
     pinocchio::GeometryModel geometries;
     test::makePinocchio(description, model, geometries);
-    const PinocchioRobot robot = fromPinocchio(model, geometries);
+    const PinocchioRobot robot = fromPinocchio(model, geometries, kSweptAsMargins);
     const test::DirectRobot direct = test::makeDirect(description);
     Looker looker{model, geometries};
     EXPECT_EQ(robot.tree->dof(), direct.tree->dof());
@@ -259,6 +262,37 @@ TEST(PinocchioQueries, WhatCannotBeCheckedIsNamed) {
   expect(refusal([&] { fromPinocchio(arm.model, arm.geometries); }), "two geometries are named 'tip'");
 }
 
+/// A margin that stands for a swept radius takes the place of a request's, which nobody would notice.
+TEST(PinocchioQueries, MarginsOfRequestsAreNotDroppedUnasked) {
+  const auto armWith = [](const std::shared_ptr<coal::ShapeBase>& shape) {
+    shape->setSweptSphereRadius(0.05);
+    Arm arm;
+    const auto index = arm.geometries.addGeometryObject(pinocchio::GeometryObject(
+        "post", 0, pinocchio::SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 2.35, 0)), shape));
+    arm.geometries.addCollisionPair({arm.link2, index});
+    return arm;
+  };
+  // The ball reaches y = 2.1 at most, the swept bodies begin at 2.25.
+  const Arm boxed = armWith(std::make_shared<coal::Box>(0.1, 0.1, 0.1));
+  const std::string message = refusal([&] { fromPinocchio(boxed.model, boxed.geometries); });
+  EXPECT_NE(message.find("geometry 'post': it is swept with a ball of radius 0.05"), std::string::npos) << message;
+  const Eigen::Vector2d q0(0.3, 0), q1(2.8, 0);
+  const auto free = [&](const PinocchioRobot& robot, double margin, double added) {
+    CertifiedRequest request;
+    request.margin = margin;
+    request.added_margin = added;
+    return robot.manager->continuousCollide(robot.motion(q0, q1), request).status == Status::free;
+  };
+  const PinocchioRobot robot = fromPinocchio(boxed.model, boxed.geometries, kSweptAsMargins);
+  EXPECT_TRUE(free(robot, 0, 0.14));
+  EXPECT_FALSE(free(robot, 0, 0.16));
+  // A ball's and a capsule's radius has it: margins of requests count.
+  const Arm round = armWith(std::make_shared<coal::Sphere>(0.05));
+  const PinocchioRobot ball = fromPinocchio(round.model, round.geometries);
+  EXPECT_TRUE(free(ball, 0.14, 0));
+  EXPECT_FALSE(free(ball, 0.16, 0));
+}
+
 /// Every geometry that fromCoal() takes, as an obstacle in the ball's way, and a little out of it.
 TEST(PinocchioQueries, EveryGeometryOfCoals) {
   const auto octree = std::make_shared<octomap::OcTree>(0.1);
@@ -295,11 +329,11 @@ TEST(PinocchioQueries, EveryGeometryOfCoals) {
     };
     const int type = body->getNodeType();
     const auto far = add("far", 2.35);
-    PinocchioRobot robot = fromPinocchio(arm.model, arm.geometries);
+    PinocchioRobot robot = fromPinocchio(arm.model, arm.geometries, kSweptAsMargins);
     const Eigen::Vector2d q0(0.3, 0), q1(2.8, 0);
     EXPECT_TRUE(robot.manager->isFree(robot.motion(q0, q1))) << "node type " << type;
     arm.geometries.geometryObjects[far].placement.translation().y() = 2.05;
-    robot = fromPinocchio(arm.model, arm.geometries);
+    robot = fromPinocchio(arm.model, arm.geometries, kSweptAsMargins);
     EXPECT_FALSE(robot.manager->isFree(robot.motion(q0, q1))) << "node type " << type;
   }
 }

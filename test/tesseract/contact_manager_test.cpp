@@ -198,6 +198,30 @@ TEST(TesseractContactManager, ObjectsComeAndGo) {
   EXPECT_EQ(manager.getCollisionObjects(), (std::vector<LinkId>{"static_box_link", "moving_box_link"}));
 }
 
+/// An object that gets another shape goes on moving: it meets the post half way, where neither of its poses is.
+TEST(TesseractContactManager, WhatTakesTheirPlaceIsActiveAsTheyWere) {
+  TesseractContactManager manager;
+  add(manager, "post", std::make_shared<geometry::Box>(0.1, 0.1, 0.1));
+  add(manager, "other", std::make_shared<geometry::Box>(0.1, 0.1, 0.1));
+  add(manager, "mover", std::make_shared<geometry::Box>(0.1, 0.1, 0.1));
+  manager.setActiveCollisionObjects({"mover"});
+  const auto go = [&] {
+    manager.setCollisionObjectsTransform("other", at(0, 0, 3));
+    manager.setCollisionObjectsTransform("mover", at(-1, 0, 0), at(1, 0, 0));
+    return contacts(manager);
+  };
+  ASSERT_EQ(go().size(), 1u);
+  add(manager, "mover", std::make_shared<geometry::Sphere>(0.05));
+  EXPECT_EQ(manager.getActiveCollisionObjects(), std::unordered_set<LinkId>{"mover"});
+  const auto found = go();
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].cc_time[side(found[0], "mover")], 0.45, 1e-5);
+  add(manager, "other", std::make_shared<geometry::Sphere>(0.05));  // still as ever
+  EXPECT_EQ(manager.getActiveCollisionObjects(), std::unordered_set<LinkId>{"mover"});
+  manager.removeCollisionObject("mover");
+  EXPECT_TRUE(manager.getActiveCollisionObjects().empty());
+}
+
 TEST(TesseractContactManager, StillObjectsAreMoved) {
   TesseractContactManager manager;
   placeBoxes(manager);

@@ -153,6 +153,10 @@ TEST(TesseractScene, ErrorsNameTheState) {
   expect(t, "state 1: the position of joint 'elbow' is not finite");
   t.states[0].position.resize(1);
   expect(t, "state 0: 1 positions for 2 joints");
+  t = trajectory({{0, 0}, {1, 0}});
+  t.states[0].time = 0;
+  t.states[1].time = 0.5;
+  EXPECT_EQ(refusal(t), "nothing was thrown");
 
   scene_graph::SceneGraph graph = arm();
   graph.getLink("tip");
@@ -164,6 +168,74 @@ TEST(TesseractScene, ErrorsNameTheState) {
   } catch (const std::invalid_argument& e) {
     EXPECT_NE(std::string(e.what()).find("link 'sheet'"), std::string::npos) << e.what();
   }
+}
+
+/// The ball meets the post at a shoulder of acos(0.1) where the elbow is at 0, and not where it is at 2.
+TEST(TesseractScene, JointsThatNoStateNamesHaveAValueOfTheirOwn) {
+  const TesseractScene scene = fromTesseract(arm());
+  const auto states = [](const std::vector<std::vector<std::pair<std::string, double>>>& all) {
+    common::JointTrajectory out;
+    for (const auto& one : all) {
+      std::vector<common::JointId> ids;
+      Eigen::VectorXd q(static_cast<Eigen::Index>(one.size()));
+      for (std::size_t i = 0; i < one.size(); ++i) {
+        ids.emplace_back(one[i].first);
+        q[static_cast<Eigen::Index>(i)] = one[i].second;
+      }
+      out.push_back(common::JointState(ids, q));
+    }
+    return out;
+  };
+  const auto refused = [&](const common::JointTrajectory& t, const Eigen::VectorXd& others, const std::string& part) {
+    try {
+      (void)scene.certify(t, {}, others);
+      ADD_FAILURE() << "was taken: " << part;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find(part), std::string::npos) << e.what();
+    }
+  };
+  const common::JointTrajectory shoulder = states({{{"shoulder", 0}}, {{"shoulder", 3}}});
+  refused(shoulder, {}, "state 0: joint 'elbow' is not named: `others`");
+  Eigen::VectorXd others = scene.tree->neutralConfiguration();
+  EXPECT_EQ(scene.certify(shoulder, {}, others).status, Status::contact);
+  others[1] = 2;
+  EXPECT_EQ(scene.certify(shoulder, {}, others).status, Status::free);
+  // A state that leaves out what the one before has moved would put it back where `others` has it.
+  const common::JointTrajectory restarted = states({{{"shoulder", 0}, {"elbow", 0}}, {{"shoulder", 3}}});
+  refused(restarted, others, "state 1: joint 'elbow' is not named, in state 0 it is");
+  refused(states({{{"shoulder", 0}}, {{"elbow", 0}, {"shoulder", 3}}}), others,
+          "state 1: joint 'elbow' is named, in state 0 it is not");
+}
+
+/// A joint that floats can't be named by a state: where it stands is said.
+TEST(TesseractScene, FloatingJointsHaveAValueOfTheirOwn) {
+  scene_graph::SceneGraph graph = arm();
+  add(graph, link("crate", std::make_shared<geometry::Box>(0.2, 0.2, 0.2)),
+      joint("float", scene_graph::JointType::FLOATING, "world", "crate"));
+  const TesseractScene scene = fromTesseract(graph);
+  const common::JointTrajectory turn = trajectory({{-0.5, 0}, {0.5, 0}});
+  EXPECT_THROW((void)scene.certify(turn), std::invalid_argument);
+  Eigen::VectorXd others = scene.tree->neutralConfiguration();
+  const int x = scene.tree->jointVariable(scene.tree->parentJoint(scene.tree->linkId("crate")));
+  others[x + 2] = 5;
+  EXPECT_EQ(scene.certify(turn, {}, others).status, Status::free);
+  others[x + 2] = 0;
+  others[x] = 2;
+  EXPECT_EQ(scene.certify(turn, {}, others).status, Status::contact);
+}
+
+/// A margin of the request's would be dropped where tesseract's are set.
+TEST(TesseractScene, MarginsOfTheRequestAreNotDropped) {
+  const common::JointTrajectory near = trajectory({{0, 0}, {1, 0}});  // 0.905 m from the post
+  CertifiedRequest request;
+  request.margin = 0.91;
+  EXPECT_EQ(fromTesseract(arm()).certify(near, request).status, Status::contact);
+  const TesseractScene scene = fromTesseract(arm(), common::CollisionMarginData(0.01));
+  EXPECT_THROW((void)scene.certify(near, request), std::invalid_argument);
+  request.margin = 0;
+  EXPECT_EQ(scene.certify(near, request).status, Status::free);
+  request.added_margin = 0.9;
+  EXPECT_EQ(scene.certify(near, request).status, Status::contact);
 }
 
 /// Random arms of three to six joints, mimic ones too, with obstacles: tesseract's discrete manager looks on the way,

@@ -132,6 +132,16 @@ class PinocchioRobot {
   Eigen::Index nq_ = 0;
 };
 
+/// Options of fromPinocchio().
+struct PinocchioOptions {
+  /// Takes bodies that coal sweeps with a ball, other than spheres and capsules, whose radius has it: with a margin of
+  /// the radius. It replaces CertifiedRequest::margin for all pairs of such a body, so that more room than the radius
+  /// is CertifiedRequest::added_margin; a larger margin of another body's, one of a pair and resetMargins() replace it
+  /// in turn, and clearance() is that of the bodies without it. False: such a body is refused, so that nobody's margin
+  /// is replaced without notice.
+  bool swept_radius_as_margin = false;
+};
+
 /// @cond
 namespace detail {
 
@@ -139,8 +149,9 @@ namespace detail {
 class PinocchioReader {
  public:
   /// Reads the joints.
-  PinocchioReader(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries)
-      : model_(model), geometries_(geometries) {
+  PinocchioReader(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries,
+                  const PinocchioOptions& options)
+      : model_(model), geometries_(geometries), options_(options) {
     for (const pinocchio::GeometryObject& object : geometries.geometryObjects) {
       if (!names_.insert(object.name).second) {
         throw std::invalid_argument("fromPinocchio: two geometries are named '" + object.name + "'");
@@ -385,6 +396,11 @@ class PinocchioReader {
     try {
       if (!object.geometry) throw std::invalid_argument("it has no geometry");
       geometry = fromCoal(*object.geometry);
+      if (geometry.swept_radius > 0 && !options_.swept_radius_as_margin) {
+        throw std::invalid_argument(
+            "it is swept with a ball of radius " + std::to_string(geometry.swept_radius) +
+            " m, for which only a margin stands, in place of a request's (PinocchioOptions::swept_radius_as_margin)");
+      }
       const Eigen::Isometry3d placement = pose(object.placement);
       if (object.parentJoint == 0 || attached) {
         auto body = std::make_shared<fcl::CollisionObjectd>(geometry.geometry, placement);
@@ -415,6 +431,7 @@ class PinocchioReader {
 
   const pinocchio::Model& model_;
   const pinocchio::GeometryModel& geometries_;
+  const PinocchioOptions& options_;
   std::shared_ptr<KinematicTree> tree_;
   PinocchioRobot robot_;
   std::set<std::string> names_;
@@ -429,13 +446,14 @@ class PinocchioReader {
 /// whose `disableCollision` is set are allowed as well. Both models are copied.
 ///
 /// Objects that are registered or attached afterwards are checked against all geometries. A body that coal sweeps with
-/// a ball gets a margin for it, which replaces CertifiedRequest::margin; use CertifiedRequest::added_margin there.
+/// a ball is refused where a margin would have to stand for that (PinocchioOptions::swept_radius_as_margin takes it).
 /// @throws std::invalid_argument, naming the joint, for a kind that this library has not (helical ones), and for mimic
 ///   joints of more than one variable; naming the geometry, for one that fromCoal() or the manager refuses, such as a
 ///   Halfspace or Plane that a joint moves; and for a collision pair on one joint, whose bodies never move against each
 ///   other.
-inline PinocchioRobot fromPinocchio(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries) {
-  return detail::PinocchioReader(model, geometries).read();
+inline PinocchioRobot fromPinocchio(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries,
+                                    const PinocchioOptions& options = {}) {
+  return detail::PinocchioReader(model, geometries, options).read();
 }
 
 }  // namespace fcl_artic

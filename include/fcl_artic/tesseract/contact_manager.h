@@ -60,7 +60,8 @@ class FCL_ARTIC_EXPORT TesseractContactManager : public ::tesseract::collision::
   /// Makes a manager with the same objects, poses, margins and validator. Geometries are shared.
   UPtr clone() const override;
 
-  /// Adds an object, in place of one with this id. It stands still at the identity.
+  /// Adds an object, in place of one with this id. It stands at the identity. It is active where the one whose place it
+  /// takes was; with tesseract's own managers it is not, and stands still until setActiveCollisionObjects().
   /// @return false for no shapes, or another number of poses.
   /// @throws std::invalid_argument naming the object, for a geometry that is not supported (polygon mesh, signed
   ///   distance field, octree of spheres), or empty.

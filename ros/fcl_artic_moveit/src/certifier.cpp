@@ -44,6 +44,30 @@ void requireSameBodies(const robot_trajectory::RobotTrajectory& trajectory) {
   }
 }
 
+/// Whether they are one body, maybe made of a message twice, each time with shapes of its own.
+bool likeBody(const AttachedBody& a, const AttachedBody& b) {
+  if (a.getAttachedLinkName() != b.getAttachedLinkName() || a.getShapes().size() != b.getShapes().size()) return false;
+  for (std::size_t i = 0; i < a.getShapes().size(); ++i) {
+    if (a.getShapes()[i]->type != b.getShapes()[i]->type) return false;
+    if (!a.getShapePosesInLinkFrame()[i].isApprox(b.getShapePosesInLinkFrame()[i])) return false;
+  }
+  return true;
+}
+
+/// A planner whose waypoints have lost what the robot carries leaves a trajectory of another robot.
+void requireBodiesOf(const RobotState& start, const RobotState& first) {
+  std::map<std::string, const AttachedBody*> carried, here;
+  start.getAttachedBodies(carried);
+  first.getAttachedBodies(here);
+  for (const auto& [name, body] : carried) {
+    const auto found = here.find(name);
+    if (found != here.end() && likeBody(*body, *found->second)) continue;
+    throw std::invalid_argument("the robot starts with '" + name + "' on link '" + body->getAttachedLinkName() +
+                                "', and waypoint 0 " +
+                                (found == here.end() ? "does not carry it" : "carries it otherwise"));
+  }
+}
+
 std::ostream& operator<<(std::ostream& out, const BodyName& body) {
   const char* kind[] = {"link", "attached body", "object"};
   return out << kind[body.kind] << " '" << body.id << '\'';
@@ -95,8 +119,10 @@ Certifier::~Certifier() = default;
 
 Verdict Certifier::certify(const collision_detection::CollisionEnv& env,
                            const collision_detection::AllowedCollisionMatrix& acm,
-                           const robot_trajectory::RobotTrajectory& trajectory) const {
+                           const robot_trajectory::RobotTrajectory& trajectory,
+                           const moveit::core::RobotState* start) const {
   requireSameBodies(trajectory);
+  if (start) requireBodiesOf(*start, trajectory.getWayPoint(0));
   std::unique_ptr<Cell> cell = idleCell(trajectory.getRobotModel());
   cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup());  // if this throws, the cell goes
   try {

@@ -111,14 +111,16 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
 
   [[nodiscard]] std::string getDescription() const override { return kName; }
 
-  void adapt(const planning_scene::PlanningSceneConstPtr& scene, const planning_interface::MotionPlanRequest&,
+  void adapt(const planning_scene::PlanningSceneConstPtr& scene, const planning_interface::MotionPlanRequest& request,
              planning_interface::MotionPlanResponse& response) const override {
     if (!certifier_) return refuse(response, "initialize() was not called");
     if (!scene) return refuse(response, "there is no planning scene");
     if (!response.trajectory) return refuse(response, "there is no trajectory");
     try {
-      const Verdict verdict =
-          certifier_->certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(), *response.trajectory);
+      // As planners begin: the scene's state, and what the request says of it.
+      const moveit::core::RobotStatePtr start = scene->getCurrentStateUpdated(request.start_state);
+      const Verdict verdict = certifier_->certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
+                                                  *response.trajectory, start.get());
       for (const std::string& note : verdict.notes) RCLCPP_WARN(logger_, "%s", note.c_str());
       if (publisher_) publisher_->publish(markersOf(verdict, scene->getPlanningFrame(), clock_->now()));
       if (verdict.isFree()) {

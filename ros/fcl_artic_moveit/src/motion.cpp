@@ -20,7 +20,8 @@ using moveit::core::RobotState;
 using robot_trajectory::RobotTrajectory;
 
 constexpr double kHalfTurn = 3.14159265358979323846;
-constexpr double kSame = 1e-6;  // rad or m: within it a joint outside the group counts as standing still
+constexpr double kNearHalfTurn = 2e-6;  // cosine of half the angle between quaternions, below which no sense is sure
+constexpr double kSame = 1e-6;          // rad or m: within it a joint outside the group counts as standing still
 
 const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
                                                                          {"linear", Interpolation::linear},
@@ -158,9 +159,23 @@ void requireNoTurningRates(const RobotTree& robot, const std::vector<VectorXd>& 
   }
 }
 
+/// Half a turn from one waypoint to the next says not which way round, and executors have rules of their own.
+void requireSenses(const RobotTree& robot, const std::vector<VectorXd>& q) {
+  for (fcl_artic::JointId j = 0; j < robot.tree->numJoints(); ++j) {
+    const int v = robot.tree->quaternionVariable(j);
+    for (std::size_t k = 1; v >= 0 && k < q.size(); ++k) {
+      const Eigen::Vector4d from = q[k - 1].segment<4>(v), to = q[k].segment<4>(v);
+      if (!(std::abs(from.dot(to)) <= kNearHalfTurn * from.norm() * to.norm())) continue;
+      refuse(waypoint(k) + ": joint '" + robot.tree->joint(j).name + "' turns by half a turn from " + waypoint(k - 1) +
+             ", which says not which way round: a waypoint between them says it");
+    }
+  }
+}
+
 /// What MoveIt's joints mean that this library's do not, or the other way round.
 void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, const std::vector<VectorXd>& q,
                  Interpolation kind, const MotionOptions& options) {
+  requireSenses(robot, q);
   const auto& tree = *robot.tree;
   const auto moves = [&](int v, int n) {
     for (const VectorXd& one : q) {

@@ -156,6 +156,20 @@ TEST_F(CertifySolution, WhatCannotBeCertifiedIsRefused) {
   EXPECT_EQ(adapted().error_code.val, kSuccess) << "the next one is looked at anew";
 }
 
+/// The scene's state carries what the waypoints have lost.
+TEST_F(CertifySolution, WhatTheRobotCarriesIsOnTheWaypoints) {
+  adapter->initialize(node, "ompl");
+  MotionPlanResponse out = response();
+  const auto box = std::make_shared<shapes::Box>(0.1, 0.1, 0.1);
+  scene->getCurrentStateNonConst().attachBody("tool", Eigen::Isometry3d(Eigen::Translation3d(0.2, 0, 0)), {box},
+                                              EigenSTL::vector_Isometry3d{Eigen::Isometry3d::Identity()},
+                                              std::set<std::string>{"finger"}, "finger");
+  adapter->adapt(scene, planning_interface::MotionPlanRequest(), out);
+  EXPECT_EQ(out.error_code.val, kInvalid);
+  expectContains(out.error_code.message, "the robot starts with 'tool' on link 'finger'");
+  EXPECT_EQ(adapted().error_code.val, kSuccess) << "states copied with all that they carry";
+}
+
 /// A diff of a scene, as pipelines get them, and its world count as the scene itself.
 TEST_F(CertifySolution, DiffsOfScenes) {
   adapter->initialize(node, "ompl");

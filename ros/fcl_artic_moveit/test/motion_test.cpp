@@ -259,6 +259,34 @@ TEST(Certifier, BodiesThatComeAndGoAreRefused) {
   EXPECT_TRUE(certifier.certify(*all.env, all.acm, swing).isFree());
 }
 
+/// A planner whose waypoints have lost the tool leaves a trajectory of another robot.
+TEST(Certifier, BodiesOfTheStartAreOnTheWaypoints) {
+  Surroundings all(slider());
+  const auto box = std::make_shared<shapes::Box>(0.1, 0.1, 0.1);
+  const auto swing = all.trajectory("all", {{0, -1, 0}, {0, 0, 0}});
+  const Certifier certifier;
+  moveit::core::RobotState start(swing.getWayPoint(0));
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, swing, &start).isFree());
+  Surroundings::attach(start, "tool", "finger", box, {0.2, 0, 0}, {"finger"});
+  const auto message = [&](const robot_trajectory::RobotTrajectory& way) {
+    return refusal([&] { (void)certifier.certify(*all.env, all.acm, way, &start); });
+  };
+  expectContains(message(swing), "the robot starts with 'tool' on link 'finger', and waypoint 0 does not carry it");
+  const auto carrying = [&](const shapes::ShapeConstPtr& shape, double x) {
+    auto way = all.trajectory("all", {{0, -1, 0}, {0, 0, 0}});
+    for (const std::size_t k : {0, 1}) {
+      Surroundings::attach(*way.getWayPointPtr(k), "tool", "finger", shape, {x, 0, 0}, {"finger"});
+    }
+    return way;
+  };
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, carrying(box, 0.2), &start).isFree());
+  // Made of the same message again: another shape of the same kind.
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, carrying(std::make_shared<shapes::Box>(0.1, 0.1, 0.1), 0.2), &start)
+                  .isFree());
+  expectContains(message(carrying(box, 0.21)), "waypoint 0 carries it otherwise");
+  expectContains(message(carrying(std::make_shared<shapes::Sphere>(0.1), 0.2)), "waypoint 0 carries it otherwise");
+}
+
 /// Threads with scenes and attached bodies of their own get the answers that one alone gets.
 TEST(Certifier, ThreadsGetTheSameAnswers) {
   const auto model = slider();

@@ -335,7 +335,10 @@ bool TesseractContactManager::addCollisionObject(const ObjectId& id, const int& 
       throw std::invalid_argument("object '" + id.name() + "', shape " + std::to_string(i) + ": " + e.what());
     }
   }
+  // One that moves goes on moving: as an obstacle at its first pose nobody would look at its way.
+  const bool was_active = impl_->active.count(id) > 0;
   removeCollisionObject(id);
+  if (was_active) impl_->active.insert(id);
   impl_->objects.push_back(std::move(object));
   impl_->ids.push_back(id);
   impl_->moved.clear();  // pointers into objects; all is made anew

@@ -21,6 +21,22 @@ namespace scene_graph = ::tesseract::scene_graph;
 using TesseractId = ::tesseract::common::LinkId;
 using ::tesseract::common::LinkIdPair;
 
+/// All states name the joints that the first one names, and what no state names has a value of its own.
+void requireAllNamed(const KinematicTree& tree, const std::vector<bool>& named, const std::vector<bool>& named_first,
+                     std::size_t state, bool others) {
+  const std::string where = "state " + std::to_string(state) + ": ";
+  for (int v = 0; v < tree.dof(); ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    if (named[i] != named_first[i]) {
+      throw std::invalid_argument(where + "joint '" + tree.variableName(v) + "' is " + (named[i] ? "" : "not ") +
+                                  "named, in state 0 it is" + (named[i] ? " not" : ""));
+    }
+    if (named[i] || others) continue;
+    throw std::invalid_argument(where + "joint '" + tree.variableName(v) +
+                                "' is not named: `others` says where joints stay that no state names");
+  }
+}
+
 /// One geometry of a link.
 struct Body {
   std::string link;  ///< tesseract's
@@ -55,6 +71,7 @@ class Reader {
     scene_.manager->setAllowedCollisions(std::move(allowed_));
     setMargins();
     scene_.manager->setup();
+    requireChecked();
     return std::move(scene_);
   }
 
@@ -184,7 +201,9 @@ class Reader {
       if (std::find(scene_.notes.begin(), scene_.notes.end(), note) == scene_.notes.end()) scene_.notes.push_back(note);
       return;
     }
-    if (isStill(a) || isStill(b) || a.attached || b.attached) return;
+    if (isStill(a) || isStill(b)) return;  // one of them an obstacle
+    checked_.emplace(std::min(a.name, b.name), std::max(a.name, b.name));
+    if (a.attached || b.attached) return;
     // One joint between them: neighbours, whom a manager leaves out, unless one is attached.
     const auto above = [&](LinkId child) { return group(tree_->parentLink(child)); };
     if (above(x) == y) a.attached = true;
@@ -213,6 +232,7 @@ class Reader {
   void setMargins() {
     const double most = margins_.getMaxCollisionMargin();
     if (!(most > 0)) return;
+    scene_.has_margins = true;
     const double other = std::max(margins_.getDefaultCollisionMargin(), 0.0);
     for (const Body& a : bodies_) {
       scene_.manager->setMargin(a.name, other);
@@ -224,11 +244,21 @@ class Reader {
     }
   }
 
+  /// Every pair that moves and is neither allowed nor noted is checked, or nothing is returned at all.
+  void requireChecked() const {
+    std::set<std::pair<std::string, std::string>> pairs;
+    for (const auto& [a, b] : scene_.manager->checkedLinkPairs()) pairs.insert(std::minmax(a, b));
+    for (const auto& [a, b] : checked_) {
+      if (!pairs.count({a, b})) throw std::logic_error("fromTesseract: pair '" + a + "', '" + b + "' is not checked");
+    }
+  }
+
   const scene_graph::SceneGraph& graph_;
   const ::tesseract::common::CollisionMarginData& margins_;
   std::shared_ptr<KinematicTree> tree_;
   std::set<std::string> names_;
   std::vector<Body> bodies_;
+  std::set<std::pair<std::string, std::string>> checked_;  ///< names of bodies, the lesser one first
   AllowedCollisionMatrix allowed_;
   TesseractScene scene_;
 };
@@ -250,6 +280,7 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
   tree->requireConfiguration(start, "others");
   std::vector<double> times;
   std::vector<Eigen::VectorXd> waypoints;
+  std::vector<bool> named_first;  // variables that state 0 names
   bool increasing = true;
   for (std::size_t i = 0; i < trajectory.states.size(); ++i) {
     const auto& state = trajectory.states[i];
@@ -259,7 +290,7 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
                                   std::to_string(state.joint_ids.size()) + " joints");
     }
     Eigen::VectorXd q = start;
-    std::set<int> named;
+    std::vector<bool> named(static_cast<std::size_t>(tree->dof()));
     for (std::size_t k = 0; k < state.joint_ids.size(); ++k) {
       const std::string& name = state.joint_ids[k].name();
       int variable = -1;
@@ -269,12 +300,17 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
       if (variable < 0) {
         throw std::invalid_argument(where + "'" + name + "' is no joint with one variable of its own");
       }
-      if (!named.insert(variable).second) throw std::invalid_argument(where + "joint '" + name + "' is named twice");
+      if (named[static_cast<std::size_t>(variable)]) {
+        throw std::invalid_argument(where + "joint '" + name + "' is named twice");
+      }
+      named[static_cast<std::size_t>(variable)] = true;
       q[variable] = state.position[static_cast<Eigen::Index>(k)];
       if (!std::isfinite(q[variable])) {
         throw std::invalid_argument(where + "the position of joint '" + name + "' is not finite");
       }
     }
+    if (i == 0) named_first = named;
+    requireAllNamed(*tree, named, named_first, i, others.size() > 0);
     waypoints.push_back(std::move(q));
     increasing = increasing && std::isfinite(state.time) && (times.empty() || state.time > times.back());
     times.push_back(state.time);
@@ -287,6 +323,10 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
 
 CertifiedResult TesseractScene::certify(const ::tesseract::common::JointTrajectory& asked,
                                         const CertifiedRequest& request, const Eigen::VectorXd& others) const {
+  if (has_margins && request.margin > 0) {
+    throw std::invalid_argument("certify: tesseract's margins replace request.margin, which is " +
+                                std::to_string(request.margin) + "; request.added_margin is added to them");
+  }
   return manager->continuousCollide(trajectory(asked, others), request);
 }
 

@@ -56,10 +56,13 @@ class Certifier {
   /// @param env         of the planning scene (PlanningScene::getCollisionEnv()): its world and the links' padding.
   /// @param acm         PlanningScene::getAllowedCollisionMatrix().
   /// @param trajectory  whose first waypoint has the attached bodies.
-  /// @throws std::invalid_argument as toMotion() and Cell::update(), and for waypoints that carry other bodies than the
-  ///   first: nothing is claimed then.
+  /// @param start       what the robot starts from; null: waypoint 0 is taken at its word.
+  /// @throws std::invalid_argument as toMotion() and Cell::update(), for waypoints that carry other bodies than the
+  ///   first, and for a first that lacks a body which `start` carries, or has it on another link or elsewhere: nothing
+  ///   is claimed then.
   Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
-                  const robot_trajectory::RobotTrajectory& trajectory) const;
+                  const robot_trajectory::RobotTrajectory& trajectory,
+                  const moveit::core::RobotState* start = nullptr) const;
 
  private:
   std::unique_ptr<Cell> idleCell(const moveit::core::RobotModelConstPtr& model) const;
