@@ -25,10 +25,11 @@ using Rows = Eigen::Map<const RowMajor>;
 /// @throws py::type_error for what holds no real numbers.
 Doubles doubles(py::handle value, const char* what);
 
-/// A matrix of an array's numbers, read in place; keeps the array alive.
+/// A matrix of an array's numbers, read in place; keeps the array, which may be a converted copy, alive.
 struct Matrix {
   Doubles array;
-  Rows rows() const { return {array.data(), array.shape(0), array.shape(1)}; }
+  Rows rows() const& { return {array.data(), array.shape(0), array.shape(1)}; }
+  Rows rows() const&& = delete;  // of numbers that are gone
 };
 
 /// The number that a value is. @throws py::type_error naming `what`.

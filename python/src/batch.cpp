@@ -48,7 +48,7 @@ struct Columns {
 };
 
 /// Answers that claim nothing: what a query that was ended leaves out.
-Answers claimNothing(py::ssize_t n, std::vector<std::string> bodies) {
+Answers claimNothing(py::ssize_t n) {
   Answers a{Statuses(n),
             Doubles(n),
             Doubles(n),
@@ -57,7 +57,7 @@ Answers claimNothing(py::ssize_t n, std::vector<std::string> bodies) {
             Doubles({n, py::ssize_t{3}}),
             Doubles({n, py::ssize_t{3}}),
             Indices(n),
-            std::move(bodies)};
+            {}};
   const double none = std::numeric_limits<double>::quiet_NaN();
   std::fill_n(a.status.mutable_data(), n, static_cast<std::int8_t>(Status::undecided));
   std::fill_n(a.t_lower.mutable_data(), n, 0.0);
@@ -195,10 +195,12 @@ Answers checkMany(const World& world, py::handle q0, py::handle q1, int threads,
   const unsigned all = std::max(1u, std::thread::hardware_concurrency());
   const int most = threads == 0 ? static_cast<int>(all) : threads;
   const int used = static_cast<int>(std::clamp<py::ssize_t>(n, 1, most));
-  Answers answers = claimNothing(n, world.names());
+  Answers answers = claimNothing(n);
   Watch watch(std::move(request.progress));
-  Batch batch(world, from.rows(), to.rows(), request.request, answers, watch);
-  world.manager().ask([&](const ArticulatedCollisionManager& manager) { batch.run(manager, used); });
+  world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    answers.bodies = world.names();  // now that nothing changes
+    Batch(world, from.rows(), to.rows(), request.request, answers, watch).run(manager, used);
+  });
   watch.finish();
   return answers;
 }

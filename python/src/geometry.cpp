@@ -161,7 +161,8 @@ Geometry octree(py::handle points, py::handle resolution) {
 }
 
 Geometry points(py::handle points, py::handle radius) {
-  const Rows rows = matrixOf(points, "points", 3).rows();
+  const Matrix matrix = matrixOf(points, "points", 3);
+  const Rows rows = matrix.rows();
   std::vector<Vector3d> places(static_cast<std::size_t>(rows.rows()));
   for (Eigen::Index i = 0; i < rows.rows(); ++i) places[static_cast<std::size_t>(i)] = rows.row(i).transpose();
   std::vector<double> radii;

@@ -15,27 +15,36 @@ namespace fcl_artic::python {
 /// and queries for changes. No thread waits while it holds the GIL.
 template <class Manager>
 class Guarded {
+  struct Nothing {
+    void operator()() const {}
+  };
+
  public:
   template <class... Arguments>
   explicit Guarded(Arguments&&... arguments) : manager_(std::forward<Arguments>(arguments)...) {}
 
   /// Changes the manager when no query runs. With the GIL held; `change` runs without it.
+  /// @param commit  writes down beside the manager what has changed: with the GIL, and before any other thread changes
+  ///   or asks the manager, so that what is written down is what the manager has.
   /// @throws std::runtime_error in a callback of a query of this very manager, which would wait for itself.
-  template <class Change>
-  void change(const Change& change) {
-    if (isAskedByThisThread()) throw std::runtime_error("a world can't be changed from within its own query");
-    const py::gil_scoped_release release;
-    const std::unique_lock<std::shared_mutex> lock(mutex_);
-    changed_ = true;
-    change(manager_);
+  template <class Change, class Commit = Nothing>
+  void change(const Change& change, const Commit& commit = {}) {
+    changeAtOnce(
+        [&](Manager& manager) {
+          changed_ = true;
+          change(manager);
+        },
+        commit);
   }
   /// The same for a change that takes effect by itself, or throws and changes nothing: no setup() follows.
-  template <class Change>
-  void changeAtOnce(const Change& change) {
+  template <class Change, class Commit = Nothing>
+  void changeAtOnce(const Change& change, const Commit& commit = {}) {
     if (isAskedByThisThread()) throw std::runtime_error("a world can't be changed from within its own query");
     const py::gil_scoped_release release;
     const std::unique_lock<std::shared_mutex> lock(mutex_);
     change(manager_);
+    const py::gil_scoped_acquire acquire;  // who holds it waits for no lock of ours
+    commit();
   }
 
   /// Asks the manager, set up, while other threads may ask too. With the GIL held; `ask` runs without it.

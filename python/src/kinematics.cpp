@@ -293,7 +293,8 @@ void bindMotion(py::module_& module) {
       .def_static(
           "polynomial",
           [](py::handle tree, py::handle coefficients) {
-            return MadeMotion(JointMotion::polynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows()),
+            const Matrix matrix = matrixOf(coefficients, "coefficients");
+            return MadeMotion(JointMotion::polynomial(*treeOf(tree), matrix.rows()),
                               Recipe("polynomial", py::make_tuple(treeAlone(tree), coefficients)));
           },
           "Moves along polynomials up to the fifth degree: column k of the coefficients belongs to t**k.",
@@ -311,8 +312,9 @@ void bindMotion(py::module_& module) {
       .def_static(
           "tangent_half_angle_polynomial",
           [](py::handle tree, py::handle coefficients, py::handle reference) {
+            const Matrix matrix = matrixOf(coefficients, "coefficients");
             return MadeMotion(
-                JointMotion::tangentHalfAnglePolynomial(*treeOf(tree), matrixOf(coefficients, "coefficients").rows(),
+                JointMotion::tangentHalfAnglePolynomial(*treeOf(tree), matrix.rows(),
                                                         optionalVector(reference, "reference")),
                 Recipe("tangent_half_angle_polynomial", py::make_tuple(treeAlone(tree), coefficients, reference)));
           },
@@ -430,7 +432,10 @@ void bindTrajectory(py::module_& module) {
           [](py::handle tree, py::handle times, const py::sequence& coefficients) {
             const Eigen::VectorXd t = vectorOf(times, "times");
             std::vector<Eigen::MatrixXd> pieces;
-            for (const py::handle piece : coefficients) pieces.emplace_back(matrixOf(piece, "coefficients").rows());
+            for (const py::handle piece : coefficients) {
+              const Matrix matrix = matrixOf(piece, "coefficients");
+              pieces.emplace_back(matrix.rows());
+            }
             return MadeTrajectory(JointTrajectory::piecewise(*treeOf(tree), {t.begin(), t.end()}, pieces),
                                   Recipe("piecewise", py::make_tuple(treeAlone(tree), times, coefficients)));
           },
@@ -477,6 +482,14 @@ std::shared_ptr<const KinematicTree> treeOf(py::handle value) {
   const py::object tree = py::getattr(value, "tree", py::none());
   if (py::isinstance<Tree>(tree)) return py::cast<const Tree&>(tree).tree;
   typeError("tree is no KinematicTree, Robot or World but " + typeName(value));
+}
+
+std::shared_ptr<const KinematicTree> finishedTreeOf(py::handle value) {
+  if (py::isinstance<Tree>(value)) {
+    const Tree& tree = py::cast<const Tree&>(value);
+    if (tree.own) return std::make_shared<const KinematicTree>(*tree.own);
+  }
+  return treeOf(value);
 }
 
 LinkId linkOf(const KinematicTree& tree, py::handle link) {

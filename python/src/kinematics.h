@@ -28,6 +28,8 @@ inline Tree treeOfRobot(std::shared_ptr<const KinematicTree> tree) {
 /// The tree of a KinematicTree, Robot or World.
 /// @throws py::type_error for what has none.
 std::shared_ptr<const KinematicTree> treeOf(py::handle value);
+/// The same, a copy if it is in building: no other thread has it grow while this one has let go of the GIL.
+std::shared_ptr<const KinematicTree> finishedTreeOf(py::handle value);
 
 /// A link by its name or index.
 /// @throws py::value_error for a name that is not there, with one that may be meant; py::index_error for an index.

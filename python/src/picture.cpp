@@ -77,7 +77,8 @@ py::object picture(const World& world, py::handle q0, py::handle q1, const Certi
       robot.geometry.push_back({body.carrier, body.offset, body.object, "attached"});
     } else {
       // A copy: the world's own may be moved meanwhile.
-      obstacles.push_back({body.name, std::make_shared<fcl::CollisionObjectd>(*body.object)});
+      const auto shape = std::const_pointer_cast<fcl::CollisionGeometryd>(body.object->collisionGeometry());
+      obstacles.push_back({body.name, objectOf({shape}, body.pose)});
     }
   }
   for (const World::Mover& mover : world.movers()) {

@@ -38,7 +38,7 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
                              const std::string& turns, bool ignore_limits, const std::vector<std::string>& joints,
                              const std::map<std::string, double>& state, const std::optional<std::string>& format) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-  const std::shared_ptr<const KinematicTree> of = treeOf(tree);
+  const std::shared_ptr<const KinematicTree> of = finishedTreeOf(tree);
   plans::MotionOptions options;
   options.interpolation = plans::interpolationNamed(interpolation);
   if ((options.interpolation == plans::Interpolation::blends) != (blend > 0)) {

@@ -26,7 +26,7 @@ std::vector<app::PageBody> bodiesOf(const World& world, double begin, double len
     bodies.push_back({b.name,
                       carried ? "attached object" : "obstacle",
                       b.carrier,
-                      carried ? b.offset : Eigen::Isometry3d(b.object->getTransform()),
+                      carried ? b.offset : b.pose,
                       b.object->collisionGeometry(),
                       {}});
   }

@@ -207,40 +207,54 @@ class Bodies {
     if (name.empty()) valueError("a body needs a name");
     if (bodies_.count(name)) valueError("there is a body '" + name + "' already");
     const Body body = make(geometryOf(geometry, "geometry"), motionOf(motion, "motion"));
-    manager_.change([&](ContinuousCollisionManager& manager) { manager.registerObject(body.object.get()); });
-    order_.push_back(name);
-    bodies_.emplace(name, body);
+    manager_.change(
+        [&](ContinuousCollisionManager& manager) {
+          // Another thread may have been first. (No thread writes the bodies now.)
+          if (bodies_.count(name)) throw std::invalid_argument("there is a body '" + name + "' already");
+          manager.registerObject(body.object.get());
+        },
+        [&] {
+          order_.push_back(name);
+          bodies_.emplace(name, body);
+        });
   }
   void remove(const std::string& name) {
     const Body body = find(name);
-    manager_.change([&](ContinuousCollisionManager& manager) { manager.unregisterObject(body.object.get()); });
-    bodies_.erase(name);
-    order_.erase(std::find(order_.begin(), order_.end(), name));
+    manager_.change([&](ContinuousCollisionManager& manager) { manager.unregisterObject(body.object.get()); },
+                    [&] {
+                      bodies_.erase(name);
+                      order_.erase(std::find(order_.begin(), order_.end(), name));
+                    });
   }
   /// Bodies are replaced: FCL's objects keep their motion for good.
   void setMotion(const std::string& name, py::handle motion) {
     const Body before = find(name), after = make(before.geometry, motionOf(motion, "motion"));
-    manager_.change([&](ContinuousCollisionManager& manager) {
-      manager.registerObject(after.object.get());
-      manager.unregisterObject(before.object.get());
-    });
-    bodies_[name] = after;
+    manager_.change(
+        [&](ContinuousCollisionManager& manager) {
+          manager.registerObject(after.object.get());
+          try {
+            manager.unregisterObject(before.object.get());
+          } catch (...) {  // another thread was first
+            manager.unregisterObject(after.object.get());
+            throw;
+          }
+        },
+        [&] { bodies_[name] = after; });
   }
   const std::vector<std::string>& names() const { return order_; }
 
   BodiesResult check(const py::kwargs& options) const {
-    return answer(options, [](const auto& manager, const auto& request, auto& result) {
+    return answer(options, [](const auto& manager, const auto& request, auto& result, const auto&) {
       manager.continuousCollide(request, result);
     });
   }
   BodiesResult checkAgainst(const Bodies& other, const py::kwargs& options) const {
-    return answer(
-        options,
-        [&](const auto& manager, const auto& request, auto& result) {
-          other.manager_.askFreely(
-              [&](const ContinuousCollisionManager& theirs) { manager.continuousCollide(&theirs, request, result); });
-        },
-        &other);
+    return answer(options, [&](const auto& manager, const auto& request, auto& result, const auto& nameThem) {
+      other.manager_.askFreely([&](const ContinuousCollisionManager& theirs) {
+        nameThem(other);
+        manager.continuousCollide(&theirs, request, result);
+      });
+    });
   }
   std::pair<Doubles, Doubles> sweptBox(const std::string& name) const {
     const Body body = find(name);
@@ -265,17 +279,19 @@ class Bodies {
     return at->second;
   }
   template <class Ask>
-  BodiesResult answer(const py::kwargs& options, const Ask& ask, const Bodies* other = nullptr) const {
+  BodiesResult answer(const py::kwargs& options, const Ask& ask) const {
     const Request request = readPairRequest(options);
     if (!request.progress.is_none()) typeError("there is no progress to tell for many bodies");
     const CertifiedPairRequest asked = request.request;
     CertifiedPairsResult found;
     std::map<const Object*, std::string> name;
-    for (const Bodies* bodies : {this, other}) {
-      if (!bodies) continue;
-      for (const auto& [key, body] : bodies->bodies_) name[body.object.get()] = key;
-    }
-    manager_.ask([&](const ContinuousCollisionManager& manager) { ask(manager, asked, found); });
+    const auto nameThem = [&](const Bodies& bodies) {
+      for (const auto& [key, body] : bodies.bodies_) name[body.object.get()] = key;
+    };
+    manager_.ask([&](const ContinuousCollisionManager& manager) {
+      nameThem(*this);  // now that nothing changes
+      ask(manager, asked, found, nameThem);
+    });
     BodiesResult result;
     static_cast<Bracket&>(result) = found;
     for (MovingPair& pair : found.pairs) {
@@ -289,6 +305,7 @@ class Bodies {
   }
 
   Guarded<ContinuousCollisionManager> manager_;
+  // Written with the GIL held while the manager changes, so that to hold one of the two is enough to read them.
   std::vector<std::string> order_;
   std::map<std::string, Body> bodies_;
 };

@@ -192,8 +192,9 @@ void bindRobot(py::module_& module) {
           "classify_link_pairs",
           [](const Robot& robot, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
              py::object progress) {
+            // Of a copy: another thread may change the robot meanwhile.
             return classifyWatched(only, margin, work, samples, threads, std::move(progress),
-                                   [&](const LinkPairOptions& o) { return generateAllowedCollisions(robot, o); });
+                                   [robot](const LinkPairOptions& o) { return generateAllowedCollisions(robot, o); });
           },
           "Finds out which pairs of links never touch, proven; which always do; which do sometimes.", py::kw_only(),
           py::arg("only") = py::none(), py::arg("margin") = 0.0, py::arg("work") = LinkPairOptions().work,
@@ -218,7 +219,7 @@ void bindRobot(py::module_& module) {
       "load_srdf",
       [](py::handle srdf, py::handle tree) {
         const Input file(srdf, "srdf");
-        const auto of = treeOf(tree);
+        const auto of = finishedTreeOf(tree);
         return pairsOf(file.read([&] { return loadSrdf(file.path(), *of); }));
       },
       "Reads the pairs of links that need no check from an SRDF file, as MoveIt does.", py::arg("srdf"),
@@ -227,7 +228,7 @@ void bindRobot(py::module_& module) {
       "read_srdf",
       [](py::handle srdf, py::handle tree) {
         const Input file(srdf, "srdf");
-        const auto of = treeOf(tree);
+        const auto of = finishedTreeOf(tree);
         py::list pairs;
         for (const SrdfPair& p : file.read([&] { return readSrdf(file.path(), *of); })) {
           pairs.append(py::make_tuple(p.link1, p.link2, p.reason));

@@ -37,23 +37,25 @@ static std::vector<World::Body> bodiesOf(const Scene& scene) {
   std::vector<World::Body> bodies;
   for (const Scene::Obstacle& o : scene.obstacles) {
     const Geometry geometry{std::const_pointer_cast<fcl::CollisionGeometryd>(o.object->collisionGeometry())};
-    bodies.push_back({o.name, objectOf(geometry, Eigen::Isometry3d(o.object->getTransform()))});
+    const Eigen::Isometry3d pose(o.object->getTransform());
+    bodies.push_back({o.name, objectOf(geometry, pose), pose});
   }
   return bodies;
 }
 
 void World::addScene(const Scene& scene) {
   const std::vector<Body> added = bodiesOf(scene);
-  manager_.change([&](ArticulatedCollisionManager& manager) {
-    std::size_t done = 0;
-    try {
-      for (; done < added.size(); ++done) manager.registerObject(added[done].object, added[done].name);
-    } catch (...) {
-      while (done > 0) manager.unregisterObject(added[--done].object);
-      throw;
-    }
-  });
-  bodies_.insert(bodies_.end(), added.begin(), added.end());
+  manager_.change(
+      [&](ArticulatedCollisionManager& manager) {
+        std::size_t done = 0;
+        try {
+          for (; done < added.size(); ++done) manager.registerObject(added[done].object, added[done].name);
+        } catch (...) {
+          while (done > 0) manager.unregisterObject(added[--done].object);
+          throw;
+        }
+      },
+      [&] { bodies_.insert(bodies_.end(), added.begin(), added.end()); });
 }
 
 void World::replaceScene(const Scene& scene) {
@@ -64,17 +66,20 @@ void World::replaceScene(const Scene& scene) {
     objects.push_back(body.object);
     names.push_back(body.name);
   }
-  manager_.changeAtOnce([&](ArticulatedCollisionManager& manager) { manager.replaceObstacles(objects, names); });
-  bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), [](const Body& body) { return body.carrier < 0; }),
-                bodies_.end());
-  bodies_.insert(bodies_.end(), added.begin(), added.end());
+  manager_.changeAtOnce(
+      [&](ArticulatedCollisionManager& manager) { manager.replaceObstacles(objects, names); },
+      [&] {
+        const auto stands = [](const Body& body) { return body.carrier < 0; };
+        bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), stands), bodies_.end());
+        bodies_.insert(bodies_.end(), added.begin(), added.end());
+      });
 }
 
 void World::add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose) {
   if (name.empty()) valueError("an obstacle needs a name");
-  const Body body{name, objectOf(geometry, pose)};
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(body.object, name); });
-  bodies_.push_back(body);
+  const Body body{name, objectOf(geometry, pose), pose};
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(body.object, name); },
+                  [&] { bodies_.push_back(body); });
 }
 
 void World::addMoving(const std::string& name, const Geometry& geometry, const Motion& motion) {
@@ -83,8 +88,8 @@ void World::addMoving(const std::string& name, const Geometry& geometry, const M
                     std::make_shared<fcl::ContinuousCollisionObjectd>(
                         geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
                     motion};
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(mover.object.get(), name); });
-  movers_.push_back(mover);
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(mover.object.get(), name); },
+                  [&] { movers_.push_back(mover); });
 }
 
 void World::remove(const std::string& name) {
@@ -92,58 +97,78 @@ void World::remove(const std::string& name) {
       std::find_if(movers_.begin(), movers_.end(), [&](const Mover& other) { return other.name == name; });
   if (mover != movers_.end()) {
     const auto object = mover->object;
-    manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); });
-    movers_.erase(std::find_if(movers_.begin(), movers_.end(), [&](const Mover& m) { return m.object == object; }));
+    manager_.change(
+        [&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); },
+        [&] {
+          movers_.erase(
+              std::find_if(movers_.begin(), movers_.end(), [&](const Mover& m) { return m.object == object; }));
+        });
     return;
   }
-  const auto object = find(name)->object;
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); });
-  bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == object; }));
+  const auto object = find(name).object;
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); },
+                  [&] {
+                    bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(),
+                                               [&](const Body& b) { return b.object == object; }));
+                  });
 }
 
 void World::move(const std::string& name, const Eigen::Isometry3d& pose) {
-  const Body body = *find(name);
+  const Body body = find(name);
   if (body.carrier >= 0) valueError("'" + name + "' is carried by a link; detach it at a pose");
-  manager_.change([&](ArticulatedCollisionManager& manager) {
-    const Eigen::Isometry3d before(body.object->getTransform());
-    body.object->setTransform(pose);
-    try {
-      manager.update(body.object);
-    } catch (...) {
-      body.object->setTransform(before);
-      throw;
-    }
-  });
+  manager_.change(
+      [&](ArticulatedCollisionManager& manager) {
+        const Eigen::Isometry3d before(body.object->getTransform());
+        body.object->setTransform(pose);
+        try {
+          manager.update(body.object);
+        } catch (...) {
+          body.object->setTransform(before);
+          throw;
+        }
+      },
+      [&] { ofObject(body.object).pose = pose; });
 }
 
 void World::attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
                    const std::vector<std::string>& touch_links) {
-  const auto object = find(name)->object;
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.attach(link, object, offset, touch_links); });
-  const auto body = find(name);
-  body->carrier = link;
-  body->offset = offset;
+  const auto object = find(name).object;
+  manager_.change([&](ArticulatedCollisionManager& manager) { manager.attach(link, object, offset, touch_links); },
+                  [&] {
+                    Body& body = ofObject(object);
+                    body.carrier = link;
+                    body.offset = offset;
+                  });
 }
 
 void World::detach(const std::string& name, const std::optional<Eigen::Isometry3d>& pose) {
-  const auto object = find(name)->object;
-  manager_.change([&](ArticulatedCollisionManager& manager) {
-    const Eigen::Isometry3d before(object->getTransform());
-    if (pose) object->setTransform(*pose);
-    try {
-      manager.detach(object);
-    } catch (...) {
-      object->setTransform(before);
-      throw;
-    }
-  });
-  find(name)->carrier = -1;
+  const auto object = find(name).object;
+  manager_.change(
+      [&](ArticulatedCollisionManager& manager) {
+        const Eigen::Isometry3d before(object->getTransform());
+        if (pose) object->setTransform(*pose);
+        try {
+          manager.detach(object);
+        } catch (...) {
+          object->setTransform(before);
+          throw;
+        }
+      },
+      [&] {
+        Body& body = ofObject(object);
+        body.carrier = -1;
+        if (pose) body.pose = *pose;
+      });
 }
 
-std::vector<World::Body>::iterator World::find(const std::string& name) {
+const World::Body& World::find(const std::string& name) const {
   const auto at = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.name == name; });
   if (at == bodies_.end()) refuseName(name);
-  return at;
+  return *at;
+}
+
+World::Body& World::ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object) {
+  return *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.object == object; });
 }
 
 void World::refuseName(const std::string& name) const {
@@ -436,7 +461,7 @@ void bindWorld(py::module_& module) {
           [](const World& w, const std::string& name) {
             for (const World::Body& b : w.bodies()) {
               if (b.name == name)
-                return arrayOf(b.carrier < 0 ? Eigen::Isometry3d(b.object->getTransform()) : b.offset);
+                return arrayOf(b.carrier < 0 ? b.pose : b.offset);
             }
             valueError("the world has no obstacle '" + name + "'" + text::didYouMean(name, w.names()));
           },

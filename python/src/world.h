@@ -19,14 +19,15 @@
 
 namespace fcl_artic::python {
 
-/// A world. All members are to be called with the GIL held.
+/// A world. All members are to be called with the GIL held, but for names(), which a question may call too.
 class World {
  public:
   /// What stands still, or is carried by a link.
   struct Body {
     std::string name;
     std::shared_ptr<fcl::CollisionObjectd> object;
-    LinkId carrier = -1;  ///< -1: an obstacle
+    Eigen::Isometry3d pose;  ///< the object's, which queries read without the GIL; not while a link carries it
+    LinkId carrier = -1;     ///< -1: an obstacle
     Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
   };
   /// What moves by itself.
@@ -63,12 +64,14 @@ class World {
   const Guarded<ArticulatedCollisionManager>& manager() const { return manager_; }
 
  private:
-  std::vector<Body>::iterator find(const std::string& name);
+  const Body& find(const std::string& name) const;
+  /// What has the object, which the manager has.
+  Body& ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object);
   [[noreturn]] void refuseName(const std::string& name) const;
 
   Robot robot_;
   Guarded<ArticulatedCollisionManager> manager_;
-  // Read and written with the GIL held.
+  // Written with the GIL held while the manager changes, so that to hold one of the two is enough to read them.
   std::vector<Body> bodies_;
   std::vector<Mover> movers_;
 };
