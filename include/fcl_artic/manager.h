@@ -92,9 +92,18 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument as for an obstacle that stands still, and for a motion that
   ///   fcl_artic::continuousCollide() refuses.
   void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name = {});
+  /// Adds an obstacle that moves, as the form with a pointer does. The manager keeps the object, and with it its
+  /// geometry and motion, alive as long as it is registered. Needs setup().
+  /// @throws std::invalid_argument as registerObject() of a pointer.
+  void registerObject(std::shared_ptr<const fcl::ContinuousCollisionObjectd> object, const std::string& name = {});
   /// Removes an obstacle that moves. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
+  /// Removes an obstacle that moves, as the form with a pointer does. Needs setup().
+  /// @throws std::invalid_argument if it is not registered.
+  void unregisterObject(const std::shared_ptr<const fcl::ContinuousCollisionObjectd>& object) {
+    unregisterObject(object.get());
+  }
 
   /// Fixes a geometry to a link; the object's own transform is not used. Needs setup().
   /// @param object  kept as a pointer; must stay alive until it is unbound.
@@ -253,6 +262,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Reads one obstacle that moves again, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is not registered.
   void update(const fcl::ContinuousCollisionObjectd* object);
+  /// Reads one obstacle that moves again, as the form with a pointer does, and makes all changes effective.
+  /// @throws std::invalid_argument as setup(), and if the object is not registered.
+  void update(const std::shared_ptr<const fcl::ContinuousCollisionObjectd>& object) { update(object.get()); }
   /// Removes all obstacles, bindings and attached objects. Allowed pairs and margins, which go by names, are kept.
   /// Needs setup().
   void clear();

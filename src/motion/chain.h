@@ -59,77 +59,74 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
   }
 }
 
-/// Frames of the steps over a batch of intervals.
-inline void evaluateSweep(const SweepView& sweep, const StepBounds* bounds, const Lanes& tm, double d,
-                          FrameLanes* out) {
+/// The frame of one step over a batch of intervals; its parent's is in `out` already.
+inline void evaluateStep(const SweepView& sweep, int index, const StepBounds* bounds, const Lanes& tm, double d,
+                         FrameLanes* out) {
   const Vec3Lanes zero = spread(Vec3(0, 0, 0));
-  for (int i = 0; i < sweep.num_steps; ++i) {
-    const SweepStep& step = sweep.steps[i];
-    const FactorVariables& variables = bounds[i].variables;
-    const FrameLanes* g = step.parent >= 0 ? &out[step.parent] : nullptr;
-    FrameLanes& f = out[i];
-    // The frame in which the factor acts: its axes, and r from the parent's origin to the factor's.
-    Mat3Lanes axes = g ? g->R * Mat3(step.C) : spread(Mat3(step.C));
-    Vec3Lanes r = g ? g->R * Vec3(step.p) : spread(Vec3(step.p));
-    f.w = g ? g->w : zero;
-    f.al = g ? g->al : zero;
+  const SweepStep& step = sweep.steps[index];
+  const FactorVariables& variables = bounds[index].variables;
+  const FrameLanes* g = step.parent >= 0 ? &out[step.parent] : nullptr;
+  FrameLanes& f = out[index];
+  // The frame in which the factor acts: its axes, and r from the parent's origin to the factor's.
+  Mat3Lanes axes = g ? g->R * Mat3(step.C) : spread(Mat3(step.C));
+  Vec3Lanes r = g ? g->R * Vec3(step.p) : spread(Vec3(step.p));
+  f.w = g ? g->w : zero;
+  f.al = g ? g->al : zero;
 
-    SlideLanes slide;
-    bool slides = true;
-    switch (step.kind) {
-      case StepKind::revolute:
-        turnAboutZ(evaluateOnly(variables, tm, d), variables.degree > 1, g, axes, f);
-        slides = false;
-        break;
-      case StepKind::prismatic:
-        slide = slideAlongZ(evaluateOnly(variables, tm, d), axes);
-        f.R = axes;
-        break;
-      case StepKind::slide: {
-        const ThreeVariables x(variables, tm, d);
-        slide = slideBy(x.q, x.q1, x.q2, axes);
-        f.R = axes;
-        break;
-      }
-      case StepKind::turn: {
-        const double* R0 = bounds[i].orientation;
-        TurnLanes turn;
-        turnByVector(ThreeVariables(variables, tm, d), turn);
-        if (R0 && step.inverse) axes = axes * transposed(Mat3(R0));
-        turnFrame(turn, g, axes, f);
-        if (R0 && !step.inverse) f.R = f.R * Mat3(R0);
-        slides = false;
-        break;
-      }
-      case StepKind::bounded: {
-        TurnLanes turn;
-        evaluateBounded(step, tm, d, turn, slide);
-        slide = slideBy(slide.r, slide.r1, slide.r2, axes);
-        turnFrame(turn, g, axes, f);
-        break;
-      }
+  SlideLanes slide;
+  bool slides = true;
+  switch (step.kind) {
+    case StepKind::revolute:
+      turnAboutZ(evaluateOnly(variables, tm, d), variables.degree > 1, g, axes, f);
+      slides = false;
+      break;
+    case StepKind::prismatic:
+      slide = slideAlongZ(evaluateOnly(variables, tm, d), axes);
+      f.R = axes;
+      break;
+    case StepKind::slide: {
+      const ThreeVariables x(variables, tm, d);
+      slide = slideBy(x.q, x.q1, x.q2, axes);
+      f.R = axes;
+      break;
     }
-
-    // The origin: o = o_g + r, with r fixed in the parent's frame but for the slide.
-    if (slides) r = r + slide.r;
-    if (g) {
-      const Vec3Lanes wr = cross(g->w, r);
-      f.o = g->o + r;
-      f.v = g->v + wr;
-      f.a = g->a + (cross(g->al, r) + cross(g->w, wr)) * Lanes(0.5);
-    } else {
-      f.o = r;
-      f.v = f.a = zero;
+    case StepKind::turn: {
+      const double* R0 = bounds[index].orientation;
+      TurnLanes turn;
+      turnByVector(ThreeVariables(variables, tm, d), turn);
+      if (R0 && step.inverse) axes = axes * transposed(Mat3(R0));
+      turnFrame(turn, g, axes, f);
+      if (R0 && !step.inverse) f.R = f.R * Mat3(R0);
+      slides = false;
+      break;
     }
-    if (slides) {
-      if (g) f.a = f.a + cross(g->w, slide.r1);  // 2 w x r' of the Coriolis term, halved
-      f.v = f.v + slide.r1;
-      f.a = mulAdd(slide.r2, Lanes(0.5), f.a);
+    case StepKind::bounded: {
+      TurnLanes turn;
+      evaluateBounded(step, tm, d, turn, slide);
+      slide = slideBy(slide.r, slide.r1, slide.r2, axes);
+      turnFrame(turn, g, axes, f);
+      break;
     }
   }
-  if (sweep.first_order) {  // some derivative isn't known: the remainder is all of the motion (remainderOf)
-    for (int i = 0; i < sweep.num_steps; ++i) out[i].w = out[i].al = out[i].v = out[i].a = zero;
+
+  // The origin: o = o_g + r, with r fixed in the parent's frame but for the slide.
+  if (slides) r = r + slide.r;
+  if (g) {
+    const Vec3Lanes wr = cross(g->w, r);
+    f.o = g->o + r;
+    f.v = g->v + wr;
+    f.a = g->a + (cross(g->al, r) + cross(g->w, wr)) * Lanes(0.5);
+  } else {
+    f.o = r;
+    f.v = f.a = zero;
   }
+  if (slides) {
+    if (g) f.a = f.a + cross(g->w, slide.r1);  // 2 w x r' of the Coriolis term, halved
+    f.v = f.v + slide.r1;
+    f.a = mulAdd(slide.r2, Lanes(0.5), f.a);
+  }
+  // Where some derivative isn't known the remainder is all of the motion (remainderOf). A child sees none either.
+  if (sweep.first_order) f.w = f.al = f.v = f.a = zero;
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -42,6 +42,13 @@ void ArticulatedCollisionManager::registerObject(const fcl::ContinuousCollisionO
   impl_->setup.obstaclesChanged();
 }
 
+void ArticulatedCollisionManager::registerObject(std::shared_ptr<const fcl::ContinuousCollisionObjectd> object,
+                                                 const std::string& name) {
+  const fcl::ContinuousCollisionObjectd* const plain = object.get();
+  impl_->registry.registerObject(plain, name, std::move(object));
+  impl_->setup.obstaclesChanged();
+}
+
 void ArticulatedCollisionManager::registerObjects(const std::vector<fcl::CollisionObjectd*>& objects) {
   impl_->registry.registerObjects(objects);
   if (!objects.empty()) impl_->setup.obstaclesChanged();

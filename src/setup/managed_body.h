@@ -24,7 +24,7 @@ class GeometryContent;
 struct ManagedBody {
   const fcl::CollisionObjectd* object = nullptr;
   const fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< instead of it, of an obstacle that moves
-  std::shared_ptr<const fcl::CollisionObjectd> owner;       ///< of `object`; null: the caller is
+  std::shared_ptr<const void> owner;                        ///< of the one or the other; null: the caller is
   std::string name;
   LinkId link = -1;                                             ///< -1: obstacle
   Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();     ///< in the link's frame; of an obstacle: in the world

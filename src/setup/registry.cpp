@@ -167,11 +167,13 @@ void Registry::registerObject(const fcl::CollisionObjectd* object, const std::st
   addObstacle(obstacles_, std::move(body));
 }
 
-void Registry::registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name) {
+void Registry::registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name,
+                              std::shared_ptr<const void> owner) {
   ManagedBody body;
   body.name = obstacleName(name);
   requireNew(object, "obstacle '" + body.name + "'");
   body.moving = object;
+  body.owner = std::move(owner);
   addObstacle(moving_, std::move(body));
 }
 

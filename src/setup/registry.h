@@ -54,7 +54,8 @@ class Registry {
   using Owner = std::shared_ptr<const fcl::CollisionObjectd>;
   /// @param owner  keeps the object alive as long as it is here; null: the caller does.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner = nullptr);
-  void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name);
+  void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name,
+                      std::shared_ptr<const void> owner = nullptr);
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
   void replaceObstacles(const std::vector<Owner>& objects, const std::vector<std::string>& names);
   /// A copy with the robot only. Allowed pairs and margins of obstacles' names stay behind.

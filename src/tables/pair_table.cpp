@@ -34,10 +34,14 @@ constexpr double kCellSlack = 1e-6;
 /// Tests of nodes and leaves for one box of cells; what needs more counts as not proven. Measured on the Panda and the
 /// UR5: 400 prove 0.6 % of the cells more in three times the time.
 constexpr std::uint64_t kWork = 60;
+/// A table of few rows, as that of a gripper's fingers, which one joint drives, has more for each: as many in all as
+/// kMostRows rows, and up to kMostTries times that where it takes several tries.
+constexpr std::uint64_t kMostTries = 4;
 /// Joints with limits beyond, rad or m, or that follow others by larger factors, are left alone.
 constexpr double kMostValue = 100;
-/// Of a row's cells neither of whose ends is proven, fewer than these are not looked into.
-constexpr int kIsland = 40;
+/// Of a row's cells neither of whose ends is proven, fewer than these are not looked into; in tables of few rows, fewer
+/// than so many a row.
+constexpr int kIsland = 40, kIslandOfRow = 4;
 constexpr double kToleranceTime = 1.0 / 64, kToleranceDistance = 1e-4;
 
 /// What is proven of cells [begin, end) of an axis holds for values in here.
@@ -114,7 +118,10 @@ class PairTable::Builder {
     query_.num_variables = 3;
     query_.check_scene = false;
     query_.describe_contacts = false;
-    query_.work_budget = kWork;
+    const int rows = paid_.cells * cells.axes[2].cells;
+    work_ = std::max(kWork, kWork * kMostRows / static_cast<std::uint64_t>(rows));
+    work_left_ = kMostTries * kWork * kMostRows;
+    island_ = std::min(kIsland, kIslandOfRow * rows);
     query_.tolerance_time = kToleranceTime;
     query_.tolerance_distance = kToleranceDistance;
   }
@@ -171,7 +178,7 @@ class PairTable::Builder {
     mark(j, i_end - from_end, i_end);
     i += from_begin;
     i_end -= from_end;
-    if (i_end - i < kIsland) return;
+    if (i_end - i < island_) return;
     const int middle = (i + i_end) / 2;
     proveRow(j, i, middle);
     proveRow(j, middle, i_end);
@@ -191,8 +198,10 @@ class PairTable::Builder {
       variables_(0, 0) = from;
       variables_(0, 1) = moved_.lower + (end + slack) * moved_.width - from;
     }
+    query_.work_budget = std::max(kWork, std::min(work_, work_left_));
     engine::Answer answer;
     workspace_.solve(problem_, query_, answer);
+    work_left_ -= std::min(work_left_, answer.statistics.node_tests + answer.statistics.leaf_tests);
     FCL_ARTIC_ASSERT(cells > 0 && answer.t_lower >= 0 && answer.t_lower <= 1);
     if (answer.isFree()) return cells;
     if (query_.any) return 0;
@@ -211,7 +220,9 @@ class PairTable::Builder {
   engine::Problem problem_;
   engine::Query query_;
   engine::EngineWorkspace workspace_;
-  int plane_ = 0;  ///< cell of the third axis
+  std::uint64_t work_ = 0, work_left_ = 0;  ///< tests for one box of cells; and for all, beyond kWork for each
+  int island_ = 0;                          ///< fewest cells that are looked into
+  int plane_ = 0;                           ///< cell of the third axis
   std::vector<std::uint8_t> proven_;
 };
 

@@ -34,7 +34,7 @@ struct Chain {
       end = max(end, in.tm[i]);
     }
     boundSteps(in.sweep, in.query, max(0.0, begin - in.d), min(1.0, end + in.d), bounds);
-    evaluateSweep(in.sweep, bounds, tm, in.d, frames);
+    for (int i = 0; i < in.sweep.num_steps; ++i) evaluateStep(in.sweep, i, bounds, tm, in.d, frames);
   }
 };
 

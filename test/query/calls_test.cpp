@@ -7,6 +7,7 @@
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/motion/translation_motion.h>
 #include <gtest/gtest.h>
 
 #include "arms.h"
@@ -119,6 +120,29 @@ TEST(Calls, SharedObjectsLiveAsLongAsTheyAreRegistered) {
   EXPECT_FALSE(seen.expired());
   rail.manager.unregisterObject(seen.lock().get());
   EXPECT_TRUE(seen.expired());
+}
+
+TEST(Calls, SharedObstaclesThatMoveLiveAsLongAsTheyAreRegistered) {
+  Rail rail;
+  std::weak_ptr<const fcl::ContinuousCollisionObjectd> seen;
+  {
+    // It crosses the rail at x = 0.5, halfway.
+    const auto across = std::make_shared<fcl::TranslationMotiond>(at(0.5, -1, 0), at(0.5, 1, 0));
+    const std::shared_ptr<const fcl::ContinuousCollisionObjectd> mover =
+        std::make_shared<fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::Sphered>(0.1), across);
+    seen = mover;
+    rail.manager.registerObject(mover, "mover");
+  }
+  rail.manager.setup();
+  ASSERT_FALSE(seen.expired());
+  EXPECT_FALSE(rail.manager.isFree(values(0.2), values(0.8)));
+  EXPECT_TRUE(rail.manager.isFree(values(0), values(0.2)));
+  rail.manager.update(seen.lock());
+  EXPECT_FALSE(rail.manager.isFree(values(0.2), values(0.8)));
+  rail.manager.unregisterObject(seen.lock());
+  EXPECT_TRUE(seen.expired());
+  rail.manager.setup();
+  EXPECT_TRUE(rail.manager.isFree(values(0.2), values(0.8)));
 }
 
 TEST(Calls, NamesOfAllowedPairsAreChecked) {

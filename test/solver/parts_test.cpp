@@ -206,21 +206,32 @@ TEST(ContactList, KeepsTheFirstOfEachPairInOrder) {
   EXPECT_EQ(world.contacts.data()[0].pair, PairId{0});
 }
 
-TEST(SweptFrames, AreMadeOncePerBatch) {
+TEST(SweptFrames, AreMadeOncePerBatchAndKeptOfTheWholeMotion) {
   TwoBalls world;
   world.asPair().begin();
   world.frames.set(world.task.whole);
   const std::int32_t number = world.frames.number();
-  const FrameLanes* frame = world.frames.of(0);
-  for (int k = 0; k < kLanes; ++k) EXPECT_NEAR(frame->o[2][k], -2 + 4 * world.task.whole.at[k], 1e-14);
-  world.frames.of(0);
+  const auto expectWhole = [&] {
+    const FrameLanes& frame = world.frames.of(0, 0);
+    for (int k = 0; k < kLanes; ++k) EXPECT_NEAR(frame.o[2][k], -2 + 4 * world.task.whole.at[k], 1e-14);
+    EXPECT_EQ(world.frames.number(), number);
+  };
+  expectWhole();
   world.frames.set(TimeBatch::partsOf(0, 1));
-  world.frames.of(0);
-  EXPECT_EQ(world.frames.number(), number);
+  expectWhole();
   EXPECT_EQ(world.task.statistics.motion_evaluations, 1u);
   world.frames.set(TimeBatch::around(0.3));
   EXPECT_NE(world.frames.number(), number);
-  EXPECT_NEAR(world.frames.of(0)->o[2][0], -0.8, 1e-14);
+  EXPECT_NEAR(world.frames.of(0, 0).o[2][0], -0.8, 1e-14);
+  // The whole motion's are kept; those of another batch are not.
+  world.frames.set(world.task.whole);
+  expectWhole();
+  EXPECT_EQ(world.task.statistics.motion_evaluations, 2u);
+  const std::int32_t before = world.frames.number();
+  world.frames.set(TimeBatch::around(0.4));
+  EXPECT_GT(world.frames.number(), before + 1);
+  EXPECT_NEAR(world.frames.of(0, 0).o[2][0], -0.4, 1e-14);
+  EXPECT_EQ(world.task.statistics.motion_evaluations, 3u);
   EXPECT_EQ(world.frames.bounds(0, -1).D1, 0);
   EXPECT_GE(world.frames.bounds(0, 0).D1, 4);
 }

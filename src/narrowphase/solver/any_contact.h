@@ -81,6 +81,8 @@ class AnyContact : PartOfSolver {
   bool tryOverlaps(Buffer<Entry>& open);
 
  private:
+  bool isLeafPair(PairId pair) const;
+  bool tryLeafPair(PairId pair, int lane);
   bool tryTriangles(PairId pair, int lane);
 
   SweptFrames& frames_;
@@ -118,10 +120,23 @@ class AnyContact : PartOfSolver {
   return false;
 }
 
+/// Both bodies are one convex piece each.
+inline bool AnyContact::isLeafPair(PairId pair) const {
+  const PairParts bodies = problem().parts(pair);
+  return body(bodies.a).tree->num_pieces == 1 && body(bodies.b).tree->num_pieces == 1;
+}
+
+/// The common point that GJK finds of two bodies of one piece each.
+inline bool AnyContact::tryLeafPair(PairId pair, int lane) {
+  motion_.set(pair, whole());
+  return proofs_.leaves(0, 0, lane);
+}
+
 /// For a link whose line swept sphere is deep in a solid: tries a ball inside the link, a vertex in the solid, and a
-/// chord of the solid; the chord first where the solid is thin.
+/// chord of the solid; the chord first where the solid is thin. Of a link of one piece, a common point.
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
 inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, bool thin) {
+  if (isLeafPair(pair)) return tryLeafPair(pair, lane);
   if (balls_.inSolid(pair, lane)) return true;
   motion_.set(pair, whole());
   if (thin && proofs_.chordPierces(lane, near)) return true;
@@ -130,11 +145,16 @@ inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, boo
 }
 
 /// For two links whose line swept spheres meet: tries balls inside them at the pose at which the spheres are deepest in
-/// each other. Stores that pose, and the others at which balls may meet, as guesses.
+/// each other; of links of one piece each, a common point. Stores that pose, and the others at which balls may meet, as
+/// guesses.
 /// @param square  of their segments' distance in the middle of each lane.
 inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   const double least = minLane(square), distance = sqrt(least) / radii;
   const int lane = __builtin_ctz(kAllLanes & ~greater(square, Lanes(least)));
+  if (isLeafPair(pair)) {
+    if (distance < kDeepLinks) tryLeafPair(pair, lane);
+    return;
+  }
   const double reach = balls_.reach(pair);
   unsigned near = reach > 0 ? kAllLanes & ~greater(square, Lanes(reach * reach)) : 0;
   if (near && balls_.inLinks(pair, lane)) return;

@@ -91,7 +91,7 @@ class BallProofs : PartOfSolver {
 inline PlacedLink BallProofs::placedLink(int index, int lane) {
   const Body& mover = body(problem().movers[index]);
   if (mover.step < 0) return {mover.placement, mover.tree->extent};
-  const FrameLanes& frame = frames_.of(0)[mover.step];
+  const FrameLanes& frame = frames_.of(0, mover.step);
   const StepBounds& b = frames_.bounds(0, mover.step);
   Placement step;
   laneOf(frame.R, lane).store(step.R);

@@ -154,13 +154,12 @@ inline void RelativeMotion::relate() {
   FCL_ARTIC_ASSERT(margin_ >= 0 && margin_ <= query().margins.largest());
   const PairParts parts = problem().parts(pair_);
   const Body &A = body(parts.a), &B = body(parts.b);
-  const FrameLanes* frame = frames_.of(parts.sweep);
+  const FrameLanes* frame = parts.step_b >= 0 ? &frames_.of(parts.sweep, parts.step_b) : nullptr;
   const StepBounds& bounds = frames_.bounds(parts.sweep, parts.step_b);
   const double d = batch().d;
   RigidLanes& m = side_[0].m;
-  const PairPads pads = relateBodies(parts.step_b >= 0 ? frame + parts.step_b : nullptr, bounds,
-                                     problem().sweeps[parts.sweep].first_order, *parts.inverse_a, *parts.placement_b,
-                                     A.tree->extent + B.tree->extent, margin_, d, m, side_[1].m);
+  const PairPads pads = relateBodies(frame, bounds, problem().sweeps[parts.sweep].first_order, *parts.inverse_a,
+                                     *parts.placement_b, A.tree->extent + B.tree->extent, margin_, d, m, side_[1].m);
   side_ready_[0] = side_ready_[1] = false;
   pad_ = pads.pad;
   pose_error_ = pads.pose;

@@ -81,7 +81,7 @@ inline void StageOne::sweepMover(int mover) {
   const double margin = query().margins.largest();  // whatever the partner
   SweptBox& box = mover_box_[mover];
   if (task_.isLink(mover)) {
-    const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0)[carried.step];
+    const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0, carried.step);
     sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole().d,
              mover_lss_[mover]);
     if (frame) {

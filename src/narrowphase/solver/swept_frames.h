@@ -19,61 +19,90 @@ class SweptFrames : PartOfSolver {
   void begin() {
     const int sweeps = problem().num_sweeps;
     first_step_.resize(sweeps);
-    bounds_ready_.resize(sweeps);
-    evaluated_.resize(sweeps);
     int steps = 0;
     for (int i = 0; i < sweeps; ++i) {
       first_step_[i] = steps;
       steps += problem().sweeps[i].num_steps;
-      bounds_ready_[i] = 0;
-      evaluated_[i] = -1;
     }
-    frames_.resize(max(frames_.size(), steps));
-    bounds_.resize(max(bounds_.size(), steps));
-    batch_.d = -1;
-    if (number_ > 1 << 30) number_ = 0;
+    // Numbers only ever grow; long before they overflow the stamps are made new.
+    const bool anew = last_number_ > 1 << 30;
+    if (anew) last_number_ = 0;
+    query_began_ = ++last_number_;
+    for (OfBatch& each : kept_) each.begin(sweeps, steps, anew);
+    now_ = &kept_[0];
   }
 
-  /// Frames are those of this batch from now on.
+  /// Frames are those of this batch from now on. Those of whole() are kept meanwhile.
   void set(const TimeBatch& batch) {
-    if (batch == batch_) return;
-    batch_ = batch;
-    ++number_;
+    if (now_->number && batch == now_->batch) return;
+    now_ = &kept_[batch == whole() ? 0 : 1];
+    if (now_->number && batch == now_->batch) return;
+    now_->batch = batch;
+    now_->number = ++last_number_;
   }
-  const TimeBatch& batch() const { return batch_; }
+  const TimeBatch& batch() const { return now_->batch; }
   /// Another batch has another number.
-  std::int32_t number() const { return number_; }
+  std::int32_t number() const { return now_->number; }
 
-  /// Frames of a sweep's steps, seen from its base.
-  const FrameLanes* of(int sweep) {
-    const engine::SweepView& view = problem().sweeps[sweep];
-    const int first = first_step_[sweep];
-    if (evaluated_[sweep] != number_) {
-      const bool local = query().degree > 1 || view.local_bounds;
-      if (local || !bounds_ready_[sweep]) {
-        boundSteps(view, query(), local ? batch_.begin() : 0, local ? batch_.finish() : 1, bounds_.data() + first);
-        bounds_ready_[sweep] = 1;
-      }
-      evaluateSweep(view, bounds_.data() + first, batch_.tm, batch_.d, frames_.data() + first);
-      evaluated_[sweep] = number_;
-      ++statistics().motion_evaluations;
-    }
-    return frames_.data() + first;
+  /// Frame of a step of a sweep, seen from the sweep's base.
+  const FrameLanes& of(int sweep, int step) {
+    const int at = first_step_[sweep] + step;
+    if (now_->evaluated[at] != now_->number) evaluateUpTo(sweep, step);
+    return now_->frames[at];
   }
-  /// Bounds of a step of a sweep whose frames have been asked for; step -1: what stands still.
+  /// Bounds of a step whose frame has been asked for; step -1: what stands still.
   const StepBounds& bounds(int sweep, int step) const {
     static const StepBounds kStill = {};
-    return step >= 0 ? bounds_[first_step_[sweep] + step] : kStill;
+    return step >= 0 ? now_->bounds[first_step_[sweep] + step] : kStill;
   }
 
  private:
-  TimeBatch batch_;
-  std::int32_t number_ = 0;
-  Buffer<FrameLanes> frames_;        ///< of all sweeps, one after the other
-  Buffer<StepBounds> bounds_;        ///< likewise
-  Buffer<std::int32_t> first_step_;  ///< per sweep, into both
-  Buffer<std::int32_t> evaluated_;   ///< per sweep: the batch's number
-  Buffer<std::int32_t> bounds_ready_;
+  /// What is known of one batch. Stamps are numbers of batches: older ones say that nothing is there.
+  struct OfBatch {
+    TimeBatch batch;
+    std::int32_t number = 0;          ///< 0: no batch yet
+    Buffer<FrameLanes> frames;        ///< of all sweeps, one after the other
+    Buffer<StepBounds> bounds;        ///< likewise
+    Buffer<std::int32_t> evaluated;   ///< likewise: the stamp of its frame
+    Buffer<std::int32_t> bounded_at;  ///< per sweep: the stamp of its bounds
+
+    void begin(int sweeps, int steps, bool anew) {
+      number = 0;
+      frames.resize(max(frames.size(), steps));
+      bounds.resize(max(bounds.size(), steps));
+      evaluated.resize(max(evaluated.size(), steps));
+      bounded_at.resize(max(bounded_at.size(), sweeps));
+      for (int i = 0; anew && i < evaluated.size(); ++i) evaluated[i] = 0;
+      for (int i = 0; anew && i < bounded_at.size(); ++i) bounded_at[i] = 0;
+    }
+  };
+
+  /// Evaluates a step's frame, and before it those on the way to it that are not there yet: a pair of links needs few.
+  void evaluateUpTo(int sweep, int step) {
+    const engine::SweepView& view = problem().sweeps[sweep];
+    const int first = first_step_[sweep];
+    StepBounds* const bounds = now_->bounds.data() + first;
+    const bool local = query().degree > 1 || view.local_bounds;
+    if (now_->bounded_at[sweep] < (local ? now_->number : query_began_)) {
+      const TimeBatch& batch = now_->batch;
+      boundSteps(view, query(), local ? batch.begin() : 0, local ? batch.finish() : 1, bounds);
+      now_->bounded_at[sweep] = now_->number;
+    }
+    std::int32_t* const evaluated = now_->evaluated.data() + first;
+    way_.clear();
+    for (int i = step; i >= 0 && evaluated[i] != now_->number; i = view.steps[i].parent) way_.push(i);
+    for (int i = way_.size() - 1; i >= 0; --i) {
+      evaluateStep(view, way_[i], bounds, now_->batch.tm, now_->batch.d, now_->frames.data() + first);
+      evaluated[way_[i]] = now_->number;
+    }
+    statistics().motion_evaluations += static_cast<std::uint64_t>(way_.size());
+  }
+
+  Buffer<std::int32_t> first_step_;  ///< per sweep
+  OfBatch kept_[2];                  ///< of whole(), and of the last other batch
+  OfBatch* now_ = kept_;
+  std::int32_t last_number_ = 0, query_began_ = 0;
+  Buffer<std::int32_t> way_;  ///< steps to be evaluated, the last one first
 };
 
 }  // namespace FCL_ARTIC_ISA
