@@ -5,20 +5,20 @@
 #include <functional>
 #include <limits>
 
+#include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 
 namespace fcl_artic {
 
-/// Request of ArticulatedCollisionManager::clearance(). All defaults are safe: nothing has to be tuned. clearance()
-/// throws std::invalid_argument, naming the value, for values outside the ranges given here.
-struct ClearanceRequest {
+/// Request of ArticulatedCollisionManager::clearance(): which pairs are checked, and how finely. All defaults are safe:
+/// nothing has to be tuned. clearance() throws std::invalid_argument, naming the value, for values outside the ranges
+/// given here.
+struct ClearanceRequest : Scope {
   /// Wanted accuracy: upper - lower is at most the larger one of tolerance_relative * upper (at least 0, below 1) and
   /// tolerance_distance (m, above 0).
   double tolerance_relative = 0.01, tolerance_distance = 1e-4;
   /// Largest distance of interest, m, above 0: if nothing comes within it, that is the answer.
   double most = 1;
-  bool check_scene = true;  ///< Links against obstacles.
-  bool check_self = true;   ///< Links, and the objects attached to them, against each other.
   /// Maximum number of node and leaf tests; after it the search ends with what is proven so far; 0: no limit.
   std::uint64_t work_budget = 0;
   /// Called now and then, from the querying thread, with what is proven so far (Clearance). May be empty. If it returns
