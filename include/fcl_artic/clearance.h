@@ -10,9 +10,8 @@
 
 namespace fcl_artic {
 
-/// Request of ArticulatedCollisionManager::clearance(): which pairs are checked, and how finely. All defaults are safe:
-/// nothing has to be tuned. clearance() throws std::invalid_argument, naming the value, for values outside the ranges
-/// given here.
+/// Request of ArticulatedCollisionManager::clearance(). All defaults are safe: nothing has to be tuned. clearance()
+/// throws std::invalid_argument, naming the value, for values outside the ranges given here.
 struct ClearanceRequest : Scope {
   /// Wanted accuracy: upper - lower is at most the larger one of tolerance_relative * upper (at least 0, below 1) and
   /// tolerance_distance (m, above 0).
