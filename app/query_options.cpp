@@ -45,8 +45,7 @@ CLI::Option* addClearanceOptions(CLI::App& verb, bool& wanted, ClearanceRequest&
 
 ClearanceRequest clearanceOf(const ClearanceRequest& request, const CertifiedRequest& query) {
   ClearanceRequest out = request;
-  out.check_self = query.check_self;
-  out.check_scene = query.check_scene;
+  static_cast<Scope&>(out) = query;
   out.work_budget = query.work_budget;
   return out;
 }

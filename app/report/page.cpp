@@ -20,6 +20,7 @@
 #include "fcl_artic/point_cloud.h"
 #include "page_parts.h"
 #include "render/triangles.h"
+#include "text/xml.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -320,30 +321,6 @@ std::string scriptText(const Json& json) {
   return out;
 }
 
-/// Text for between a page's tags.
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 /// A page with its {{parts}} filled in.
 std::string filled(std::string_view page, const std::map<std::string_view, std::string>& parts) {
   std::string out;
@@ -384,14 +361,14 @@ double sizeOf(const Report& report, const std::vector<PageBody>& bodies) {
 }
 
 std::string htmlPage(const Report& report, const std::vector<PageBody>& bodies, const Distances& distances) {
-  return filled(page_parts::kPage, {{"title", escaped(titleLine(report))},
-                                    {"headline", escaped(headline(report))},
+  return filled(page_parts::kPage, {{"title", text::xmlText(titleLine(report))},
+                                    {"headline", text::xmlText(headline(report))},
                                     {"status", toString(report.result.status)},
                                     {"style", std::string(page_parts::kStyle)},
                                     {"script", std::string(page_parts::kViewer)},
                                     {"answer", scriptText(jsonReport(report))},
                                     {"motion", scriptText(motionJson(report, bodies, distances))},
-                                    {"text", escaped(textReport(report))},
+                                    {"text", text::xmlText(textReport(report))},
                                     {"version", FCL_ARTIC_VERSION}});
 }
 

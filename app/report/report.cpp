@@ -117,12 +117,12 @@ void addFields(const Statistics& s, Json& out) {
   Statistics::forEachField([&](const char* name, auto field) { out[name] = s.*field; });
 }
 
-/// Work of the query; of the paper's own method null where another one was asked for.
 Json certificateJson(const Certificate& certificate) {
   if (!certificate) return {{"missing", certificate.missing}};
   return {{"proof_bytes", certificate.proof.size()}};
 }
 
+/// Work of the query; of the paper's own method null where another one was asked for.
 Json statisticsJson(const Report& r) {
   const QueryStatistics& s = r.result.statistics;
   Json out = {{"pairs", s.pairs}, {"pairs_after_culling", s.pairs_after_culling}};

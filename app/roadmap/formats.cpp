@@ -10,6 +10,7 @@
 #include "files/files.h"
 #include "hdf5/hdf5.h"
 #include "roadmap/roadmap.h"
+#include "text/xml.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -27,29 +28,6 @@ std::vector<std::size_t> writtenEdges(const Roadmap& roadmap, bool valid_only) {
     if (!valid_only || isValid(roadmap, e)) edges.push_back(e);
   }
   return edges;
-}
-
-std::string xmlText(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 /// A word of a line of comma separated values (RFC 4180).
@@ -70,7 +48,8 @@ std::string graphml(const Roadmap& roadmap, const std::vector<std::size_t>& edge
       "xsi:schemaLocation=\"http://graphml.graphdrawing.org/xmlns "
       "http://graphml.graphdrawing.org/xmlns/1.0/graphml.xsd\">\n";
   const auto key = [&](const std::string& id, const char* of, const std::string& name, const char* type) {
-    out += fmt::format("<key id=\"{}\" for=\"{}\" attr.name=\"{}\" attr.type=\"{}\"/>\n", id, of, xmlText(name), type);
+    out += fmt::format("<key id=\"{}\" for=\"{}\" attr.name=\"{}\" attr.type=\"{}\"/>\n", id, of, text::xmlText(name),
+                       type);
   };
   for (std::size_t j = 0; j < roadmap.joints.size(); ++j)
     key(fmt::format("q{}", j), "node", roadmap.joints[j], "double");
@@ -98,7 +77,7 @@ std::string graphml(const Roadmap& roadmap, const std::vector<std::size_t>& edge
       out += fmt::format(
           "<data key=\"s\">{}</data><data key=\"l\">{}</data><data key=\"u\">{}</data><data key=\"c\">{}</data>",
           toString(static_cast<RowStatus>(a.status[e])), a.t_lower[e], a.t_upper[e], static_cast<int>(a.certain[e]));
-      out += fmt::format("<data key=\"b\">{}</data>", xmlText(roadmap.bodies[e]));
+      out += fmt::format("<data key=\"b\">{}</data>", text::xmlText(roadmap.bodies[e]));
     }
     out += "</edge>\n";
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // All of the core library. Components have headers of their own: <fcl_artic/urdf/urdf.h>,
-// <fcl_artic/visibility/offscreen.h>, <fcl_artic/ompl/planning_setup.h>.
+// <fcl_artic/visibility/offscreen.h>, <fcl_artic/ompl/planning_setup.h> and <fcl_artic/ompl/motion_validator.h>,
+// <fcl_artic/pinocchio/pinocchio.h>, <fcl_artic/tesseract/contact_manager.h> and <fcl_artic/tesseract/scene.h>.
 #pragma once
 
 #include "fcl_artic/bounded_motion.h"

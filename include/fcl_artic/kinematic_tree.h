@@ -139,9 +139,11 @@ class FCL_ARTIC_EXPORT Fingerprint {
   std::uint64_t value_ = 0;
 };
 
-/// A forest of links carried by joints: one robot or several, each with its own root. Links and joints can be added,
-/// not changed. It must not change during queries, and may then be shared by threads; a manager whose tree has grown
-/// needs setup(). Functions of a LinkId, JointId or variable throw std::out_of_range for an index that is not there.
+/// A forest of links carried by joints: one robot or several, each with its own root. Roots stand at the world's
+/// origin: to place a robot elsewhere, add a link "world" that carries it by a fixed joint. Links and joints can be
+/// added, not changed. It must not change during queries, and may then be shared by threads; a manager whose tree has
+/// grown needs setup(). Functions of a LinkId, JointId or variable throw std::out_of_range for an index that is not
+/// there.
 class FCL_ARTIC_EXPORT KinematicTree {
  public:
   /// Creates a tree without links; the name is used in messages.

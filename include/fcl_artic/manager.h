@@ -19,6 +19,10 @@ namespace fcl_artic {
 /// Certified continuous collision detection of a forest of links against obstacles and against itself, in FCL's manager
 /// idiom: register obstacles, bind geometry to links, call setup(), ask.
 ///
+/// Lengths are in m, angles in rad; the time of a motion is t in [0, 1]. Roots of the tree stand at the world's origin
+/// (KinematicTree). What is wrong throws and leaves the manager as it was: std::invalid_argument names the value,
+/// std::logic_error asks for the setup() that is missing. What a query finds never throws: it is a Status.
+///
 /// Objects and geometries stay the caller's and are never written to; they must stay alive while they are registered or
 /// bound (overloads that take a shared_ptr see to that). Geometry is read by registerObject() and bind(), and again by
 /// setup() and update() if it has changed, also in place: a shape's sizes, a mesh's vertices, an OcTree's cells or
@@ -47,8 +51,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @param object  kept as a pointer; must stay alive until it is unregistered.
   /// @param name    unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
   /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has,
-  ///   geometry that is unsupported (point clouds), has no triangle or vertex, or is not finite, a transform that is
-  ///   not rigid to 1e-6 or farther than 1e9 m away.
+  ///   geometry of a type that is not known, without a triangle (an FCL model of points: use PointCloud) or vertex, or
+  ///   not finite, a transform that is not rigid to 1e-6 or farther than 1e9 m away.
   void registerObject(const fcl::CollisionObjectd* object, const std::string& name = {});
   /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup(). The manager keeps
   /// the object alive as long as it is registered or attached.

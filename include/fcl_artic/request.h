@@ -114,7 +114,7 @@ struct Effort {
   bool measure_times = false;
 };
 
-/// Which pairs an ArticulatedCollisionManager checks.
+/// Which pairs an ArticulatedCollisionManager checks: in queries, and for a clearance.
 struct Scope {
   bool check_scene = true;  ///< Links against obstacles.
   bool check_self = true;   ///< Links, and the objects attached to them, against each other.

@@ -2,7 +2,7 @@
 #include "options.h"
 
 #include <limits>
-#include <sstream>
+#include <type_traits>
 
 #include "array.h"
 #include "enums.h"
@@ -11,49 +11,97 @@
 namespace fcl_artic::python {
 namespace {
 
+// ---- values of each type, from Python and back
+
+void read(py::handle value, const char* name, bool& out) {
+  out = flagOf(value, name);
+}
+void read(py::handle value, const char* name, double& out) {
+  out = numberOf(value, name);
+}
+void read(py::handle value, const char* name, std::uint64_t& out) {
+  out = countOf(value, name);
+}
+void read(py::handle value, const char* name, int& out) {
+  if (!PyLong_Check(value.ptr())) typeError(std::string(name) + " is no whole number but " + typeName(value));
+  out = py::cast<int>(value);
+}
+void read(py::handle value, const char*, RedonOptions& out) {
+  out = py::cast<RedonOptions>(value);
+}
+void read(py::handle value, const char*, py::object& out) {
+  out = py::reinterpret_borrow<py::object>(value);
+}
+template <class Enum, class = std::enable_if_t<std::is_enum_v<Enum>>>
+void read(py::handle value, const char* name, Enum& out) {
+  out = enumOf<Enum>(value, name);
+}
+
+py::object shownAs(const py::object& value) {
+  return value;
+}
+template <class T>
+py::object shownAs(const T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    return memberOf(value);
+  } else {
+    return py::cast(value);
+  }
+}
+
+// Where an option's member is: in the options themselves, or in the request that they hold.
+constexpr auto kItself = [](auto& options) -> auto& {
+  return options;
+};
+constexpr auto kRequest = [](auto& options) -> auto& {
+  return options.request;
+};
+
+/// The option that is a member of select(T).
+template <class T, class Select, class Class, class Member>
+Option<T> option(const char* name, const Select& select, Member Class::*member) {
+  return {name, [=](T& t, py::handle value) { read(value, name, select(t).*member); },
+          [=](const T& t) { return shownAs(select(t).*member); }};
+}
+
 const std::vector<Option<RedonOptions>>& redonOptions() {
   using O = RedonOptions;
+  const auto of = [](const char* name, auto member) { return option<O>(name, kItself, member); };
   static const std::vector<Option<O>> options{
-      {"enclosure", [](O& o, py::handle v) { o.enclosure = enumOf<MotionEnclosure>(v, "enclosure"); }},
-      {"refinement_level",
-       [](O& o, py::handle v) {
-         if (!PyLong_Check(v.ptr())) typeError("refinement_level is no whole number but " + typeName(v));
-         o.refinement_level = py::cast<int>(v);
-       }},
-      {"simultaneous", [](O& o, py::handle v) { o.simultaneous = flagOf(v, "simultaneous"); }},
-      {"newton", [](O& o, py::handle v) { o.newton = flagOf(v, "newton"); }},
-      {"early_validity", [](O& o, py::handle v) { o.early_validity = flagOf(v, "early_validity"); }},
-      {"in_time_order", [](O& o, py::handle v) { o.in_time_order = flagOf(v, "in_time_order"); }},
-      {"links_in_world", [](O& o, py::handle v) { o.links_in_world = flagOf(v, "links_in_world"); }}};
+      of("enclosure", &O::enclosure),           of("refinement_level", &O::refinement_level),
+      of("simultaneous", &O::simultaneous),     of("newton", &O::newton),
+      of("early_validity", &O::early_validity), of("in_time_order", &O::in_time_order),
+      of("links_in_world", &O::links_in_world)};
   return options;
 }
 
 const std::vector<Option<Request>>& requestOptions() {
   using R = Request;
+  using C = CertifiedRequest;
+  const auto of = [](const char* name, auto member) { return option<R>(name, kRequest, member); };
   static const std::vector<Option<R>> options{
-      {"mode", [](R& r, py::handle v) { r.request.mode = enumOf<ContactMode>(v, "mode"); }},
+      of("mode", &C::mode),
       {"max_contacts",
        [](R& r, py::handle v) {
          r.request.max_contacts = countOf(v, "max_contacts");
          r.most_contacts_chosen = true;
-       }},
-      {"tolerance_time", [](R& r, py::handle v) { r.request.tolerance_time = numberOf(v, "tolerance_time"); }},
-      {"tolerance_distance",
-       [](R& r, py::handle v) { r.request.tolerance_distance = numberOf(v, "tolerance_distance"); }},
-      {"margin", [](R& r, py::handle v) { r.request.margin = numberOf(v, "margin"); }},
-      {"added_margin", [](R& r, py::handle v) { r.request.added_margin = numberOf(v, "added_margin"); }},
-      {"check_scene", [](R& r, py::handle v) { r.request.check_scene = flagOf(v, "check_scene"); }},
-      {"check_self", [](R& r, py::handle v) { r.request.check_self = flagOf(v, "check_self"); }},
-      {"ignore_initial_contact",
-       [](R& r, py::handle v) { r.request.ignore_initial_contact = flagOf(v, "ignore_initial_contact"); }},
-      {"certificate", [](R& r, py::handle v) { r.request.certificate = flagOf(v, "certificate"); }},
-      {"visibility", [](R& r, py::handle v) { r.request.visibility = enumOf<VisibilityMode>(v, "visibility"); }},
-      {"method", [](R& r, py::handle v) { r.request.method = enumOf<Method>(v, "method"); }},
-      {"redon", [](R& r, py::handle v) { r.request.redon = py::cast<RedonOptions>(v); }},
-      {"work_budget", [](R& r, py::handle v) { r.request.work_budget = countOf(v, "work_budget"); }},
-      {"measure_times", [](R& r, py::handle v) { r.request.measure_times = flagOf(v, "measure_times"); }},
-      {"progress", [](R& r, py::handle v) { r.progress = py::reinterpret_borrow<py::object>(v); }},
-      {"request", [](R&, py::handle) {}}};  // readRequest() has begun with it
+       },
+       [](const R& r) { return py::cast(r.request.max_contacts); }},
+      of("tolerance_time", &C::tolerance_time),
+      of("tolerance_distance", &C::tolerance_distance),
+      of("margin", &C::margin),
+      of("added_margin", &C::added_margin),
+      of("check_scene", &C::check_scene),
+      of("check_self", &C::check_self),
+      of("ignore_initial_contact", &C::ignore_initial_contact),
+      of("certificate", &C::certificate),
+      of("visibility", &C::visibility),
+      of("method", &C::method),
+      of("redon", &C::redon),
+      of("work_budget", &C::work_budget),
+      of("measure_times", &C::measure_times),
+      option<R>("progress", kItself, &R::progress),
+      {"request", [](R&, py::handle) {}, nullptr}};  // readRequest() has begun with it
   return options;
 }
 
@@ -64,62 +112,30 @@ struct Asked {
 
 const std::vector<Option<Asked>>& clearanceOptions() {
   using A = Asked;
-  static const std::vector<Option<A>> options{
-      {"tolerance_relative",
-       [](A& a, py::handle v) { a.request.tolerance_relative = numberOf(v, "tolerance_relative"); }},
-      {"tolerance_distance",
-       [](A& a, py::handle v) { a.request.tolerance_distance = numberOf(v, "tolerance_distance"); }},
-      {"most", [](A& a, py::handle v) { a.request.most = numberOf(v, "most"); }},
-      {"check_scene", [](A& a, py::handle v) { a.request.check_scene = flagOf(v, "check_scene"); }},
-      {"check_self", [](A& a, py::handle v) { a.request.check_self = flagOf(v, "check_self"); }},
-      {"work_budget", [](A& a, py::handle v) { a.request.work_budget = countOf(v, "work_budget"); }},
-      {"progress", [](A& a, py::handle v) { a.progress = py::reinterpret_borrow<py::object>(v); }}};
+  using C = ClearanceRequest;
+  const auto of = [](const char* name, auto member) { return option<A>(name, kRequest, member); };
+  static const std::vector<Option<A>> options{of("tolerance_relative", &C::tolerance_relative),
+                                              of("tolerance_distance", &C::tolerance_distance),
+                                              of("most", &C::most),
+                                              of("check_scene", &C::check_scene),
+                                              of("check_self", &C::check_self),
+                                              of("work_budget", &C::work_budget),
+                                              option<A>("progress", kItself, &A::progress)};
   return options;
 }
 
-/// The options' values, each as Python has it, by name.
-py::dict valuesOf(const Request& r) {
-  const CertifiedRequest& c = r.request;
-  py::dict values;
-  values["mode"] = memberOf(c.mode);
-  values["max_contacts"] = c.max_contacts;
-  values["tolerance_time"] = c.tolerance_time;
-  values["tolerance_distance"] = c.tolerance_distance;
-  values["margin"] = c.margin;
-  values["added_margin"] = c.added_margin;
-  values["check_scene"] = c.check_scene;
-  values["check_self"] = c.check_self;
-  values["ignore_initial_contact"] = c.ignore_initial_contact;
-  values["certificate"] = c.certificate;
-  values["visibility"] = memberOf(c.visibility);
-  values["method"] = memberOf(c.method);
-  values["redon"] = py::cast(c.redon);
-  values["work_budget"] = c.work_budget;
-  values["measure_times"] = c.measure_times;
-  values["progress"] = r.progress;
-  return values;
-}
-
-py::dict valuesOf(const RedonOptions& o) {
-  py::dict values;
-  values["enclosure"] = memberOf(o.enclosure);
-  values["refinement_level"] = o.refinement_level;
-  values["simultaneous"] = o.simultaneous;
-  values["newton"] = o.newton;
-  values["early_validity"] = o.early_validity;
-  values["in_time_order"] = o.in_time_order;
-  values["links_in_world"] = o.links_in_world;
-  return values;
-}
-
-/// "Name(a=1, b=2)" of the values that are not those of `usual`.
-std::string expression(const char* name, const py::dict& values, const py::dict& usual) {
+/// "Name(a=1, b=2)" of the options that are not as by default.
+template <class T>
+std::string expression(const char* name, const T& chosen, const std::vector<Option<T>>& options) {
+  const T usual{};
   std::string text;
-  for (const auto& [key, value] : values) {
-    if (py::str(value).equal(py::str(usual[key]))) continue;
+  for (const Option<T>& option : options) {
+    if (!option.get) continue;
+    const py::object value = option.get(chosen);
+    if (py::str(value).equal(py::str(option.get(usual)))) continue;
     const bool is_member = py::hasattr(value, "value") && py::hasattr(value, "name");
-    const std::string shown = py::repr(is_member ? value.attr("value") : py::reinterpret_borrow<py::object>(value));
-    text += (text.empty() ? "" : ", ") + std::string(py::str(key)) + "=" + shown;
+    const std::string shown = py::repr(is_member ? py::object(value.attr("value")) : value);
+    text += (text.empty() ? "" : ", ") + std::string(option.name) + "=" + shown;
   }
   return std::string(name) + "(" + text + ")";
 }
@@ -128,9 +144,9 @@ std::string expression(const char* name, const py::dict& values, const py::dict&
 template <class T, class Class>
 void bindOptions(Class& bound, const std::vector<Option<T>>& options) {
   for (const Option<T>& option : options) {
-    if (std::string(option.name) == "request") continue;
+    if (!option.get) continue;
     bound.def_property(
-        option.name, [name = option.name](const T& self) { return py::object(valuesOf(self)[name]); },
+        option.name, [get = option.get](const T& self) { return get(self); },
         [set = option.set](T& self, py::handle value) { set(self, value); });
   }
 }
@@ -190,7 +206,7 @@ ClearanceRequest readClearanceRequest(const py::kwargs& options, py::object& pro
 }
 
 std::string text(const Request& request) {
-  return expression("Request", valuesOf(request), valuesOf(Request{}));
+  return expression("Request", request, requestOptions());
 }
 
 void bindRequest(py::module_& module) {
@@ -204,8 +220,7 @@ void bindRequest(py::module_& module) {
       }))
       .def_static("as_written", &RedonOptions::asWritten,
                   "The options of the paper, without what this library adds to it.")
-      .def("__repr__",
-           [](const RedonOptions& o) { return expression("RedonOptions", valuesOf(o), valuesOf(RedonOptions{})); });
+      .def("__repr__", [](const RedonOptions& o) { return expression("RedonOptions", o, redonOptions()); });
   bindOptions(redon, redonOptions());
 
   py::class_<Request> request(module, "Request",

@@ -37,11 +37,12 @@ bool flagOf(py::handle value, const char* what);
 /// Reads a whole number of at least 0.
 std::uint64_t countOf(py::handle value, const char* what);
 
-/// An option of a request or of other keyword arguments: how it is read.
+/// An option of a request or of other keyword arguments: how it is read, and how it is shown as a property.
 template <class T>
 struct Option {
   const char* name;
   std::function<void(T&, py::handle)> set;
+  std::function<py::object(const T&)> get;  ///< empty: it is no property
 };
 
 /// Throws the TypeError for a keyword that no function of this name takes.

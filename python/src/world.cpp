@@ -66,13 +66,12 @@ void World::replaceScene(const Scene& scene) {
     objects.push_back(body.object);
     names.push_back(body.name);
   }
-  manager_.changeAtOnce(
-      [&](ArticulatedCollisionManager& manager) { manager.replaceObstacles(objects, names); },
-      [&] {
-        const auto stands = [](const Body& body) { return body.carrier < 0; };
-        bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), stands), bodies_.end());
-        bodies_.insert(bodies_.end(), added.begin(), added.end());
-      });
+  manager_.changeAtOnce([&](ArticulatedCollisionManager& manager) { manager.replaceObstacles(objects, names); },
+                        [&] {
+                          const auto stands = [](const Body& body) { return body.carrier < 0; };
+                          bodies_.erase(std::remove_if(bodies_.begin(), bodies_.end(), stands), bodies_.end());
+                          bodies_.insert(bodies_.end(), added.begin(), added.end());
+                        });
 }
 
 void World::add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose) {
@@ -97,20 +96,19 @@ void World::remove(const std::string& name) {
       std::find_if(movers_.begin(), movers_.end(), [&](const Mover& other) { return other.name == name; });
   if (mover != movers_.end()) {
     const auto object = mover->object;
-    manager_.change(
-        [&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); },
-        [&] {
-          movers_.erase(
-              std::find_if(movers_.begin(), movers_.end(), [&](const Mover& m) { return m.object == object; }));
-        });
+    manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); },
+                    [&] {
+                      movers_.erase(std::find_if(movers_.begin(), movers_.end(),
+                                                 [&](const Mover& m) { return m.object == object; }));
+                    });
     return;
   }
   const auto object = find(name).object;
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); },
-                  [&] {
-                    bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(),
-                                               [&](const Body& b) { return b.object == object; }));
-                  });
+  manager_.change(
+      [&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); },
+      [&] {
+        bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == object; }));
+      });
 }
 
 void World::move(const std::string& name, const Eigen::Isometry3d& pose) {
@@ -460,8 +458,7 @@ void bindWorld(py::module_& module) {
           "pose",
           [](const World& w, const std::string& name) {
             for (const World::Body& b : w.bodies()) {
-              if (b.name == name)
-                return arrayOf(b.carrier < 0 ? b.pose : b.offset);
+              if (b.name == name) return arrayOf(b.carrier < 0 ? b.pose : b.offset);
             }
             valueError("the world has no obstacle '" + name + "'" + text::didYouMean(name, w.names()));
           },

@@ -12,6 +12,7 @@
 #include "fcl_artic/bracket.h"
 #include "fcl_artic/certificate.h"
 #include "fcl_artic/joint_motion.h"
+#include "fcl_artic/request.h"
 #include "motion/part_of_motion.h"
 
 namespace fcl_artic::certificate {
@@ -33,9 +34,12 @@ constexpr std::uint64_t kMostNodes = 200000;
 
 Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work = kMostNodes);
 
-/// Until when a proof is sought: to the end of a free motion, else a tolerance before t_lower, where the gap may be 0.
-inline double claimedUntil(const Bracket& answer, double tolerance_time) {
-  return answer.isFree() ? 1 : std::max(0.0, answer.t_lower - tolerance_time);
+/// Has the motion claim what a query was asked and has answered: margins, and until when. That is to the end of a free
+/// motion, else a tolerance before t_lower, where the gap may be 0.
+inline void claimAnswer(const Tolerances& asked, const Bracket& answer, Motion& motion) {
+  motion.margin = asked.margin;
+  motion.added = asked.added_margin;
+  motion.until = answer.isFree() ? 1 : std::max(0.0, answer.t_lower - asked.tolerance_time);
 }
 
 }  // namespace fcl_artic::certificate

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // All that queries know of a kind of convex piece: one struct a kind, with one answer to each question. Every geometry
-// is made of pieces, and no pair of kinds has code of its own, so that this file and the reader of a geometry
+// is made of pieces, and no pair of kinds has code of its own, so that this file and the reader of FCL's geometries
 // (fcl/fcl_geometry.cpp) are all that queries of a new kind need. Certificates need three things more: its text in
-// certificate/world.cpp, its inside in certificate/witness.cpp, and in verify/, which shares no code with the
-// library, a Geometry::Kind (support.h) with its own reader, support bound and contact.
+// certificate/world.cpp, its inside in certificate/witness.cpp, and in verify/, which shares no code with the library,
+// a Geometry::Kind (support.h) with its own reader (statement.cpp), support bound (support.cpp) and inside
+// (contact.cpp). doc/DESIGN_NOTES.md, "Six changes", also lists what pictures, Python and adapters need.
 //
-// A new kind: its value in PieceKind, a struct here, a case in withKind(). A case or an answer that is missing does not
-// compile; where a kind has no simple answer `Unknown` has one that is always right.
+// A new kind: its value in PieceKind (model/piece.h), a struct here, a case in withKind(). A case or an answer that is
+// missing does not compile; where a kind has no simple answer `Unknown` has one that is always right.
 //
 // The questions. `tree` is the body's, `p` the piece; all is in the tree's frame. The core is the piece without its
 // rounding radius (Piece).

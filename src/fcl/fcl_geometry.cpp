@@ -55,7 +55,7 @@ template <class BV>
 Mesh<typename BV::S> meshOf(const fcl::CollisionGeometry<typename BV::S>& geometry) {
   const auto& model = static_cast<const fcl::BVHModel<BV>&>(geometry);
   if (model.getModelType() == fcl::BVH_MODEL_POINTCLOUD) {
-    throw std::invalid_argument("a point cloud has no surface to collide with");
+    throw std::invalid_argument("a point cloud has no surface to collide with: take a fcl_artic::PointCloud");
   }
   if (model.num_tris <= 0 || !model.tri_indices || !model.vertices) {
     throw std::invalid_argument("the mesh has no triangle (was endModel() called?)");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL geometries as trees of convex pieces: the one place where the library looks into FCL's types. Geometries are only
-// ever read. Functions over S are there for float and double; what is float is taken as the double of the same value.
+// FCL geometries as trees of convex pieces: the one place of the core that reads what is in them (elsewhere they are
+// only asked for their type). Geometries are never written to. Functions over S are there for float and double; what is
+// float is taken as the double of the same value.
 #pragma once
 
 #include <cstdint>

@@ -162,36 +162,13 @@ ClosedPart boundPart(const engine::TreeView& mesh, const ClosedParts& parts, std
 }  // namespace
 
 double EnclosedSpace::clearance(std::int32_t part, const Vector3d& x, Vector3d& nearest) const {
-  double least = kInfinity;
-  struct Open {
-    std::int32_t node;
-    double clearance;
+  const auto clearance = [&](std::int32_t piece, Vector3d& point) {
+    if (parts_.part_of_piece[static_cast<std::size_t>(piece)] != part) return kInfinity;
+    const MeshTriangle t = triangleOf(mesh_, piece);
+    point = nearestPoint(t, x);
+    return clearanceOf(t, x, point);
   };
-  constexpr std::size_t kDeepest = 64;  // trees are balanced
-  Open open[kDeepest];
-  std::size_t count = 0;
-  open[count++] = {0, clearanceOf(mesh_.nodes[0], x)};
-  while (count) {
-    const Open at = open[--count];
-    if (at.clearance >= least) continue;
-    const Node& node = mesh_.nodes[at.node];
-    if (node.isLeaf()) {
-      if (parts_.part_of_piece[static_cast<std::size_t>(node.piece())] != part) continue;
-      const MeshTriangle t = triangleOf(mesh_, node.piece());
-      const Vector3d point = nearestPoint(t, x);
-      const double clearance = clearanceOf(t, x, point);
-      if (clearance >= least) continue;
-      least = clearance;
-      nearest = point;
-      continue;
-    }
-    Open left = {node.left(), clearanceOf(mesh_.nodes[node.left()], x)};
-    Open right = {node.right(), clearanceOf(mesh_.nodes[node.right()], x)};
-    if (left.clearance < right.clearance) std::swap(left, right);
-    open[count++] = left;
-    open[count++] = right;
-  }
-  return least;
+  return leastClearance(mesh_, x, clearance, nearest);
 }
 
 bool EnclosedSpace::crossings(std::int32_t part, const Vector3d& x, int axis, std::vector<Crossing>& found) const {

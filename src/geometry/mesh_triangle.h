@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -75,6 +77,42 @@ inline double clearanceOf(const engine::Node& node, const Eigen::Vector3d& x) {
     square += d * d;
   }
   return std::sqrt(square) * (1 - 16 * kMeshUlp);
+}
+
+/// Least distance of x from a mesh's triangles, no larger than it is; infinite: from none.
+/// @param clearance  of x from the triangle of a piece, no larger than it is, and the point that is near: called as
+///   clearance(piece, point), infinite for one that does not count.
+template <class F>
+double leastClearance(const engine::TreeView& mesh, const Eigen::Vector3d& x, const F& clearance,
+                      Eigen::Vector3d& nearest) {
+  struct Open {
+    std::int32_t node;
+    double clearance;
+  };
+  constexpr std::size_t kDeepest = 64;  // trees are balanced
+  Open open[kDeepest];
+  std::size_t count = 0;
+  double least = std::numeric_limits<double>::infinity();
+  open[count++] = {0, clearanceOf(mesh.nodes[0], x)};
+  while (count) {
+    const Open at = open[--count];
+    if (at.clearance >= least) continue;
+    const engine::Node& node = mesh.nodes[at.node];
+    if (node.isLeaf()) {
+      Eigen::Vector3d point;
+      const double found = clearance(node.piece(), point);
+      if (found >= least) continue;
+      least = found;
+      nearest = point;
+      continue;
+    }
+    Open left = {node.left(), clearanceOf(mesh.nodes[node.left()], x)};
+    Open right = {node.right(), clearanceOf(mesh.nodes[node.right()], x)};
+    if (left.clearance < right.clearance) std::swap(left, right);  // the nearer one first
+    open[count++] = left;
+    open[count++] = right;
+  }
+  return least;
 }
 
 /// Where a line along an axis crosses a triangle.

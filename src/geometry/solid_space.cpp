@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -70,33 +69,10 @@ Vector3d someDirection(std::uint32_t number) {
 }  // namespace
 
 double SolidSpace::clearance(const Vector3d& x, Vector3d& nearest) const {
-  struct Open {
-    std::int32_t node;
-    double clearance;
+  const auto clearance = [&](std::int32_t piece, Vector3d& point) {
+    return surelyApart(triangleOf(mesh_, piece), x, point);
   };
-  Open open[64];
-  std::size_t count = 0;
-  double least = std::numeric_limits<double>::infinity();
-  open[count++] = {0, clearanceOf(mesh_.nodes[0], x)};
-  while (count) {
-    const Open at = open[--count];
-    if (!(at.clearance < least)) continue;
-    const Node& node = mesh_.nodes[at.node];
-    if (node.isLeaf()) {
-      Vector3d point;
-      const double clearance = surelyApart(triangleOf(mesh_, node.piece()), x, point);
-      if (clearance >= least) continue;
-      least = clearance;
-      nearest = point;
-      continue;
-    }
-    Open left = {node.left(), clearanceOf(mesh_.nodes[node.left()], x)};
-    Open right = {node.right(), clearanceOf(mesh_.nodes[node.right()], x)};
-    if (left.clearance < right.clearance) std::swap(left, right);
-    open[count++] = left;
-    open[count++] = right;
-  }
-  return least;
+  return leastClearance(mesh_, x, clearance, nearest);
 }
 
 SolidSpace::Winding SolidSpace::winding(const Vector3d& x, int axis) const {

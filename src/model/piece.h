@@ -9,8 +9,7 @@
 namespace fcl_artic {
 namespace engine {
 
-/// Kinds of convex piece. Every piece is a core, given by its support function, grown by a ball of radius `radius`
-///.
+/// Kinds of convex piece. Every piece is a core, given by its support function, grown by a ball of that radius.
 /// `vertices` and `hull` are both hulls of points; a hull's coordinates lie x, then y, then z, each a multiple of eight
 /// (lanes go over them), in TreeView::hulls.
 /// `halfspace` {n.x <= offset} and `plane` {n.x = offset} are unbounded: a direction each, no search along any other.

@@ -2,7 +2,7 @@
 //
 // The proof that anything is free (doc/NUMERICS.md, section 4): a direction n, fixed in one body's frame, keeps two
 // convex pieces apart over a whole time interval. Where n comes from needs no trust; this file and
-// motion/{chain,factors, remainder,rigid_lanes}.h carry all of it.
+// motion/{chain,factors,remainder,rigid_lanes}.h carry all of it.
 #pragma once
 
 #include "convex/piece_kinds.h"

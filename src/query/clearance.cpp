@@ -71,8 +71,7 @@ class Search {
     request.margin = margin;
     request.tolerance_time *= duration_;
     request.mode = ContactMode::any;
-    request.check_scene = request_.check_scene;
-    request.check_self = request_.check_self;
+    static_cast<Scope&>(request) = request_;
     if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
     if (request_.work_budget) {

@@ -163,11 +163,9 @@ void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const Tim
                                             const Aspects::Details& details, certificate::Claim& claim) const {
   const std::shared_ptr<const certificate::World> about = world();
   certificate::Motion stated = certificate::motionOf(*about, motion, time);
-  stated.margin = request.margin;
-  stated.added = request.added_margin;
+  certificate::claimAnswer(request, answer, stated);
   stated.self = request.check_self;
   stated.scene = request.check_scene;
-  stated.until = certificate::claimedUntil(answer, request.tolerance_time);
   for (const engine::Ignored& pair : details.ignored) {
     const int a = about->bodyOf(pair.body_a), b = about->bodyOf(pair.body_b);
     stated.ignored.push_back({std::min(a, b), std::max(a, b), std::min(1.0, pair.watch_from)});

@@ -154,9 +154,7 @@ std::shared_ptr<const Certificate> certificateOf(const MovingShape& body1, const
   const certificate::World world = certificate::makeWorld(body1.shape, body1.motion, body2.shape, body2.motion);
   certificate::Motion motion;
   motion.coefficients = world.moving;
-  motion.margin = request.margin;
-  motion.added = request.added_margin;
-  motion.until = certificate::claimedUntil(answer, request.tolerance_time);
+  certificate::claimAnswer(request, answer, motion);
   if (answer.num_ignored > 0) motion.ignored.push_back({0, 1, std::min(1.0, answer.ignored[0].watch_from)});
   certificate::Claim claim{{motion}, 1, std::nullopt};
   if (answer.num_contacts > 0 && answer.contacts[0].certain) {

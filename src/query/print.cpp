@@ -65,7 +65,7 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
       return out << "free: proven";
     case Status::contact:
       return out << "contact within [" << shown(bracket.t_lower) << ", " << shown(bracket.t_upper) << "], "
-                 << (bracket.certain ? "proven" : "not proven: too near to be told from none");
+                 << (bracket.certain ? "proven" : "not proven: too near to decide");
     case Status::undecided:
       return out << "undecided: free before " << shown(bracket.t_lower);
   }
