@@ -277,9 +277,10 @@ inline unsigned Traversal::partsMayTouch(int a, int b, unsigned mask) {
 inline unsigned Traversal::leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect) {
   ++statistics().leaf_tests;
   const Piece &a = motion_.a().pieces[piece_a], &b = motion_.b().pieces[piece_b];
-  if (hasDirection(a)) mask &= ~separated(0, a, b, sizeOf(a), mask);
+  // A direction that keeps neighbours apart mostly serves here too.
+  if (motion_.witness()) mask &= ~separated(0, a, b, *motion_.witness(), mask);
+  if (mask && hasDirection(a)) mask &= ~separated(0, a, b, sizeOf(a), mask);
   if (mask && hasDirection(b)) mask &= ~separated(1, b, a, sizeOf(b), mask);
-  if (mask && motion_.witness()) mask &= ~separated(0, a, b, *motion_.witness(), mask);
   if (!mask) return 0;
   Simplex last;
   return notSeparated(a, b, mask, kLanes, last, {}, [&](int lane) {
