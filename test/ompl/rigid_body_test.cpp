@@ -188,6 +188,22 @@ TEST(RigidBody, InThePlaneItIsAnSE2Space) {
   EXPECT_FALSE(setup.si->checkMotion(s1.get(), s2.get()));
 }
 
+TEST(RigidBody, QuaternionsOfFewDigitsAreOmpls) {
+  const PlanningSetup setup = setUpRigidBody(body(), Scene(), withinOne());
+  ob::ScopedState<ob::SE3StateSpace> s(setup.space);
+  setup.setState(s.get(), {0, 0, 0, 0, 0, 0.68164, 0.73169});  // 1.5 rad about z
+  EXPECT_TRUE(setup.space->satisfiesBounds(s.get()));
+  EXPECT_NEAR(s->rotation().z, std::sin(0.75), 3e-6);
+  EXPECT_NEAR(s->rotation().w, std::cos(0.75), 3e-6);
+  const std::vector<double> exact{0, 0, 0, 0, 0, std::sin(0.75), std::cos(0.75)};
+  setup.setState(s.get(), exact);
+  EXPECT_EQ(setup.values(s.get()), exact) << "what OMPL takes stays as it is";
+  for (const double w : {0.7, std::nan("")}) {  // no orientation; OMPL takes one with NaN to be within its bounds
+    setup.setState(s.get(), {0, 0, 0, 0, 0, 0.68164, w});
+    EXPECT_THROW((void)setup.si->isValid(s.get()), std::invalid_argument);
+  }
+}
+
 TEST(RigidBody, WhatIsNoneIsRefused) {
   EXPECT_THROW(setUpRigidBody(nullptr, Scene(), withinOne()), std::invalid_argument);
   EXPECT_THROW(setUpRigidBody(body(), Scene(), SetupOptions()), std::invalid_argument);

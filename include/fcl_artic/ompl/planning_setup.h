@@ -44,7 +44,8 @@ struct PlanningSetup {
   std::shared_ptr<const ArticulatedCollisionManager> manager;  ///< Robot and scene, set up; must not be changed.
   std::vector<std::string> notes;                              ///< What the loaders accepted though unusual.
 
-  /// Writes joint values into a state. Angles of SO2StateSpaces are brought into (-π, π].
+  /// Writes joint values into a state. Angles of SO2StateSpaces are brought into (-π, π], and quaternions whose length
+  /// is 1 within 1e-3 to the length 1, which OMPL asks for within 1e-9.
   /// @param state   of `space`.
   /// @param values  rad or m, in the order of `joints`: for a planar joint x, y, theta, for a floating one x, y, z and
   ///   the quaternion's x, y, z, w.

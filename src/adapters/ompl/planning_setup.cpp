@@ -143,6 +143,16 @@ void forEachPart(const ob::StateSpace& space, ob::State* state, F&& f) {
   }
 }
 
+/// Brings a quaternion to the length 1. OMPL takes it within 1e-9 only, and files have fewer digits. One that no query
+/// would take (KinematicTree::requireConfiguration()) stays as it is.
+void normalize(const ob::StateSpace& part, ob::State* state) {
+  if (part.satisfiesBounds(state)) return;
+  auto& q = *state->as<ob::SO3StateSpace::StateType>();
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (!(std::abs(length - 1) <= 1e-3)) return;
+  for (double* c : {&q.x, &q.y, &q.z, &q.w}) *c /= length;
+}
+
 /// Robot, scene and manager as one: the manager holds pointers into both.
 struct World {
   Robot robot;
@@ -167,6 +177,7 @@ void PlanningSetup::setState(ob::State* state, const std::vector<double>& values
   forEachPart(*space, state, [&](const ob::StateSpace& part, ob::State* values_of_part) {
     for (unsigned i = 0; double* value = part.getValueAddressAtIndex(values_of_part, i); ++i) *value = values[next++];
     if (part.getType() == ob::STATE_SPACE_SO2) part.enforceBounds(values_of_part);  // the same angle in (-π, π]
+    if (part.getType() == ob::STATE_SPACE_SO3) normalize(part, values_of_part);
   });
 }
 
