@@ -76,12 +76,15 @@ void addBench(CLI::App& program, int& exit_status) {
       ->envname("FCL_ARTIC_DATA")
       ->required()
       ->type_name("FOLDER");
-  certify->add_option("--robot", c.robot, "panda, ur5 or ur5_coarse")->capture_default_str()->type_name("NAME");
+  certify->add_option("--robot", c.robot, "panda, ur5, ur5_coarse or baxter (both arms; --range 1.5)")
+      ->capture_default_str()
+      ->type_name("NAME");
   certify->add_option("--environment", c.environments, "Only these; may be repeated")->type_name("NAME...");
   certify->add_option("--problems", c.problems, "Problems of each environment, at most")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   certify->add_option("--seeds", c.seeds, "Seeds for each problem")->check(CLI::PositiveNumber)->capture_default_str();
+  certify->add_option("--range", c.range, "As of bench planning")->check(CLI::NonNegativeNumber)->capture_default_str();
   certify
       ->add_option("--plans", c.plans,
                    "Plans of another planner in place of RRTConnect's: a file or folder in a format that certify\n"

@@ -79,12 +79,12 @@ class Bench {
   std::string table() const {
     std::string out = fmt::format(
         "{}: {}, certified and mended\n\n"
-        "{:<18}{:>7}{:>10}{:>11}{:>9}{:>12}{:>12}{:>10}{:>10}{:>11}{:>10}{:>8}\n",
+        "{:<{}}{:>7}{:>10}{:>11}{:>9}{:>12}{:>12}{:>10}{:>10}{:>11}{:>10}{:>8}\n",
         options_.robot,
         options_.plans.empty() ? "plans of RRTConnect over FCL at OMPL's default of 1 %, simplified"
                                : "plans of " + options_.plans,
-        "environment", "plans", "sampling", "certify", "missed", "median us", "slowest us", "mended", "median ms",
-        "deviation", "longer", "hidden");
+        "environment", nameWidth(), "plans", "sampling", "certify", "missed", "median us", "slowest us", "mended",
+        "median ms", "deviation", "longer", "hidden");
     std::vector<std::string> names;
     for (const Row& row : rows_) {
       if (std::find(names.begin(), names.end(), row.environment) == names.end()) names.push_back(row.environment);
@@ -116,7 +116,8 @@ class Bench {
     const planning::PlanningSetup ours = setUp(robot_, environment, problem);
     const auto theirs = discreteOverFcl(robot_, environment, problem, kResolution);
     for (int seed = 1; seed <= options_.seeds; ++seed) {
-      const Plans made = plan(theirs, ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds);
+      const Plans made = plan(theirs, ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds,
+                              options_.range);
       if (!made.solved) continue;
       CertifiedPlan one;
       one.plan.positions = made.simplified;
@@ -186,6 +187,12 @@ class Bench {
     rows_.push_back(std::move(row));
   }
 
+  std::size_t nameWidth() const {
+    std::size_t width = 17;
+    for (const Row& row : rows_) width = std::max(width, row.environment.size());
+    return width + 1;
+  }
+
   std::string tableRow(const std::string& environment) const {
     std::size_t plans = 0, sampled = 0, touching = 0, missed = 0, mended = 0, hidden = 0;
     std::vector<double> us, ms, deviation, longer;
@@ -203,8 +210,8 @@ class Bench {
       deviation.push_back(r.deviation);
       longer.push_back(r.length_ratio);
     }
-    return fmt::format("{:<18}{:>7}{:>10}{:>11}{:>9}{:>12.1f}{:>12.1f}{:>10}{:>10.1f}{:>11.3f}{:>10.3f}{:>8}\n",
-                       environment, plans, sampled, touching, missed, median(us),
+    return fmt::format("{:<{}}{:>7}{:>10}{:>11}{:>9}{:>12.1f}{:>12.1f}{:>10}{:>10.1f}{:>11.3f}{:>10.3f}{:>8}\n",
+                       environment, nameWidth(), plans, sampled, touching, missed, median(us),
                        us.empty() ? 0 : *std::max_element(us.begin(), us.end()), mended, median(ms), median(deviation),
                        median(longer), hidden);
   }

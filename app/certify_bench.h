@@ -12,6 +12,7 @@ struct CertifyBenchOptions {
   std::vector<std::string> environments;  ///< none: all that the robot has
   int problems = 10;                      ///< of each environment, at most
   int seeds = 1;
+  double range = 0;  ///< longest motion that the planner tries, in the space's distance; 0: OMPL's default
   double seconds = 20, mend_seconds = 5;  ///< for a plan and for its simplification; for mending one
   std::string plans;  ///< file or folder of another planner's plans, each named ENVIRONMENT/PROBLEM; empty: plan here
   std::string csv;    ///< file of a row for each plan; empty: none
