@@ -10,7 +10,7 @@ foreach(list PARTS LEFT_OUT INCLUDES SYSTEM_INCLUDES)
 endforeach()
 # The compiler's own folder keeps its place at the end; a folder of this project named as a system's would hide warnings.
 list(REMOVE_DUPLICATES SYSTEM_INCLUDES)
-list(REMOVE_ITEM SYSTEM_INCLUDES /usr/include ${INCLUDES})
+list(REMOVE_ITEM SYSTEM_INCLUDES /usr/include ${SOURCE_DIR}/include ${SOURCE_DIR}/src)
 set(flags -std=c++17 -fsyntax-only -Wall -Wextra -Wno-pragma-once-outside-header -x c++)
 foreach(folder IN LISTS INCLUDES)
   list(APPEND flags -I${folder})
