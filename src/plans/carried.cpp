@@ -60,9 +60,8 @@ void requireLink(const KinematicTree& tree, const Carried& carried, LinkId attac
   }
   if (link < 0) {
     throw std::invalid_argument(
-        fmt::format("the message says that link '{}' carries '{}', and robot '{}' has no such "
-                    "link{}",
-                    carried.link, carried.name, tree.name(), text::didYouMean(carried.link, names)));
+        fmt::format("the message says that link '{}' carries '{}', and robot '{}' has no such link{}", carried.link,
+                    carried.name, tree.name(), text::didYouMean(carried.link, names)));
   }
   if (mover(tree, link) == mover(tree, attached_to)) return;
   throw std::invalid_argument(
