@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include <algorithm>
+#include <array>
 
 namespace verify {
 
@@ -29,6 +30,29 @@ Fix along(const Fix w[3], const Box& box) {
   Fix sum;
   for (int k = 0; k < 3; ++k) sum += w[k] * (w[k].v < 0 ? box.low[k] : box.high[k]);
   return sum;
+}
+/// Above the length of the vector a(s). With l the linear part of a, |a| <= |l| + sum (|c2| + r), and |l(s)|, a length
+/// of what is linear, is convex: not above the line between |l(-1)| and |l(1)|. Exact at both ends but for these and
+/// the rounding: where a passes through 0 at an end, as a disc's direction that comes to be its axis, no mean of
+/// squares is.
+Tm chordOfLength(const std::array<Tm, 3>& a) {
+  Fix end[2], rest;
+  for (int i = 0; i < 2; ++i) {
+    Fix squares, sum;
+    for (const Tm& x : a) {
+      const Fix l = abs(i == 0 ? x.c0 - x.c1 : x.c0 + x.c1);
+      squares += mulUp(l, l);
+      sum += l;
+    }
+    end[i] = least(sqrtUp(squares), sum);
+  }
+  for (const Tm& x : a) rest += abs(x.c2) + x.r;
+  // Both halves are rounded down by half an ulp at most.
+  return {shifted(end[0] + end[1], 1) + ulps(1) + rest, shifted(end[1] - end[0], 1), {}, {}};
+}
+/// Of a model's Bernstein points, remainder included.
+Fix sumOfCoefficients(const Tm& a) {
+  return a.c0 + a.c0 + a.c0 + a.c2 + a.r + a.r + a.r;
 }
 Box boxAt(const Fix x[3]) {
   Box box;
@@ -262,7 +286,8 @@ Geometry::Reach Geometry::reach(std::uint32_t i, std::uint32_t j, const Vec& v, 
     return reach;
   }
   // Round shapes: for each generator f + the reach E of its ellipsoid. E(s) = sqrt(Q(s)), Q = sum (a_k v_k)^2, and for
-  // every g > 0 sqrt(Q) <= (Q g + 1/g) / 2 (means). A ball: r |v|, and |v| is that of the direction before rotation.
+  // every g > 0 sqrt(Q) <= (Q g + 1/g) / 2 (means); or E is below its chord. Of both bounds the one that is lower on
+  // the whole. A ball: r |v|, and |v| is that of the direction before rotation.
   for (int c = 0; c < 4; ++c) *out[c] = Fix{-kMost};
   for (const Round& round : rounds) {
     Vec centre;
@@ -273,21 +298,24 @@ Geometry::Reach Geometry::reach(std::uint32_t i, std::uint32_t j, const Vec& v, 
       f = f + constant(mulUp(encloseUp(round.axes[0]), length));
     } else if (round.axes[0] != 0 || round.axes[1] != 0 || round.axes[2] != 0) {
       Tm Q;
-      Fix simple;  // E <= sum |a_k v_k|: better where v is as good as along an axis without reach
-      for (int k = 0; k < 3; ++k) {
-        const Tm a = constant(enclose(round.axes[k])) * v[k];
-        Q = Q + a * a;
-        simple += bound(a);
+      std::array<Tm, 3> a;
+      Fix simple, at_middle;  // E <= sum |a_k v_k|: better where v is as good as along an axis without reach
+      for (std::size_t k = 0; k < 3; ++k) {
+        a[k] = constant(enclose(round.axes[k])) * v[k];
+        Q = Q + a[k] * a[k];
+        simple += bound(a[k]);
+        at_middle += abs(a[k].c0);
       }
+      at_centre = least(sqrtUp(most(Q.c0, Fix{0})), at_middle);
       // g near 1/sqrt(Q), so that 1/g is near sqrt(Q); where Q varies much, nearer to its most.
       Fix width = sqrtUp(most(abs(Q.c0), shifted(bound(Q), 2)));
-      at_centre = sqrtUp(most(Q.c0, Fix{0}));
-      Tm mean = constant(simple);
+      Tm mean = chordOfLength(a);
       if (simple > width) {
         width = most(width, Fix{kOne >> 31});
         const Fix g = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(width.v)));
         const Fix inverse = checked(static_cast<Int>(~static_cast<Uint>(0) / static_cast<Uint>(g.v)) + 1);  // >= 1/g
-        mean = divided(Q * constant(g) + constant(inverse), 2);
+        const Tm other = divided(Q * constant(g) + constant(inverse), 2);
+        if (sumOfCoefficients(other) < sumOfCoefficients(mean)) mean = other;
       }
       at_centre = at_centre - mean.c0;
       f = f + mean;
