@@ -199,7 +199,7 @@ int run(const Options& options) {
     render::PictureOptions picture;
     picture.width = static_cast<int>(size[0]);
     picture.height = static_cast<int>(size[1]);
-    picture.title = titleLine(report);
+    picture.title = titleLine(report.result);
     if (!options.camera.empty()) picture.camera = numberPair(options.camera, ',');
     CertifiedResult drawn = result;  // in the time of a picture
     drawn.t_lower = (result.t_lower - begin) / (end - begin);

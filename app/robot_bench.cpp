@@ -109,6 +109,7 @@ class Asked {
     Questions out;
     out.collide = [this](const MotionEnds& ends, ContactMode mode, CertifiedResult& result) {
       request_.mode = mode;
+      request_.max_contacts = mode == ContactMode::any ? 0 : 1;  // the verdict, as a planner asks; the contact
       manager_->continuousCollide(JointMotion::linear(tree(), ends.from, ends.to), request_, result);
       addStage2(result.statistics);
     };

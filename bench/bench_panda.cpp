@@ -122,6 +122,7 @@ int main(int argc, char** argv) try {
   // First contact: its lower bound. Any contact: where one is proven.
   const auto ask = [&](const Asked& edge, ContactMode mode) -> Answer {
     request.mode = mode;
+    request.max_contacts = mode == ContactMode::any ? 0 : 1;  // a planner's question: the verdict
     edge.manager->continuousCollide(edge.motion, request, result);
     if (result.status == Status::undecided) throw std::runtime_error("a query without a budget ended undecided");
     return result.status == Status::contact ? (mode == ContactMode::any ? result.t_upper : result.t_lower) : kFree;

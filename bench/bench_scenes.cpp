@@ -65,6 +65,7 @@ class World {
 CertifiedRequest planned() {
   CertifiedRequest request;
   request.mode = ContactMode::any;
+  request.max_contacts = 0;
   request.tolerance_time = 0x1p-12;
   request.tolerance_distance = 1e-5;
   return request;

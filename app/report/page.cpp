@@ -361,7 +361,7 @@ double sizeOf(const Report& report, const std::vector<PageBody>& bodies) {
 }
 
 std::string htmlPage(const Report& report, const std::vector<PageBody>& bodies, const Distances& distances) {
-  return filled(page_parts::kPage, {{"title", text::xmlText(titleLine(report))},
+  return filled(page_parts::kPage, {{"title", text::xmlText(titleLine(report.result))},
                                     {"headline", text::xmlText(headline(report))},
                                     {"status", toString(report.result.status)},
                                     {"style", std::string(page_parts::kStyle)},

@@ -206,9 +206,7 @@ std::string headline(const Report& r) {
   const CertifiedResult& result = r.result;
   switch (result.status) {
     case Status::free: {
-      const std::size_t n = result.unproven_allowed_pairs;
-      const std::string unproven =
-          n == 0 ? "" : fmt::format(" but for {} allowed pair{} not proven apart", n, n == 1 ? "" : "s");
+      const std::string exceptions = exceptionsOf(result), unproven = exceptions.empty() ? "" : " " + exceptions;
       if (result.nothingChecked()) {
         return fmt::format("FREE{}: nothing was checked, there is no pair of bodies that may touch.", unproven);
       }
@@ -217,14 +215,18 @@ std::string headline(const Report& r) {
                            unproven);
       }
       return r.request.margin > 0
-                 ? fmt::format("FREE{}: proven, no checked pair comes within {:g} m anywhere on the motion.", unproven,
-                               r.request.margin)
+                 ? fmt::format(
+                       "FREE{}: proven, no checked pair comes within its margin, {:g} m unless it has its own, "
+                       "anywhere on "
+                       "the motion.",
+                       unproven, r.request.margin)
                  : fmt::format("FREE{}: proven, no checked pair touches anywhere on the motion.", unproven);
     }
     case Status::contact: {
-      const std::string what = r.request_known && r.request.margin > 0
-                                   ? fmt::format("first approach within {:g} m", r.request.margin)
-                                   : "first contact";
+      const std::string what =
+          r.request_known && r.request.margin > 0
+              ? fmt::format("first approach within the margin, {:g} m unless the pair has its own,", r.request.margin)
+              : "first contact";
       if (result.t_upper <= r.begin) {
         return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
       }
@@ -246,10 +248,12 @@ std::string headline(const Report& r) {
   return {};
 }
 
-std::string titleLine(const Report& r) {
-  const CertifiedResult& result = r.result;
+std::string titleLine(const CertifiedResult& result) {
   if (result.nothingChecked()) return "free: nothing was checked";
-  if (result.status == Status::free) return "free: proven for the whole motion";
+  if (result.status == Status::free) {
+    const std::string exceptions = exceptionsOf(result);
+    return "free: proven for the whole motion" + (exceptions.empty() ? "" : ", " + exceptions);
+  }
   if (result.status == Status::undecided)
     return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
   std::string text = fmt::format("first contact at t = {:.4f}", result.t_lower);
@@ -274,7 +278,13 @@ std::string textReport(const Report& r) {
                                         jointsText(r.tree, r.configuration(result.t_lower))));
   }
   for (const auto& [a, b] : result.ignored_initial_contacts) {
-    text += entry("ignored", fmt::format("'{}' and '{}' touch at t = {:g} and may separate", a.name, b.name, r.begin));
+    text +=
+        entry("ignored", fmt::format("'{}' and '{}' touch, or are within their margin, at t = {:g} and may separate",
+                                     a.name, b.name, r.begin));
+  }
+  if (const std::size_t n = result.never_apart_pairs; result.isFree() && n > 0) {
+    text += entry("ignored", fmt::format("{} of these {} apart nowhere on the motion: 'free' says nothing of {}", n,
+                                         n == 1 ? "is proven" : "are proven", n == 1 ? "it" : "them"));
   }
   for (const std::string& note : r.notes) text += entry("note", note);
   if (r.request.visibility != VisibilityMode::off) text += entry("stage 2", visibilityText(result.statistics));
@@ -301,6 +311,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"poses", posesJson(r)},
           {"clearance", r.clearance ? clearanceJson(r.tree, *r.clearance) : Json()},
           {"ignored_initial_contacts", ignored},
+          {"never_apart_pairs", result.never_apart_pairs},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
           {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},
           {"request", r.request_known ? requestJson(r.request) : Json()},

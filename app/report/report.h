@@ -39,6 +39,6 @@ std::string textReport(const Report& report);
 nlohmann::ordered_json jsonReport(const Report& report);
 
 /// Names of the two sides and the time: one line, for a picture's title.
-std::string titleLine(const Report& report);
+std::string titleLine(const CertifiedResult& result);
 
 }  // namespace fcl_artic::app

@@ -197,6 +197,10 @@ class FCL_ARTIC_EXPORT KinematicTree {
   static int numVariables(JointType type);
   /// Index of the first variable (x) of the joint's quaternion; -1 if it has none.
   int quaternionVariable(JointId j) const;
+  /// Joints with a quaternion, spherical and floating ones, in the order of their ids.
+  const std::vector<JointId>& quaternionJoints() const { return with_quaternions_; }
+  /// Joints that follow another one (Joint::mimics), in the order of their ids.
+  const std::vector<JointId>& mimicJoints() const { return mimics_; }
   /// The joint whose child the link is; -1 for a root.
   JointId parentJoint(LinkId link) const { return entryOf(parent_joint_, link, "link"); }
   /// The link's parent; -1 for a root.
@@ -280,7 +284,7 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<Joint> joints_;
   std::vector<Turn> turns_;  ///< of each joint; used of revolute and continuous ones
   std::vector<int> joint_parent_, joint_child_, joint_variable_;
-  std::vector<JointId> with_quaternions_;
+  std::vector<JointId> with_quaternions_, mimics_;
   std::vector<JointId> variables_;
   std::vector<std::string> variable_names_;
   std::vector<LinkId> order_;  ///< topological

@@ -216,9 +216,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @param proofs  of classifyLinkPairs(), of this manager or another one; null: none.
   void setLinkPairProofs(std::shared_ptr<const LinkPairProofs> proofs);
 
-  /// Sets a margin of the body's own. It replaces CertifiedRequest::margin for all pairs of the body;
-  /// CertifiedRequest::added_margin is added to it too. If both bodies of a pair have one, the larger counts. Needs
-  /// setup().
+  /// Sets a margin of the body's own. It replaces CertifiedRequest::margin for all pairs of the body, also where it is
+  /// the smaller one; CertifiedRequest::added_margin is added to it too. If both bodies of a pair have one, the larger
+  /// counts. Needs setup().
   /// @param body  name of a link (all of its geometry), an obstacle or an attached object. The margin belongs to the
   ///   name: it is kept while an obstacle of that name is unregistered.
   /// @param margin  m, finite, at least 0.

@@ -21,6 +21,8 @@ struct CertifiedPairResult : Bracket {
   Eigen::Isometry3d tf1_at_upper = Eigen::Isometry3d::Identity(), tf2_at_upper = Eigen::Isometry3d::Identity();
   /// Whether the objects touch at t = 0 and that was ignored (CertifiedPairRequest::ignore_initial_contact).
   bool ignored_initial_contact = false;
+  /// Whether, moreover, they are proven apart nowhere on the motion: `free` says nothing then.
+  bool never_apart = false;
   /// The proof that the motion is free, or free until shortly before t_lower; null if the request did not ask for it
   /// (CertifiedPairRequest::certificate).
   std::shared_ptr<const Certificate> certificate;

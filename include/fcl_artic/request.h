@@ -87,8 +87,8 @@ struct Tolerances {
   /// Bodies whose gap can't be proven count as touching, with certain = false, only if the gap is below this length, in
   /// m, or too small for rounding to decide. Above 0.
   double tolerance_distance = 1e-6;
-  /// Bodies nearer than this, in m, count as touching; finite, at least 0. Margins of a pair's or body's own replace it
-  /// (ArticulatedCollisionManager::setMargin).
+  /// Bodies nearer than this, in m, count as touching; finite, at least 0. Margins of a pair's or body's own replace
+  /// it, also where they are smaller (ArticulatedCollisionManager::setMargin).
   double margin = 0;
   /// Added to the margin of every pair, in m: to `margin` and to margins that pairs and bodies have of their own.
   /// Finite, at least 0. What counts is the sum as rounded.
@@ -125,12 +125,15 @@ struct CertifiedPairRequest : Tolerances, Effort {
   /// Which contacts are looked for. A query of two bodies has one pair: `firstOfEveryPair` is `first` there.
   ContactMode mode = ContactMode::first;
   /// Maximum number of contacts reported, each of another pair of bodies; t_lower and t_upper take all contacts into
-  /// account, also with 0. With `first` each contact reported may be the first: none begins after t_upper. If there are
-  /// too many, the earliest are kept. A query of two bodies has one contact at most.
+  /// account, also with 0, which saves the time of describing contacts. With `first` each contact reported may be the
+  /// first: none begins after t_upper. If there are too many, the earliest are kept. A query of two bodies has one
+  /// contact at most.
   std::size_t max_contacts = 1;
   /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. Such a pair is
   /// not checked until it is proven apart over a whole time interval of 1/8, 1/64 or 1/512 of the motion; from the
-  /// start of the first such interval on it is checked as any other. Shorter separations are not looked for.
+  /// start of the first such interval on it is checked as any other. Shorter separations are not looked for. One that
+  /// is only within its margin at t = 0 is checked without it until then: the bodies themselves may not touch. All
+  /// parts of one body count as one: a link that touches one point of a cloud is not checked against the others.
   bool ignore_initial_contact = false;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
   /// `firstOfEveryPair` the motion's or piece's begin, after the first contact its t_lower). May be empty. If it

@@ -116,10 +116,14 @@ struct CertifiedResult : Bracket {
   /// the result is `certain`, the first one is that which is proven first. Empty if the motion is free.
   /// `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran out.
   std::vector<CertifiedContact> contacts;
-  /// Pose of every link at t_lower, link to world, in the order of the links; empty if the motion is free.
+  /// Pose of every link at t_lower, link to world, in the order of the links; empty if the motion is free, and if
+  /// CertifiedPairRequest::max_contacts is 0: then the verdict is all that is wanted.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
-  /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
+  /// Pairs that touch at t = 0, or are within their margin, and were ignored
+  /// (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
+  /// Number of these that touch, and are proven apart nowhere on the motion: `free` says nothing of them.
+  std::size_t never_apart_pairs = 0;
   /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links)
   /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of
   /// them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours do not count.
@@ -144,6 +148,9 @@ struct CertifiedResult : Bracket {
 FCL_ARTIC_EXPORT const char* toString(Status status);
 /// Returns the features with a hyphen, body 1's first, such as "vertex-face"; or "volume".
 FCL_ARTIC_EXPORT const char* toString(FeatureKind kind);
+/// What a free motion's answer says nothing of: allowed pairs without a proof, pairs that touched at the start and were
+/// ignored. Such as "but for 2 allowed pairs not proven apart"; empty if the motion is not free, or there is nothing.
+FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedResult& result);
 /// Prints the body's name, or "body" if it has none.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body);
 /// Prints toString(status).

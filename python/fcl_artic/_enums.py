@@ -13,6 +13,9 @@ class Status(enum.IntEnum):
     UNDECIDED = 2
     """The work budget ran out, or ``progress`` ended the query. The motion is proven free on [0, t_lower)."""
 
+    def __str__(self) -> str:
+        return self.name.lower()
+
 
 class ContactMode(enum.Enum):
     """Which contacts a query looks for."""

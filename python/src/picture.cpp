@@ -35,7 +35,10 @@ std::string titleOf(const CertifiedResult& r) {
     return std::string(text);
   };
   if (r.nothingChecked()) return "free: nothing was checked";
-  if (r.status == Status::free) return "free: proven for the whole motion";
+  if (r.status == Status::free) {
+    const std::string exceptions = exceptionsOf(r);
+    return "free: proven for the whole motion" + (exceptions.empty() ? "" : ", " + exceptions);
+  }
   if (r.status == Status::undecided) return "undecided: proven free before t = " + at(r.t_lower);
   std::string text = "first contact at t = " + at(r.t_lower);
   if (const CertifiedContact* c = r.first()) text += ": " + c->body1.name + " - " + c->body2.name;
@@ -63,6 +66,7 @@ CertifiedResult inPicture(const World& world, const CertifiedResult& result, dou
 py::object picture(const World& world, py::handle q0, py::handle q1, const CertifiedResult* given, py::handle size,
                    const std::optional<std::array<double, 2>>& camera, const std::optional<std::string>& title) {
   const Question question = questionOf(world, q0, q1);
+  if (given) requireAnswerOf(world, question, *given);
   const CertifiedResult result = given ? *given : answer(world, question, {});
   double begin = 0, length = 1;
   if (const auto* trajectory = std::get_if<JointTrajectory>(&question)) {

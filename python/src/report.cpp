@@ -44,10 +44,11 @@ py::object reportOn(const World& world, const Question& question, const Certifie
   const py::object progress = request.progress;
   const CertifiedRequest asked = request.request;
   if (given) {
-    for (const CertifiedContact& c : given->contacts) {
-      if (c.body1.link >= world.tree()->numLinks() || c.body2.link >= world.tree()->numLinks()) {
-        valueError("result is of another robot");
-      }
+    requireAnswerOf(world, question, *given);
+    if (given->isFree() && !answer(world, question, request).isFree()) {
+      valueError(
+          "result is free, but asked again with these options the motion is not: it is of another motion, of "
+          "another state of the world, or of other options");
     }
   } else {
     request.request.measure_times = true;
@@ -72,7 +73,7 @@ py::object reportOn(const World& world, const Question& question, const Certifie
   });
   watch.finish();
   const py::str html(app::htmlPage(report, bodies, distances));
-  const py::object page = py::module_::import("fcl_artic._report").attr("Report")(html, app::titleLine(report));
+  const py::object page = py::module_::import("fcl_artic._report").attr("Report")(html, app::titleLine(result));
   if (!path.is_none()) page.attr("save")(path);
   return page;
 }

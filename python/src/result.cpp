@@ -153,7 +153,8 @@ py::tuple resultState(const CertifiedResult& r) {
   py::list ignored;
   for (const auto& [a, b] : r.ignored_initial_contacts) ignored.append(py::make_tuple(state(a), state(b)));
   return py::make_tuple(state(static_cast<const Bracket&>(r)), state(r.contacts), arrayOf(r.M_0_at_lower), ignored,
-                        r.unproven_allowed_pairs, state(r.certificate), statisticsOf(r.statistics));
+                        r.unproven_allowed_pairs, state(r.certificate), statisticsOf(r.statistics),
+                        r.never_apart_pairs);
 }
 
 CertifiedResult resultOfState(const py::tuple& s) {
@@ -168,6 +169,7 @@ CertifiedResult resultOfState(const py::tuple& s) {
   r.unproven_allowed_pairs = py::cast<std::size_t>(s[4]);
   r.certificate = certificateOfState(s[5]);
   r.statistics = statisticsOfDict(s[6]);
+  r.never_apart_pairs = py::cast<std::size_t>(s[7]);
   return r;
 }
 
@@ -175,7 +177,7 @@ py::tuple pairResultState(const CertifiedPairResult& r) {
   return py::make_tuple(state(static_cast<const Bracket&>(r)), state(r.contacts),
                         py::make_tuple(arrayOf(r.tf1_at_lower), arrayOf(r.tf2_at_lower), arrayOf(r.tf1_at_upper),
                                        arrayOf(r.tf2_at_upper)),
-                        r.ignored_initial_contact, state(r.certificate), statisticsOf(r.statistics));
+                        r.ignored_initial_contact, state(r.certificate), statisticsOf(r.statistics), r.never_apart);
 }
 
 CertifiedPairResult pairResultOfState(const py::tuple& s) {
@@ -188,6 +190,7 @@ CertifiedPairResult pairResultOfState(const py::tuple& s) {
   r.tf1_at_upper = poses.at(2);
   r.tf2_at_upper = poses.at(3);
   r.ignored_initial_contact = py::cast<bool>(s[3]);
+  r.never_apart = py::cast<bool>(s[6]);
   r.certificate = certificateOfState(s[4]);
   r.statistics = statisticsOfDict(s[5]);
   return r;
@@ -312,6 +315,7 @@ void bindResults(py::module_& module) {
                                }
                                return pairs;
                              })
+      .def_readonly("never_apart_pairs", &CertifiedResult::never_apart_pairs)
       .def_readonly("unproven_allowed_pairs", &CertifiedResult::unproven_allowed_pairs)
       .def_property_readonly("nothing_checked", &CertifiedResult::nothingChecked)
       .def("__str__", [](const CertifiedResult& r) { return printed(r); })
@@ -331,6 +335,7 @@ void bindResults(py::module_& module) {
       .def_property_readonly("pose1_at_upper", [](const CertifiedPairResult& r) { return arrayOf(r.tf1_at_upper); })
       .def_property_readonly("pose2_at_upper", [](const CertifiedPairResult& r) { return arrayOf(r.tf2_at_upper); })
       .def_readonly("ignored_initial_contact", &CertifiedPairResult::ignored_initial_contact)
+      .def_readonly("never_apart", &CertifiedPairResult::never_apart)
       .def("__str__", [](const CertifiedPairResult& r) { return printed(static_cast<const Bracket&>(r)); })
       .def("__repr__",
            [](const CertifiedPairResult& r) { return "<PairResult: " + printed(static_cast<const Bracket&>(r)) + ">"; })

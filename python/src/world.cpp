@@ -196,6 +196,23 @@ static std::pair<double, double> timeOf(const Question& question) {
   return {trajectory->beginTime(), trajectory->endTime() - trajectory->beginTime()};
 }
 
+void requireAnswerOf(const World& world, const Question& question, const CertifiedResult& result) {
+  const KinematicTree& tree = *world.tree();
+  for (const CertifiedContact& c : result.contacts) {
+    if (std::max(c.body1.link, c.body2.link) >= tree.numLinks()) valueError("result is of another robot");
+  }
+  if (result.M_0_at_lower.empty()) return;
+  std::vector<Eigen::Isometry3d> M_0;
+  std::visit([&](const auto& motion) { tree.forwardKinematics(motion.configuration(result.t_lower), M_0); }, question);
+  if (M_0.size() != result.M_0_at_lower.size()) valueError("result is of another robot");
+  for (std::size_t i = 0; i < M_0.size(); ++i) {
+    if (!M_0[i].isApprox(result.M_0_at_lower[i], 1e-6)) {
+      valueError("result is of another motion: at its t_lower link '" + tree.linkName(static_cast<LinkId>(i)) +
+                 "' stands elsewhere on this one");
+    }
+  }
+}
+
 CertifiedResult answer(const World& world, const Question& question, Request request) {
   Watch watch(std::move(request.progress));
   const auto [begin, length] = timeOf(question);
@@ -227,6 +244,7 @@ CertifiedResult checkTrajectory(const World& world, py::handle waypoints, py::ha
 bool isFree(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
   Request request = readRequest(options);
   request.request.mode = ContactMode::any;
+  request.request.max_contacts = 0;
   return answer(world, questionOf(world, q0, q1), std::move(request)).isFree();
 }
 
@@ -410,7 +428,9 @@ void bindQueries(py::class_<World>& world) {
       .def("is_free", &isFree,
            "Whether the way is proven free: the fastest question. False also where that is not decided.", py::arg("q0"),
            py::arg("q1") = py::none())
-      .def("collide", &collide, "Finds what touches at one configuration.", py::arg("q"))
+      .def("collide", &collide,
+           "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
+           py::arg("q"))
       .def("clearance", &clearance,
            "The smallest distance of any checked pair on the whole way, proven from below and from above.",
            py::arg("q0"), py::arg("q1") = py::none())
@@ -435,7 +455,10 @@ void bindQueries(py::class_<World>& world) {
 }  // namespace
 
 void bindWorld(py::module_& module) {
-  py::class_<World> world(module, "World", "Robots and obstacles, ready to be asked. Threads may share it.");
+  py::class_<World> world(
+      module, "World",
+      "Robots and obstacles, ready to be asked. Threads may share it. The robot is copied: what is changed\n"
+      "in it later does not reach the world.");
   world.def(py::init(&makeWorld), py::arg("robot"), py::arg("scene") = py::none())
       .def_property_readonly("robot", [](const World& w) { return w.robot(); })
       .def_property_readonly("tree", [](const World& w) { return treeOfRobot(w.tree()); })

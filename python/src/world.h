@@ -83,6 +83,8 @@ Question questionOf(const World& world, py::handle motion, py::handle q1);
 
 /// Asks, and tells `progress` of the request and Ctrl-C meanwhile.
 CertifiedResult answer(const World& world, const Question& question, Request request);
+/// @throws ValueError for a result that can't be of this question: its links stand elsewhere at t_lower, or are others.
+void requireAnswerOf(const World& world, const Question& question, const CertifiedResult& result);
 
 void bindWorld(py::module_& module);
 void bindPlans(py::module_& module, py::class_<World>& world);

@@ -52,7 +52,17 @@ def test_a_result_that_is_there_is_shown(made, shared_world, hit):
     assert part(page, "answer")["t_lower"] == result.t_lower and part(page, "answer")["request"] is None
     known = shared_world.report(*hit, result, margin=0.004)
     assert part(known, "answer")["request"]["margin"] == 0.004
-    assert "first approach within 0.004 m" in known.html and "first approach" not in page.html
+    assert "first approach within the margin, 0.004 m" in known.html and "first approach" not in page.html
+
+
+def test_a_result_of_another_motion_is_refused(made, shared_world, hit, miss):
+    contact, free = shared_world.check(*hit), shared_world.check(*miss)
+    for call in (shared_world.report, shared_world.picture):
+        with pytest.raises(ValueError, match="another motion"):
+            call(*miss, result=contact)
+    with pytest.raises(ValueError, match="another motion"):
+        shared_world.report(*hit, result=free)
+    assert part(shared_world.report(*miss, result=free), "answer")["status"] == "free"
 
 
 def test_options_are_those_of_a_query(made, shared_world, hit):

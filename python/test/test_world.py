@@ -282,6 +282,28 @@ def test_allowed_pairs_are_not_checked_and_said_to_be_unproven(world, hit):
         world.allowed = ["wrist_roll"]
 
 
+def test_what_a_free_says_nothing_of_is_said():
+    tree = fcl_artic.KinematicTree("lane")
+    for link in ("rail", "cart"):
+        tree.add_link(link)
+    tree.add_joint(fcl_artic.Joint.prismatic("slide", "rail", "cart", axis=[1, 0, 0], lower=-9, upper=9))
+    robot = fcl_artic.Robot(tree)
+    robot.add_geometry("cart", fcl_artic.sphere(0.1))
+    world = fcl_artic.World(robot)
+    world.add("wall", fcl_artic.box([1, 4, 4]), fcl_artic.pose([2.5, 0, 0]))
+    deeper = world.check([2.2], [2.3], ignore_initial_contact=True)
+    assert deeper.free and deeper.never_apart_pairs == 1
+    assert "but for 1 pair that touches from the start on" in repr(deeper)
+    leaves = world.check([2.2], [0], ignore_initial_contact=True)
+    assert leaves.free and leaves.never_apart_pairs == 0 and len(leaves.ignored_initial_contacts) == 1
+    near = world.check([1.7], [2.5], margin=0.3, ignore_initial_contact=True)  # within the margin, then into the wall
+    assert near.contact and near.t_lower <= 0.25 <= near.t_upper + 1e-12
+    many = world.check_many([[2.2], [2.2]], [[2.3], [0]], ignore_initial_contact=True)
+    assert many.free.all() and many.never_apart_pairs.tolist() == [1, 0]
+    verdict = world.check([1.7], [2.5], max_contacts=0)
+    assert verdict.contact and verdict.contacts == [] and len(verdict.link_poses) == 0
+
+
 def test_margins_count_as_contact(world, miss):
     gap = world.clearance(*miss, check_self=False)
     assert world.check(*miss, check_self=False).free

@@ -372,7 +372,10 @@ Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, double most, const st
   if (!M.matrix().allFinite()) throw std::invalid_argument(what + " has a transform that is not finite");
   const Eigen::Matrix3d R = M.linear();
   const double defect = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (defect > most || R.determinant() < 0) {
+  if (defect <= most && R.determinant() < 0) {
+    throw std::invalid_argument(what + " has a transform that is a reflection (its determinant is -1)");
+  }
+  if (defect > most) {
     throw std::invalid_argument(what + " has a transform whose rotation is not orthonormal (defect " + shown(defect) +
                                 ")");
   }

@@ -89,7 +89,9 @@ Isometry3d readRigid(const fcl::Transform3<S>& M, const N& name) {
   const Matrix3d R = M.linear().template cast<double>();
   const Matrix3d defect = orthonormalityDefect(R);
   const double largest = defect.cwiseAbs().maxCoeff();
-  if (!(largest <= (std::is_same<S, float>::value ? 1e-4 : 1e-6) && R.determinant() > 0)) {
+  const bool orthonormal_enough = largest <= (std::is_same<S, float>::value ? 1e-4 : 1e-6);
+  require(!orthonormal_enough || R.determinant() > 0, name, "has a transform that is a reflection");
+  if (!orthonormal_enough) {
     throw std::invalid_argument(spelled(name) + " has a transform whose rotation is not orthonormal (defect " +
                                 shown(largest) + ")");
   }

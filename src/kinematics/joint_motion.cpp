@@ -38,13 +38,12 @@ void requireSizes(const KinematicTree& tree, const Eigen::VectorXd& sizes, const
 
 void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::string& what) {
   tree.requireConfiguration(q, what);
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  for (const JointId j : tree.mimicJoints()) {
     if (tree.numVariables(j) != 1) continue;
     const double value = tree.jointValue(j, q);
-    if (!(std::abs(value) <= kLargestJointValue)) {
-      throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + tree.joint(j).name +
-                                  "' is beyond 1e5");
-    }
+    if (std::abs(value) <= kLargestJointValue) continue;
+    throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + tree.joint(j).name +
+                                "' is beyond 1e5");
   }
   for (int v = 0; v < tree.dof(); ++v) {
     if (std::abs(q[v]) <= kLargestJointValue) continue;
@@ -87,9 +86,8 @@ bool turnsForever(const KinematicTree& tree, int v) {
 JointMotion::JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients)
     : joint_space_(tree.jointSpace()), tree_name_(tree.name()), variables_(std::move(coefficients)) {
   if (variables_.cols() == 1) variables_.conservativeResizeLike(Eigen::MatrixXd::Zero(variables_.rows(), 2));
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
-    if (v < 0) continue;
     const Eigen::Quaterniond start = quaternionAt(variables_.col(0), v);
     const Eigen::Matrix3d R = orthonormal(start.toRotationMatrix());
     for (int i = 0; i < 3; ++i) {
@@ -105,9 +103,8 @@ JointMotion JointMotion::linear(const KinematicTree& tree, const Eigen::VectorXd
   requireEnd(tree, q1, "q1");
   Eigen::MatrixXd coefficients(q0.size(), 2);
   coefficients << q0, q1 - q0;
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
-    if (v < 0) continue;
     const Eigen::Vector3d w = rotationVectorOf(quaternionAt(q1, v) * quaternionAt(q0, v).conjugate());
     coefficients.block<4, 1>(v, 1) << w, 0;
   }
@@ -155,9 +152,9 @@ JointMotion JointMotion::polynomial(const KinematicTree& tree, const Eigen::Matr
   for (int v = 0; v < tree.dof(); ++v) {
     if (!coefficients.row(v).allFinite()) refuse("of joint '" + tree.variableName(v) + "' are not finite");
   }
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
-    if (v < 0 || coefficients.row(v + 3).tail(coefficients.cols() - 1).isZero(0)) continue;
+    if (coefficients.row(v + 3).tail(coefficients.cols() - 1).isZero(0)) continue;
     refuse("of '" + tree.variableName(v + 3) + "' are not 0 from t^1 on: a quaternion turns by a rotation vector");
   }
   requireSizes(tree, coefficients.cwiseAbs().rowwise().sum(), "coefficients");

@@ -17,6 +17,7 @@ inline void withdrawClaims(CertifiedResult& result, double begin, double end) {
   result.contacts.clear();
   result.M_0_at_lower.clear();
   result.ignored_initial_contacts.clear();
+  result.never_apart_pairs = 0;
   result.unproven_allowed_pairs = 0;
   result.certificate.reset();
 }

@@ -123,6 +123,7 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   // anything may follow: that is left open, as a contact that is not certain.
   const bool never_apart = (alike && stay_parallel) || ((!parallel || alike) && heading1.analytic && heading2.analytic);
   result.ignored_initial_contact = request.ignore_initial_contact && never_apart;
+  result.never_apart = result.ignored_initial_contact;
   engine::FirstContact first;
   if (!result.ignored_initial_contact) {
     const bool left_open = request.ignore_initial_contact;  // they do touch at the start
@@ -204,6 +205,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
 
   static_cast<Bracket&>(result) = answer;
   result.ignored_initial_contact = answer.num_ignored > 0;
+  result.never_apart = answer.never_apart > 0;
   result.statistics = statisticsOf(answer.statistics);
   result.statistics.redon = redon_work;
   result.contacts.clear();

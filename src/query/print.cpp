@@ -78,10 +78,22 @@ std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
   } else {
     out << static_cast<const Bracket&>(result);
   }
-  const std::size_t n = result.unproven_allowed_pairs;
-  if (result.isFree() && n > 0)
-    out << ", but for " << n << " allowed pair" << (n == 1 ? "" : "s") << " not proven apart";
-  return out;
+  const std::string exceptions = exceptionsOf(result);
+  return exceptions.empty() ? out : out << ", " << exceptions;
+}
+
+std::string exceptionsOf(const CertifiedResult& result) {
+  std::string text;
+  if (!result.isFree()) return text;
+  const auto pairs = [](std::size_t n, const char* kind) {
+    return std::to_string(n) + kind + (n == 1 ? " pair" : " pairs");
+  };
+  const auto add = [&](const std::string& more) { text += (text.empty() ? "but for " : ", and for ") + more; };
+  if (result.unproven_allowed_pairs > 0) add(pairs(result.unproven_allowed_pairs, " allowed") + " not proven apart");
+  const std::size_t ignored = result.ignored_initial_contacts.size(), never = result.never_apart_pairs;
+  if (ignored > never) add("the initial contact of " + pairs(ignored - never, ""));
+  if (never > 0) add(pairs(never, "") + (never == 1 ? " that touches" : " that touch") + " from the start on");
+  return text;
 }
 
 const char* toString(LinkPairKind kind) {

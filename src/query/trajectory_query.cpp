@@ -97,7 +97,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       sum.certain = false;
       if (contact_found) break;  // not of every pair
       sum.t_lower = clock.begin();
-      tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
+      if (request.max_contacts > 0) tree().forwardKinematics(trajectory.piece(k).configuration(0), sum.M_0_at_lower);
       break;
     }
     if (request.work_budget) own.work_budget = request.work_budget - used;
@@ -114,6 +114,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
       impl_->add(trajectory.piece(k), aspects.time, own, part, details, claim);
     }
     add(sum.statistics, part.statistics);
+    sum.never_apart_pairs = part.never_apart_pairs;  // so far
     if (k == 0) sum.ignored_initial_contacts = part.ignored_initial_contacts;
     in_contact = std::move(still_in_contact);
 

@@ -304,6 +304,12 @@ void Registry::unbind(const fcl::CollisionObjectd* object) {
 void Registry::attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
                       const std::vector<std::string>& touch_links) {
   requireLink(link, "attach");
+  const auto carried = std::find_if(links_.begin(), links_.end(),
+                                    [&](const ManagedBody& body) { return body.attached && body.object == object; });
+  if (carried != links_.end()) {
+    throw std::invalid_argument("attach: '" + carried->name + "' is carried by '" + tree_->linkName(carried->link) +
+                                "' already; detach it first");
+  }
   const auto obstacle = require(obstacles_, object, "attach: the object is not registered as an obstacle");
   const std::string what = "attach: '" + obstacle->name + "'";
   ManagedBody body = *obstacle;

@@ -350,7 +350,7 @@ TEST(FclMotionTest, ValuesNotFiniteOrNotRigidAreRefused) {
   EXPECT_REFUSED(readMotion<double>(fcl::TranslationMotiond(one, zero, far)), "1e9 m");
   EXPECT_REFUSED(readMotion<double>(fcl::InterpMotion<double>(one, nan, one, zero, zero)), "not finite");
   EXPECT_REFUSED(readMotion<double>(fcl::InterpMotion<double>(2 * one, zero, one, zero, zero)), "not orthonormal");
-  EXPECT_REFUSED(readMotion<double>(fcl::ScrewMotion<double>(-one, zero, one, zero)), "not orthonormal");
+  EXPECT_REFUSED(readMotion<double>(fcl::ScrewMotion<double>(-one, zero, one, zero)), "a reflection");
   EXPECT_REFUSED(readMotion<double>(fcl::SplineMotion<double>(zero, zero, far, zero, zero, zero, zero, zero)), "1e9 m");
   EXPECT_REFUSED(readMotion<double>(fcl::SplineMotion<double>(zero, zero, zero, zero, zero, zero, nan, zero)),
                  "finite");

@@ -172,7 +172,7 @@ TEST(AttachedObject, BadInputChangesNothing) {
   EXPECT_TRUE(refused([&] { m.detach(k.body.get()); }, "not attached"));
   EXPECT_TRUE(touchesAt(k.run(0, 2), 0.35 / 2));  // still set up
   m.attach("cart", k.cup.get(), here);
-  EXPECT_TRUE(refused([&] { m.attach("cart", k.cup.get(), here); }, "not registered"));
+  EXPECT_TRUE(refused([&] { m.attach("cart", k.cup.get(), here); }, "carried by 'cart' already"));
   EXPECT_TRUE(refused([&] { m.unbind(k.cup.get()); }, "detach"));
   EXPECT_TRUE(refused([&] { m.registerObject(k.cup.get(), "other"); }, "'cup'"));
   EXPECT_TRUE(refused([&] { m.registerObject(stranger.get(), "cup"); }, "taken"));

@@ -39,7 +39,7 @@ JointMapping ofManager(JointMapping mapping, const ManagerPtr& manager) {
 
 CertifiedRequest asked(CertifiedRequest request, ContactMode mode) {
   request.mode = mode;
-  request.max_contacts = 1;
+  request.max_contacts = 0;  // the verdict is all that is wanted
   request.progress = nullptr;
   return request;
 }
