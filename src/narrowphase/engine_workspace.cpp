@@ -31,6 +31,21 @@ void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   std::stable_sort(contacts.begin(), contacts.end(), comesBefore);
 }
 
+/// Of contacts in order. The one kept begins with the earliest of its pair.
+void keepFirstOfEachPair(std::vector<LeafContact>& contacts) {
+  std::size_t kept = 0;
+  for (const LeafContact& contact : contacts) {
+    std::size_t i = 0;
+    while (i < kept && contacts[i].pair != contact.pair) ++i;
+    if (i < kept) {
+      contacts[i].t_lower = std::min(contacts[i].t_lower, contact.t_lower);
+    } else {
+      contacts[kept++] = contact;
+    }
+  }
+  contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(kept), contacts.end());
+}
+
 std::int32_t numNeverApart(const Answer& answer) {
   const auto never = [](const Ignored& pair) { return pair.watch_from >= kNever; };
   return static_cast<std::int32_t>(std::count_if(answer.ignored, answer.ignored + answer.num_ignored, never));
@@ -82,10 +97,10 @@ void EngineWorkspace::joinWithoutMargins(const Problem& problem, const Query& qu
   static_cast<Bracket&>(answer) = bare.status == Status::undecided ? undecidedBracket(first.t_lower, first)
                                                                    : bracketOf(first, query.tolerance_time, query.any);
   first_contacts_.insert(first_contacts_.end(), bare.contacts, bare.contacts + bare.num_contacts);
-  if (query.every_pair) {
-    std::stable_sort(first_contacts_.begin(), first_contacts_.end(), comesBefore);
-  } else {
-    orderContacts(answer.t_upper, first_contacts_);
+  orderContacts(query.every_pair ? kNever : answer.t_upper, first_contacts_);
+  keepFirstOfEachPair(first_contacts_);
+  if (first_contacts_.size() > static_cast<std::size_t>(query.max_contacts)) {
+    first_contacts_.resize(static_cast<std::size_t>(query.max_contacts));
   }
   answer.contacts = first_contacts_.data();
   answer.num_contacts = answer.status == Status::contact ? static_cast<std::int32_t>(first_contacts_.size()) : 0;

@@ -250,7 +250,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   keepFirstOfEachPair(result.certain, result.contacts);
   result.M_0_at_lower.clear();
-  if (!result.isFree() && request.max_contacts > 0) robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
+  if (!result.isFree() && request.max_contacts > 0)
+    robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
   result.never_apart_pairs = static_cast<std::size_t>(answer.never_apart);
   result.ignored_initial_contacts.clear();
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {

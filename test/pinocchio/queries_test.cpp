@@ -129,7 +129,7 @@ Tally randomQueries(std::uint64_t seed, const std::vector<JointType>& kinds) {
 void expectRight(const Tally& tally) {
   EXPECT_EQ(tally.queries, 1000);
   EXPECT_GT(tally.free, 100);
-  EXPECT_GT(tally.contacts - tally.initial, 100);
+  EXPECT_GT(tally.contacts - tally.initial, 80);
   EXPECT_EQ(tally.other_verdict, 0);
   EXPECT_EQ(tally.other_time, 0);
   EXPECT_EQ(tally.missed, 0);
@@ -268,14 +268,14 @@ TEST(PinocchioQueries, MarginsOfRequestsAreNotDroppedUnasked) {
     shape->setSweptSphereRadius(0.05);
     Arm arm;
     const auto index = arm.geometries.addGeometryObject(pinocchio::GeometryObject(
-        "post", 0, pinocchio::SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 2.35, 0)), shape));
+        "swept", 0, pinocchio::SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0, 2.35, 0)), shape));
     arm.geometries.addCollisionPair({arm.link2, index});
     return arm;
   };
   // The ball reaches y = 2.1 at most, the swept bodies begin at 2.25.
   const Arm boxed = armWith(std::make_shared<coal::Box>(0.1, 0.1, 0.1));
   const std::string message = refusal([&] { fromPinocchio(boxed.model, boxed.geometries); });
-  EXPECT_NE(message.find("geometry 'post': it is swept with a ball of radius 0.05"), std::string::npos) << message;
+  EXPECT_NE(message.find("geometry 'swept': it is swept with a ball of radius 0.05"), std::string::npos) << message;
   const Eigen::Vector2d q0(0.3, 0), q1(2.8, 0);
   const auto free = [&](const PinocchioRobot& robot, double margin, double added) {
     CertifiedRequest request;

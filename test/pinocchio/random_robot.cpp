@@ -154,13 +154,16 @@ RandomRobot randomRobot(Random& random, const std::vector<JointType>& kinds) {
   const bool sweeps = random() % 2;
   for (int i = 0; i < all; ++i) {
     Part part;
-    part.parent =
-        i < joints ? (i == 0 || random() % 8 == 0 ? -1 : static_cast<int>(random() % static_cast<unsigned>(i))) : -1;
+    // Depth first, as pinocchio asks for: on the joint before, or on one that carries it.
+    part.parent = i < joints ? i - 1 : -1;
+    while (part.parent >= 0 && random() % 4 == 0) {
+      part.parent = robot.parts[static_cast<std::size_t>(part.parent)].parent;
+    }
     part.type = i < joints ? kinds[random() % kinds.size()] : JointType::fixed;
     part.origin = randomPose(random, 0.5);
     part.axis = part.type == JointType::planar ? Eigen::Vector3d::UnitZ() : randomVector(random).normalized().eval();
-    part.mimics =
-        i > 0 && part.type == JointType::revolute && robot.parts[0].type == JointType::revolute && random() % 4 == 0;
+    part.mimics = i > 0 && part.type == JointType::revolute && robot.parts.back().type == JointType::revolute &&
+                  !robot.parts.back().mimics && random() % 4 == 0;
     part.body = static_cast<Body>(random() % static_cast<unsigned>(sweeps ? Body::mesh : Body::count));
     part.size = Eigen::Vector3d::Constant(0.03) + 0.15 * randomVector(random).cwiseAbs();
     part.placement = randomPose(random, i < joints ? 0.3 : 0.8);
@@ -185,7 +188,7 @@ void makePinocchio(const RandomRobot& robot, pinocchio::Model& model, pinocchio:
     if (part.type != JointType::fixed) {
       const pinocchio::JointIndex parent = part.parent < 0 ? 0 : joints[static_cast<std::size_t>(part.parent)];
       pinocchio::JointModel joint = pinocchioJoint(part);
-      if (part.mimics) joint = pinocchio::JointModelMimic(joint, model.joints[joints[0]], -0.5, 0.25);
+      if (part.mimics) joint = pinocchio::JointModelMimic(joint, model.joints[joints[i - 1]], -0.5, 0.25);
       joints.back() = model.addJoint(parent, joint, se3(part.origin), "joint" + std::to_string(i));
     }
     const Eigen::Isometry3d placement = part.type == JointType::fixed ? part.origin * part.placement : part.placement;
@@ -213,7 +216,7 @@ DirectRobot makeDirect(const RandomRobot& robot) {
     joint.origin = part.origin;
     joint.axis = part.axis;
     joint.mimics = part.mimics;
-    if (part.mimics) joint.mimic = {"joint0", -0.5, 0.25};
+    if (part.mimics) joint.mimic = {"joint" + std::to_string(i - 1), -0.5, 0.25};
     direct.tree->addLink(joint.child);
     direct.tree->addJoint(joint);
   }

@@ -28,7 +28,7 @@ struct Part {
   JointType type;  ///< `fixed`: no joint, an obstacle
   Eigen::Isometry3d origin;
   Eigen::Vector3d axis;
-  bool mimics = false;  ///< follows the first joint of the robot, where that is revolute
+  bool mimics = false;  ///< follows the joint before, revolute and no mimic: others pinocchio 3.7 may miscount
   Body body;
   Eigen::Vector3d size;  ///< m, at least 0.03
   Eigen::Isometry3d placement;

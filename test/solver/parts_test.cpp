@@ -376,7 +376,9 @@ TEST(BallProofs, BallsInLinksMeetAndNeitherLinkIsWithinTheOther) {
     const bool meet = k == 3 || k == 5;  // in lane 4 B lies within A
     EXPECT_EQ(world.balls.inLinks(TwoBalls::kPair, k), meet) << k;
     ASSERT_EQ(world.contacts.size(), meet) << k;
-    if (meet) EXPECT_EQ(world.horizon.first().t_upper, world.task.whole.at[k]);
+    if (meet) {
+      EXPECT_EQ(world.horizon.first().t_upper, world.task.whole.at[k]);
+    }
   }
   world.bodies[0].balls = nullptr;
   EXPECT_EQ(world.balls.reach(TwoBalls::kPair), 0);

@@ -64,8 +64,8 @@ struct UrdfOptions {
 };
 
 /// Reads a robot from a URDF file. Meshes may be in any format that assimp reads, with their scale, and are found by
-/// absolute path, path relative to the URDF's folder, `file:` or `package:` URL. Triangles without area are left out, with
-/// a note. Xacro files must be expanded before.
+/// absolute path, path relative to the URDF's folder, `file:` or `package:` URL. Triangles without area are left out,
+/// with a note. Xacro files must be expanded before.
 /// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
 ///   empty mesh, with all places that were searched, mesh without a triangle of positive area, mesh that is to be a
 ///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs.
