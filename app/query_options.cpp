@@ -22,8 +22,8 @@ void addQueryOptions(CLI::App& verb, CertifiedRequest& request) {
       ->group(kGroup)
       ->capture_default_str();
   verb.add_flag("--ignore-initial-contact", request.ignore_initial_contact,
-                "Pairs that touch at t = 0 may separate; they are watched from then on. A pair within its margin then "
-                "may not touch")
+                "Pairs that touch at t = 0 may separate; they are watched from then on. So may pairs that are within "
+                "their margin then")
       ->group(kGroup);
   verb.add_flag_callback(
           "--no-self", [&request] { request.check_self = false; }, "Do not check links against links")

@@ -131,9 +131,10 @@ struct CertifiedPairRequest : Tolerances, Effort {
   std::size_t max_contacts = 1;
   /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. Such a pair is
   /// not checked until it is proven apart over a whole time interval of 1/8, 1/64 or 1/512 of the motion; from the
-  /// start of the first such interval on it is checked as any other. Shorter separations are not looked for. One that
-  /// is only within its margin at t = 0 is checked without it until then: the bodies themselves may not touch. All
-  /// parts of one body count as one: a link that touches one point of a cloud is not checked against the others.
+  /// start of the first such interval on it is checked as any other. Shorter separations are not looked for. A pair
+  /// that is only within its margin at t = 0 is left out likewise, even if it touches before it has kept the margin: to
+  /// exclude that, ask without the margin too. All parts of one body count as one: a link that touches one point of a
+  /// cloud is not checked against the others.
   bool ignore_initial_contact = false;
   /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
   /// `firstOfEveryPair` the motion's or piece's begin, after the first contact its t_lower). May be empty. If it

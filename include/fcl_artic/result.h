@@ -122,7 +122,7 @@ struct CertifiedResult : Bracket {
   /// Pairs that touch at t = 0, or are within their margin, and were ignored
   /// (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
-  /// Number of these that touch, and are proven apart nowhere on the motion: `free` says nothing of them.
+  /// Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them.
   std::size_t never_apart_pairs = 0;
   /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links)
   /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of

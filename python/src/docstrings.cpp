@@ -111,8 +111,7 @@ constexpr struct {
     {"Answers", "point", "Point (N, 3) of the first contact, m; nan: none."},
     {"Answers", "normal", "Normal (N, 3) of the first contact; nan: none."},
     {"Answers", "never_apart_pairs",
-     "Number of pairs that touch from the start on and that ignore_initial_contact ignored: `free` says nothing of "
-     "them (N,)."},
+     "Number of pairs that ignore_initial_contact left out for the whole motion: `free` says nothing of them (N,)."},
     {"Answers", "unproven_allowed_pairs", "Number of allowed pairs that nothing proves apart (N,)."},
     {"Answers", "bodies", "Names that `pair` counts."},
     {"Answers", "free", "Which are proven free (N,)."},
@@ -145,7 +144,7 @@ constexpr struct {
     {"Result", "ignored_initial_contacts",
      "Names of pairs that touch at the start, or are within their margin, and were ignored."},
     {"Result", "never_apart_pairs",
-     "Number of these that touch and are proven apart nowhere on the motion: `free` says nothing of them."},
+     "Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them."},
     {"Result", "unproven_allowed_pairs",
      "Number of allowed pairs that nothing proves apart: `free` says nothing of them."},
     {"Result", "nothing_checked", "Whether it is free because there was no pair to check."},
@@ -196,11 +195,10 @@ constexpr struct {
     {"Request", "check_scene", "Whether links are checked against obstacles."},
     {"Request", "check_self", "Whether links are checked against each other."},
     {"Request", "ignore_initial_contact",
-     "Whether pairs that touch at the start may separate: they are not checked before. One that never does, however "
-     "deep it\n"
-     "goes, is never checked (Result.never_apart_pairs); one only nearer than its margin is checked without it until "
-     "then.\n"
-     "All of a body is one: a link that touches one point of a cloud is not checked against the others."},
+     "Whether pairs that touch at the start, or are within their margin, may separate: they are not checked before they\n"
+     "have kept their margin once. One that never does, however deep it goes, is never checked\n"
+     "(Result.never_apart_pairs). All of a body is one: a link that touches one point of a cloud is not checked against\n"
+     "the others."},
     {"Request", "certificate", "Whether a proof is asked for."},
     {"Request", "visibility", "When stage 2, culling by visibility, is used."},
     {"Request", "method", "The library's own method, or the paper's."},

@@ -201,7 +201,8 @@ void requireAnswerOf(const World& world, const Question& question, const Certifi
   for (const CertifiedContact& c : result.contacts) {
     if (std::max(c.body1.link, c.body2.link) >= tree.numLinks()) valueError("result is of another robot");
   }
-  if (result.M_0_at_lower.empty()) return;
+  if (result.isFree()) return;
+  if (result.M_0_at_lower.empty()) valueError("result has no link poses: it was asked for with max_contacts=0");
   std::vector<Eigen::Isometry3d> M_0;
   std::visit([&](const auto& motion) { tree.forwardKinematics(motion.configuration(result.t_lower), M_0); }, question);
   if (M_0.size() != result.M_0_at_lower.size()) valueError("result is of another robot");

@@ -63,6 +63,8 @@ def test_a_result_of_another_motion_is_refused(made, shared_world, hit, miss):
     with pytest.raises(ValueError, match="another motion"):
         shared_world.report(*hit, result=free)
     assert part(shared_world.report(*miss, result=free), "answer")["status"] == "free"
+    with pytest.raises(ValueError, match="max_contacts=0"):
+        shared_world.report(*hit, result=shared_world.check(*hit, max_contacts=0))
 
 
 def test_options_are_those_of_a_query(made, shared_world, hit):

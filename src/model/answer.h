@@ -57,7 +57,7 @@ struct Answer : Bracket {
   std::int32_t num_contacts = 0;
   const Ignored* ignored = nullptr;  ///< the same
   std::int32_t num_ignored = 0;
-  std::int32_t never_apart = 0;  ///< number of ignored pairs that nothing is claimed of: they touch, and part nowhere
+  std::int32_t never_apart = 0;  ///< number of ignored pairs of which nothing is claimed: they part nowhere
   Statistics statistics;
 };
 

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include "model/add_fields.h"
 #include "model/bracket.h"
 #include "narrowphase/elementary.h"
 #include "numerics/assertion.h"
@@ -31,83 +30,13 @@ void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   std::stable_sort(contacts.begin(), contacts.end(), comesBefore);
 }
 
-/// Of contacts in order. The one kept begins with the earliest of its pair.
-void keepFirstOfEachPair(std::vector<LeafContact>& contacts) {
-  std::size_t kept = 0;
-  for (const LeafContact& contact : contacts) {
-    std::size_t i = 0;
-    while (i < kept && contacts[i].pair != contact.pair) ++i;
-    if (i < kept) {
-      contacts[i].t_lower = std::min(contacts[i].t_lower, contact.t_lower);
-    } else {
-      contacts[kept++] = contact;
-    }
-  }
-  contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(kept), contacts.end());
-}
-
-std::int32_t numNeverApart(const Answer& answer) {
-  const auto never = [](const Ignored& pair) { return pair.watch_from >= kNever; };
-  return static_cast<std::int32_t>(std::count_if(answer.ignored, answer.ignored + answer.num_ignored, never));
-}
-
 }  // namespace
 
 void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& answer) {
-  solveAndDescribe(problem, query, answer);
-  answer.never_apart = numNeverApart(answer);
-  if (answer.num_ignored == 0 || query.margins.largest() == 0) return;
-  if (query.any && answer.status == Status::contact) return;
-  joinWithoutMargins(problem, query, answer);
-}
-
-/// Takes in what a solve without margins finds. Of pairs that are checked with their margins all along it finds nothing
-/// earlier; of those that are ignored it is what is claimed until they are watched.
-void EngineWorkspace::joinWithoutMargins(const Problem& problem, const Query& query, Answer& answer) {
-  const std::uint64_t used = answer.statistics.node_tests + answer.statistics.leaf_tests;
-  if (answer.status == Status::undecided || (query.work_budget && used >= query.work_budget)) {
-    answer.status = Status::undecided;  // nothing is known of the ignored pairs
-    answer.t_lower = 0;
-    answer.certain = false;
-    return;
-  }
-  first_contacts_.assign(answer.contacts, answer.contacts + answer.num_contacts);
-  first_ignored_.assign(answer.ignored, answer.ignored + answer.num_ignored);
-  without_margins_ = query;
-  without_margins_.margins = Margins();
-  without_margins_.num_advisors = 0;  // they may keep account of what they are asked
-  if (query.work_budget) without_margins_.work_budget = query.work_budget - used;
-  Answer bare;
-  solveAndDescribe(problem, without_margins_, bare);
-  addFields(bare.statistics, answer.statistics);
-  answer.statistics.pairs = bare.statistics.pairs;
-  answer.never_apart = numNeverApart(bare);
-  answer.ignored = first_ignored_.data();
-  if (bare.status == Status::free) {
-    answer.contacts = first_contacts_.data();
-    return;
-  }
-
-  FirstContact first;
-  for (const Bracket* found : {static_cast<const Bracket*>(&answer), static_cast<const Bracket*>(&bare)}) {
-    if (found->status == Status::free) continue;
-    joinLower(first, found->t_lower);
-    joinUpper(first, provenBy(*found));
-  }
-  static_cast<Bracket&>(answer) = bare.status == Status::undecided ? undecidedBracket(first.t_lower, first)
-                                                                   : bracketOf(first, query.tolerance_time, query.any);
-  first_contacts_.insert(first_contacts_.end(), bare.contacts, bare.contacts + bare.num_contacts);
-  orderContacts(query.every_pair ? kNever : answer.t_upper, first_contacts_);
-  keepFirstOfEachPair(first_contacts_);
-  if (first_contacts_.size() > static_cast<std::size_t>(query.max_contacts)) {
-    first_contacts_.resize(static_cast<std::size_t>(query.max_contacts));
-  }
-  answer.contacts = first_contacts_.data();
-  answer.num_contacts = answer.status == Status::contact ? static_cast<std::int32_t>(first_contacts_.size()) : 0;
-}
-
-void EngineWorkspace::solveAndDescribe(const Problem& problem, const Query& query, Answer& answer) {
   engine_.solve(memory_, problem, query, answer);
+  const auto never = [](const Ignored& pair) { return pair.watch_from >= kNever; };
+  answer.never_apart =
+      static_cast<std::int32_t>(std::count_if(answer.ignored, answer.ignored + answer.num_ignored, never));
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     FCL_ARTIC_ASSERT(answer.contacts[i].t_lower <= answer.contacts[i].t_upper && answer.status != Status::free);
   }

@@ -20,25 +20,17 @@ class EngineWorkspace {
 
   /// Solves, and completes the contacts (Query::describe_contacts): features by the elementary equations of two
   /// triangles (Redon 2004, eqs. 13, 14 and 18), which sharpen the answer's bracket, then nearest points and speeds.
-  ///
-  /// Of a pair whose initial contact is ignored, a margin ignores no more than the margin: until the pair has kept it
-  /// once, the bodies themselves are checked, in a second solve without margins.
   void solve(const Problem& problem, const Query& query, Answer& answer);
   /// Nearest points and speed of a contact that another solver has found, of a pair of the problem solved last.
   void addWitness(const Problem& problem, const Query& query, LeafContact& contact) const;
 
  private:
-  void solveAndDescribe(const Problem& problem, const Query& query, Answer& answer);
-  void joinWithoutMargins(const Problem& problem, const Query& query, Answer& answer);
   PairMotion pairMotion(PairId pair, double tm, double d) const;
   void nameFeatures(const Problem& problem, const Query& query, LeafContact& contact) const;
 
   const Engine& engine_;
   void* memory_;
   std::vector<LeafContact> contacts_;  ///< completed
-  Query without_margins_;              ///< of the second solve: pairMotion() still reads it
-  std::vector<LeafContact> first_contacts_;
-  std::vector<Ignored> first_ignored_;
 };
 
 }  // namespace engine

@@ -92,7 +92,7 @@ std::string exceptionsOf(const CertifiedResult& result) {
   if (result.unproven_allowed_pairs > 0) add(pairs(result.unproven_allowed_pairs, " allowed") + " not proven apart");
   const std::size_t ignored = result.ignored_initial_contacts.size(), never = result.never_apart_pairs;
   if (ignored > never) add("the initial contact of " + pairs(ignored - never, ""));
-  if (never > 0) add(pairs(never, "") + (never == 1 ? " that touches" : " that touch") + " from the start on");
+  if (never > 0) add(pairs(never, "") + (never == 1 ? " that parts nowhere" : " that part nowhere"));
   return text;
 }
 
