@@ -195,9 +195,11 @@ constexpr struct {
     {"Request", "check_scene", "Whether links are checked against obstacles."},
     {"Request", "check_self", "Whether links are checked against each other."},
     {"Request", "ignore_initial_contact",
-     "Whether pairs that touch at the start, or are within their margin, may separate: they are not checked before they\n"
+     "Whether pairs that touch at the start, or are within their margin, may separate: they are not checked before "
+     "they\n"
      "have kept their margin once. One that never does, however deep it goes, is never checked\n"
-     "(Result.never_apart_pairs). All of a body is one: a link that touches one point of a cloud is not checked against\n"
+     "(Result.never_apart_pairs). All of a body is one: a link that touches one point of a cloud is not checked "
+     "against\n"
      "the others."},
     {"Request", "certificate", "Whether a proof is asked for."},
     {"Request", "visibility", "When stage 2, culling by visibility, is used."},
