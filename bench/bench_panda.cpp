@@ -150,9 +150,10 @@ int main(int argc, char** argv) try {
         if (late)
           report.note(fmt::format("{}: LATE, {} after {}", edges[i].name, measured.answers[i], edges[i].seen_at));
         if (!seen && reported) {
-          report.note(fmt::format("{}: labelled free, contact{} at {:.6f} between {} and {}", edges[i].name,
-                                  result.certain ? " proven" : " not excluded", result.t_lower,
-                                  result.contacts.at(0).body1.name, result.contacts.at(0).body2.name));
+          const CertifiedContact* const c = result.first();
+          const std::string pair = c ? fmt::format(" between {} and {}", c->body1.name, c->body2.name) : "";
+          report.note(fmt::format("{}: labelled free, contact{} at {:.6f}{}", edges[i].name,
+                                  result.certain ? " proven" : " not excluded", result.t_lower, pair));
         }
       }
       Measured& sum = all[{method, set}];
