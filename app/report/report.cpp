@@ -217,8 +217,7 @@ std::string headline(const Report& r) {
       return r.request.margin > 0
                  ? fmt::format(
                        "FREE{}: proven, no checked pair comes within its margin, {:g} m unless it has its own, "
-                       "anywhere on "
-                       "the motion.",
+                       "anywhere on the motion.",
                        unproven, r.request.margin)
                  : fmt::format("FREE{}: proven, no checked pair touches anywhere on the motion.", unproven);
     }

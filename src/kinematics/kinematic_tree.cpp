@@ -175,8 +175,9 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   joint_child_.push_back(child);
   joint_variable_.push_back(variable);
   if (quaternionVariable(id) >= 0) with_quaternions_.push_back(id);
-  if (joint.mimics) mimics_.push_back(id);
-  if (!joint.mimics) {
+  if (joint.mimics) {
+    mimics_.push_back(id);
+  } else {
     variables_.insert(variables_.end(), static_cast<std::size_t>(numVariables(joint.type)), id);
     for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
   }

@@ -70,9 +70,9 @@ void requireRates(const KinematicTree& tree, const std::vector<VectorXd>& rates,
       if (std::isfinite(rates[k][v])) continue;
       throw std::invalid_argument(where + ": joint '" + tree.variableName(v) + "': not finite");
     }
-    for (JointId j = 0; j < tree.numJoints(); ++j) {
+    for (const JointId j : tree.quaternionJoints()) {
       const int v = tree.quaternionVariable(j);
-      if (v < 0 || rates[k][v + 3] == 0) continue;
+      if (rates[k][v + 3] == 0) continue;
       throw std::invalid_argument(where + ": '" + tree.variableName(v + 3) +
                                   "' is not 0: a quaternion's rate is an angular velocity");
     }
@@ -80,19 +80,16 @@ void requireRates(const KinematicTree& tree, const std::vector<VectorXd>& rates,
 }
 
 void refuseQuaternions(const KinematicTree& tree, const char* what) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    if (tree.quaternionVariable(j) < 0) continue;
-    throw std::invalid_argument(std::string("trajectory: joint '") + tree.joint(j).name +
-                                "' turns by a quaternion, which " + what + " cannot describe");
-  }
+  if (tree.quaternionJoints().empty()) return;
+  throw std::invalid_argument("trajectory: joint '" + tree.joint(tree.quaternionJoints().front()).name +
+                              "' turns by a quaternion, which " + what + " cannot describe");
 }
 
 /// A quaternion that stands still needs no words on how it turns: its rates are 0, its coefficients vanish.
 void requireStillQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& waypoints,
                              const std::vector<VectorXd>& velocities, const std::vector<VectorXd>& accelerations) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
-    if (v < 0) continue;
     for (std::size_t k = 0; k < waypoints.size(); ++k) {
       if (waypoints[k].segment<4>(v) == waypoints[0].segment<4>(v) && velocities[k].segment<4>(v).isZero(0) &&
           accelerations[k].segment<4>(v).isZero(0)) {
@@ -166,9 +163,9 @@ JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> 
   requireTimes(times_);
   for (std::size_t k = 1; k < pieces_.size(); ++k) {
     VectorXd before = pieces_[k - 1].configuration(1), after = pieces_[k].configuration(0);
-    for (JointId j = 0; j < tree.numJoints(); ++j) {
+    for (const JointId j : tree.quaternionJoints()) {
       const int v = tree.quaternionVariable(j);
-      if (v >= 0 && before.segment<4>(v).dot(after.segment<4>(v)) < 0) after.segment<4>(v) = -after.segment<4>(v);
+      if (before.segment<4>(v).dot(after.segment<4>(v)) < 0) after.segment<4>(v) = -after.segment<4>(v);
     }
     for (int v = 0; v < tree.dof(); ++v) {
       if (std::abs(after[v] - before[v]) <= kJump + kJumpPart * std::max(std::abs(before[v]), std::abs(after[v])))
@@ -234,9 +231,8 @@ JointTrajectory JointTrajectory::cubic(const KinematicTree& tree, const std::vec
   for (std::size_t k = 0; k + 1 < q.size(); ++k) {
     const double h = times[k + 1] - times[k];
     VectorXd delta = q[k + 1] - q[k], v0 = h * velocities[k], v1 = h * velocities[k + 1];
-    for (JointId j = 0; j < tree.numJoints(); ++j) {
+    for (const JointId j : tree.quaternionJoints()) {
       const int v = tree.quaternionVariable(j);
-      if (v < 0) continue;
       const auto orientation = [&](const VectorXd& x) {
         return Eigen::Quaterniond(Eigen::Vector4d(x.segment<4>(v))).normalized();
       };
