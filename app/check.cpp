@@ -23,6 +23,7 @@
 #include "redon_options.h"
 #include "render/picture.h"
 #include "report/page.h"
+#include "report/title_line.h"
 #include "usage.h"
 #include "visibility_options.h"
 #include "waypoints.h"

@@ -21,6 +21,7 @@
 #include "page_parts.h"
 #include "render/triangles.h"
 #include "text/xml.h"
+#include "title_line.h"
 
 namespace fcl_artic::app {
 namespace {

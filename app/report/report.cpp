@@ -247,22 +247,6 @@ std::string headline(const Report& r) {
   return {};
 }
 
-std::string titleLine(const CertifiedResult& result) {
-  if (result.nothingChecked()) return "free: nothing was checked";
-  if (result.status == Status::free) {
-    const std::string exceptions = exceptionsOf(result);
-    return "free: proven for the whole motion" + (exceptions.empty() ? "" : ", " + exceptions);
-  }
-  if (result.status == Status::undecided)
-    return fmt::format("undecided: proven free before t = {:.4f}", result.t_lower);
-  std::string text = fmt::format("first contact at t = {:.4f}", result.t_lower);
-  if (!result.contacts.empty()) {
-    const CertifiedContact& c = result.contacts.front();
-    text += fmt::format(": {} - {}", c.body1.name, c.body2.name);
-  }
-  return text + (result.certain ? "" : " (not certain)");
-}
-
 std::string textReport(const Report& r) {
   const CertifiedResult& result = r.result;
   std::string text = headline(r) + "\n";

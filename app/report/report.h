@@ -38,7 +38,4 @@ std::string textReport(const Report& report);
 /// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
 nlohmann::ordered_json jsonReport(const Report& report);
 
-/// Names of the two sides and the time: one line, for a picture's title.
-std::string titleLine(const CertifiedResult& result);
-
 }  // namespace fcl_artic::app

@@ -2,13 +2,12 @@
 """Pictures of answers."""
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
 
 from . import _fcl_artic as _ext
 
 if TYPE_CHECKING:  # numpy.typing takes 10 ms to import
-    import os
-
     import numpy as np
     import numpy.typing as npt
 
@@ -24,7 +23,10 @@ class Picture:
         return _ext._png(self.array)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the image as a PNG file."""
+        """Writes the image as a PNG file. ValueError: the path ends as that of another kind of file, such as .jpg."""
+        ending = os.path.splitext(os.fspath(path))[1]
+        if ending.lower() not in ("", ".png"):
+            raise ValueError(f"'{os.fspath(path)}' ends in '{ending}'; pictures are written as .png")
         content = self.png()
         with open(path, "wb") as file:
             file.write(content)

@@ -2,10 +2,15 @@
 """Answers as pages."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import errno
+import os
 
-if TYPE_CHECKING:
-    import os
+
+def require_folder_of(path: str | os.PathLike[str]) -> None:
+    """Raises FileNotFoundError where a file can't be written, as its folder is not there: before long work."""
+    folder = os.path.dirname(os.path.abspath(path))
+    if not os.path.isdir(folder):
+        raise FileNotFoundError(errno.ENOENT, "no such folder", folder)
 
 
 class Report:

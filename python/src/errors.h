@@ -34,6 +34,15 @@ inline std::string typeName(py::handle value) {
   return Py_TYPE(value.ptr())->tp_name;
 }
 
+/// The value as what it must be.
+/// @param what, type  the argument's name and its class, for the message.
+/// @param cure  which function gives one.
+template <class T>
+const T& required(py::handle value, const char* what, const char* type, const char* cure) {
+  if (py::isinstance<T>(value)) return py::cast<const T&>(value);
+  typeError(std::string(what) + " is no " + type + " but " + typeName(value) + "; " + cure);
+}
+
 /// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
 /// else that is wrong with a file's content a ValueError. To be called with the GIL held.
 /// @param path  of the file that the caller named.

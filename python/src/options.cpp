@@ -151,6 +151,23 @@ void bindOptions(Class& bound, const std::vector<Option<T>>& options) {
   }
 }
 
+/// All options by their names, for pickling.
+template <class T>
+py::dict stateOf(const T& chosen, const std::vector<Option<T>>& options) {
+  py::dict state;
+  for (const Option<T>& option : options) {
+    if (option.get) state[option.name] = option.get(chosen);
+  }
+  return state;
+}
+
+template <class T>
+T ofState(const py::dict& state, const std::vector<Option<T>>& options) {
+  T out{};
+  setAll(out, options, py::reinterpret_borrow<py::kwargs>(state));
+  return out;
+}
+
 }  // namespace
 
 bool flagOf(py::handle value, const char* what) {
@@ -220,7 +237,9 @@ void bindRequest(py::module_& module) {
       }))
       .def_static("as_written", &RedonOptions::asWritten,
                   "The options of the paper, without what this library adds to it.")
-      .def("__repr__", [](const RedonOptions& o) { return expression("RedonOptions", o, redonOptions()); });
+      .def("__repr__", [](const RedonOptions& o) { return expression("RedonOptions", o, redonOptions()); })
+      .def(py::pickle([](const RedonOptions& o) { return stateOf(o, redonOptions()); },
+                      [](const py::dict& state) { return ofState(state, redonOptions()); }));
   bindOptions(redon, redonOptions());
 
   py::class_<Request> request(module, "Request",
@@ -230,7 +249,14 @@ void bindRequest(py::module_& module) {
         if (options.contains("request")) typeError("Request() takes no request");
         return readRequest(options);
       }))
-      .def("__repr__", [](const Request& r) { return text(r); });
+      .def("__repr__", [](const Request& r) { return text(r); })
+      .def(py::pickle(
+          [](const Request& r) { return py::make_tuple(stateOf(r, requestOptions()), r.most_contacts_chosen); },
+          [](const py::tuple& state) {
+            Request request = ofState(py::dict(state[0]), requestOptions());
+            request.most_contacts_chosen = py::cast<bool>(state[1]);
+            return request;
+          }));
   bindOptions(request, requestOptions());
 }
 

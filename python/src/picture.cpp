@@ -13,6 +13,7 @@
 #ifdef FCL_ARTIC_HAS_PICTURES
 #include "render/image.h"
 #include "render/picture.h"
+#include "report/title_line.h"
 #endif
 
 namespace fcl_artic::python {
@@ -26,23 +27,6 @@ int pixelsOf(py::handle size, std::size_t i) {
   const int pixels = py::cast<int>(py::object(py::reinterpret_borrow<py::sequence>(size)[i]));
   if (pixels < 64 || pixels > 4096) valueError("size has " + std::to_string(pixels) + ", not 64 to 4096 pixels");
   return pixels;
-}
-
-std::string titleOf(const CertifiedResult& r) {
-  const auto at = [](double t) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4f", t);
-    return std::string(text);
-  };
-  if (r.nothingChecked()) return "free: nothing was checked";
-  if (r.status == Status::free) {
-    const std::string exceptions = exceptionsOf(r);
-    return "free: proven for the whole motion" + (exceptions.empty() ? "" : ", " + exceptions);
-  }
-  if (r.status == Status::undecided) return "undecided: proven free before t = " + at(r.t_lower);
-  std::string text = "first contact at t = " + at(r.t_lower);
-  if (const CertifiedContact* c = r.first()) text += ": " + c->body1.name + " - " + c->body2.name;
-  return text + (r.certain ? "" : " (not certain)");
 }
 
 /// A result in the picture's time, [0, 1], whose bodies are the world's own, found by their names: it may come from
@@ -66,6 +50,9 @@ CertifiedResult inPicture(const World& world, const CertifiedResult& result, dou
 py::object picture(const World& world, py::handle q0, py::handle q1, const CertifiedResult* given, py::handle size,
                    const std::optional<std::array<double, 2>>& camera, const std::optional<std::string>& title) {
   const Question question = questionOf(world, q0, q1);
+  if (camera && !(std::isfinite((*camera)[0]) && std::isfinite((*camera)[1]))) {
+    valueError("camera has an angle that is not finite");
+  }
   if (given) requireAnswerOf(world, question, *given);
   const CertifiedResult result = given ? *given : answer(world, question, {});
   double begin = 0, length = 1;
@@ -94,7 +81,7 @@ py::object picture(const World& world, py::handle q0, py::handle q1, const Certi
   options.width = pixelsOf(size, 0);
   options.height = pixelsOf(size, 1);
   options.camera = camera;
-  options.title = title ? *title : titleOf(result);
+  options.title = title ? *title : app::titleLine(result);
   const render::JointPath path = [&](double t) {
     const auto* motion = std::get_if<JointMotion>(&question);
     return motion ? motion->configuration(t) : std::get<JointTrajectory>(question).configuration(begin + length * t);

@@ -69,7 +69,8 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
   });
 }
 
-CertifiedResult certify(const World& world, const LoadedPlan& plan, const py::kwargs& options) {
+CertifiedResult certify(const World& world, py::handle value, const py::kwargs& options) {
+  const auto& plan = required<LoadedPlan>(value, "plan", "Plan", "load_plans() reads the plans of a file");
   const plans::PlanMotion& motion = plan.require();
   std::vector<plans::Attached> attached;
   for (const World::Body& body : world.bodies()) {

@@ -11,6 +11,7 @@
 
 #ifdef FCL_ARTIC_HAS_REPORTS
 #include "report/page.h"
+#include "report/title_line.h"
 #endif
 
 namespace fcl_artic::python {
@@ -39,6 +40,8 @@ std::vector<app::PageBody> bodiesOf(const World& world, double begin, double len
 
 py::object reportOn(const World& world, const Question& question, const CertifiedResult* given, py::handle path,
                     const py::kwargs& options) {
+  const py::module_ pages = py::module_::import("fcl_artic._report");
+  if (!path.is_none()) pages.attr("require_folder_of")(path);
   const auto [begin, end] = app::timeOf(question);
   Request request = readRequest(options);
   const py::object progress = request.progress;
@@ -73,7 +76,7 @@ py::object reportOn(const World& world, const Question& question, const Certifie
   });
   watch.finish();
   const py::str html(app::htmlPage(report, bodies, distances));
-  const py::object page = py::module_::import("fcl_artic._report").attr("Report")(html, app::titleLine(result));
+  const py::object page = pages.attr("Report")(html, app::titleLine(result));
   if (!path.is_none()) page.attr("save")(path);
   return page;
 }

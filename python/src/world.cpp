@@ -295,10 +295,13 @@ py::list namesOf(const std::vector<Kind>& all, const std::function<bool(const Ki
   return names;
 }
 
-std::unique_ptr<World> makeWorld(const Robot& robot, py::handle scene) {
-  if (scene.is_none()) return std::make_unique<World>(robot, Scene{});
-  if (py::isinstance<Scene>(scene)) return std::make_unique<World>(robot, py::cast<const Scene&>(scene));
-  typeError("scene is no Scene but " + typeName(scene) + "; load_scene() reads one from a file");
+const Scene& sceneOf(py::handle scene) {
+  return required<Scene>(scene, "scene", "Scene", "load_scene() reads one from a file");
+}
+
+std::unique_ptr<World> makeWorld(py::handle robot, py::handle scene) {
+  const Robot& of = required<Robot>(robot, "robot", "Robot", "load_urdf() reads one from a file");
+  return std::make_unique<World>(of, scene.is_none() ? Scene{} : sceneOf(scene));
 }
 
 void bindChanges(py::class_<World>& world) {
@@ -310,12 +313,15 @@ void bindChanges(py::class_<World>& world) {
           },
           "Adds an obstacle that stands still at a pose.", py::arg("name"), py::arg("geometry"),
           py::arg("pose") = py::none())
-      .def("add_scene", &World::addScene, "Adds all obstacles of a scene, or none if one is refused.", py::arg("scene"))
-      .def("replace_scene", &World::replaceScene,
-           "Puts a scene in place of all obstacles that stand still, or changes nothing if one is refused. What links\n"
-           "carry and what moves by itself stays, and so do allowed pairs and margins, which go by names. What was\n"
-           "made of the robot is kept, so this takes microseconds where a new World takes milliseconds.",
-           py::arg("scene"))
+      .def(
+          "add_scene", [](World& w, py::handle scene) { w.addScene(sceneOf(scene)); },
+          "Adds all obstacles of a scene, or none if one is refused.", py::arg("scene"))
+      .def(
+          "replace_scene", [](World& w, py::handle scene) { w.replaceScene(sceneOf(scene)); },
+          "Puts a scene in place of all obstacles that stand still, or changes nothing if one is refused. What links\n"
+          "carry and what moves by itself stays, and so do allowed pairs and margins, which go by names. What was\n"
+          "made of the robot is kept, so this takes microseconds where a new World takes milliseconds.",
+          py::arg("scene"))
       .def(
           "add_moving",
           [](World& w, const std::string& name, py::handle geometry, const Motion& motion) {

@@ -30,6 +30,19 @@ def test_a_result_keeps_all_its_fields(shared_world, hit):
     assert copy.certificate.record() == result.certificate.record()
 
 
+def test_a_request_keeps_all_its_options(shared_world, hit):
+    redon = fcl_artic.RedonOptions(newton=True, refinement_level=2)
+    assert repr(copied(redon)) == repr(redon) != repr(fcl_artic.RedonOptions())
+    request = fcl_artic.Request(mode="any", margin=0.02, method="redon2004", redon=redon, check_self=False)
+    copy = copied(request)
+    assert repr(copy) == repr(request) and copy.redon.refinement_level == 2
+    # A number of contacts that nobody chose follows the mode still.
+    for again in (request, copy):
+        assert len(shared_world.check(*hit, request=again, mode="first_of_every_pair", margin=0).contacts) > 1
+    one = copied(fcl_artic.Request(max_contacts=1))
+    assert len(shared_world.check(*hit, request=one, mode="first_of_every_pair").contacts) == 1
+
+
 def test_other_answers_keep_all_their_fields(shared_world, robot, miss):
     clearance = shared_world.clearance(*miss)
     copy = copied(clearance)

@@ -46,3 +46,19 @@ def test_a_trajectory_is_drawn_in_its_own_time(drawn, shared_world, hit):
 def test_a_size_that_is_none_is_refused(shared_world, hit):
     with pytest.raises((ValueError, RuntimeError)):
         shared_world.picture(*hit, size=(10, 10))
+
+
+def test_a_camera_without_a_direction_is_refused(shared_world, hit):
+    for camera in ((float("nan"), 20), (30, float("inf"))):
+        with pytest.raises((ValueError, RuntimeError), match="camera|pictures"):
+            shared_world.picture(*hit, size=(320, 200), camera=camera)
+
+
+def test_a_file_of_another_kind_is_refused(tmp_path):
+    picture = fcl_artic.Picture(np.zeros((64, 64, 3), np.uint8))
+    with pytest.raises(ValueError, match="a.jpg' ends in '.jpg'"):
+        picture.save(tmp_path / "a.jpg")
+    assert list(tmp_path.iterdir()) == []
+    for name in ("a.PNG", "a"):
+        picture.save(str(tmp_path / name))
+        assert (tmp_path / name).read_bytes() == picture.png()

@@ -44,6 +44,8 @@ def test_what_is_wrong_is_said(shared_world, robot, tmp_path):
     for use in (lambda: bad.trajectory, lambda: shared_world.certify(bad), lambda: bad.waypoint_before(0)):
         with pytest.raises(ValueError, match="waypoint 1 has 5 positions"):
             use()
+    with pytest.raises(TypeError, match="plan is no Plan but PosixPath; load_plans"):
+        shared_world.certify(file)
     with pytest.raises(FileNotFoundError):
         fcl_artic.load_plans(tmp_path / "nothing.csv", robot)
     with pytest.raises(ValueError, match="none of .csv"):

@@ -44,6 +44,10 @@ def test_a_page_is_saved_and_shown_in_a_frame(made, shared_world, hit, tmp_path)
     assert html.unescape(re.search(r'srcdoc="([^"]*)"', frame)[1]) == made.html
     again = shared_world.report(*hit, path=tmp_path / "b.html")
     assert (tmp_path / "b.html").read_text() == again.html
+    asked = []
+    with pytest.raises(FileNotFoundError, match="no such folder.*nowhere"):
+        shared_world.report(*hit, path=tmp_path / "nowhere" / "c.html", progress=asked.append)
+    assert asked == []  # refused before the work
 
 
 def test_a_result_that_is_there_is_shown(made, shared_world, hit):

@@ -195,6 +195,19 @@ def test_motions_are_made_of_the_tree(shared_world, robot, hit):
         shared_world.check(fcl_artic.JointMotion.still(other, []))
 
 
+def test_a_path_in_place_of_what_it_holds_is_refused(world, scene):
+    for call, text in (
+        (lambda: fcl_artic.World("robot.urdf"), "robot is no Robot but str; load_urdf"),
+        (lambda: fcl_artic.World(world.robot, "cell.stl"), "scene is no Scene but str; load_scene"),
+        (lambda: world.add_scene("cell.stl"), "scene is no Scene but str; load_scene"),
+        (lambda: world.replace_scene(None), "scene is no Scene but NoneType; load_scene"),
+    ):
+        with pytest.raises(TypeError, match=text):
+            call()
+    with pytest.raises(ValueError, match="^the margin of 'pipes' is -1, not a number >= 0"):
+        world.set_margin("pipes", -1)
+
+
 def test_obstacles_are_added_moved_and_removed(world, miss):
     assert world.check(*miss).free
     at = world.tree.link_pose("wrist_roll", miss[0])[:3, 3]

@@ -3,10 +3,11 @@
 // What the engine answers. Plain data.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
-#include "fcl_artic/bracket.h"
 #include "fcl_artic/statistics.h"
+#include "model/bracket.h"
 #include "model/pair_id.h"
 
 namespace fcl_artic {
@@ -44,12 +45,17 @@ static inline bool comesBefore(const LeafContact& x, const LeafContact& y) {
   return x.certain ? x.t_upper < y.t_upper : x.t_lower < y.t_lower;
 }
 
-/// A pair in contact at t = 0 and the time from which it is watched again; 2: never.
+/// A pair in contact at t = 0 and the time from which it is watched again; kNever: it parts nowhere, and nothing is
+/// claimed of it.
 struct Ignored {
   PairId pair;
   std::int32_t body_a, body_b;
   double watch_from;
 };
+
+static inline bool neverApart(const Ignored& pair) {
+  return pair.watch_from >= kNever;
+}
 
 /// The bracket of all checked pairs, and what was found.
 struct Answer : Bracket {
@@ -57,9 +63,15 @@ struct Answer : Bracket {
   std::int32_t num_contacts = 0;
   const Ignored* ignored = nullptr;  ///< the same
   std::int32_t num_ignored = 0;
-  std::int32_t never_apart = 0;  ///< number of ignored pairs of which nothing is claimed: they part nowhere
   Statistics statistics;
 };
+
+/// Number of ignored pairs of which nothing is claimed.
+static inline std::size_t numNeverApart(const Answer& answer) {
+  std::size_t count = 0;
+  for (std::int32_t i = 0; i < answer.num_ignored; ++i) count += neverApart(answer.ignored[i]);
+  return count;
+}
 
 }  // namespace engine
 }  // namespace fcl_artic

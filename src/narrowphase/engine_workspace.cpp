@@ -34,9 +34,6 @@ void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
 
 void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& answer) {
   engine_.solve(memory_, problem, query, answer);
-  const auto never = [](const Ignored& pair) { return pair.watch_from >= kNever; };
-  answer.never_apart =
-      static_cast<std::int32_t>(std::count_if(answer.ignored, answer.ignored + answer.num_ignored, never));
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     FCL_ARTIC_ASSERT(answer.contacts[i].t_lower <= answer.contacts[i].t_upper && answer.status != Status::free);
   }

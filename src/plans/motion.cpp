@@ -79,8 +79,9 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   }
   for (int v = 0; v < tree.dof(); ++v) {
     if (known[static_cast<std::size_t>(v)]) continue;
-    refuse(fmt::format("the plan has no joint '{}': give its value by --state {}=VALUE", tree.variableName(v),
-                       tree.variableName(v)));
+    refuse(
+        fmt::format("the plan has no joint '{0}': give its value by --state {0}=VALUE (Python: state={{'{0}': VALUE}})",
+                    tree.variableName(v)));
   }
   // A quaternion of which only parts are known is nobody's wish, but has a length that is looked at.
   for (int v = 0; v < tree.dof(); ++v) {

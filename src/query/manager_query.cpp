@@ -252,7 +252,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.M_0_at_lower.clear();
   if (!result.isFree() && request.max_contacts > 0)
     robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
-  result.never_apart_pairs = static_cast<std::size_t>(answer.never_apart);
+  result.never_apart_pairs = engine::numNeverApart(answer);
   result.ignored_initial_contacts.clear();
   for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
@@ -266,7 +266,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   if (aspects.never_apart) {
     aspects.never_apart->clear();
     for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-      if (answer.ignored[i].watch_from > 1) aspects.never_apart->push_back(answer.ignored[i].pair);
+      if (engine::neverApart(answer.ignored[i])) aspects.never_apart->push_back(answer.ignored[i].pair);
     }
   }
   result.statistics = workOf(solved);

@@ -205,7 +205,7 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
 
   static_cast<Bracket&>(result) = answer;
   result.ignored_initial_contact = answer.num_ignored > 0;
-  result.never_apart = answer.never_apart > 0;
+  result.never_apart = engine::numNeverApart(answer) > 0;
   result.statistics = statisticsOf(answer.statistics);
   result.statistics.redon = redon_work;
   result.contacts.clear();

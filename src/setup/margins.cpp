@@ -13,7 +13,7 @@ namespace {
 
 void requireMargin(double margin, const std::string& of) {
   if (std::isfinite(margin) && margin >= 0) return;
-  throw std::invalid_argument("setMargin: the margin of " + of + " is " + shown(margin) + ", not a number >= 0");
+  throw std::invalid_argument("the margin of " + of + " is " + shown(margin) + ", not a number >= 0");
 }
 
 }  // namespace

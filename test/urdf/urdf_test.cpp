@@ -321,13 +321,16 @@ TEST_F(UrdfTest, NotesWhatIsUnusual) {
   const auto limits = [](const char* numbers) {
     return "<axis xyz='0 0 1'/><limit " + std::string(numbers) + " effort='1' velocity='1'/>";
   };
-  const Robot limp =
-      load("<link name='a'/><link name='b'/><link name='c'/>" + joint("limp", "revolute", "a", "b", limits("")) +
-           joint("stiff", "revolute", "b", "c", limits("lower='1' upper='1'")));
-  ASSERT_EQ(limp.notes.size(), 2u);
+  const Robot limp = load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/>" +
+                          joint("limp", "revolute", "a", "b", limits("")) +
+                          joint("stiff", "revolute", "b", "c", limits("lower='1' upper='1'")) +
+                          joint("swapped", "revolute", "c", "d", limits("lower='1' upper='-1'")));
+  ASSERT_EQ(limp.notes.size(), 3u);
   expectContains(limp.notes[0], "joint 'limp' has limits that are both 0");
+  expectContains(limp.notes[1], "joint 'swapped' has its lower limit above its upper one");
   EXPECT_FALSE(hasLimits(limp.tree->joint(0)));
   EXPECT_TRUE(hasLimits(limp.tree->joint(1)));
+  EXPECT_FALSE(hasLimits(limp.tree->joint(2)));
 }
 
 TEST_F(UrdfTest, IsBoundAsAWholeOrNotAtAll) {

@@ -235,6 +235,8 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
       const bool limitable = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
       if (limitable && !joint.mimics && joint.lower == 0 && joint.upper == 0) {
         notes.push_back("joint '" + name + "' has limits that are both 0, and is taken to have none");
+      } else if (limitable && !joint.mimics && joint.lower > joint.upper) {
+        notes.push_back("joint '" + name + "' has its lower limit above its upper one, and is taken to have none");
       }
       if (joint.mimics) {
         mimics.push_back(joint);
@@ -339,8 +341,8 @@ class MeshFinder {
     }
     fail(where, reason + "searched for '" + name + "' by folder name and by package.xml at and above '" +
                     folder_.string() + "', below " + listed("ROS_PACKAGE_PATH") + ", in share/ of " +
-                    listed("AMENT_PREFIX_PATH") + ". Say where it is: UrdfOptions::packages, or --package " + name +
-                    "=DIR");
+                    listed("AMENT_PREFIX_PATH") + ". Say where it is: --package " + name +
+                    "=DIR (C++: UrdfOptions::packages, Python: packages={'" + name + "': 'DIR'})");
   }
   static std::string listed(const char* variable) {
     const char* value = std::getenv(variable);
