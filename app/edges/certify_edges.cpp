@@ -25,7 +25,7 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
-#include "setup/parallel.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic::app {
 namespace {

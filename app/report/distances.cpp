@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "setup/parallel.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic::app {
 namespace {

@@ -11,7 +11,7 @@
 #include "fcl_artic/manager.h"
 #include "query/claim_nothing.h"
 #include "query/manager_impl.h"
-#include "setup/parallel.h"
+#include "threads/parallel.h"
 #include "visibility/together.h"
 
 namespace fcl_artic {

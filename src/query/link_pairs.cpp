@@ -14,8 +14,8 @@
 #include "query/manager_impl.h"
 #include "setup/link_proofs.h"
 #include "setup/neighbours.h"
-#include "setup/parallel.h"
 #include "tables/range_proof.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic {
 namespace {

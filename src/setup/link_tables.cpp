@@ -6,7 +6,7 @@
 
 #include "motion/half_angles.h"
 #include "numerics/arc_tangent.h"
-#include "setup/parallel.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic {
 

@@ -2,7 +2,7 @@
 #include "setup/setup.h"
 
 #include "geometry/solid_space.h"
-#include "setup/parallel.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic {
 

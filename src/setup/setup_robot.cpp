@@ -8,8 +8,8 @@
 #include <set>
 
 #include "setup/neighbours.h"
-#include "setup/parallel.h"
 #include "setup/setup.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic {
 

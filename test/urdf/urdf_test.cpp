@@ -300,6 +300,32 @@ TEST_F(UrdfTest, LoadsAMeshOnceForAllItsLinks) {
   EXPECT_EQ(r.geometry[0].object->collisionGeometry(), r.geometry[1].object->collisionGeometry());
 }
 
+TEST_F(UrdfTest, ReadsManyMeshesInTheOrderOfTheFile) {
+  constexpr int kLinks = 40;  // over threads
+  std::string body;
+  for (int i = 0; i < kLinks; ++i) {
+    const std::string number = std::to_string(i), file = "m" + number + ".obj";
+    write(file, "v 0 0 " + number + "\nv 1 0 " + number + "\nv 0 1 " + number + "\nf 1 2 3\nf 1 1 2\n");
+    // Links by their names are in another order.
+    body +=
+        "<link name='l" + std::to_string(kLinks - i) + "'>" + collision("<mesh filename='" + file + "'/>") + "</link>";
+    if (i > 0) body += joint("j" + number, "fixed", "l" + std::to_string(kLinks), "l" + std::to_string(kLinks - i), "");
+  }
+  const Robot r = load(body);
+  ASSERT_EQ(r.geometry.size(), std::size_t{kLinks});
+  ASSERT_EQ(r.notes.size(), std::size_t{kLinks});
+  for (std::size_t i = 0; i < kLinks; ++i) {
+    EXPECT_EQ(r.geometry[i].object->collisionGeometry()->aabb_local.min_[2], static_cast<double>(i));
+    expectContains(r.notes[i], "m" + std::to_string(i) + ".obj': 1 of 2 triangles have no area");
+  }
+  // The first in the file that is wrong is named.
+  write("m20.obj", "v 0 0 0\n");
+  write("m31.obj", "v 0 0 0\n");
+  const std::string error = errorOf(body);
+  expectContains(error, "link 'l20': ");
+  expectContains(error, "m20.obj");
+}
+
 TEST_F(UrdfTest, NotesWhatIsUnusual) {
   write("flat.obj", std::string(kTriangle) + "f 1 1 2\n");
   const Robot r = load("<link name='a'>" + collision("<mesh filename='flat.obj'/>") +

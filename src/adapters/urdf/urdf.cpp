@@ -17,6 +17,7 @@
 
 #include "detail.h"
 #include "files/files.h"
+#include "threads/parallel.h"
 
 namespace fcl_artic {
 namespace {
@@ -406,16 +407,36 @@ class MeshFinder {
   std::map<std::string, std::vector<fs::path>> found_;
 };
 
-/// Makes geometries, each mesh file and scale once.
+/// Makes geometries of a robot, each mesh file and scale once.
 class GeometryFactory {
  public:
   GeometryFactory(MeshFinder finder, const UrdfOptions& options, std::vector<std::string>& notes)
       : finder_(std::move(finder)), options_(options), notes_(notes) {}
 
+  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. What is wrong with one
+  /// is said when it is asked for.
+  void readMeshes(const urdf::ModelInterface& model) {
+    for (const auto& [name, link] : model.links_) {
+      for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
+        if (!collision->geometry || collision->geometry->type != urdf::Geometry::MESH) continue;
+        const auto& mesh = static_cast<const urdf::Mesh&>(*collision->geometry);
+        try {
+          meshes_.try_emplace(keyOf(finder_.find("", mesh.filename), mesh));
+        } catch (const std::runtime_error&) {
+          // make() says that it is not found
+        }
+      }
+    }
+    std::vector<decltype(meshes_)::value_type*> unread;
+    for (auto& entry : meshes_) unread.push_back(&entry);
+    parallelFor(unread.size(), 0, [&](std::size_t k) { read(unread[k]->first, unread[k]->second); });
+  }
+
   struct Made {
     detail::GeometryPtr geometry;
     std::string source;
   };
+  /// After readMeshes().
   Made make(const std::string& where, const urdf::Geometry& in) {
     switch (in.type) {
       case urdf::Geometry::BOX: {
@@ -435,24 +456,38 @@ class GeometryFactory {
   }
 
  private:
+  using Key = std::tuple<std::string, double, double, double>;  ///< path and scale
+  struct Mesh {
+    detail::GeometryPtr geometry;
+    std::vector<std::string> notes;
+    std::string error;
+    bool used = false;
+  };
+
+  static Key keyOf(const std::string& path, const urdf::Mesh& in) { return {path, in.scale.x, in.scale.y, in.scale.z}; }
+
+  void read(const Key& key, Mesh& mesh) const {
+    const auto& [path, x, y, z] = key;
+    try {
+      mesh.geometry = loadMesh(path, {x, y, z}, &mesh.notes, options_.solid_meshes, options_.collada_up_axis);
+    } catch (const std::runtime_error& error) {
+      mesh.error = error.what();
+    }
+  }
+
   Made mesh(const std::string& where, const urdf::Mesh& in) {
     const std::string path = finder_.find(where, in.filename);
-    auto& geometry = meshes_[{path, in.scale.x, in.scale.y, in.scale.z}];
-    if (!geometry) {
-      try {
-        geometry = loadMesh(path, {in.scale.x, in.scale.y, in.scale.z}, &notes_, options_.solid_meshes,
-                            options_.collada_up_axis);
-      } catch (const std::runtime_error& error) {
-        fail(where, error.what());
-      }
-    }
-    return {geometry, path};
+    Mesh& mesh = meshes_.at(keyOf(path, in));
+    if (!mesh.geometry) fail(where, mesh.error);
+    if (!mesh.used) notes_.insert(notes_.end(), mesh.notes.begin(), mesh.notes.end());
+    mesh.used = true;
+    return {mesh.geometry, path};
   }
 
   MeshFinder finder_;
   const UrdfOptions& options_;
   std::vector<std::string>& notes_;
-  std::map<std::tuple<std::string, double, double, double>, detail::GeometryPtr> meshes_;
+  std::map<Key, Mesh> meshes_;
 };
 
 }  // namespace
@@ -487,6 +522,7 @@ Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   robot.tree = makeTree(where, *model, document, options, robot.notes);
 
   GeometryFactory factory(MeshFinder(path, options), options, robot.notes);
+  factory.readMeshes(*model);
   for (std::size_t i = 0; i < document.links.size(); ++i) {
     const LinkId id = static_cast<LinkId>(i);  // the tree's links are those of the file, in its order
     const Document::Link& in_file = document.links[i];
