@@ -32,23 +32,52 @@ struct Segment {
   double length() const { return (p1 - p0).norm(); }
 };
 
-/// Largest distance of the points from the segment as it is stored. Rounding apart never too small: that from any point
-/// of the segment would do.
-double reach(const Segment& segment, const Points& points) {
-  const Vector3d d = segment.p1 - segment.p0;
-  const double square = d.squaredNorm(), inverse = square > 1e-200 ? 1 / square : 0;
-  double most = 0;
-  for (const Vector3d& x : points) {
-    const Vector3d y = x - segment.p0;
-    const double s = std::clamp(y.dot(d) * inverse, 0.0, 1.0);
-    most = std::max(most, (y - s * d).squaredNorm());
+/// Squares of distances from a segment as it is stored. Rounding apart never too small: those from any point of the
+/// segment would do.
+class SquareDistance {
+ public:
+  explicit SquareDistance(const Segment& segment) : p0_(segment.p0), d_(segment.p1 - segment.p0) {
+    const double square = d_.squaredNorm();
+    inverse_ = square > 1e-200 ? 1 / square : 0;
   }
+  double operator()(const Vector3d& x) const {
+    const Vector3d y = x - p0_;
+    return (y - std::clamp(y.dot(d_) * inverse_, 0.0, 1.0) * d_).squaredNorm();
+  }
+
+ private:
+  Vector3d p0_, d_;
+  double inverse_;
+};
+
+/// Largest distance of the points from the segment.
+double reach(const Segment& segment, const Points& points) {
+  const SquareDistance square(segment);
+  double most = 0;
+  for (const Vector3d& x : points) most = std::max(most, square(x));
   return std::sqrt(most);
 }
 
-/// Over pi.
+/// Over pi. It grows with r, rounding included.
 double volume(const Segment& segment, double r) {
   return r * r * (segment.length() + 4.0 / 3 * r);
+}
+
+/// The volume that holds the balls of this radius about all points; infinite where it is not less than `least`, which a
+/// few of the points may say. They go to the front, as they most likely say so of the next segment too.
+double volumeBelow(double least, const Segment& segment, Points& points, double radius) {
+  const SquareDistance square(segment);
+  double most = -1, v = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double found = square(points[i]);
+    if (found <= most) continue;
+    most = found;
+    v = volume(segment, std::sqrt(most) + radius);
+    if (v < least) continue;
+    std::swap(points[i], points[i / 2]);
+    return kInfinity;
+  }
+  return v;
 }
 
 /// The longest last.
@@ -102,7 +131,7 @@ Points extremePoints(const Points& points) {
 }
 
 /// Random steps, longer after a gain, shorter else.
-Segment searched(Segment best, const Points& points, double radius) {
+Segment searched(Segment best, Points points, double radius) {
   const double r = reach(best, points);
   if (r == 0) return best;  // a ball, or a capsule along its axis
   double least = volume(best, r + radius), step = 0.2 * r;
@@ -114,7 +143,7 @@ Segment searched(Segment best, const Points& points, double radius) {
       tried.p0[k] += moved();
       tried.p1[k] += moved();
     }
-    const double v = volume(tried, reach(tried, points) + radius);
+    const double v = volumeBelow(least, tried, points, radius);
     step *= v < least ? 1.6 : 0.92;
     if (v >= least) continue;
     least = v;
