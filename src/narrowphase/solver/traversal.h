@@ -43,6 +43,18 @@ FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
   return __builtin_ctz(lanes);
 }
 
+/// The size that motions are compared with: a node's radius, or that of its section where that is thin. (Slivers lie
+/// side by side: a motion wider than they are has them all in each other's way, however long they are. Measured: the
+/// slowest queries of two tubes of slivers take a sixth of the time, nothing else changes but slivers against a ball,
+/// which take longer by two thirds.)
+FCL_ARTIC_INLINE double widthOf(const Node& node) {
+  constexpr double kThin = 0.125;  // as part of the radius
+  const Vec3 size = (doublesOf(node.hi) - doublesOf(node.lo)) * 0.5;
+  const double square = dot(size, size), longest = max(max(size[0], size[1]), size[2]);
+  const double thin = square - longest * longest;
+  return thin < kThin * kThin * square ? sqrt(max(thin, 0.0)) : node.radius;
+}
+
 /// What a traversal is for.
 enum class Aim {
   split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
@@ -351,7 +363,7 @@ inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& o
       } else {
         open.push(e);
       }
-    } else if (e.mask == horizon_.contactLane() || max(x.radius, y.radius) < split_time || open.size() > most) {
+    } else if (e.mask == horizon_.contactLane() || max(widthOf(x), widthOf(y)) < split_time || open.size() > most) {
       open.push(e);
     } else {
       if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
