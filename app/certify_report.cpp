@@ -139,7 +139,7 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   out["contacts"] = all.at("contacts");
   if (!free) out["q_at_t_lower"] = all.at("q_at_t_lower");
   out["clearance"] = all.at("clearance");
-  out["unproven_allowed_pairs"] = all.at("unproven_allowed_pairs");
+  for (const char* key : kExceptions) out[key] = all.at(key);
   out["certificate"] = all.at("certificate");
   out["us"] = plan.us;
   out["notes"] = motion.notes;
@@ -211,11 +211,12 @@ nlohmann::ordered_json jsonReport(const CertifyReport& r) {
 std::string csvReport(const CertifyReport& r) {
   std::string out =
       "file,plan,status,certain,t_lower,t_upper,waypoint,body1,body2,x,y,z,normal_x,normal_y,normal_z,clearance_lower,"
-      "clearance_upper,interpolation,waypoints,us,mended,deviation,length_ratio,mend_ms,error\n";
+      "clearance_upper,interpolation,waypoints,us,mended,deviation,length_ratio,mend_ms,ignored_initial_contacts,"
+      "never_apart_pairs,unproven_allowed_pairs,error\n";
   for (const CertifiedPlan& plan : r.plans) {
     out += fmt::format("{},{},", field(plan.file), field(plan.plan.name));
     if (!plan.error.empty()) {
-      out += fmt::format("error{}{}\n", std::string(22, ','), field(plan.error));
+      out += fmt::format("error{}{}\n", std::string(25, ','), field(plan.error));
       continue;
     }
     const CertifiedResult& result = plan.result;
@@ -235,6 +236,8 @@ std::string csvReport(const CertifyReport& r) {
                              plan.as_mended->error.empty() ? toString(plan.as_mended->result.status) : "error",
                              plan.mended->deviation, plan.mended->length_ratio, plan.mended->ms)
                : ",,,,";
+    out += fmt::format("{},{},{},", result.ignored_initial_contacts.size(), result.never_apart_pairs,
+                       result.unproven_allowed_pairs);
     out += field(plan.not_mended) + "\n";
   }
   return out;

@@ -170,6 +170,7 @@ class Answers {
         jsonReport({manager_.tree(), request_, result_, question.notes, configuration, begin, end, nullptr});
     Json out;
     for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts"}) out[key] = all.at(key);
+    for (const char* key : kExceptions) out[key] = all.at(key);
     if (result_.status != Status::free) out["q_at_t_lower"] = all.at("q_at_t_lower");
     if (all.contains("certificate")) out["certificate"] = all.at("certificate");
     if (!all.at("visibility").is_null()) out["visibility"] = all.at("visibility");

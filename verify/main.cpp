@@ -61,6 +61,7 @@ void printJson(const verify::World& world, const verify::Record& record) {
 
 void print(const verify::Verdict& v) {
   std::printf("VERIFIED %llu pairs", static_cast<unsigned long long>(v.checked));
+  if (v.late > 0) std::printf(" (%llu not before they part)", static_cast<unsigned long long>(v.late));
   if (v.pieces > 1) std::printf(", %zu pieces", v.pieces);
   if (v.until < 1) std::printf(", until t = %.17g", v.until);
   const char* before = "; not checked: ";

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
 
 namespace verify {
 
@@ -55,6 +58,11 @@ std::vector<Record> splitRecords(std::string_view file) {
   return records;
 }
 
+// When a piece's part of the claim ends.
+static double endOf(const Motion& motion, std::size_t piece) {
+  return piece + 1 == motion.pieces.size() ? motion.until : 1;
+}
+
 std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body) {
   std::vector<Opponent> list;
   for (const Partner& partner : world.partners[body]) {
@@ -64,7 +72,7 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
   }
   // An ignored pair is left out at and before its time, of which the lower end is taken; whether that is to the end of
   // the piece is decided in doubles. The list is in ascending order, as world.partners is.
-  const double end = piece + 1 == motion.pieces.size() ? motion.until : 1;
+  const double end = endOf(motion, piece);
   for (const Ignored& ignored : motion.pieces[piece].ignored) {
     if (ignored.b != body) continue;
     const auto at =
@@ -111,7 +119,6 @@ class Walk {
       budget_.spend(1 + world_.partners[a].size() + motion_.pieces[piece_].ignored.size());
       partners_ = opponents(world_, motion_, piece_, a_);
       if (partners_.empty()) continue;
-      if (piece_ == 0) verdict_.checked += partners_.size();
       Task task;
       task.to = geometry(a_).pieces();
       task.q = static_cast<std::uint32_t>(partners_.size());
@@ -373,13 +380,34 @@ class Walk {
   std::vector<Opponent> partners_;
 };
 
-void countUnchecked(const World& world, const Motion& motion, Verdict& verdict) {
+// How many pairs the claim is about, and how many not. A pair that every piece ignores to its end is not.
+void countPairs(const World& world, const Motion& motion, Verdict& verdict) {
   std::copy(std::begin(world.not_checked), std::end(world.not_checked), std::begin(verdict.not_checked));
   for (std::size_t a = 0; a < world.bodies.size(); ++a)
     for (const Partner& partner : world.partners[a])
-      if (!(partner.self ? motion.self : motion.scene)) ++verdict.not_checked[static_cast<int>(Reason::scope)];
-  for (const Piece& piece : motion.pieces)
-    verdict.not_checked[static_cast<int>(Reason::ignored)] += piece.ignored.size();
+      ++((partner.self ? motion.self : motion.scene) ? verdict.checked
+                                                     : verdict.not_checked[static_cast<int>(Reason::scope)]);
+  std::map<std::pair<int, int>, std::size_t> all_the_time;  // by pair that some piece ignores: in how many to the end
+  for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece) {
+    std::set<std::pair<int, int>> to_the_end;
+    for (const Ignored& ignored : motion.pieces[piece].ignored) {
+      const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(ignored.b)];
+      const auto at =
+          std::lower_bound(list.begin(), list.end(), ignored.a, [](const Partner& p, int b) { return p.body < b; });
+      if (at == list.end() || at->body != ignored.a || !(at->self ? motion.self : motion.scene)) continue;
+      all_the_time.emplace(std::pair(ignored.a, ignored.b), 0);
+      if (ignored.until >= endOf(motion, piece)) to_the_end.emplace(ignored.a, ignored.b);
+    }
+    for (const std::pair<int, int>& pair : to_the_end) ++all_the_time[pair];
+  }
+  for (const auto& [pair, pieces] : all_the_time) {
+    if (pieces < motion.pieces.size()) {
+      ++verdict.late;
+    } else {
+      --verdict.checked;
+      ++verdict.not_checked[static_cast<int>(Reason::ignored)];
+    }
+  }
 }
 
 }  // namespace
@@ -394,7 +422,7 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
     if (motion.world != hexOf(world.hash)) throw NotProven("the motion is about another world: " + motion.world);
     if (!world.false_neighbours.empty())
       throw NotProven("the world calls them neighbours, and they are not: " + world.false_neighbours);
-    countUnchecked(world, motion, verdict);
+    countPairs(world, motion, verdict);
     Bytes bytes(record.proof);
     const std::string_view hash = bytes.take(32);
     if (!std::equal(hash.begin(), hash.end(), motion.hash.begin(),

@@ -30,7 +30,8 @@ struct Verdict {
   std::string contact_text;  // which, and when
   std::size_t pieces = 0;
   double until = 0;           // of the last piece
-  std::uint64_t checked = 0;  // pairs
+  std::uint64_t checked = 0;  // pairs, of some of the claim's time at least
+  std::uint64_t late = 0;     // of these, not before they have parted: they are ignored at the beginning of a piece
   std::uint64_t not_checked[kReasons] = {};
   std::uint64_t leaves = 0, steps = 0;
 };

@@ -27,7 +27,7 @@ void Columns::assign(std::size_t rows, bool certificates) {
   t_upper.assign(rows, -1);
   certain.assign(rows, 0);
   for (auto* bodies : {&link, &other_link, &obstacle}) bodies->assign(rows, -1);
-  unproven_allowed.assign(rows, 0);
+  for (auto* exceptions : {&ignored_initial, &never_apart, &unproven_allowed}) exceptions->assign(rows, 0);
   certificate.assign(certificates ? rows : 0, -1);
 }
 
@@ -45,13 +45,18 @@ void Counts::add(const Columns& columns) {
     ++of[columns.status[i]];
     const auto status = static_cast<RowStatus>(columns.status[i]);
     uncertain += status == RowStatus::contact && !columns.certain[i];
-    with_unproven += status == RowStatus::free && columns.unproven_allowed[i] > 0;
+    if (status != RowStatus::free) continue;
+    with_ignored += columns.ignored_initial[i] > columns.never_apart[i];
+    with_never_apart += columns.never_apart[i] > 0;
+    with_unproven += columns.unproven_allowed[i] > 0;
   }
 }
 
 void Counts::add(const Counts& other) {
   for (std::int8_t s = 0; s < kNumRowStatuses; ++s) of[s] += other.of[s];
   uncertain += other.uncertain;
+  with_ignored += other.with_ignored;
+  with_never_apart += other.with_never_apart;
   with_unproven += other.with_unproven;
 }
 

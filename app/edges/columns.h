@@ -33,7 +33,9 @@ struct Columns {
   /// Bodies of the first contact: a link, and another link or an obstacle; -1: none. Links are numbered as the file's
   /// attribute `links` names them, obstacles those of --scene first, then the scene's own in its order.
   std::vector<std::int32_t> link, other_link, obstacle;
-  std::vector<std::int32_t> unproven_allowed;  ///< CertifiedResult::unproven_allowed_pairs
+  /// What `free` does not speak of: numbers of CertifiedResult::ignored_initial_contacts, of never_apart_pairs among
+  /// them, and of unproven_allowed_pairs.
+  std::vector<std::int32_t> ignored_initial, never_apart, unproven_allowed;
   std::vector<std::int64_t> certificate;  ///< place of the row's record in the block's file of certificates; -1: none
 
   std::size_t size() const { return status.size(); }
@@ -51,6 +53,8 @@ void forEachColumn(C& columns, const F& f) {
   f("link", hdf5::Type::int32, columns.link);
   f("other_link", hdf5::Type::int32, columns.other_link);
   f("obstacle", hdf5::Type::int32, columns.obstacle);
+  f("ignored_initial", hdf5::Type::int32, columns.ignored_initial);
+  f("never_apart", hdf5::Type::int32, columns.never_apart);
   f("unproven_allowed", hdf5::Type::int32, columns.unproven_allowed);
   if (columns.certificate.size() == columns.size()) f("certificate", hdf5::Type::int64, columns.certificate);
 }
@@ -66,6 +70,8 @@ void putRow(const CertifiedResult& result, const F& numberOf, std::size_t row, C
   rows.t_lower[row] = result.t_lower;
   rows.t_upper[row] = result.t_upper;
   rows.certain[row] = result.status == Status::contact && result.certain;
+  rows.ignored_initial[row] = static_cast<std::int32_t>(result.ignored_initial_contacts.size());
+  rows.never_apart[row] = static_cast<std::int32_t>(result.never_apart_pairs);
   rows.unproven_allowed[row] = static_cast<std::int32_t>(result.unproven_allowed_pairs);
   const CertifiedContact* const contact = result.first();
   if (!contact) return;
@@ -84,8 +90,9 @@ std::string hashOf(const Columns& columns);
 /// Rows of each status.
 struct Counts {
   std::uint64_t of[kNumRowStatuses] = {};
-  std::uint64_t uncertain = 0;      ///< contacts that are not proven
-  std::uint64_t with_unproven = 0;  ///< free rows that leave allowed pairs unproven
+  std::uint64_t uncertain = 0;  ///< contacts that are not proven
+  /// Free rows that leave something out: initial contacts that end, pairs that part nowhere, allowed pairs.
+  std::uint64_t with_ignored = 0, with_never_apart = 0, with_unproven = 0;
   void add(const Columns& columns);
   void add(const Counts& other);
   std::uint64_t rows() const;

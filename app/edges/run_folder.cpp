@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kFormat = "fcl-artic-edges/1";
+constexpr const char* kFormat = "fcl-artic-edges/2";
 
 std::string textOf(const Json& json) {
   return json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
@@ -46,12 +46,16 @@ void makeFolder(const std::string& path) {
 void put(const Counts& counts, Json& to) {
   for (std::int8_t s = 0; s < kNumRowStatuses; ++s) to[toString(static_cast<RowStatus>(s))] = counts.of[s];
   to["contact_uncertain"] = counts.uncertain;
+  to["free_with_ignored_initial_contacts"] = counts.with_ignored;
+  to["free_with_never_apart_pairs"] = counts.with_never_apart;
   to["free_with_unproven_allowed_pairs"] = counts.with_unproven;
 }
 Counts countsOf(const Json& json) {
   Counts counts;
   for (std::int8_t s = 0; s < kNumRowStatuses; ++s) counts.of[s] = json.at(toString(static_cast<RowStatus>(s)));
   counts.uncertain = json.at("contact_uncertain");
+  counts.with_ignored = json.at("free_with_ignored_initial_contacts");
+  counts.with_never_apart = json.at("free_with_never_apart_pairs");
   counts.with_unproven = json.at("free_with_unproven_allowed_pairs");
   return counts;
 }

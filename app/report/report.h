@@ -37,5 +37,7 @@ std::string textReport(const Report& report);
 
 /// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
 nlohmann::ordered_json jsonReport(const Report& report);
+/// The keys that say what `free` does not speak of: no short form of the answer leaves them out.
+constexpr const char* kExceptions[] = {"ignored_initial_contacts", "never_apart_pairs", "unproven_allowed_pairs"};
 
 }  // namespace fcl_artic::app

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,9 +41,16 @@ struct CertifiedPairsResult : Bracket {
   std::vector<MovingPair> pairs;
   /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
+  /// Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them.
+  std::size_t never_apart_pairs = 0;
   /// Work, summed over the pairs. `pairs` counts all pairs asked about, `pairs_after_culling` those whose boxes meet.
   QueryStatistics statistics;
 };
+
+/// What a free motion's answer says nothing of, as exceptionsOf(const CertifiedResult&) words it.
+FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedPairsResult& result);
+/// Prints verdict and bracket on one line, without a line end, and what `free` does not speak of.
+FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedPairsResult& result);
 
 /// Certified continuous collision detection of many moving objects, in FCL's manager idiom: boxes around whole motions
 /// decide which pairs may meet. FCL's BroadPhaseContinuousCollisionManager is no base of this class: its collide()

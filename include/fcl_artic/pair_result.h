@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -34,5 +36,10 @@ struct CertifiedPairResult : Bracket {
   /// Not available for a temporary result, whose contacts would be gone.
   const CertifiedContact* first() const&& = delete;
 };
+
+/// What a free motion's answer says nothing of, as exceptionsOf(const CertifiedResult&) words it.
+FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedPairResult& result);
+/// Prints verdict and bracket on one line, without a line end, and what `free` does not speak of.
+FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedPairResult& result);
 
 }  // namespace fcl_artic

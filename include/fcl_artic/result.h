@@ -120,7 +120,8 @@ struct CertifiedResult : Bracket {
   /// CertifiedPairRequest::max_contacts is 0: then the verdict is all that is wanted.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
   /// Pairs that touch at t = 0, or are within their margin, and were ignored
-  /// (CertifiedPairRequest::ignore_initial_contact).
+  /// (CertifiedPairRequest::ignore_initial_contact). Each geometry of a link is a body of its own, so that a link's
+  /// name may stand in several pairs with one obstacle, while other geometries of it are checked.
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
   /// Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them.
   std::size_t never_apart_pairs = 0;

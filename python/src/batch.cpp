@@ -21,12 +21,12 @@ using Indices = py::array_t<std::int32_t>;
 
 /// The answers for N motions, one row each.
 struct Answers {
-  Statuses status;                        ///< (N,)
-  Doubles t_lower, t_upper;               ///< (N,)
-  py::array_t<bool> certain;              ///< (N,)
-  Indices pair;                           ///< (N, 2) indices of `bodies`; -1: none
-  Doubles point, normal;                  ///< (N, 3); not a number where there is no contact
-  Indices never_apart, unproven_allowed;  ///< (N,)
+  Statuses status;                                         ///< (N,)
+  Doubles t_lower, t_upper;                                ///< (N,)
+  py::array_t<bool> certain;                               ///< (N,)
+  Indices pair;                                            ///< (N, 2) indices of `bodies`; -1: none
+  Doubles point, normal;                                   ///< (N, 3); not a number where there is no contact
+  Indices ignored_initial, never_apart, unproven_allowed;  ///< (N,)
   std::vector<std::string> bodies;
 };
 
@@ -40,12 +40,13 @@ struct Columns {
         normal(a.normal.mutable_data()),
         certain(a.certain.mutable_data()),
         pair(a.pair.mutable_data()),
+        ignored_initial(a.ignored_initial.mutable_data()),
         never_apart(a.never_apart.mutable_data()),
         unproven_allowed(a.unproven_allowed.mutable_data()) {}
   std::int8_t* status;
   double *t_lower, *t_upper, *point, *normal;
   bool* certain;
-  std::int32_t *pair, *never_apart, *unproven_allowed;
+  std::int32_t *pair, *ignored_initial, *never_apart, *unproven_allowed;
 };
 
 /// Answers that claim nothing: what a query that was ended leaves out.
@@ -59,6 +60,7 @@ Answers claimNothing(py::ssize_t n) {
             Doubles({n, py::ssize_t{3}}),
             Indices(n),
             Indices(n),
+            Indices(n),
             {}};
   const double none = std::numeric_limits<double>::quiet_NaN();
   std::fill_n(a.status.mutable_data(), n, static_cast<std::int8_t>(Status::undecided));
@@ -68,6 +70,7 @@ Answers claimNothing(py::ssize_t n) {
   std::fill_n(a.pair.mutable_data(), 2 * n, -1);
   std::fill_n(a.point.mutable_data(), 3 * n, none);
   std::fill_n(a.normal.mutable_data(), 3 * n, none);
+  std::fill_n(a.ignored_initial.mutable_data(), n, 0);
   std::fill_n(a.never_apart.mutable_data(), n, 0);
   std::fill_n(a.unproven_allowed.mutable_data(), n, 0);
   return a;
@@ -157,6 +160,7 @@ class Batch {
     out_.t_lower[i] = result.t_lower;
     out_.t_upper[i] = result.t_upper;
     out_.certain[i] = result.certain;
+    out_.ignored_initial[i] = static_cast<std::int32_t>(result.ignored_initial_contacts.size());
     out_.never_apart[i] = static_cast<std::int32_t>(result.never_apart_pairs);
     out_.unproven_allowed[i] = static_cast<std::int32_t>(result.unproven_allowed_pairs);
     const CertifiedContact* c = result.first();
@@ -232,6 +236,7 @@ void bindBatch(py::module_& module, py::class_<World>& world) {
       .def_readonly("pair", &Answers::pair)
       .def_readonly("point", &Answers::point)
       .def_readonly("normal", &Answers::normal)
+      .def_readonly("ignored_initial_contacts", &Answers::ignored_initial)
       .def_readonly("never_apart_pairs", &Answers::never_apart)
       .def_readonly("unproven_allowed_pairs", &Answers::unproven_allowed)
       .def_readonly("bodies", &Answers::bodies)
@@ -248,20 +253,32 @@ void bindBatch(py::module_& module, py::class_<World>& world) {
       .def("__repr__",
            [](const Answers& a) {
              const auto count = [&](Status s) { return isStatus(a, s).attr("sum")(); };
-             return py::str("<Answers: {} free, {} in contact, {} undecided>")
-                 .format(count(Status::free), count(Status::contact), count(Status::undecided));
+             py::ssize_t excepted = 0;
+             for (py::ssize_t i = 0; i < a.status.shape(0); ++i) {
+               excepted += a.status.data()[i] == static_cast<std::int8_t>(Status::free) &&
+                           (a.ignored_initial.data()[i] > 0 || a.unproven_allowed.data()[i] > 0);
+             }
+             const std::string but = excepted > 0 ? " (" + std::to_string(excepted) + " but for some pairs)" : "";
+             return py::str("<Answers: {} free{}, {} in contact, {} undecided>")
+                 .format(count(Status::free), but, count(Status::contact), count(Status::undecided));
            })
       .def(py::pickle(
           [](const Answers& a) {
-            return py::make_tuple(a.status, a.t_lower, a.t_upper, a.certain, a.pair, a.point, a.normal, a.never_apart,
-                                  a.unproven_allowed, a.bodies);
+            return py::make_tuple(a.status, a.t_lower, a.t_upper, a.certain, a.pair, a.point, a.normal,
+                                  a.ignored_initial, a.never_apart, a.unproven_allowed, a.bodies);
           },
           [](const py::tuple& s) {
-            return Answers{py::object(s[0]), py::object(s[1]),
-                           py::object(s[2]), py::object(s[3]),
-                           py::object(s[4]), py::object(s[5]),
-                           py::object(s[6]), py::object(s[7]),
-                           py::object(s[8]), py::cast<std::vector<std::string>>(s[9])};
+            return Answers{py::object(s[0]),
+                           py::object(s[1]),
+                           py::object(s[2]),
+                           py::object(s[3]),
+                           py::object(s[4]),
+                           py::object(s[5]),
+                           py::object(s[6]),
+                           py::object(s[7]),
+                           py::object(s[8]),
+                           py::object(s[9]),
+                           py::cast<std::vector<std::string>>(s[10])};
           }));
   world.def(
       "check_many", &checkMany,

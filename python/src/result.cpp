@@ -336,9 +336,8 @@ void bindResults(py::module_& module) {
       .def_property_readonly("pose2_at_upper", [](const CertifiedPairResult& r) { return arrayOf(r.tf2_at_upper); })
       .def_readonly("ignored_initial_contact", &CertifiedPairResult::ignored_initial_contact)
       .def_readonly("never_apart", &CertifiedPairResult::never_apart)
-      .def("__str__", [](const CertifiedPairResult& r) { return printed(static_cast<const Bracket&>(r)); })
-      .def("__repr__",
-           [](const CertifiedPairResult& r) { return "<PairResult: " + printed(static_cast<const Bracket&>(r)) + ">"; })
+      .def("__str__", [](const CertifiedPairResult& r) { return printed(r); })
+      .def("__repr__", [](const CertifiedPairResult& r) { return "<PairResult: " + printed(r) + ">"; })
       .def(py::pickle(&pairResultState, &pairResultOfState));
 
   py::class_<Clearance>(module, "Clearance", "The smallest distance over a whole motion: lower <= distance <= upper.")

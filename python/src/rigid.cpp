@@ -195,6 +195,8 @@ struct BodiesResult : Bracket {
   };
   std::vector<Pair> pairs;
   std::vector<std::pair<std::string, std::string>> ignored_initial_contacts;
+  std::size_t never_apart_pairs = 0;
+  std::string exceptions;  ///< exceptionsOf()
   QueryStatistics statistics;
 };
 
@@ -294,6 +296,8 @@ class Bodies {
     });
     BodiesResult result;
     static_cast<Bracket&>(result) = found;
+    result.never_apart_pairs = found.never_apart_pairs;
+    result.exceptions = exceptionsOf(found);
     for (MovingPair& pair : found.pairs) {
       result.pairs.push_back({name[pair.object1], name[pair.object2], std::move(pair.result)});
     }
@@ -375,10 +379,12 @@ void bindRigid(py::module_& module) {
                                return pairs;
                              })
       .def_readonly("ignored_initial_contacts", &BodiesResult::ignored_initial_contacts)
+      .def_readonly("never_apart_pairs", &BodiesResult::never_apart_pairs)
       .def_property_readonly("statistics", [](const BodiesResult& r) { return statisticsOf(r.statistics); })
       .def("__repr__", [](const BodiesResult& r) {
         std::ostringstream out;
         out << "<BodiesResult: " << static_cast<const Bracket&>(r);
+        if (!r.exceptions.empty()) out << ", " << r.exceptions;
         if (!r.pairs.empty()) out << ": " << r.pairs.front().name1 << " and " << r.pairs.front().name2;
         out << ">";
         return out.str();

@@ -433,8 +433,9 @@ void bindQueries(py::class_<World>& world) {
            py::arg("waypoints"), py::arg("times") = py::none(), py::kw_only(), py::arg("velocities") = py::none(),
            py::arg("accelerations") = py::none(), py::arg("blend") = py::none(), py::arg("unwrap") = false)
       .def("is_free", &isFree,
-           "Whether the way is proven free: the fastest question. False also where that is not decided.", py::arg("q0"),
-           py::arg("q1") = py::none())
+           "Whether the way is proven free: the fastest question. False also where that is not decided. What a free\n"
+           "result does not speak of (Result.never_apart_pairs, Result.unproven_allowed_pairs) it does not say.",
+           py::arg("q0"), py::arg("q1") = py::none())
       .def("collide", &collide,
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))

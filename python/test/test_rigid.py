@@ -22,6 +22,23 @@ def test_two_meshes_meet_when_they_should():
     assert result.first.piece1 is not None and "contact within" in repr(result)
 
 
+def test_what_a_free_says_nothing_of_is_said():
+    ball, wall = fcl_artic.sphere(0.1), fcl_artic.box([1, 4, 4])
+    inside, out = fcl_artic.Motion.translation([0, 0, 0], [0.1, 0, 0]), fcl_artic.Motion.translation([0, 0, 0], [5, 0, 0])
+    bodies = fcl_artic.Bodies()
+    bodies.add("wall", wall, np.eye(4))
+    for motion, never, text in ((inside, 1, "but for 1 pair that parts nowhere"), (out, 0, "but for the initial contact of 1 pair")):
+        pair = fcl_artic.continuous_collide(ball, motion, wall, np.eye(4), ignore_initial_contact=True)
+        assert pair.free and pair.ignored_initial_contact and pair.never_apart == bool(never)
+        assert repr(pair) == f"<PairResult: free: proven, {text}>" and text in str(pair)
+        bodies.add("ball", ball, motion)
+        found = bodies.check(ignore_initial_contact=True)
+        assert found.free and found.never_apart_pairs == never and len(found.ignored_initial_contacts) == 1
+        assert repr(found) == f"<BodiesResult: free: proven, {text}>"
+        bodies.remove("ball")
+    assert bodies.check(ignore_initial_contact=True).never_apart_pairs == 0
+
+
 def test_every_kind_of_motion_has_its_ends():
     begin, end = fcl_artic.pose([0, 0, 1]), fcl_artic.pose([1, 2, 3], rpy=[0.2, 0.4, 0.6])
     for motion in (fcl_artic.Motion.linear(begin, end), fcl_artic.Motion.screw(begin, end)):

@@ -313,6 +313,8 @@ def test_what_a_free_says_nothing_of_is_said():
     assert near.free and near.never_apart_pairs == 1 and "but for 1 pair" in str(near)
     many = world.check_many([[2.2], [2.2]], [[2.3], [0]], ignore_initial_contact=True)
     assert many.free.all() and many.never_apart_pairs.tolist() == [1, 0]
+    assert many.ignored_initial_contacts.tolist() == [1, 1] and "2 free (2 but for some pairs)" in repr(many)
+    assert repr(world.check_many([[0]], [[1]])) == "<Answers: 1 free, 0 in contact, 0 undecided>"
     verdict = world.check([1.7], [2.5], max_contacts=0)
     assert verdict.contact and verdict.contacts == [] and len(verdict.link_poses) == 0
 

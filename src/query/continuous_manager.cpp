@@ -142,6 +142,7 @@ class Earliest {
       add(pair.result.statistics);
     }
     if (pair.result.ignored_initial_contact) result_.ignored_initial_contacts.emplace_back(a.object, b.object);
+    result_.never_apart_pairs += pair.result.never_apart;
     if (pair.result.isFree()) return false;
 
     const CertifiedPairResult& r = pair.result;

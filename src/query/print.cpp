@@ -3,7 +3,9 @@
 // Answers as text.
 #include <ostream>
 
+#include "fcl_artic/continuous_manager.h"
 #include "fcl_artic/link_pairs.h"
+#include "fcl_artic/pair_result.h"
 #include "fcl_artic/result.h"
 #include "numerics/shown.h"
 
@@ -72,28 +74,55 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
   return out;
 }
 
-std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
-  if (result.nothingChecked()) {
-    out << "free: nothing was checked, there is no pair of bodies";
-  } else {
-    out << static_cast<const Bracket&>(result);
-  }
-  const std::string exceptions = exceptionsOf(result);
-  return exceptions.empty() ? out : out << ", " << exceptions;
-}
+namespace {
 
-std::string exceptionsOf(const CertifiedResult& result) {
+/// What a free answer does not speak of. @param ignored  number of pairs, those that part nowhere included.
+std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::size_t ignored, std::size_t never) {
   std::string text;
-  if (!result.isFree()) return text;
+  if (!answer.isFree()) return text;
   const auto pairs = [](std::size_t n, const char* kind) {
     return std::to_string(n) + kind + (n == 1 ? " pair" : " pairs");
   };
   const auto add = [&](const std::string& more) { text += (text.empty() ? "but for " : ", and for ") + more; };
-  if (result.unproven_allowed_pairs > 0) add(pairs(result.unproven_allowed_pairs, " allowed") + " not proven apart");
-  const std::size_t ignored = result.ignored_initial_contacts.size(), never = result.never_apart_pairs;
+  if (unproven > 0) add(pairs(unproven, " allowed") + " not proven apart");
   if (ignored > never) add("the initial contact of " + pairs(ignored - never, ""));
   if (never > 0) add(pairs(never, "") + (never == 1 ? " that parts nowhere" : " that part nowhere"));
   return text;
+}
+
+template <class Result>
+std::ostream& printWithExceptions(std::ostream& out, const Result& result) {
+  const std::string exceptions = exceptionsOf(result);
+  out << static_cast<const Bracket&>(result);
+  return exceptions.empty() ? out : out << ", " << exceptions;
+}
+
+}  // namespace
+
+std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
+  if (result.nothingChecked()) return out << "free: nothing was checked, there is no pair of bodies";
+  return printWithExceptions(out, result);
+}
+
+std::ostream& operator<<(std::ostream& out, const CertifiedPairResult& result) {
+  return printWithExceptions(out, result);
+}
+
+std::ostream& operator<<(std::ostream& out, const CertifiedPairsResult& result) {
+  return printWithExceptions(out, result);
+}
+
+std::string exceptionsOf(const CertifiedResult& result) {
+  return exceptionsText(result, result.unproven_allowed_pairs, result.ignored_initial_contacts.size(),
+                        result.never_apart_pairs);
+}
+
+std::string exceptionsOf(const CertifiedPairResult& result) {
+  return exceptionsText(result, 0, result.ignored_initial_contact, result.never_apart);
+}
+
+std::string exceptionsOf(const CertifiedPairsResult& result) {
+  return exceptionsText(result, 0, result.ignored_initial_contacts.size(), result.never_apart_pairs);
 }
 
 const char* toString(LinkPairKind kind) {

@@ -164,7 +164,7 @@ bool Run::touchesAtStart(Answer& answer) {
   still.describe_contacts = false;
   still.num_advisors = 0;  // they know of the motion itself
   // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
-  // When they part is no question at rest: no interval is divided.
+  // When they part is no question at rest, nor is any time finer than all of it.
   still.every_pair = false;
   still.ignore_initial = query_.every_pair || query_.ignore_initial;
   if (still.ignore_initial) still.tolerance_time = 1;

@@ -147,7 +147,7 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   std::istringstream rows(read(csv));
   std::string line;
   int lines = 0;
-  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 24) << line;
+  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 27) << line;
   EXPECT_EQ(lines, 3);
   const Outcome error = certifyFile("plans.jsonl", free + "\n" + wrong + "\n" + hit + "\n" + "{\n");
   EXPECT_EQ(error.status, 2);

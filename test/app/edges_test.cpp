@@ -163,6 +163,36 @@ TEST_F(EdgesTest, TheTableSaysWhatCheckSaysOneByOne) {
   EXPECT_GT(seen["contact"], 50);
 }
 
+TEST_F(EdgesTest, RowsSayWhatFreeDoesNotSpeakOf) {
+  // Two edges from within the box of the second scene: one stays in it, one leaves it. A third one is nowhere near.
+  arm();
+  writeScenes();
+  const std::vector<double> from = {0, -1.3, 0, -1.3, 0, 1.5}, to = {0, -1.31, 0, 1.5, 0, 1.6};
+  Image image;
+  image.add("from", {3, 2}, from.data());
+  image.add("to", {3, 2}, to.data());
+  image.attribute("from", "joints", std::vector<std::string>{"rail", "hinge"});
+  write("edges.h5", image.bytes());
+  ASSERT_EQ(run(command("strict", "--ignore-limits")).status, 0);
+  const File strict(path("strict/table.h5"));
+  ASSERT_EQ(column<std::int64_t>(strict, "status"), (std::vector<std::int64_t>{1, 2, 1, 2, 2, 1}))
+      << "else it tells nothing";
+  EXPECT_EQ(column<std::int64_t>(strict, "ignored_initial"), (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0}));
+  const Outcome done = run(command("run", "--ignore-limits --ignore-initial-contact"));
+  ASSERT_EQ(done.status, 0) << done.err;
+  const File table(path("run/table.h5"));
+  EXPECT_EQ(column<std::int64_t>(table, "ignored_initial"), (std::vector<std::int64_t>{0, 0, 0, 1, 1, 0}));
+  EXPECT_EQ(column<std::int64_t>(table, "never_apart"), (std::vector<std::int64_t>{0, 0, 0, 1, 0, 0}));
+  const Json counts = summary("run");
+  EXPECT_EQ(counts.at("free_with_never_apart_pairs"), 1);
+  EXPECT_EQ(counts.at("free_with_ignored_initial_contacts"), 1);
+  EXPECT_EQ(counts.at("free_with_unproven_allowed_pairs"), 0);
+  // Other blocks of the same rows: the same counts.
+  ASSERT_EQ(run(command("blocks", "--ignore-limits --ignore-initial-contact --block-rows 2")).status, 0);
+  EXPECT_EQ(summary("blocks").at("free_with_never_apart_pairs"), 1);
+  EXPECT_EQ(hash("blocks"), hash("run"));
+}
+
 TEST_F(EdgesTest, TrajectoriesNumbersOfConfigurationsAndScenesOfTheirOwn) {
   arm();
   writeScenes();

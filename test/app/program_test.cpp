@@ -150,6 +150,33 @@ TEST_F(ProgramTest, InitialContactMayBeIgnored) {
   EXPECT_EQ((std::set<std::string>{ignored[0].at(0), ignored[0].at(1)}), (std::set<std::string>{"arm", "ball"}));
 }
 
+TEST_F(ProgramTest, NoShortAnswerLeavesOutWhatFreeDoesNotSpeakOf) {
+  // The arm begins in the ball: once it goes deeper and parts nowhere, once it leaves.
+  const double in = kContactAngle + 0.01;
+  const std::string deeper = std::to_string(in + 0.01), begin = std::to_string(in);
+  const std::string arguments = armAndBall() + " --ignore-initial-contact ";
+  const std::string questions = write("q.jsonl", "{\"from\": [" + begin + ", 0], \"to\": [" + deeper +
+                                                     ", 0]}\n{\"from\": [" + begin + ", 0], \"to\": [0, 0]}\n");
+  std::istringstream lines(this->run("check " + arguments + "--lines " + questions).out);
+  const std::string plans = write("p.jsonl", "{\"waypoints\": [[" + begin + ", 0], [" + deeper +
+                                                 ", 0]]}\n{\"waypoints\": [[" + begin + ", 0], [0, 0]]}\n");
+  const Outcome certified = this->run("certify " + plans + " " + arguments + "--json --csv " + path("p.csv"));
+  ASSERT_EQ(certified.status, 0) << certified.err;
+  std::istringstream rows(read(path("p.csv")));
+  std::string line, row;
+  std::getline(rows, row);
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(std::getline(lines, line) && std::getline(rows, row));
+    for (const Json& answer : {Json::parse(line), Json::parse(certified.out).at("plans").at(i)}) {
+      EXPECT_EQ(answer.at("status"), "free");
+      EXPECT_EQ(answer.at("never_apart_pairs"), i == 0 ? 1 : 0) << answer;
+      EXPECT_EQ(answer.at("ignored_initial_contacts").size(), 1u) << answer;
+      EXPECT_EQ(answer.at("unproven_allowed_pairs"), 0) << answer;
+    }
+    EXPECT_EQ(row.substr(row.size() - 7), i == 0 ? ",1,1,0," : ",1,0,0,") << row;
+  }
+}
+
 TEST_F(ProgramTest, LimitsAreNoted) {
   const Outcome run = this->run("check --robot " + arm() + " --from 0,0 --to 0,1.5");
   EXPECT_EQ(run.status, 0) << run.err;

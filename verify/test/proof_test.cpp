@@ -91,7 +91,9 @@ TEST(VerifyProof, UntilAndIgnored) {
   m.ignored = "ignored 0 1 " + hex(0.5001) + "\n";
   const Verdict v = judge(world, m.write(world), sep({-1, 0, 0}));
   expectVerified(v);
-  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::ignored)], 1u);
+  EXPECT_EQ(v.checked, 1u);
+  EXPECT_EQ(v.late, 1u);
+  EXPECT_EQ(v.not_checked[static_cast<int>(Reason::ignored)], 0u);
   expectVerified(judge(world, m.write(world), node(kTime, sep({-1, 0, 0}), sep({-1, 0, 0}))));
   expectVerified(judge(world, m.write(world), turnNode({1, 0, 0}, {-1.1, 0, 0})));
   // At and before the time: a touch at t = 0 exactly, and one all along.
@@ -112,6 +114,37 @@ TEST(VerifyProof, UntilAndIgnored) {
   m.pieces = {"q 0 " + hex(0.0) + "\n", "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n"};
   m.ignored = "ignored 0 1 " + hex(0.9) + "\n";  // of the first piece only
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0}) + sep({-1, 0, 0})), "of piece 1");
+}
+
+TEST(VerifyProof, APairThatIsIgnoredToTheEndIsNotChecked) {
+  const World world = cart(2);
+  const auto countsOf = [&](const MotionText& m, const std::string& proof) {
+    const Verdict v = judge(world, m.write(world), proof);
+    expectVerified(v);
+    return std::array{v.checked, v.late, v.not_checked[static_cast<int>(Reason::ignored)]};
+  };
+  using Counts = std::array<std::uint64_t, 3>;
+  const std::string x = sep({-1, 0, 0}), whole = "ignored 0 1 " + hex(1) + "\n",
+                    part = "ignored 0 1 " + hex(0.5001) + "\n";
+  MotionText m = moving({2.8, 0});
+  m.ignored = whole;
+  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
+  m.ignored = whole + part;  // listed twice: once a pair
+  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
+  m.until = 0.5;
+  m.ignored = part;
+  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
+  // Of two pieces in one, in both to the end, in both.
+  const std::string inside = "q 0 " + hex(2.8) + "\n", leaving = "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n";
+  m = MotionText();
+  m.pieces = {inside + whole, leaving + part};
+  EXPECT_EQ(countsOf(m, x + x), (Counts{1, 1, 0}));
+  m.pieces = {inside + whole, inside + whole};
+  EXPECT_EQ(countsOf(m, x + x), (Counts{0, 0, 1}));
+  m.pieces = {leaving + part, leaving + part};
+  EXPECT_EQ(countsOf(m, x + x), (Counts{1, 1, 0}));
+  m.pieces = {"q 0 " + hex(0.0) + "\n"};
+  EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 0}));
 }
 
 TEST(VerifyProof, EveryRootOfEveryPieceIsThere) {
