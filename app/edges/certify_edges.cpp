@@ -368,6 +368,14 @@ void printSummary(const RunFolder& folder, const Json& summary, bool json) {
   for (const char* rare : {"undecided", "refused", "missing"}) {
     if (summary.at(rare) != 0) fmt::print(", {} {}", summary.at(rare).get<std::uint64_t>(), rare);
   }
+  const std::pair<const char*, const char*> exceptions[] = {
+      {"free_with_ignored_initial_contacts", "the initial contact of some pair"},
+      {"free_with_never_apart_pairs", "pairs that part nowhere"},
+      {"free_with_unproven_allowed_pairs", "allowed pairs not proven apart"}};
+  for (const auto& [key, what] : exceptions) {
+    if (const auto rows = summary.at(key).get<std::uint64_t>(); rows > 0)
+      fmt::print("; {} free but for {}", rows, what);
+  }
   fmt::print("\n{}/table.h5, hash {}\n", folder.path(), summary.at("table_sha256").get<std::string>());
 }
 

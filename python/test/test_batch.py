@@ -46,7 +46,7 @@ def test_large_arrays_are_not_copied(shared_world, robot):
     q0[:] = [-2.1, 1, -1, -0.1, -0.1, 0]
     q1 = q0 + 1e-3
     shared_world.check_many(q0[:10], q1[:10])
-    answers_size = count * (1 + 8 + 8 + 1 + 8 + 24 + 24 + 4)
+    answers_size = count * (1 + 8 + 8 + 1 + 8 + 24 + 24 + 3 * 4)
 
     def peak(a, b):
         tracemalloc.start()

@@ -91,25 +91,28 @@ std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::siz
 }
 
 template <class Result>
-std::ostream& printWithExceptions(std::ostream& out, const Result& result) {
+std::ostream& printExceptions(std::ostream& out, const Result& result) {
   const std::string exceptions = exceptionsOf(result);
-  out << static_cast<const Bracket&>(result);
   return exceptions.empty() ? out : out << ", " << exceptions;
 }
 
 }  // namespace
 
 std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
-  if (result.nothingChecked()) return out << "free: nothing was checked, there is no pair of bodies";
-  return printWithExceptions(out, result);
+  if (result.nothingChecked()) {
+    out << "free: nothing was checked, there is no pair of bodies";
+  } else {
+    out << static_cast<const Bracket&>(result);
+  }
+  return printExceptions(out, result);
 }
 
 std::ostream& operator<<(std::ostream& out, const CertifiedPairResult& result) {
-  return printWithExceptions(out, result);
+  return printExceptions(out << static_cast<const Bracket&>(result), result);
 }
 
 std::ostream& operator<<(std::ostream& out, const CertifiedPairsResult& result) {
-  return printWithExceptions(out, result);
+  return printExceptions(out << static_cast<const Bracket&>(result), result);
 }
 
 std::string exceptionsOf(const CertifiedResult& result) {

@@ -180,6 +180,10 @@ TEST_F(EdgesTest, RowsSayWhatFreeDoesNotSpeakOf) {
   EXPECT_EQ(column<std::int64_t>(strict, "ignored_initial"), (std::vector<std::int64_t>{0, 0, 0, 0, 0, 0}));
   const Outcome done = run(command("run", "--ignore-limits --ignore-initial-contact"));
   ASSERT_EQ(done.status, 0) << done.err;
+  EXPECT_NE(
+      done.out.find("; 1 free but for the initial contact of some pair; 1 free but for pairs that part nowhere\n"),
+      std::string::npos)
+      << done.out;
   const File table(path("run/table.h5"));
   EXPECT_EQ(column<std::int64_t>(table, "ignored_initial"), (std::vector<std::int64_t>{0, 0, 0, 1, 1, 0}));
   EXPECT_EQ(column<std::int64_t>(table, "never_apart"), (std::vector<std::int64_t>{0, 0, 0, 1, 0, 0}));
@@ -190,7 +194,6 @@ TEST_F(EdgesTest, RowsSayWhatFreeDoesNotSpeakOf) {
   // Other blocks of the same rows: the same counts.
   ASSERT_EQ(run(command("blocks", "--ignore-limits --ignore-initial-contact --block-rows 2")).status, 0);
   EXPECT_EQ(summary("blocks").at("free_with_never_apart_pairs"), 1);
-  EXPECT_EQ(hash("blocks"), hash("run"));
 }
 
 TEST_F(EdgesTest, TrajectoriesNumbersOfConfigurationsAndScenesOfTheirOwn) {

@@ -173,7 +173,7 @@ TEST_F(ProgramTest, NoShortAnswerLeavesOutWhatFreeDoesNotSpeakOf) {
       EXPECT_EQ(answer.at("ignored_initial_contacts").size(), 1u) << answer;
       EXPECT_EQ(answer.at("unproven_allowed_pairs"), 0) << answer;
     }
-    EXPECT_EQ(row.substr(row.size() - 7), i == 0 ? ",1,1,0," : ",1,0,0,") << row;
+    EXPECT_NE(row.find(i == 0 ? ",1,1,0,\"\"" : ",1,0,0,\"\""), std::string::npos) << row;
   }
 }
 
