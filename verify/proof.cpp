@@ -63,10 +63,14 @@ static double endOf(const Motion& motion, std::size_t piece) {
   return piece + 1 == motion.pieces.size() ? motion.until : 1;
 }
 
+static bool inScope(const Motion& motion, const Partner& partner) {
+  return partner.self ? motion.self : motion.scene;
+}
+
 std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body) {
   std::vector<Opponent> list;
   for (const Partner& partner : world.partners[body]) {
-    if (!(partner.self ? motion.self : motion.scene)) continue;
+    if (!inScope(motion, partner)) continue;
     const double own = world.margin(body, partner.body, motion.margin);
     list.push_back({partner.body, Fix{-kOne}, encloseUp(own) + encloseUp(motion.added)});
   }
@@ -385,8 +389,7 @@ void countPairs(const World& world, const Motion& motion, Verdict& verdict) {
   std::copy(std::begin(world.not_checked), std::end(world.not_checked), std::begin(verdict.not_checked));
   for (std::size_t a = 0; a < world.bodies.size(); ++a)
     for (const Partner& partner : world.partners[a])
-      ++((partner.self ? motion.self : motion.scene) ? verdict.checked
-                                                     : verdict.not_checked[static_cast<int>(Reason::scope)]);
+      ++(inScope(motion, partner) ? verdict.checked : verdict.not_checked[static_cast<int>(Reason::scope)]);
   std::map<std::pair<int, int>, std::size_t> all_the_time;  // by pair that some piece ignores: in how many to the end
   for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece) {
     std::set<std::pair<int, int>> to_the_end;
@@ -394,7 +397,7 @@ void countPairs(const World& world, const Motion& motion, Verdict& verdict) {
       const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(ignored.b)];
       const auto at =
           std::lower_bound(list.begin(), list.end(), ignored.a, [](const Partner& p, int b) { return p.body < b; });
-      if (at == list.end() || at->body != ignored.a || !(at->self ? motion.self : motion.scene)) continue;
+      if (at == list.end() || at->body != ignored.a || !inScope(motion, *at)) continue;
       all_the_time.emplace(std::pair(ignored.a, ignored.b), 0);
       if (ignored.until >= endOf(motion, piece)) to_the_end.emplace(ignored.a, ignored.b);
     }
