@@ -228,8 +228,8 @@ struct Sweep {
     motion(tm, d, m);
     Vector vertex[3];
     for (int j = 0; j < 3; ++j) {
-      const double error = m.rem_c + m.rem_R * b[j].norm() + m.pad;
-      double way = 0;
+      const double left_out = m.rem_c + m.rem_R * b[j].norm(), error = left_out + m.pad;
+      double way = left_out;  // all of it where the motion tells no derivatives
       for (int k = 0; k < 3; ++k) {
         const int row = 3 * k;
         double c[3], size = 0;

@@ -23,13 +23,13 @@ GeometryPtr block(const Vec3& sides, Random& random) {
 }
 
 Feature featureOf(const std::string& name, Random& random) {
-  const Vec3 sides{random.uniform(0.1, 0.4), random.uniform(0.1, 0.4), random.uniform(0.1, 0.4)};
+  const Vec3 sides = random.inBox(0.1, 0.4);
   const double radius = random.uniform(0.03, 0.15), length = random.uniform(0.1, 0.4);
   const Vec3 h = sides / 2;
   const double z = random.uniform(-0.6, 0.6);
   // `block` is a solid or a mesh, `mesh` and `solid` one of them.
   if (name == "vertex") {
-    const Vec3 d{random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1)};
+    const Vec3 d = random.inBox(0.4, 1);
     return {block(sides, random), h, d.normalized()};
   }
   if (name == "box corner") return {Geometry::box(sides), h, Vec3::Ones().normalized()};
@@ -37,9 +37,11 @@ Feature featureOf(const std::string& name, Random& random) {
     const double a = random.uniform(0.3, 1.2);
     return {block(sides, random), Vec3(h.x(), h.y(), z * h.z()), Vec3(std::cos(a), std::sin(a), 0)};
   }
-  if (name == "face" || name == "mesh face")
+  if (name == "face" || name == "mesh face") {
+    const double x = random.uniform(-0.8, 0.8), y = random.uniform(-0.8, 0.8);
     return {name == "face" ? block(sides, random) : boxMesh(sides, random.between(1, 4), 0, random),
-            Vec3(random.uniform(-0.8, 0.8) * h.x(), random.uniform(-0.8, 0.8) * h.y(), h.z()), Vec3::UnitZ()};
+            Vec3(x * h.x(), y * h.y(), h.z()), Vec3::UnitZ()};
+  }
   if (name == "sphere") return {Geometry::sphere(radius), Vec3(0, 0, radius), Vec3::UnitZ()};
   if (name == "cylinder rim") {
     const double a = random.uniform(0.2, 1.3);
@@ -111,7 +113,7 @@ bool tryConstruct(const Kind& kind, const std::string& chain, Random& random, Co
   c.curved = isCurved(kind.first) || isCurved(kind.second);
   const Feature first = featureOf(kind.first, random), second = featureOf(kind.second, random);
   c.normal = random.direction();
-  c.point = 0.8 * random.unit() * random.direction();
+  c.point = random.vector(0, 0.8);
   c.time = random.uniform(0.2, 0.9);
   const Pose pose = posed(first, c.point, c.normal, random.uniform(-M_PI, M_PI));
   Pose other = posed(second, c.point, -c.normal, random.uniform(-M_PI, M_PI));
@@ -127,14 +129,20 @@ bool tryConstruct(const Kind& kind, const std::string& chain, Random& random, Co
   Scene& s = c.scene;
   s.family = std::string(kind.name) + ", " + chain;
   s.links.emplace_back();
-  const auto anyOrigin = [&] { return Pose{random.rotation(), random.uniform(0, 0.4) * random.direction()}; };
+  const auto anyOrigin = [&] { return Pose{random.rotation(), random.vector(0, 0.4)}; };
   const auto slide = [&](const Vec3& axis) {
-    addJoint(s, JointKind::prismatic, anyOrigin(), axis, random.uniform(-0.3, 0.3),
-             random.sign() * random.uniform(0.2, 1), c.time);
+    const Pose origin = anyOrigin();
+    const double start = random.uniform(-0.3, 0.3), sign = random.sign(), step = random.uniform(0.2, 1);
+    addJoint(s, JointKind::prismatic, origin, axis, start, sign * step, c.time);
   };
-  const auto turn = [&](const Pose& origin, const Vec3& axis) {
-    addJoint(s, random.chance(0.5) ? JointKind::revolute : JointKind::continuous, origin, axis, random.uniform(-2, 2),
-             random.sign() * random.logUniform(0.3, 4), c.time);
+  const auto turnAt = [&](const Pose& origin, const Vec3& axis) {
+    const JointKind kind = random.chance(0.5) ? JointKind::revolute : JointKind::continuous;
+    const double start = random.uniform(-2, 2), sign = random.sign(), step = random.logUniform(0.3, 4);
+    addJoint(s, kind, origin, axis, start, sign * step, c.time);
+  };
+  const auto turn = [&] {
+    const Pose origin = anyOrigin();
+    turnAt(origin, random.direction());
   };
   if (chain == "prismatic") {
     for (int j = random.between(1, 2); j > 0; --j) slide(random.direction());
@@ -143,12 +151,12 @@ bool tryConstruct(const Kind& kind, const std::string& chain, Random& random, Co
     if (chain == "revolute") return false;
     slide(random.direction());
     const Pose origin = anyOrigin();
-    turn(origin, (Kinematics(s).linkPose(1, 0).R * origin.R).transpose() * c.normal);
+    turnAt(origin, (Kinematics(s).linkPose(1, 0).R * origin.R).transpose() * c.normal);
   } else if (chain == "revolute") {
-    for (int j = random.between(1, 2); j > 0; --j) turn(anyOrigin(), random.direction());
+    for (int j = random.between(1, 2); j > 0; --j) turn();
   } else {
     slide(random.direction());
-    turn(anyOrigin(), random.direction());
+    turn();
     if (random.chance(0.5)) slide(random.direction());
   }
   const int last = static_cast<int>(s.links.size()) - 1;

@@ -59,8 +59,8 @@ GeometryPtr revolved(const std::string& name, int rows, int columns, bool closed
 
 GeometryPtr starMesh(int rows, int columns, double size, double bumps, Random& random) {
   std::array<Vec3, 4> wave;
-  for (Vec3& w : wave) w = random.uniform(1, 6) * random.direction();
-  const Vec3 stretch(random.uniform(0.4, 1), random.uniform(0.4, 1), random.uniform(0.4, 1));
+  for (Vec3& w : wave) w = random.vector(1, 6);
+  const Vec3 stretch = random.inBox(0.4, 1);
   return revolved(
       "star", rows, columns, false,
       [&](double s, double a) {
@@ -88,7 +88,7 @@ GeometryPtr soupMesh(int n, double size, Random& random) {
   std::vector<Vec3> v;
   Triangles t;
   for (int i = 0; i < n; ++i) {
-    const Vec3 c = size / 2 * random.unit() * random.direction();
+    const Vec3 c = random.vector(0, size / 2);
     const Vec3 u = random.direction(), w = random.direction().cross(u).normalized();
     const double a = size * random.uniform(0.05, 0.4), b = a * random.logUniform(0.02, 1);
     v.insert(v.end(), {c, c + a * u, c + random.unit() * a * u + b * w});
@@ -170,12 +170,12 @@ Scene rigidScene(const std::string& bodies, Random& random) {
               : random.chance(0.5) ? JointKind::revolute
                                    : JointKind::continuous;
     l.axis = anyAxis(random);
-    l.origin = anyPose(random, random.uniform(0, 0.5) * random.direction());
+    l.origin = anyPose(random, random.vector(0, 0.5));
     s.links.push_back(l);
   }
   setVariables(s, anyAngle(random), random);
   if (joints == 1) s.q1[0] += random.sign() * 0.3 * std::abs(s.q1[0] - s.q0[0]);
-  s.bodies.push_back({a, joints, anyPose(random, random.uniform(0, 0.4) * random.direction())});
+  s.bodies.push_back({a, joints, anyPose(random, random.vector(0, 0.4))});
   s.bodies.push_back({b, -1, anyPose(random, Vec3::Zero())});
   return s;
 }
@@ -197,8 +197,9 @@ Scene armScene(bool tree, Random& random) {
               : kind < 0.87 ? JointKind::prismatic
                             : JointKind::fixed;
     l.axis = anyAxis(random);
-    const Mat3 turn = random.chance(0.5) ? random.rotation()
-                                         : rotationAbout(Vec3::Unit(random.below(3)), M_PI / 2 * random.between(0, 3));
+    const bool any_turn = random.chance(0.5);
+    const int turn_axis = random.below(3), quarters = random.between(0, 3);
+    const Mat3 turn = any_turn ? random.rotation() : rotationAbout(Vec3::Unit(turn_axis), M_PI / 2 * quarters);
     l.origin = {turn, Vec3(0, 0, length[static_cast<std::size_t>(l.parent)]) + 0.02 * random.direction()};
     // A second root stands aside.
     if (l.parent < roots) l.origin.p += Vec3(0.5 * l.parent, 0, 0);
@@ -257,10 +258,9 @@ void placeBeside(Scene& s, int obstacle, int body, double t, double gap, Random&
   const Kinematics k(s);
   const Body& moving = s.bodies[static_cast<std::size_t>(body)];
   Body& o = s.bodies[static_cast<std::size_t>(obstacle)];
-  const double u = random.unit(), v = random.unit(), w = random.unit();
   const Pose M = k.bodyPose(body, t);
-  const Vec3 x = M * moving.geometry->surfacePoint(u, v, w);
-  const Vec3 own = o.pose.R * o.geometry->surfacePoint(random.unit(), random.unit(), random.unit());
+  const Vec3 x = M * random.pointOf(*moving.geometry);
+  const Vec3 own = o.pose.R * random.pointOf(*o.geometry);
   Vec3 outward = x - M * moving.geometry->centre();
   outward = outward.norm() > 1e-6 ? Vec3(outward.normalized()) : random.direction();
   o.pose.p = x + gap * outward - own;
@@ -287,7 +287,7 @@ bool makeTouch(Scene& s, int obstacle, int body, double t, double gap, Random& r
   const Body& moving = s.bodies[static_cast<std::size_t>(body)];
   Body& o = s.bodies[static_cast<std::size_t>(obstacle)];
   const Pose M = oracle.kinematics().bodyPose(body, t);
-  const Vec3 aim = M * moving.geometry->surfacePoint(random.unit(), random.unit(), random.unit());
+  const Vec3 aim = M * random.pointOf(*moving.geometry);
   const Vec3 towards = -random.direction();
   o.pose.p =
       aim - (moving.geometry->radius() + o.geometry->radius() + 0.1) * 2 * towards - o.pose.R * o.geometry->centre();
@@ -377,7 +377,8 @@ void clearWay(Scene& s) {
 }
 
 double grazeOf(Random& random) {
-  return random.sign() * random.logUniform(1e-8, 1e-3);
+  const double sign = random.sign();
+  return sign * random.logUniform(1e-8, 1e-3);
 }
 
 /// A hit on the way of one of the first `movers` bodies, with both ends free where that can be had, else the start.
@@ -403,7 +404,8 @@ void placeRigid(Scene& s, const std::string& placing, Random& random) {
     return;
   }
   for (int attempt = 0; attempt < 8; ++attempt) {
-    placeBeside(s, 1, 0, random.uniform(0, 1), random.uniform(-0.05, 0.3), random);
+    const double t = random.unit(), gap = random.uniform(-0.05, 0.3);
+    placeBeside(s, 1, 0, t, gap, random);
     if (random.chance(0.04) || freeAt(s, 0)) return;
   }
 }
@@ -414,7 +416,9 @@ void placeArm(Scene& s, const std::string& placing, Random& random) {
   for (int o = 0; o < obstacles; ++o) {
     s.bodies.push_back({random.chance(0.5) ? MeshLibrary::instance().any(random) : anyShape(random, 0.1, 0.5), -1,
                         anyPose(random, Vec3::Zero())});
-    placeBeside(s, links + o, random.below(links), random.uniform(0, 1), random.uniform(-0.01, 0.4), random);
+    const int link = random.below(links);
+    const double t = random.unit(), gap = random.uniform(-0.01, 0.4);
+    placeBeside(s, links + o, link, t, gap, random);
   }
   if (random.chance(0.05)) s.check_self = false;
   if (!random.chance(0.03)) clearStart(s);
@@ -451,7 +455,7 @@ GeometryPtr boxMesh(const Vec3& sides, int n, double noise, Random& random) {
     const auto [at, fresh] = ids.emplace(k, static_cast<int>(v.size()));
     if (fresh) {
       const Vec3 x(k[0], k[1], k[2]);
-      v.push_back((x / n - Vec3::Constant(0.5)).cwiseProduct(sides) + noise * random.unit() * random.direction());
+      v.push_back((x / n - Vec3::Constant(0.5)).cwiseProduct(sides) + random.vector(0, noise));
     }
     return at->second;
   };
@@ -475,7 +479,7 @@ MeshLibrary::MeshLibrary() {
   Random random(0x6d657368);
   const auto size = [&] { return random.uniform(0.15, 0.6); };
   for (int i = 0; i < 6; ++i) {
-    const double x = size(), y = size() * random.logUniform(0.1, 1), z = size();
+    const double x = size(), flat = random.logUniform(0.1, 1), y = flat * size(), z = size();
     meshes_.push_back(boxMesh({x, y, z}, 1, i % 2 ? 0.03 : 0, random));
   }
   for (int i = 0; i < 4; ++i) {
@@ -489,11 +493,13 @@ MeshLibrary::MeshLibrary() {
   for (const int n : {12, 40, 150}) meshes_.push_back(soupMesh(n, size(), random));
   for (int i = 0; i < 8; ++i) {
     const double length = 0.12 + 0.04 * i;
-    const Vec3 sides(random.uniform(0.03, 0.1), random.uniform(0.03, 0.1), length);
+    const double x = random.uniform(0.03, 0.1), y = random.uniform(0.03, 0.1);
+    const Vec3 sides(x, y, length);
     bars_.push_back(boxMesh(sides, 1 + i % 4, i % 2 ? 0.003 : 0, random));
     const double thick = random.uniform(0.04, 0.1), waist = random.uniform(0.2, 0.8);
+    const int rows = random.between(4, 12), columns = random.between(5, 16);
     bars_.push_back(revolved(
-        "bar", random.between(4, 12), random.between(5, 16), false,
+        "bar", rows, columns, false,
         [&](double s, double a) {
           const double r =
               thick / 2 * std::sqrt(std::max(0.0, 4 * s * (1 - s))) * (1 - waist * (1 - std::cos(2 * M_PI * s)) / 4);

@@ -93,7 +93,9 @@ Mat3 rotationAbout(const Vec3& axis, double angle) {
 }
 
 Mat3 Random::rotation() {
-  return rotationAbout(direction(), uniform(-M_PI, M_PI)) * rotationAbout(direction(), uniform(-M_PI, M_PI));
+  const Vec3 first = direction(), second = direction();
+  const double by = uniform(-M_PI, M_PI), then_by = uniform(-M_PI, M_PI);
+  return rotationAbout(second, then_by) * rotationAbout(first, by);
 }
 
 GeometryPtr Geometry::mesh(std::string name, std::vector<Vec3> vertices, std::vector<std::array<int, 3>> triangles,

@@ -167,6 +167,30 @@ TEST(DropIn, ContactAtTheStartIsAtZero) {
   EXPECT_EQ(t, 0);
 }
 
+// A plane has two sides: a contact that nothing proves nor excludes is reported where the box is next to the plane, not
+// at the box's far end.
+TEST(DropIn, UncertainContactIsOnEitherSideOfAPlane) {
+  const fcl::Planed plane(Vector3d(0, 0, 1), 0);
+  const fcl::Boxd box(0.2, 0.2, 0.2);
+  for (const double side : {1.0, -1.0}) {
+    const Transform3d far = at(0, 0, side), touching = at(0, 0, 0.1 * side);
+    for (const bool plane_first : {true, false}) {
+      CertifiedPairResult result;
+      if (plane_first) {
+        fcl_artic::continuousCollide(&plane, at(0), at(0), &box, far, touching, fcl::CCDM_TRANS, CertifiedRequest(),
+                                     result);
+      } else {
+        fcl_artic::continuousCollide(&box, far, touching, &plane, at(0), at(0), fcl::CCDM_TRANS, CertifiedRequest(),
+                                     result);
+      }
+      ASSERT_EQ(result.contacts.size(), 1u);
+      EXPECT_FALSE(result.certain);
+      EXPECT_NEAR(result.contacts[0].point.z(), 0, 2e-6);
+      EXPECT_NEAR(result.contacts[0].normal.z(), plane_first ? side : -side, 1e-12);
+    }
+  }
+}
+
 // Half-spaces and planes that are not parallel all along meet at once, however far off; parallel ones where they do.
 TEST(DropIn, UnboundedPairsMeetUnlessTheyStayParallel) {
   const fcl::Halfspaced below(Vector3d(0, 0, 1), 0);

@@ -73,6 +73,21 @@ MotionAt enclosure(const Turn& turn, const Mutant& mutant = {}) {
   };
 }
 
+/// The same motion told by poses and bounds on speeds alone (fcl_artic::BoundedMotion without derivatives).
+MotionAt withoutDerivatives(const Turn& turn) {
+  const MotionAt motion = enclosure(turn);
+  return [=](double tm, double d, ScalarMotion& out) {
+    motion(tm, d, out);
+    for (int order = 1; order < 3; ++order) {
+      std::fill(out.R[order], out.R[order] + 9, 0);
+      std::fill(out.c[order], out.c[order] + 3, 0);
+    }
+    const double rate = static_cast<double>(std::abs(turn.rate));
+    out.rem_R = rate * d;
+    out.rem_c = static_cast<double>(turn.slide.norm() + rate * turn.c0.norm()) * d;
+  };
+}
+
 // ---- Truth in long double.
 
 struct Pair {
@@ -538,6 +553,13 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
     EXPECT_NEAR(r.point[2], 0, 1e-11);
     if (tie.normal.norm() > 0) expectNear(r.normal, tie.normal, 1e-9);
     EXPECT_NEAR(r.normal.norm(), 1, 1e-12);
+    // Without derivatives the remainder is all of the way: it decides when an interval is narrow.
+    RefinedContact first_order;
+    ASSERT_TRUE(
+        refineTriangleContact(pair.a, pair.b, withoutDerivatives(pair.turn), 0.5 - 4e-7, 0.5 + 4e-7, first_order));
+    EXPECT_EQ(static_cast<int>(first_order.feature), static_cast<int>(tie.feature));
+    EXPECT_GT(first_order.t_lower, 0.5 - 1e-12);
+    if (tie.normal.norm() > 0) expectNear(first_order.normal, tie.normal, 1e-9);
     // The same with the bodies exchanged.
     std::swap(pair.a, pair.b);
     pair.turn.slide = {0, 0, 2};

@@ -335,7 +335,8 @@ inline void Follower::record(Candidate& f) {
     combine(body, g.simplex, x, y);
     point = f.normal * out + (x + y) * 0.5;
     if (unbounded(a) || unbounded(b)) {  // the bounded piece's point that is nearest to the other's border
-      const Vec3 n = unboundedNormal(body);
+      Vec3 n = unboundedNormal(body);
+      if (f.have_normal && dot(n, f.normal) < 0) n = -n;  // a plane has two sides
       DifferencePoint lowest;
       body.support(n, lowest);
       point = unbounded(a) ? body.place(lowest.b) - n * b.radius : lowest.a + n * a.radius;
