@@ -265,10 +265,6 @@ std::string textReport(const Report& r) {
         entry("ignored", fmt::format("'{}' and '{}' touch, or are within their margin, at t = {:g} and may separate",
                                      a.name, b.name, r.begin));
   }
-  if (const std::size_t n = result.never_apart_pairs; result.isFree() && n > 0) {
-    text += entry("ignored", fmt::format("{} of these {} apart nowhere on the motion: 'free' says nothing of {}", n,
-                                         n == 1 ? "is proven" : "are proven", n == 1 ? "it" : "them"));
-  }
   for (const std::string& note : r.notes) text += entry("note", note);
   if (r.request.visibility != VisibilityMode::off) text += entry("stage 2", visibilityText(result.statistics));
   return text + entry("work", statisticsText(result.statistics));
