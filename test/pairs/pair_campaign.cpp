@@ -202,7 +202,7 @@ class Examination {
       add(Fault::drop_in, format("late: %.17g, contact at t = %.17g", toc, truth_.time));
     if (!d.is_collide) return;
     const Truth after = judge_.firstContact(toc, std::min(1.0, toc + toc_err + 1e-12));
-    if (!after.hit && after.gap > CertifiedRequest().tolerance_distance)
+    if (!after.hit && after.gap > fcl_artic::CertifiedPairRequest().tolerance_distance)
       add(Fault::drop_in, format("contact at t = %.17g, gap %.3g m for toc_err from there on", toc, after.gap));
   }
 
