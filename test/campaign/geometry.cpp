@@ -104,6 +104,7 @@ GeometryPtr Geometry::mesh(std::string name, std::vector<Vec3> vertices, std::ve
   g->name_ = std::move(name);
   g->vertices_ = std::move(vertices);
   g->triangles_ = std::move(triangles);
+  g->volume_ = bv;
   g->fcl_ = makeFclMesh(g->vertices_, g->triangles_, bv);
   g->buildTree();
   return g;

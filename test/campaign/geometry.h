@@ -40,6 +40,8 @@ class Geometry {
   const std::string& name() const { return name_; }
   bool isMesh() const { return kind_ == Piece::triangle; }
   Piece::Kind kind() const { return kind_; }
+  const Vec3& half() const { return half_; }  ///< half sides of a solid, a cylinder's along z
+  BV volume() const { return volume_; }       ///< of a mesh for FCL
   int numPieces() const { return isMesh() ? static_cast<int>(triangles_.size()) : 1; }
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
@@ -70,6 +72,7 @@ class Geometry {
   std::string name_;
   Piece::Kind kind_ = Piece::triangle;
   Vec3 half_ = Vec3::Zero();
+  BV volume_ = BV::obbrss;
   std::vector<Vec3> vertices_;
   std::vector<std::array<int, 3>> triangles_;
   Vec3 centre_ = Vec3::Zero();

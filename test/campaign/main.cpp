@@ -12,6 +12,7 @@
 #include "fcl_artic/instruction_set.h"
 #include "generator.h"
 #include "run.h"
+#include "scene_file.h"
 
 namespace {
 
@@ -66,6 +67,12 @@ int main(int argc, char** argv) {
   app.add_option("--answers", answers,
                  "write each query's answer to this file, a line each: number, hash of the scene, verdict, t_lower and "
                  "t_upper with all bits. scripts/compare-answers compares two of them");
+  std::string write;
+  app.add_option("--scenes", options.scenes, "ask about the scenes of this file, which --write-scenes has written")
+      ->excludes("--queries")
+      ->excludes("--seed")
+      ->excludes("--class");
+  app.add_option("--write-scenes", write, "write all scenes to this file, with all bits");
   bool unjudged = false;
   app.add_flag("--unjudged", unjudged, "ask only: nothing is examined, and the exit status is 0");
   bool redon = false;
@@ -85,6 +92,7 @@ int main(int argc, char** argv) {
       return good ? 0 : 1;
     }
     options.corruption = campaign::corruptionOf(spoil);
+    if (!options.scenes.empty()) options.queries = campaign::readScenes(options.scenes).size();
     const bool terminal = isatty(STDERR_FILENO);
     std::atomic<std::uint64_t> shown{0};
     options.progress = [&](std::uint64_t done) {
@@ -93,14 +101,15 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "\r%3d %%", static_cast<int>(percent));
     };
     AnswerLines lines(answers.empty() ? 0 : options.queries);
-    if (!answers.empty()) {
-      options.answered = [&](std::uint64_t i, const campaign::Scene& scene, const fcl_artic::CertifiedResult& result) {
-        lines.set(i, scene, result);
-      };
-    }
+    std::vector<campaign::Scene> written(write.empty() ? 0 : options.queries);
+    options.answered = [&](std::uint64_t i, const campaign::Scene& scene, const fcl_artic::CertifiedResult& result) {
+      if (!answers.empty()) lines.set(i, scene, result);
+      if (!write.empty()) written[i] = scene;
+    };
     std::printf("instruction set: %s\n", fcl_artic::instructionSet());
     const campaign::Report report = campaign::run(options);
     if (!answers.empty()) lines.write(answers);
+    if (!write.empty()) campaign::writeScenes(written, write);
     if (terminal) std::fprintf(stderr, "\r");
     std::fputs(campaign::toText(report).c_str(), stdout);
     if (unjudged) return 0;

@@ -5,12 +5,14 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
 
 #include "generator.h"
+#include "scene_file.h"
 
 namespace campaign {
 namespace {
@@ -29,10 +31,8 @@ bool freeAtEnd(const Oracle& oracle) {
 }
 
 /// Runs one query and counts it; what is wrong goes to `findings`.
-void runOne(std::uint64_t query, const std::string& family, std::uint64_t seed, const Options& options, Tally& tally,
+void runOne(std::uint64_t query, const Scene& scene, const Options& options, Tally& tally,
             std::vector<Finding>& findings) {
-  const auto begin = Clock::now();
-  const Scene scene = makeScene(family, seed);
   const auto made = Clock::now();
   std::unique_ptr<const Oracle> oracle;
   Truth truth;
@@ -52,7 +52,6 @@ void runOne(std::uint64_t query, const std::string& family, std::uint64_t seed, 
   }
   if (options.answered) options.answered(query, scene, answer.result);
   const fcl_artic::CertifiedResult& r = answer.result;
-  tally.generate_us += microseconds(begin, made);
   tally.oracle_us += microseconds(made, judged);
   tally.query_us += answer.elapsed_us;
   if (!options.judge) {
@@ -63,14 +62,14 @@ void runOne(std::uint64_t query, const std::string& family, std::uint64_t seed, 
   if (options.try_corruptions) {
     const fcl_artic::CertifiedResult original = answer.result;
     for (std::size_t c = 0; c < tally.spoilt.size(); ++c) {
-      if (corrupt(static_cast<Corruption>(c), seed, scene, answer)) {
+      if (corrupt(static_cast<Corruption>(c), scene.seed, scene, answer)) {
         ++tally.spoilt[c];
         tally.spoilt_seen[c] += !examine(scene, *oracle, truth, answer).empty();
       }
       answer.result = original;
     }
   }
-  corrupt(options.corruption, seed, scene, answer);
+  corrupt(options.corruption, scene.seed, scene, answer);
   findings = examine(scene, *oracle, truth, answer);
 
   ++tally.queries;
@@ -114,20 +113,31 @@ void Tally::add(const Tally& o) {
 
 Report run(const Options& options) {
   if (!options.family.empty()) makeScene(options.family, 0);  // throws for an unknown class
+  // For each thread its own: making an fcl::CollisionObject writes to its geometry.
+  std::vector<std::vector<Scene>> given(static_cast<std::size_t>(std::max(1, options.threads)));
+  if (!options.scenes.empty()) std::generate(given.begin(), given.end(), [&] { return readScenes(options.scenes); });
+  const std::uint64_t queries = options.scenes.empty() ? options.queries : given[0].size();
   Report report;
   std::mutex mutex;
   std::atomic<std::uint64_t> next{0};
   std::vector<std::pair<std::uint64_t, Failure>> failures;
-  const auto work = [&] {
+  const auto work = [&](const std::vector<Scene>& scenes) {
     std::map<std::string, Tally> tallies;
-    for (std::uint64_t i; (i = next++) < options.queries;) {
-      const std::string& family = options.family.empty() ? familyOf(options.seed, i) : options.family;
-      const std::uint64_t seed = Random::mix(options.seed, i);
+    for (std::uint64_t i; (i = next++) < queries;) {
+      const auto begin = Clock::now();
+      Scene drawn;
+      if (scenes.empty()) {
+        drawn = makeScene(options.family.empty() ? familyOf(options.seed, i) : options.family,
+                          Random::mix(options.seed, i));
+      }
+      const Scene& scene = scenes.empty() ? drawn : scenes[i];
+      Tally& tally = tallies[scene.family];
+      tally.generate_us += microseconds(begin, Clock::now());
       std::vector<Finding> findings;
-      runOne(i, family, seed, options, tallies[family], findings);
+      runOne(i, scene, options, tally, findings);
       if (!findings.empty()) {
         const std::lock_guard<std::mutex> lock(mutex);
-        failures.push_back({i, {family, seed, std::move(findings)}});
+        failures.push_back({i, {scene.family, scene.seed, std::move(findings)}});
       }
       if (options.progress) options.progress(i + 1);
     }
@@ -136,7 +146,7 @@ Report run(const Options& options) {
   };
   const auto begin = Clock::now();
   std::vector<std::thread> threads;
-  for (int t = 0; t < std::max(1, options.threads); ++t) threads.emplace_back(work);
+  for (const std::vector<Scene>& scenes : given) threads.emplace_back(work, std::cref(scenes));
   for (std::thread& t : threads) t.join();
   report.elapsed_s = microseconds(begin, Clock::now()) * 1e-6;
   for (const auto& [family, tally] : report.families) report.total.add(tally);

@@ -17,7 +17,8 @@ struct Options {
   std::uint64_t queries = 20000;
   std::uint64_t seed = 1;
   int threads = 2;
-  std::string family;                                         ///< only this class; empty: all, in their shares
+  std::string family;  ///< only this class; empty: all, in their shares
+  std::string scenes;  ///< a file (scene_file.h): asks about its scenes; empty: they are drawn, by seed and family
   fcl_artic::CertifiedRequest how;                            ///< method and its options, stage 2
   std::shared_ptr<const fcl_artic::VisibilityCuller> culler;  ///< who does stage 2; null: the executor cpu
   Corruption corruption = Corruption::none;                   ///< spoils the answers before they are examined
