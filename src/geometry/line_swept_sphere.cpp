@@ -9,6 +9,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "geometry/point_lanes.h"
 #include "geometry/spread_directions.h"
 
 namespace fcl_artic {
@@ -118,15 +119,9 @@ Segment alongAxis(const Matrix3d& axes, const Points& points) {
 /// The few points that a good segment depends on, about: the farthest ones along directions all around.
 Points extremePoints(const Points& points) {
   if (points.size() <= static_cast<std::size_t>(kDirections)) return points;
-  const std::size_t stride = 1 + points.size() / kSampled;
+  const PointLanes lanes(points, 1 + points.size() / kSampled);
   Points kept;
-  for (const Vector3d& n : spreadDirections(kDirections)) {
-    std::size_t best = 0;
-    for (std::size_t j = 0; j < points.size(); j += stride) {
-      if (n.dot(points[j]) > n.dot(points[best])) best = j;
-    }
-    kept.push_back(points[best]);
-  }
+  for (const Vector3d& n : spreadDirections(kDirections)) kept.push_back(points[lanes.farthest(n)]);
   return kept;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "geometry/point_lanes.h"
 #include "geometry/spread_directions.h"
 #include "numerics/baseline_isa.h"
 
@@ -27,40 +28,6 @@ std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points
   points.erase(std::unique(points.begin(), points.end()), points.end());
   return points;
 }
-
-/// Points eight by eight, to find those farthest along directions.
-class PointLanes {
- public:
-  explicit PointLanes(const std::vector<Eigen::Vector3d>& points) : blocks_((points.size() + 7) / 8) {
-    for (std::size_t i = 0; i < 8 * blocks_.size(); ++i) {
-      const Eigen::Vector3d& p = points[std::min(i, points.size() - 1)];
-      for (std::size_t k = 0; k < 3; ++k) blocks_[i / 8].x[k][i % 8] = p[static_cast<Eigen::Index>(k)];
-    }
-  }
-  double farthest(const Eigen::Vector3d& u) const {
-    double most[8];
-    std::fill(most, most + 8, -INFINITY);
-    for (const Block& block : blocks_) {
-      for (int i = 0; i < 8; ++i) {
-        const double value = block.along(u, i);
-        most[i] = most[i] > value ? most[i] : value;
-      }
-    }
-    return *std::max_element(most, most + 8);
-  }
-  std::size_t firstAt(const Eigen::Vector3d& u, double value) const {
-    std::size_t i = 0;
-    while (i + 1 < 8 * blocks_.size() && blocks_[i / 8].along(u, static_cast<int>(i % 8)) < value) ++i;
-    return i;
-  }
-
- private:
-  struct Block {
-    double x[3][8];
-    double along(const Eigen::Vector3d& u, int i) const { return x[0][i] * u[0] + x[1][i] * u[1] + x[2][i] * u[2]; }
-  };
-  std::vector<Block> blocks_;
-};
 
 /// How far points are from the hull of a few vertices, from above.
 class HullDistance {
@@ -146,7 +113,7 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& all_points, std::siz
   const PointLanes lanes(points);
   std::set<std::size_t> first;
   for (const Eigen::Vector3d& direction : spreadDirections(kDirections)) {
-    first.insert(std::min(lanes.firstAt(direction, lanes.farthest(direction)), points.size() - 1));
+    first.insert(lanes.farthest(direction));
   }
   for (std::size_t point : first) choose(point);
   Eigen::Vector3d lo = points[0], hi = points[0];
