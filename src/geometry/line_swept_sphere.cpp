@@ -103,7 +103,7 @@ Segment alongAxis(const Matrix3d& axes, const Points& points) {
   double r = 0;
   for (const Vector3d& x : points) {
     const Vector3d y = axes.transpose() * x - middle;
-    r = std::max(r, std::hypot(y[0], y[1]));
+    r = std::max(r, y.head<2>().norm());
   }
   double top = -kInfinity, bottom = kInfinity;
   for (const Vector3d& x : points) {

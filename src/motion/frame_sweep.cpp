@@ -134,7 +134,7 @@ engine::SweepStep& FrameSweep::append(Carrier& at, const Eigen::Vector3d& axis) 
   step.ulps = at.ulps + kTransformUlps;
   const double error = 0x1p-52 * step.ulps * step.length;
   step.axial = split ? std::abs(step.p[2]) + error : 0;
-  step.perp = split ? std::hypot(step.p[0], step.p[1]) * (1 + 1e-15) + error : step.length;
+  step.perp = split ? Eigen::Vector2d::Map(step.p).norm() * (1 + 1e-15) + error : step.length;
   standBehind(at, static_cast<int>(steps_.size()) - 1, Q);
   return step;
 }
