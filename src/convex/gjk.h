@@ -204,9 +204,11 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
 }
 
 /// The search itself, in any bounded convex body with a function for its support points.
+/// @tparam kKeepNearest  the simplex is that of the distance, also where the last step made none that is nearer (of a
+///   flat simplex rounding can make one that is far off): for reports, at the expense of a copy each step.
 /// @param enough  a direction along which the gap is larger ends the search.
 /// The other parameters are gjk()'s.
-template <class ConvexBody>
+template <bool kKeepNearest = false, class ConvexBody>
 inline void searchNearest(const ConvexBody& body, const Vec3& guess, double relative, double radii, double enough,
                           int max_iterations, GjkResult& out, const Simplex* start = nullptr) {
   out.overlap = false;
@@ -266,10 +268,16 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
       known |= x & y & z;
     }
     if (known) break;
+    Simplex nearest;
+    if constexpr (kKeepNearest) nearest = s;
     ++s.n;
     Vec3 next;
     inside = !reduceSimplex(s, next);  // it stays a tetrahedron then
-    if (inside || dot(next, next) >= vv * (1 - 1e-15)) break;
+    if (inside) break;
+    if (dot(next, next) >= vv * (1 - 1e-15)) {
+      if constexpr (kKeepNearest) s = nearest;
+      break;
+    }
     v = next;
   }
   out.n = best / best_length;
@@ -290,10 +298,11 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
 /// @param radii  rounding radii and margin: cores nearer than this overlap.
 /// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty:
 /// none.
+template <bool kKeepNearest = false>
 inline void gjk(const DifferenceBody& body, const Vec3& guess, double relative, double radii, int max_iterations,
                 GjkResult& out, const Simplex* start = nullptr) {
   if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
-  searchNearest(body, guess, relative, radii, kInfinite, max_iterations, out, start);
+  searchNearest<kKeepNearest>(body, guess, relative, radii, kInfinite, max_iterations, out, start);
 }
 
 }  // namespace FCL_ARTIC_ISA

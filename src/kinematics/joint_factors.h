@@ -11,11 +11,16 @@
 
 namespace fcl_artic {
 
-/// Axes x, y, z of a planar joint in its frame: z is the normal, x and y are turned there the shortest way.
+/// Axes x, y, z of a planar joint in its frame: z is the unit normal, x and y are turned there the shortest way. That
+/// is c I + [v]x + v v^T / (1 + c) with v = e_z x normal and c = normal_z; next to -z, where 1 + c cancels, it is |v|^2
+/// / (1 - c).
 inline Eigen::Matrix3d planeFrame(const Eigen::Vector3d& normal) {
-  if (normal == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();
-  if (normal == -Eigen::Vector3d::UnitZ()) return Eigen::Vector3d(1, -1, -1).asDiagonal();
-  return orthonormal(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal).toRotationMatrix());
+  const double x = -normal.y(), y = normal.x(), c = normal.z(), square = x * x + y * y;
+  if (square == 0) return Eigen::Vector3d(1, c < 0 ? -1 : 1, c < 0 ? -1 : 1).asDiagonal();
+  const double k = c < 0 ? (1 - c) / square : 1 / (1 + c);
+  Eigen::Matrix3d frame;
+  frame << c + k * x * x, k * x * y, y, k * x * y, c + k * y * y, -x, -y, x, c;
+  return orthonormal(frame);
 }
 
 struct JointFactor {

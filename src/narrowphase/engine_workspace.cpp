@@ -30,6 +30,48 @@ void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   std::stable_sort(contacts.begin(), contacts.end(), comesBefore);
 }
 
+/// Nearest points at t_lower, given as `body`, unless the pieces overlap: those of a half-space or plane and a bounded
+/// piece.
+void nearestToWall(const baseline::DifferenceBody& body, LeafContact& contact) {
+  const double radii = body.a->radius + body.b->radius;
+  baseline::GjkResult found;
+  baseline::unboundedGap(body, radii, found);
+  if (found.overlap) return;
+  baseline::DifferencePoint lowest;
+  body.support(found.n, lowest);
+  const baseline::Vec3 gap = found.n * (found.lower - radii);
+  const baseline::Vec3 a = baseline::unbounded(*body.b) ? lowest.a + found.n * body.a->radius
+                                                        : body.place(lowest.b) - found.n * body.b->radius - gap;
+  a.store(contact.nearest_a);
+  (a + gap).store(contact.nearest_b);
+  contact.t_nearest = contact.t_lower;
+}
+
+/// The same of two bounded pieces; and where no features have given the normal, the direction between these points is a
+/// better one than that in which the search ended, which has but to separate.
+void nearestPoints(const baseline::DifferenceBody& body, LeafContact& contact) {
+  constexpr int kMostIterations = 256;
+  baseline::GjkResult found;
+  const double radii = body.a->radius + body.b->radius;
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, radii, kMostIterations, found);
+  if (found.overlap) return;
+  baseline::originWeights(found.simplex);
+  baseline::Vec3 a, b;
+  baseline::combine(body, found.simplex, a, b);
+  const double size = baseline::norm(a) + baseline::norm(b), between = baseline::norm(b - a);
+  // Where the search has not come to an end, next to contact of curved surfaces, no two points are known to be nearer
+  // than the one at which they touch.
+  const double gap = found.lower - radii;
+  if (!(between - radii <= 2 * std::max(0.0, gap) + 1e-12 * size)) return;
+  // Rounding, of some 1e-16 of the size, turns the direction by 1e-6 rad at most.
+  const bool sharp = between > 1e-10 * size;
+  const baseline::Vec3 n = sharp ? (b - a) * (1 / between) : found.n;
+  (a + n * body.a->radius).store(contact.nearest_a);
+  (b - n * body.b->radius).store(contact.nearest_b);
+  contact.t_nearest = contact.t_lower;
+  if (contact.feature < 0 && sharp) found.n.store(contact.normal);  // along it the gap is seen
+}
+
 }  // namespace
 
 void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& answer) {
@@ -47,6 +89,16 @@ void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& 
   if (!query.every_pair && contacts_.size() > 1) orderContacts(answer.t_upper, contacts_);
   answer.contacts = contacts_.data();
   answer.num_contacts = static_cast<std::int32_t>(contacts_.size());
+}
+
+PairMotion EngineWorkspace::lookAt(const Problem& problem, PairId pair, double tm, double d) const {
+  PairMotion motion = pairMotion(pair, tm, d);
+  if (!problem.sweeps[problem.parts(pair).sweep].first_order) return motion;
+  // Without derivatives the motion tells poses only: the velocity is that between two of them.
+  const PairMotion before = pairMotion(pair, tm - d, d), after = pairMotion(pair, tm + d, d);
+  for (int i = 0; i < 9; ++i) motion.R[1][i] = 0.5 * (after.R[0][i] - before.R[0][i]);
+  for (int i = 0; i < 3; ++i) motion.c[1][i] = 0.5 * (after.c[0][i] - before.c[0][i]);
+  return motion;
 }
 
 PairMotion EngineWorkspace::pairMotion(PairId pair, double tm, double d) const {
@@ -78,14 +130,14 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
     contact.certain = true;
     contact.t_upper = refined.t_upper;
   }
+  Vector3d::Map(contact.normal) = refined.normal;
+  if (contact.certain && !refined.certain) return;  // the solver has proven it, at a point of its own
   contact.t = refined.certain ? refined.t_upper : refined.t_lower;
   Vector3d::Map(contact.point) = refined.point;
-  Vector3d::Map(contact.normal) = refined.normal;
 }
 
 void EngineWorkspace::addWitness(const Problem& problem, const Query& query, LeafContact& contact) const {
-  const Vector3d point = Vector3d::Map(contact.point), normal = Vector3d::Map(contact.normal);
-  Vector3d::Map(contact.nearest_a) = Vector3d::Map(contact.nearest_b) = point;
+  Vector3d::Map(contact.nearest_a) = Vector3d::Map(contact.nearest_b) = Vector3d::Map(contact.point);
   contact.t_nearest = contact.t;
   contact.approach_speed = 0;
   if (query.any) return;
@@ -94,34 +146,29 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   // short a time the quadratic is the pose. (A report: nothing is proven with it.)
   constexpr double kSpan = 0x1p-14;
   const double tm = std::min(std::max(contact.t_lower, kSpan), 1 - kSpan), tau = (contact.t_lower - tm) / kSpan;
-  const PairMotion motion = pairMotion(contact.pair, tm, kSpan);
+  const PairMotion motion = lookAt(problem, contact.pair, tm, kSpan);
   const auto quadratic = [&](const auto& x0, const auto& x1, const auto& x2) { return x0 + (x1 + x2 * tau) * tau; };
   baseline::DifferenceBody body;
   body.pose.R = quadratic(baseline::Mat3(motion.R[0]), baseline::Mat3(motion.R[1]), baseline::Mat3(motion.R[2]));
   body.pose.c = quadratic(baseline::Vec3(motion.c[0]), baseline::Vec3(motion.c[1]), baseline::Vec3(motion.c[2]));
+  body.a = pieceOf(problem, contact.body_a, contact.piece_a);
+  body.b = pieceOf(problem, contact.body_b, contact.piece_b);
+  if (body.a && body.b) {
+    body.tree_a = problem.bodies[contact.body_a].tree;
+    body.tree_b = problem.bodies[contact.body_b].tree;
+    const bool wall_a = baseline::unbounded(*body.a), wall_b = baseline::unbounded(*body.b);
+    if (wall_a != wall_b) nearestToWall(body, contact);
+    if (!wall_a && !wall_b) nearestPoints(body, contact);
+  }
+
+  const Vector3d point = Vector3d::Map(contact.point), normal = Vector3d::Map(contact.normal);
   const Vector3d of_b =
-      Vector3d::Map(baseline::transposedTimes(body.pose.R, baseline::Vec3(contact.point) - body.pose.c).k);
+      Vector3d::Map(baseline::transposedTimes(body.pose.R, baseline::Vec3(point.data()) - body.pose.c).k);
   const auto change = [&](int order) -> Vector3d {
     return Rotation::Map(motion.R[order]) * of_b + Vector3d::Map(motion.c[order]);
   };
   const Vector3d velocity = (change(1) + 2 * tau * change(2)) / kSpan;
   contact.approach_speed = -velocity.dot(normal) / std::max(normal.norm(), 1e-300);
-
-  body.a = pieceOf(problem, contact.body_a, contact.piece_a);
-  body.b = pieceOf(problem, contact.body_b, contact.piece_b);
-  if (!body.a || !body.b || baseline::unbounded(*body.a) || baseline::unbounded(*body.b)) return;
-  body.tree_a = problem.bodies[contact.body_a].tree;
-  body.tree_b = problem.bodies[contact.body_b].tree;
-  baseline::GjkResult found;
-  constexpr int kMostIterations = 64;
-  baseline::gjk(body, baseline::Vec3(contact.normal), 1e-6, body.a->radius + body.b->radius, kMostIterations, found);
-  if (found.overlap) return;
-  baseline::originWeights(found.simplex);
-  baseline::Vec3 a, b;
-  baseline::combine(body, found.simplex, a, b);
-  (a + found.n * body.a->radius).store(contact.nearest_a);
-  (b - found.n * body.b->radius).store(contact.nearest_b);
-  contact.t_nearest = contact.t_lower;
 }
 
 }  // namespace engine

@@ -26,6 +26,8 @@ class EngineWorkspace {
 
  private:
   PairMotion pairMotion(PairId pair, double tm, double d) const;
+  /// The same for a report, with a velocity where the motion tells none.
+  PairMotion lookAt(const Problem& problem, PairId pair, double tm, double d) const;
   void nameFeatures(const Problem& problem, const Query& query, LeafContact& contact) const;
 
   const Engine& engine_;

@@ -172,8 +172,9 @@ TEST(DropIn, ContactAtTheStartIsAtZero) {
 TEST(DropIn, UncertainContactIsOnEitherSideOfAPlane) {
   const fcl::Planed plane(Vector3d(0, 0, 1), 0);
   const fcl::Boxd box(0.2, 0.2, 0.2);
-  for (const double side : {1.0, -1.0}) {
-    const Transform3d far = at(0, 0, side), touching = at(0, 0, 0.1 * side);
+  for (const auto& [side, begin] : {std::pair{1.0, 1.0}, {-1.0, 1.0}, {1.0, 0.1}, {-1.0, 0.1}}) {
+    // Comes to the plane, or rests on it all the time.
+    const Transform3d far = at(0, 0, begin * side), touching = at(begin == 1 ? 0 : 0.3, 0, 0.1 * side);
     for (const bool plane_first : {true, false}) {
       CertifiedPairResult result;
       if (plane_first) {
@@ -188,6 +189,55 @@ TEST(DropIn, UncertainContactIsOnEitherSideOfAPlane) {
       EXPECT_NEAR(result.contacts[0].point.z(), 0, 2e-6);
       EXPECT_NEAR(result.contacts[0].normal.z(), plane_first ? side : -side, 1e-12);
     }
+  }
+}
+
+// Pieces that are a margin apart have nearest points as far apart, a half-space's or plane's too.
+TEST(DropIn, NearestPointsAreAMarginApart) {
+  const fcl::Sphered ball(0.5);
+  const fcl::Halfspaced below(Vector3d(0, 0, 1), 0);
+  const fcl::Planed plane(Vector3d(0, 0, 1), 0);
+  const fcl::Boxd box(4, 4, 2);
+  CertifiedRequest request;
+  request.margin = 0.25;
+  const std::pair<const CollisionGeometryd*, double> grounds[] = {{&below, 0}, {&plane, 0}, {&box, -1}};
+  for (const auto& [ground, z] : grounds) {
+    for (const bool ground_first : {false, true}) {
+      CertifiedPairResult result;
+      const Transform3d begin = at(0, 0, 3), end = at(0, 0, 0.7), there = at(0, 0, z);
+      if (ground_first) {
+        fcl_artic::continuousCollide(ground, there, there, &ball, begin, end, fcl::CCDM_TRANS, request, result);
+      } else {
+        fcl_artic::continuousCollide(&ball, begin, end, ground, there, there, fcl::CCDM_TRANS, request, result);
+      }
+      ASSERT_EQ(result.contacts.size(), 1u);
+      const Vector3d of_ball = ground_first ? result.contacts[0].nearest2 : result.contacts[0].nearest1,
+                     of_ground = ground_first ? result.contacts[0].nearest1 : result.contacts[0].nearest2;
+      EXPECT_LT((of_ball - Vector3d(0, 0, 0.25)).norm(), 1e-5) << of_ball.transpose();
+      EXPECT_LT((of_ground - Vector3d(0, 0, 0)).norm(), 1e-5) << of_ground.transpose();
+    }
+  }
+}
+
+// Where a contact is proven, but not by the equations of two features, its point is the proof's, at t_upper.
+TEST(DropIn, PointOfACertainContactIsAtTUpper) {
+  // A corner ahead, along y, against a corner.
+  const fcl::TrianglePd a(Vector3d(0, 0.25, 0.5), Vector3d(-0.25, 0.5, 0.25), Vector3d(0.25, 0.5, 0));
+  const fcl::TrianglePd b(Vector3d(0, -0.5, 0.25), Vector3d(-0.5, -0.5, -0.25), Vector3d(-0.25, -0.25, 0.25));
+  Transform3d begin = at(0, -1.75, 0.5), end = at(0, 1.5, 0.5), there = at(-0.25, -0.25, 0);
+  begin.linear() << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  end.linear() = begin.linear();
+  there.linear() << -1, 0, 0, 0, -1, 0, 0, 0, 1;
+  const Vector3d across = (a.b - a.a).cross(a.c - a.a).normalized();
+  for (const double tolerance : {1e-6, 0x1p-12, 0.1}) {
+    CertifiedRequest request;
+    request.tolerance_time = tolerance;
+    CertifiedPairResult result;
+    fcl_artic::continuousCollide(&a, begin, end, &b, there, there, fcl::CCDM_TRANS, request, result);
+    ASSERT_TRUE(result.certain);
+    const fcl_artic::CertifiedContact& contact = result.contacts.at(0);
+    EXPECT_EQ(contact.feature, fcl_artic::FeatureKind::vertexVertex);
+    EXPECT_NEAR(across.dot(result.tf1_at_upper.inverse() * contact.point - a.a), 0, 1e-9) << tolerance;
   }
 }
 

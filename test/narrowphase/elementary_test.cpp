@@ -663,6 +663,48 @@ TEST(ElementaryTest, MissBelowTheFloorIsNotCertain) {
   }
 }
 
+// A sliver lies on a table along its whole length: its two long edges pass the same points, but the corner that they
+// share is elsewhere.
+TEST(ElementaryTest, ASliversFarCornerIsNotNamed) {
+  int named = 0;
+  for (const double width : {1e-12, 1e-10, 1e-8}) {
+    for (const double at : {-0.9, -0.3, 0.2, 0.7}) {
+      // B's edge crosses A's long edges, which lie along x, at x = `at`.
+      Pair pair;
+      pair.a[0] = {-1, 0, 0};
+      pair.a[1] = {1, 0, 0};
+      pair.a[2] = {1, width, 0};
+      pair.b[0] = {at - 0.01, -0.5, 1};
+      pair.b[1] = {at + 0.01, 0.5, 1};
+      pair.b[2] = {at, 0, 2};
+      pair.turn.slide = {0, 0, -2};
+      const RefinedContact r = refine(pair);
+      expectNear(r.point, {at, 0, 0}, 1e-6);
+      if (r.feature != FeatureKind::vertexVertex && r.feature != FeatureKind::vertexEdge &&
+          r.feature != FeatureKind::vertexFace)
+        continue;
+      ++named;
+      EXPECT_LT((pair.a[r.feature_a] - r.point).norm(), 1e-3) << width << " " << at;
+    }
+  }
+  EXPECT_EQ(named, 0);
+}
+
+// Triangles that slide along each other in one plane were apart along it before: what parts them where they touch is
+// the plane's own direction, or an edge's.
+TEST(ElementaryTest, TheNormalOfASlidingContactParts) {
+  Pair pair = over(kGround, {4.5, -3, 0}, {6, -3, 0}, {4.5, -3, 2});
+  pair.turn.slide = {-2, 0, 0};
+  const RefinedContact r = refine(pair);
+  double most = -INFINITY, least = INFINITY;
+  for (int i = 0; i < 3; ++i) {
+    most = std::max(most, r.normal.dot(pair.a[i]));
+    const Point x = pair.turn.at(r.t_lower, pair.b[i]);
+    least = std::min(least, r.normal.dot(x.cast<double>()));
+  }
+  EXPECT_GT(least - most, -1e-9) << r.normal.transpose();
+}
+
 // However little of the window given lies after the contact.
 TEST(ElementaryTest, NeverWidensTheWindow) {
   Pair pair = over(kGround, {0.5, 0.25, 1}, {1, 0, 2}, {0, 1, 2});

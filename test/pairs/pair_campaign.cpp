@@ -153,6 +153,13 @@ class Examination {
       const double gap = along(*query_.body1, i, L_1, *query_.body2, j, L_2, c.normal);
       if (!(gap >= -(1e-4 + 2 * way + near)))
         add(Fault::normal, format("pieces overlap by %.3g m along the normal", -gap));
+      // At t_lower their gap is what the bodies go until they touch, or what is too near to decide.
+      const double apart = (c.nearest1 - c.nearest2).norm(), from = 1e-7 + way;
+      const double off1 = pairs::distanceTo(*query_.body1, i, L_1, c.nearest1),
+                   off2 = pairs::distanceTo(*query_.body2, j, L_2, c.nearest2);
+      if (!(off1 <= from && off2 <= from && apart <= from + near))
+        add(Fault::witness,
+            format("nearest points %.3g m and %.3g m from their pieces, %.3g m apart", off1, off2, apart));
     }
   }
 
@@ -274,14 +281,14 @@ const Family& familyAt(std::uint64_t index) {
 }  // namespace
 
 const char* faultName(Fault fault) {
-  static constexpr const char* kNames[] = {"missed", "late",  "false",  "unproven", "wide",    "undecided",
-                                           "fields", "point", "normal", "poses",    "swapped", "drop-in"};
+  static constexpr const char* kNames[] = {"missed", "late",   "false",   "unproven", "wide",    "undecided", "fields",
+                                           "point",  "normal", "witness", "poses",    "swapped", "drop-in"};
   return kNames[static_cast<int>(fault)];
 }
 
 const char* corruptionName(Corruption corruption) {
-  static constexpr const char* kNames[] = {"late",  "drop",    "invent", "widen",   "point",  "normal",
-                                           "poses", "certain", "ids",    "swapped", "drop-in"};
+  static constexpr const char* kNames[] = {"late",    "drop",  "invent",  "widen", "point",   "normal",
+                                           "witness", "poses", "certain", "ids",   "swapped", "drop-in"};
   return kNames[static_cast<int>(corruption)];
 }
 
@@ -415,6 +422,9 @@ bool corrupt(Corruption corruption, const PairQuery& query, Answer& answer) {
       return hit;
     case Corruption::normal:
       if (hit) r.contacts[0].normal *= -1;
+      return hit && r.t_lower > 0;
+    case Corruption::witness:
+      if (hit) r.contacts[0].nearest2 += 5e-3 * random.direction();
       return hit && r.t_lower > 0;
     case Corruption::poses:
       r.tf2_at_upper.translation().x() += 1e-9;

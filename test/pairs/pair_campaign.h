@@ -23,6 +23,7 @@ enum class Fault {
   fields,   ///< bracket out of order or out of [0, 1], contact of other geometries, ids out of range, an exception
   point,    ///< contact point away from one of the named pieces
   normal,   ///< not unit, or the named pieces are not on their sides of it
+  witness,  ///< nearest points away from the named pieces, or farther apart than these
   poses,    ///< poses at the ends of the bracket differ from the motions'
   swapped,  ///< with the objects swapped another answer
   drop_in,  ///< the answer through FCL's own signature is missed, late, early beyond toc_err, or incomplete
@@ -62,7 +63,21 @@ std::vector<Finding> examine(const pairs::PairQuery& query, const pairs::Judge& 
                              const Answer& answer);
 
 /// Ways to spoil an answer, to show that the campaign sees it.
-enum class Corruption { late, drop, invent, widen, point, normal, poses, certain, ids, swapped, drop_in, count };
+enum class Corruption {
+  late,
+  drop,
+  invent,
+  widen,
+  point,
+  normal,
+  witness,
+  poses,
+  certain,
+  ids,
+  swapped,
+  drop_in,
+  count
+};
 constexpr int kCorruptions = static_cast<int>(Corruption::count);
 const char* corruptionName(Corruption corruption);
 /// Spoils the answer where the corruption applies; returns whether it did.

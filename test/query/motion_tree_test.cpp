@@ -308,6 +308,37 @@ TEST(MotionTree, RefusedSetupReadsNothing) {
   EXPECT_TRUE(result.isFree());
 }
 
+// A planar joint goes across its axis, whatever the axis, also next to -z, where the shortest turn of z to it is hardly
+// defined.
+TEST(MotionTree, PlanarJointsGoAcrossTheirAxis) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 3000; ++i) {
+    // From -z, or z, by 1e-20 to 1 rad; and any axis.
+    const double off = std::pow(10, -10 + 10 * unit(random));
+    Vector3d axis = Vector3d(unit(random), unit(random), 0) * off + Vector3d(0, 0, i % 2 ? -1 : 1);
+    if (i % 5 == 0) axis = Vector3d(unit(random), unit(random), unit(random));
+    axis.normalize();
+    KinematicTree tree;
+    tree.addLink("world");
+    tree.addLink("cart");
+    const JointId joint = tree.addJoint(makeJoint("drive", JointType::planar, "world", "cart", axis));
+    const Vector3d x = tree.jointPose(joint, Vector3d(1, 0, 0)).translation(),
+                   y = tree.jointPose(joint, Vector3d(0, 1, 0)).translation();
+    EXPECT_NEAR(x.dot(axis), 0, 1e-15) << axis.transpose() << ", off by " << off;
+    EXPECT_NEAR(y.dot(axis), 0, 1e-15) << axis.transpose() << ", off by " << off;
+    EXPECT_NEAR(x.norm(), 1, 1e-15);
+    EXPECT_NEAR(x.dot(y), 0, 1e-15);
+    EXPECT_LT((x.cross(y) - axis).norm(), 1e-15);
+    // The shortest way: what is across both z and the axis stays as it is.
+    const Vector3d across = Vector3d(-axis.y(), axis.x(), 0);
+    if (across.norm() > 1e-100) {
+      const Vector3d n = across.normalized();
+      EXPECT_LT((n.x() * x + n.y() * y - n).norm(), 1e-15) << axis.transpose();
+    }
+  }
+}
+
 // Every single difference that counts changes the fingerprint, and none that does not.
 TEST(MotionTree, FingerprintsOfRandomTrees) {
   std::mt19937_64 random(4);

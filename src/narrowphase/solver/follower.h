@@ -310,20 +310,29 @@ inline void Follower::lookBack(Candidate& f) {
 inline void Follower::record(Candidate& f) {
   FCL_ARTIC_ASSERT(f.t_lower >= 0 && f.t_lower <= 1);
   if (!f.have_normal && f.t_lower > 0) lookBack(f);
-  // What is missing is seen at t_lower.
-  motion_.set(f.entry.pair, f.certain && f.have_normal ? motion_.batch() : TimeBatch::around(f.t_lower));
   LeafContact& contact = contacts_.grow(f.entry.pair, f.piece_a, f.piece_b);
   contact.t_lower = f.t_lower;
   contact.certain = f.certain;
   contact.t_upper = f.certain ? f.t_upper : 1;
   contact.t = f.certain ? f.t_upper : f.t_lower;
   horizon_.joinLower(f.t_lower);
-  const Piece &a = motion_.a().pieces[contact.piece_a], &b = motion_.b().pieces[contact.piece_b];
+  const PairParts parts = problem().parts(f.entry.pair);
+  const Piece &a = body(parts.a).tree->pieces[f.piece_a], &b = body(parts.b).tree->pieces[f.piece_b];
+  const bool wall = unbounded(a) || unbounded(b);
+  // What is missing is seen at t_lower, but a wall's normal at the time at which the contact is reported.
+  const bool complete = f.certain && f.have_normal && !wall;
+  motion_.set(f.entry.pair, complete ? motion_.batch() : TimeBatch::around(wall ? contact.t : f.t_lower));
   const DifferenceBody body = motion_.differenceAt(a, b, 0);
   Vec3 point = f.point;
+  if (wall) {  // a plane has two sides: the one from which the other body came, or on which more of it is
+    GjkResult nearer;
+    unboundedGap(body, 0, nearer);
+    f.normal = f.have_normal && dot(nearer.n, f.normal) < 0 ? -nearer.n : nearer.n;
+    f.have_normal = true;
+  }
   if (!f.certain) {
     GjkResult g;
-    gjk(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
+    gjk<true>(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
     originWeights(g.simplex);
     if (!f.have_normal && !g.overlap) {
       f.normal = g.n;
@@ -334,18 +343,16 @@ inline void Follower::record(Candidate& f) {
     Vec3 x, y;
     combine(body, g.simplex, x, y);
     point = f.normal * out + (x + y) * 0.5;
-    if (unbounded(a) || unbounded(b)) {  // the bounded piece's point that is nearest to the other's border
-      Vec3 n = unboundedNormal(body);
-      if (f.have_normal && dot(n, f.normal) < 0) n = -n;  // a plane has two sides
+    if (wall) {  // the bounded piece's point that is nearest to the other's border
       DifferencePoint lowest;
-      body.support(n, lowest);
-      point = unbounded(a) ? body.place(lowest.b) - n * b.radius : lowest.a + n * a.radius;
+      body.support(f.normal, lowest);
+      point = unbounded(a) ? body.place(lowest.b) - f.normal * b.radius : lowest.a + f.normal * a.radius;
     }
   }
   if (!f.have_normal) {
-    // In contact from the start: an unbounded piece's own direction, or the one between the pieces' middles.
+    // In contact from the start: the direction between the pieces' middles.
     const Vec3 x = middleOf(motion_.a().nodes[f.entry.a]), y = middleOf(motion_.b().nodes[f.entry.b]);
-    f.normal = unitOrZ(unbounded(a) || unbounded(b) ? unboundedNormal(body) : body.place(y) - x);
+    f.normal = unitOrZ(body.place(y) - x);
   }
   point.store(contact.point);
   f.normal.store(contact.normal);
