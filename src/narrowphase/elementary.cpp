@@ -19,6 +19,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "narrowphase/parting_direction.h"
+
 namespace fcl_artic {
 namespace {
 
@@ -305,8 +307,6 @@ constexpr double kFloors = 4;
 /// Contact points nearer than this many floors are one point: what meets there at a shallow angle is uncertain by more
 /// than one floor.
 constexpr double kSamePlace = 1e4;
-/// A normal along which the triangles overlap by more than this part of their size is none.
-constexpr double kLeastOverlap = 1e-6;
 /// Time before the contact at which directions between features that touch are taken: rotation by 1e-6 of the motion's,
 /// and a gap far above rounding.
 constexpr double kStepBack = 0x1p-20;
@@ -439,63 +439,21 @@ class Refinement {
       const Equation q = equation(places[p].equation);
       const Nearest now = nearest(q, a_, x), then = nearest(q, a_, before);
       out.point += 0.5 * (now.a + now.x) / num_places;
-      if (then.distance() < gap) {
-        gap = then.distance();
-        toward = then.direction();
-      }
+      if (then.distance() < gap) gap = then.distance(), toward = then.direction();
       a |= places[p].a;
       b |= places[p].b;
     }
     nameKind(a, b, out);
     chooseNormal(a, b, x, toward, out);
-    const bool of_features = a == kFace || b == kFace || out.feature == FeatureKind::edgeEdge;
-    if (!of_features && gapAlong(out.normal, lower.x) < -kLeastOverlap * sizeOf(lower.x)) {
-      chooseSeparating(lower.x, out);
+    // Where they slide along each other, the direction in which they were apart before does not part them.
+    if (a != kFace && b != kFace && out.feature != FeatureKind::edgeEdge) {
+      out.normal = partingDirection(a_, lower.x, out.normal);
     }
   }
 
-  /// Whether a feature that is a vertex holds the point, within `near`.
+  /// Whether a feature that is a vertex holds the point, within `near`; others are taken to.
   static bool holds(int feature, const Vector3d v[3], const Vector3d& point, double near) {
-    for (int i = 0; i < 3; ++i) {
-      if (feature == 1 << i) return (v[i] - point).norm() <= near;
-    }
-    return true;
-  }
-
-  /// Gap of the triangles along n; below 0: they overlap along it.
-  double gapAlong(const Vector3d& n, const Vector3d x[3]) const {
-    double most = -INFINITY, least = INFINITY;
-    for (int i = 0; i < 3; ++i) {
-      most = std::max(most, n.dot(a_[i]));
-      least = std::min(least, n.dot(x[i]));
-    }
-    return least - most;
-  }
-  double sizeOf(const Vector3d x[3]) const {
-    return std::max({(a_[1] - a_[0]).norm(), (a_[2] - a_[0]).norm(), (x[1] - x[0]).norm(), (x[2] - x[0]).norm()});
-  }
-
-  /// The normal of a face, or the common one of two edges, along which the triangles overlap least: some such direction
-  /// parts triangles that do not cross each other. (Where they slide along each other, the direction in which they were
-  /// apart before does not.)
-  void chooseSeparating(const Vector3d x[3], RefinedContact& out) const {
-    double best = gapAlong(out.normal, x);
-    const auto offer = [&](const Vector3d& v, double longest) {
-      if (!(v.norm() > 1e-9 * longest)) return;
-      for (const Vector3d& n : {Vector3d(v.normalized()), Vector3d(-v.normalized())}) {
-        const double gap = gapAlong(n, x);
-        if (gap > best) best = gap, out.normal = n;
-      }
-    };
-    const auto edge = [](const Vector3d v[3], int i) -> Vector3d { return v[(i + 1) % 3] - v[i]; };
-    const Vector3d face_a = edge(a_, 0).cross(edge(a_, 1)), face_x = edge(x, 0).cross(edge(x, 1));
-    offer(face_a, edge(a_, 0).norm() * edge(a_, 1).norm());
-    offer(face_x, edge(x, 0).norm() * edge(x, 1).norm());
-    for (int i = 0; i < 3; ++i) {
-      offer(face_a.cross(edge(a_, i)), face_a.norm() * edge(a_, i).norm());
-      offer(face_x.cross(edge(x, i)), face_x.norm() * edge(x, i).norm());
-      for (int j = 0; j < 3; ++j) offer(edge(a_, i).cross(edge(x, j)), edge(a_, i).norm() * edge(x, j).norm());
-    }
+    return (feature & (feature - 1)) != 0 || (v[feature >> 1] - point).norm() <= near;
   }
 
   static void nameKind(int a, int b, RefinedContact& out) {

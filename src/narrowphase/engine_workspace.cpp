@@ -96,8 +96,8 @@ PairMotion EngineWorkspace::lookAt(const Problem& problem, PairId pair, double t
   if (!problem.sweeps[problem.parts(pair).sweep].first_order) return motion;
   // Without derivatives the motion tells poses only: the velocity is that between two of them.
   const PairMotion before = pairMotion(pair, tm - d, d), after = pairMotion(pair, tm + d, d);
-  for (int i = 0; i < 9; ++i) motion.R[1][i] = 0.5 * (after.R[0][i] - before.R[0][i]);
-  for (int i = 0; i < 3; ++i) motion.c[1][i] = 0.5 * (after.c[0][i] - before.c[0][i]);
+  Rotation::Map(motion.R[1]) = 0.5 * (Rotation::Map(after.R[0]) - Rotation::Map(before.R[0]));
+  Vector3d::Map(motion.c[1]) = 0.5 * (Vector3d::Map(after.c[0]) - Vector3d::Map(before.c[0]));
   return motion;
 }
 
