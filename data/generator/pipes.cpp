@@ -210,8 +210,10 @@ std::vector<Mesh> separatePipes(std::size_t triangles, std::uint64_t seed) {
       ways = waysOut(grid, cell);
     } while (!grid.isFree(cell) || ways.empty());
     grid.take(cell);
-    pen.begin(centreOf(cell), ways[static_cast<std::size_t>(random.below(static_cast<int>(ways.size())))],
-              kPipeRadii[random.below(3)]);
+    // One after the other: arguments have no order.
+    const double radius = kPipeRadii[random.below(3)];
+    const Cell way = ways[static_cast<std::size_t>(random.below(static_cast<int>(ways.size())))];
+    pen.begin(centreOf(cell), way, radius);
     pen.straight(kCell / 2, 1);
 
     for (int cells = 20 + random.below(40);; --cells) {

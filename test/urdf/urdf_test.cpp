@@ -202,7 +202,8 @@ TEST_F(UrdfTest, FindsPackagesAsRosDoes) {
   const Variable no_ros("ROS_PACKAGE_PATH", ""), no_ament("AMENT_PREFIX_PATH", "");
   // Above the file, by the name in package.xml: the folder has another one.
   write("ws/src/arm/package.xml", manifest("arm_description"));
-  EXPECT_EQ(sourceOf("package:///arm_description/t.obj"), write("ws/src/arm/t.obj", kTriangle));
+  const std::string in_workspace = write("ws/src/arm/t.obj", kTriangle);
+  EXPECT_EQ(sourceOf("package:///arm_description/t.obj"), in_workspace);
   EXPECT_EQ(sourceOf("package://arm_description/t.obj"), path("ws/src/arm/t.obj"));
 
   const std::string nowhere = messageOf([&] { sourceOf("package://hand/t.obj"); });

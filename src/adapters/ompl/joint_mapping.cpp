@@ -45,9 +45,18 @@ void requireWholeTurns(const KinematicTree& tree, int variable, const std::strin
 }
 
 /// w(1) of the turn from q0 to q1 at nearly half a turn, where either way round is the shortest but for rounding: the
-/// one that SO3StateSpace::interpolate() takes, by the sign of the same sum.
-Eigen::Vector3d halfTurn(const Eigen::Vector4d& q0, const Eigen::Vector4d& q1, double dot) {
-  const Eigen::Quaterniond from(q0), to(Eigen::Vector4d(dot < 0 ? Eigen::Vector4d(-q1) : q1));
+/// one that SO3StateSpace::interpolate() takes. It is asked, as the same sum has another sign where OMPL's compiler has
+/// fused what this one's has not.
+Eigen::Vector3d halfTurn(const Eigen::Vector4d& q0, const Eigen::Vector4d& q1) {
+  const auto stateOf = [](const Eigen::Vector4d& q, ob::SO3StateSpace::StateType& state) {
+    state.x = q[0], state.y = q[1], state.z = q[2], state.w = q[3];
+  };
+  ob::SO3StateSpace::StateType begin, end, between;
+  stateOf(q0, begin);
+  stateOf(q1, end);
+  ob::SO3StateSpace().interpolate(&begin, &end, 0.25, &between);
+  const bool to_negative = Eigen::Vector4d(between.x, between.y, between.z, between.w).dot(q1) < 0;
+  const Eigen::Quaterniond from(q0), to(Eigen::Vector4d(to_negative ? Eigen::Vector4d(-q1) : q1));
   const Eigen::Quaterniond turn = to.normalized() * from.normalized().conjugate();
   return 2 * std::atan2(turn.vec().norm(), turn.w()) * turn.vec().normalized();
 }
@@ -213,7 +222,7 @@ JointMotion JointMapping::atHalfTurn(const Eigen::VectorXd& q0, const Eigen::Vec
   for (const int v : quaternions_) {
     const double dot = q0[v] * q1[v] + q0[v + 1] * q1[v + 1] + q0[v + 2] * q1[v + 2] + q0[v + 3] * q1[v + 3];
     if (std::abs(dot) >= kNearHalfTurn) continue;
-    coefficients.block<3, 1>(v, 1) = halfTurn(q0.segment<4>(v), q1.segment<4>(v), dot);
+    coefficients.block<3, 1>(v, 1) = halfTurn(q0.segment<4>(v), q1.segment<4>(v));
   }
   return JointMotion::polynomial(*tree_, coefficients);
 }
