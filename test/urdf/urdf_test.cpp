@@ -229,7 +229,8 @@ TEST_F(UrdfTest, FindsPackagesAsRosDoes) {
   const Variable ros("ROS_PACKAGE_PATH", path("none") + "::" + path("catkin"));
   EXPECT_EQ(sourceOf("package://hand/t.obj"), in_ros);
   // The first folder that has the file is taken; an error names all of them.
-  EXPECT_EQ(sourceOf("package://hand/u.obj"), write("opt/share/hand/u.obj", kTriangle));
+  const std::string in_share = write("opt/share/hand/u.obj", kTriangle);
+  EXPECT_EQ(sourceOf("package://hand/u.obj"), in_share);
   const std::string missing = messageOf([&] { sourceOf("package://hand/none.obj"); });
   expectContains(missing, "no such file in '" + path("catkin/group/right_hand") + "'");
   expectContains(missing, ", '" + path("opt/share/hand") + "'; also searched for 'hand'");
