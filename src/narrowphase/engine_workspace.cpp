@@ -47,8 +47,8 @@ void nearestToWall(const baseline::DifferenceBody& body, LeafContact& contact) {
   contact.t_nearest = contact.t_lower;
 }
 
-/// The same of two bounded pieces; and where no features have given the normal, the direction between these points is a
-/// better one than that in which the search ended, which has but to separate.
+/// The same of two bounded pieces; and where no features have given the normal, the direction along which most of this
+/// gap is seen: a better one than the solver's last, which was found for its own steps.
 void nearestPoints(const baseline::DifferenceBody& body, LeafContact& contact) {
   constexpr int kMostIterations = 256;
   baseline::GjkResult found;
