@@ -693,8 +693,10 @@ TEST(ElementaryTest, ASliversFarCornerIsNotNamed) {
 // Triangles that slide along each other in one plane were apart along it before: what parts them where they touch is
 // the plane's own direction, or an edge's.
 TEST(ElementaryTest, TheNormalOfASlidingContactParts) {
-  Pair pair = over(kGround, {4.5, -3, 0}, {6, -3, 0}, {4.5, -3, 2});
-  pair.turn.slide = {-2, 0, 0};
+  // A's plane is y = -1/2, and so low is B's corner that comes to A's edge at t = 3/5, all else of B being higher.
+  const Vector3d still[3] = {{0, -0.5, 0.5}, {0.25, -0.5, -0.25}, {0.25, -0.5, 0.75}};
+  Pair pair = over(still, {2.5, 0.5, 0.25}, {2.5, -0.5, 0}, {2, 0.25, 0.5});
+  pair.turn.slide = {-3.75, 0, 0};
   const RefinedContact r = refine(pair);
   double most = -INFINITY, least = INFINITY;
   for (int i = 0; i < 3; ++i) {
