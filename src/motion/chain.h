@@ -60,8 +60,8 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
 }
 
 /// The frame of one step over a batch of intervals; its parent's is in `out` already.
-inline void evaluateStep(const SweepView& sweep, int index, const StepBounds* bounds, const Lanes& tm, double d,
-                         FrameLanes* out) {
+FCL_ARTIC_INLINE void evaluateStep(const SweepView& sweep, int index, const StepBounds* bounds, const Lanes& tm,
+                                   double d, FrameLanes* out) {
   const Vec3Lanes zero = spread(Vec3(0, 0, 0));
   const SweepStep& step = sweep.steps[index];
   const FactorVariables& variables = bounds[index].variables;

@@ -19,10 +19,13 @@ class SweptFrames : PartOfSolver {
   void begin() {
     const int sweeps = problem().num_sweeps;
     first_step_.resize(sweeps);
+    local_.resize(sweeps);
     int steps = 0;
     for (int i = 0; i < sweeps; ++i) {
+      const engine::SweepView& view = problem().sweeps[i];
       first_step_[i] = steps;
-      steps += problem().sweeps[i].num_steps;
+      steps += view.num_steps;
+      local_[i] = query().degree > 1 || view.local_bounds;
     }
     // Numbers only ever grow; long before they overflow the stamps are made new.
     const bool anew = last_number_ > 1 << 30;
@@ -53,7 +56,7 @@ class SweptFrames : PartOfSolver {
   /// Bounds of a step whose frame has been asked for; step -1: what stands still.
   const StepBounds& bounds(int sweep, int step) const {
     static const StepBounds kStill = {};
-    return step >= 0 ? now_->bounds[first_step_[sweep] + step] : kStill;
+    return step >= 0 ? boundsOf(sweep).bounds[first_step_[sweep] + step] : kStill;
   }
 
  private:
@@ -77,16 +80,21 @@ class SweptFrames : PartOfSolver {
     }
   };
 
+  /// Where a sweep's bounds are kept: those over [0, 1] serve all batches.
+  OfBatch& boundsOf(int sweep) { return local_[sweep] ? *now_ : kept_[0]; }
+  const OfBatch& boundsOf(int sweep) const { return local_[sweep] ? *now_ : kept_[0]; }
+
   /// Evaluates a step's frame, and before it those on the way to it that are not there yet: a pair of links needs few.
-  void evaluateUpTo(int sweep, int step) {
+  [[gnu::noinline]] void evaluateUpTo(int sweep, int step) {
     const engine::SweepView& view = problem().sweeps[sweep];
     const int first = first_step_[sweep];
-    StepBounds* const bounds = now_->bounds.data() + first;
-    const bool local = query().degree > 1 || view.local_bounds;
-    if (now_->bounded_at[sweep] < (local ? now_->number : query_began_)) {
+    const bool local = local_[sweep];
+    OfBatch& of_bounds = boundsOf(sweep);
+    StepBounds* const bounds = of_bounds.bounds.data() + first;
+    if (of_bounds.bounded_at[sweep] < (local ? now_->number : query_began_)) {
       const TimeBatch& batch = now_->batch;
       boundSteps(view, query(), local ? batch.begin() : 0, local ? batch.finish() : 1, bounds);
-      now_->bounded_at[sweep] = now_->number;
+      of_bounds.bounded_at[sweep] = now_->number;
     }
     std::int32_t* const evaluated = now_->evaluated.data() + first;
     way_.clear();
@@ -99,6 +107,7 @@ class SweptFrames : PartOfSolver {
   }
 
   Buffer<std::int32_t> first_step_;  ///< per sweep
+  Buffer<std::uint8_t> local_;       ///< per sweep: its bounds are of the batch, not of [0, 1]
   OfBatch kept_[2];                  ///< of whole(), and of the last other batch
   OfBatch* now_ = kept_;
   std::int32_t last_number_ = 0, query_began_ = 0;
