@@ -35,7 +35,6 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   horizon.watch(task.whole);
   stage_one.cull(open);
   if (query.any && !horizon.isOver()) any.tryOverlaps(open);
-  if (query.any && !horizon.isOver()) any.tryLinks();
   statistics.culling_us = task.now() - time0;
 
   if (problem.contained && !horizon.isOver()) containment.findAtStart();
@@ -48,7 +47,8 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   if (!task.ended()) containment.report(open);
   if (!task.ended() && horizon.end() > 0) {
     search.testHulls(open, [&](int i) { return stage_one.direction(i); });
-    const bool over = horizon.isOver() || (query.any && (any.tryDeepLinks(open) || any.tryOverlaps(open)));
+    const bool over =
+        horizon.isOver() || (query.any && (any.tryLinks(open) || any.tryDeepLinks(open) || any.tryOverlaps(open)));
     if (!over) search.run(open);
   }
   statistics.narrowphase_us = task.now() - time1;

@@ -76,7 +76,7 @@ class AnyContact : PartOfSolver {
   void forgetOverlaps() { overlap_guesses_.clear(); }
   bool tryObstacle(PairId pair, int lane, const Vec3& near, bool thin);
   void considerLinks(PairId pair, Lanes square, double radii);
-  bool tryLinks();
+  bool tryLinks(const Buffer<Entry>& open);
   bool tryDeepLinks(const Buffer<Entry>& open);
   bool tryOverlaps(Buffer<Entry>& open);
 
@@ -84,6 +84,11 @@ class AnyContact : PartOfSolver {
   bool isLeafPair(PairId pair) const;
   bool tryLeafPair(PairId pair, int lane);
   bool tryTriangles(PairId pair, int lane);
+  static unsigned openLanes(PairId pair, const Buffer<Entry>& open) {
+    unsigned lanes = 0;
+    for (int i = 0; i < open.size(); ++i) lanes |= open[i].pair == pair ? open[i].mask : 0;
+    return lanes;
+  }
 
   SweptFrames& frames_;
   RelativeMotion& motion_;
@@ -163,10 +168,11 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
 }
 
 /// Tries balls inside links whose line swept spheres meet, at all poses at which the balls may meet.
-inline bool AnyContact::tryLinks() {
+/// @param open  as in tryDeepLinks().
+inline bool AnyContact::tryLinks(const Buffer<Entry>& open) {
   frames_.set(whole());
   for (int i = 0; i < pose_guesses_.size(); ++i) {
-    for (unsigned near = pose_guesses_[i].near; near; near &= near - 1) {
+    for (unsigned near = pose_guesses_[i].near & openLanes(pose_guesses_[i].pair, open); near; near &= near - 1) {
       if (balls_.inLinks(pose_guesses_[i].pair, __builtin_ctz(near))) return true;
     }
   }
@@ -185,10 +191,7 @@ inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
     const PoseGuess guess = pose_guesses_[first];
     pose_guesses_[first] = pose_guesses_[done];
     if (guess.distance >= kDeepLinks) break;
-    bool is_open = false;
-    for (int i = 0; i < open.size(); ++i) {
-      is_open = is_open || (open[i].pair == guess.pair && (open[i].mask >> guess.lane & 1));
-    }
+    const bool is_open = openLanes(guess.pair, open) >> guess.lane & 1;
     if (is_open && tryTriangles(guess.pair, guess.lane)) return true;
   }
   return false;
