@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is shown at one time: that bodies meet (witnesses), and that no surface lies in the other body (SOLID).
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <map>
@@ -168,6 +169,13 @@ bool insideTetrahedron(const Vec corners[4], const Vec& x) {
   return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s &&
          volume(a, b, c, x) == s;
 }
+/// The unit in which a product of so many lengths comes near 1, from below: 2^-k m, k >= 0. Inequalities between powers
+/// of lengths are looked at in it, for in metres those of small shapes are lost below 2^-64.
+int unitFor(double product, int lengths) {
+  int k = 0;
+  while (k < 30 && std::ldexp(product, lengths * (k + 1)) <= 1) ++k;
+  return k;
+}
 /// Whether x, in g's coordinates, is certainly in that piece.
 bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
   const std::vector<double>& n = g.numbers;
@@ -182,24 +190,36 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
         if (!within(x[k] - exactly(c[k]), exactly(c[3 + k]))) return false;
       return true;
     }
-    case Geometry::sphere:
-      return atMost(dot(x, x), square(exactly(n[0])));
+    case Geometry::sphere: {
+      const int k = unitFor(n[0], 1);
+      const Vec y = doubled(x, k);
+      return atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
+    }
     case Geometry::ellipsoid: {  // sum (x_k / a_k)^2 <= 1, times the square of a b c
-      const Tm a = exactly(n[0]), b = exactly(n[1]), c = exactly(n[2]);
-      return n[0] > 0 && n[1] > 0 && n[2] > 0 &&
-             atMost(square(x[0] * b * c) + square(a * x[1] * c) + square(a * b * x[2]), square(a * b * c));
+      if (!(n[0] > 0 && n[1] > 0 && n[2] > 0)) return false;
+      const int k = unitFor(n[0] * n[1] * n[2], 3);
+      const Vec y = doubled(x, k);
+      const Tm a = doubled(exactly(n[0]), k), b = doubled(exactly(n[1]), k), c = doubled(exactly(n[2]), k);
+      return atMost(square(y[0] * b * c) + square(a * y[1] * c) + square(a * b * y[2]), square(a * b * c));
     }
     case Geometry::capsule: {  // any point of the segment serves; the nearest is best
       const Fix end = encloseDown(n[1] / 2);
       const Tm nearest = constant(most(-end, least(end, x[2].c0)));
-      return end >= Fix{0} && atMost(square(x[0]) + square(x[1]) + square(x[2] - nearest), square(exactly(n[0])));
+      const int k = unitFor(n[0], 1);
+      const Vec y = doubled(Vec{x[0], x[1], x[2] - nearest}, k);
+      return end >= Fix{0} && atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
     }
-    case Geometry::cylinder:
-      return within(x[2], half(1)) && atMost(square(x[0]) + square(x[1]), square(exactly(n[0])));
+    case Geometry::cylinder: {
+      const int k = unitFor(n[0], 1);
+      const Tm x0 = doubled(x[0], k), x1 = doubled(x[1], k);
+      return within(x[2], half(1)) && atMost(square(x0) + square(x1), square(doubled(exactly(n[0]), k)));
+    }
     case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z), which says nothing where l is 0
-      const Tm l = exactly(n[1]);
-      return n[1] > 0 && within(x[2], half(1)) &&
-             atMost((square(x[0]) + square(x[1])) * square(l), square(exactly(n[0]) * (half(1) - x[2])));
+      if (!(n[1] > 0 && within(x[2], half(1)))) return false;
+      const int k = unitFor(n[0] * n[1], 2);
+      const Vec y = doubled(x, k);
+      const Tm r = doubled(exactly(n[0]), k), l = doubled(exactly(n[1]), k);
+      return atMost((square(y[0]) + square(y[1])) * square(l), square(r * (doubled(half(1), k) - y[2])));
     }
     case Geometry::halfspace:
       return atMost(dot(pointOf(n.data()), x), exactly(n[3]));

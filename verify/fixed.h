@@ -92,6 +92,12 @@ inline Fix shifted(Fix a, int k) {
   return Fix{a.v >> k};
 }
 
+/// Exactly 2^k times as much, 0 <= k <= 60.
+inline Fix doubled(Fix a, int k) {
+  if (a.v > kMost >> k || a.v < -(kMost >> k)) throw OutOfRange("a number is beyond the verifier's range of 2^40");
+  return Fix{a.v * (static_cast<Int>(1) << k)};
+}
+
 /// The product rounded down: exact - 1 ulp < result <= exact.
 /// With a = a1 2^64 + a0 and b likewise, 0 <= a0, b0 < 2^64: a b 2^-64 = a1 b1 2^64 + a1 b0 + a0 b1 + a0 b0 2^-64, and
 /// only the last term is no integer. |a1 b1| <= 2^80; where it is above 2^42 the product is out of range and refused;

@@ -42,6 +42,10 @@ inline Tm operator-(const Tm& a) {
   return {-a.c0, -a.c1, -a.c2, a.r};
 }
 
+/// Exactly 2^k times as much, 0 <= k <= 60.
+inline Tm doubled(const Tm& a, int k) {
+  return {doubled(a.c0, k), doubled(a.c1, k), doubled(a.c2, k), doubled(a.r, k)};
+}
 /// (p + [-ra, ra])(q + [-rb, rb]) lies in p q + [-R, R], R = |p| rb + |q| ra + ra rb, |p| <= |a0| + |a1| + |a2|.
 /// Of p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1,
 /// which are in [-1, 1]: s^3 = 3/4 s + T3/4, s^4 = s^2 - 1/8 + T4/8: a quarter and an eighth of the coefficient is left
@@ -84,6 +88,9 @@ inline Vec operator+(const Vec& a, const Vec& b) {
 }
 inline Vec operator-(const Vec& a, const Vec& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vec doubled(const Vec& a, int k) {
+  return {doubled(a[0], k), doubled(a[1], k), doubled(a[2], k)};
 }
 inline Vec operator*(const Mat& R, const Vec& x) {
   Vec y;

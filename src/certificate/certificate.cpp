@@ -79,6 +79,9 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
   for (const Motion& piece : claim.pieces) {
     if (certificate.missing.empty()) certificate.missing = piece.missing;
   }
+  if (!claim.pieces.front().self && !claim.pieces.front().scene) {
+    certificate.missing = "nothing is claimed: neither links nor obstacles are checked";
+  }
   if (!certificate.missing.empty()) return certificate;
   if (!(claim.pieces.back().until > 0)) {
     certificate.missing = "nothing is claimed: the bodies may touch from the beginning on";

@@ -342,8 +342,8 @@ class Emitter {
       return;
     }
     if (isEmpty(task)) return putEmpty();
-    const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded ||
-                      moving_.geometry(partners_[task.last - 1]).unbounded;
+    // (Of partners that are not mixed all are unbounded or none.)
+    const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded;
     if (wall && task.size() == 1) {
       if (separateWall(task)) return;
       return cutTimeOrPieces(task);
@@ -359,14 +359,16 @@ class Emitter {
     if (moving_.body(body).role != Body::Role::obstacle) return 3;
     return moving_.body(body).frame == 0 ? 1 : 2;
   }
-  bool isMixed(const Task& task) const { return groupOf(partners_[task.first]) != groupOf(partners_[task.last - 1]); }
+  /// Number of the first partners that are of one group.
+  std::size_t ofOneGroup(const Task& task) const {
+    std::size_t n = 1;
+    while (n < task.size() && groupOf(partners_[task.first]) == groupOf(partners_[task.first + n])) ++n;
+    return n;
+  }
+  bool isMixed(const Task& task) const { return ofOneGroup(task) < task.size(); }
 
   void cutPartners(const Task& task) {
-    std::size_t half = task.size() / 2;
-    if (isMixed(task)) {
-      half = 1;
-      while (groupOf(partners_[task.first]) == groupOf(partners_[task.first + half])) ++half;
-    }
+    const std::size_t same = ofOneGroup(task), half = same < task.size() ? same : task.size() / 2;
     out_.byte(kPartners);
     out_.number(half);
     Task left = task, right = task;

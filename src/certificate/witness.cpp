@@ -253,10 +253,9 @@ NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   if (side.hasVertices()) return core;
   const Vector3d d = towards - core.x;
   if (side.piece.radius > 0 && d.norm() > 0) core.x += d * std::min(1.0, side.piece.radius / d.norm());
-  // Inequalities are squares of lengths: what they are kept by must show in the verifier's last digits, 2^-64. Next to
-  // a cone's tip they are small themselves.
-  const double least = inradius(side);
-  const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-17 / (least * least));
+  // The point is off by what its numbers are rounded by, for the verifier to 2^-64 m. Next to a cone's tip, where the
+  // sides of its inequality are small squares, that shows much sooner.
+  const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-18 / inradius(side));
   const Vector3d centre = Vector3d::Map(side.piece.center);
   core.x = centre + (core.x - centre) * (1 - inwards);
   return core;

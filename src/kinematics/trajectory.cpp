@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -285,7 +286,8 @@ JointTrajectory JointTrajectory::parabolicBlends(const KinematicTree& tree, cons
   for (std::size_t k = 0; k < last; ++k) {
     const double h = times[k + 1] - times[k];
     const double blends = (k > 0 ? blend : 0) + (k + 1 < last ? blend : 0);
-    if (blends > h) {
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(times[k]) + std::abs(times[k + 1]));
+    if (blends > h + rounding) {
       throw std::invalid_argument("trajectory: the blends of " + shown(blend) + " overlap between waypoints " +
                                   number(k) + " and " + number(k + 1) + ", which are " + shown(h) + " apart");
     }
@@ -305,6 +307,7 @@ JointTrajectory JointTrajectory::parabolicBlends(const KinematicTree& tree, cons
       const double next = times[k + 2] - times[k + 1];
       const VectorXd change = (q[k + 2] - q[k + 1]) / next - rate;
       const double end = times[k + 1] + blend;
+      if (!(end > cuts.back())) continue;  // a blend below the resolution of the times: a corner
       MatrixXd c(here.size(), 3);
       c << here, rate, change / (2 * (end - cuts.back()));
       add(end, c);

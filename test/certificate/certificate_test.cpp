@@ -5,7 +5,10 @@
 
 #include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/ellipsoid.h>
 #include <fcl/geometry/shape/halfspace.h>
+#include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/motion/translation_motion.h>
 
@@ -201,6 +204,83 @@ TEST_F(Machine, InitialContactsAreLeftOutUntilTheyEnd) {
   ASSERT_EQ(result.ignored_initial_contacts.size(), 1u);
   expectProven(result.certificate);
   EXPECT_NE(result.certificate->motion.find("\nignored 0 1 0x1p+0\n"), std::string::npos);
+}
+
+TEST_F(Machine, AWallThatMovesAmongOthers) {
+  const auto moves = [&](std::shared_ptr<fcl::CollisionGeometryd> geometry, const Vector3d& from, const char* name) {
+    const Isometry3d begin(Eigen::Translation3d{from}), end(Eigen::Translation3d{from + Vector3d(0, 0.1, 0)});
+    manager_->registerObject(
+        std::shared_ptr<const fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::ContinuousCollisionObjectd>(
+            geometry, std::make_shared<fcl::TranslationMotion<double>>(begin, end))),
+        name);
+  };
+  moves(std::make_shared<fcl::Sphered>(0.1), {0, 3, 0}, "ball");
+  moves(std::make_shared<fcl::Planed>(Vector3d(1, 1, 0), 9.0), {0, 0, 0}, "wall");
+  moves(std::make_shared<fcl::Sphered>(0.1), {0, 3, 1}, "another ball");
+  const CertifiedResult result = ask({0, 0, 0}, {0, -1, 0.5});
+  ASSERT_TRUE(result.isFree());
+  expectProven(result.certificate);
+}
+
+TEST_F(Machine, WhereNothingIsCheckedNothingIsClaimed) {
+  CertifiedRequest request;
+  request.check_self = request.check_scene = false;
+  const CertifiedResult result = ask({0, 0, 0}, {0, -1, 0.5}, request);
+  ASSERT_TRUE(result.certificate);
+  EXPECT_FALSE(*result.certificate);
+  EXPECT_NE(result.certificate->missing.find("nothing is claimed"), std::string::npos) << result.certificate->missing;
+}
+
+TEST(Certificates, OfJointsThatTurnSeveralTimes) {
+  const auto tree = std::make_shared<KinematicTree>("ball joint");
+  tree->addLink("base");
+  tree->addLink("rod");
+  Joint joint;
+  joint.name = "joint";
+  joint.type = JointType::spherical;
+  joint.parent = "base";
+  joint.child = "rod";
+  tree->addJoint(joint);
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("rod", box({1, 0.1, 0.1}));
+  const auto far = ball(0.1, {1, 0, 0}), near = ball(0.1, {0.3, 0.3, 0.3});
+  manager.registerObject(far);
+  manager.registerObject(near);
+  manager.setup();
+  Eigen::MatrixXd c = Eigen::MatrixXd::Zero(4, 2);  // about x, twice
+  c(3, 0) = 1;
+  c(0, 1) = 12;
+  CertifiedRequest request;
+  request.certificate = true;
+  const CertifiedResult result = manager.continuousCollide(JointMotion::polynomial(*tree, c), request);
+  ASSERT_TRUE(result.isFree());
+  expectProven(result.certificate);
+}
+
+/// What is kept by squares, or by a product of three squares, must show in the verifier's last digits.
+TEST(CertificatesOfPairs, ContactsOfSmallShapesAreProven) {
+  const auto at = [](double x, double y) { return fcl::Transform3d(Eigen::Translation3d(x, y, 0)); };
+  int proven = 0;
+  for (const double s : {1e-2, 1e-3, 2e-4}) {
+    const fcl::Ellipsoidd ellipsoid(s, s, 0.8 * s);
+    const fcl::Coned cone(s, 2 * s);
+    const fcl::Boxd block(s, s, s);
+    for (const fcl::CollisionGeometryd* moving : {static_cast<const fcl::CollisionGeometryd*>(&ellipsoid),
+                                                  static_cast<const fcl::CollisionGeometryd*>(&cone)}) {
+      for (const double margin : {0.0, 0.2 * s}) {
+        CertifiedPairRequest request;
+        request.certificate = true;
+        request.margin = margin;
+        CertifiedPairResult result;
+        continuousCollide(moving, at(-4 * s, 0.1 * s), at(4 * s, 0.1 * s), &block, at(0, 0), at(0, 0), fcl::CCDM_TRANS,
+                          request, result);
+        ASSERT_TRUE(result.certain);
+        expectProven(result.certificate);
+        proven += verdictOn(*result.certificate).contact;
+      }
+    }
+  }
+  EXPECT_GE(proven, 10);
 }
 
 /// Of what is within a closed surface a proof by pieces says nothing, unless the mesh is a solid.

@@ -436,6 +436,24 @@ TEST(Trajectory, ParabolicBlendsAreLinesWithRoundedCorners) {
       << "blend next to blend";
 }
 
+TEST(Trajectory, BlendsAsShortOrAsLongAsNumbersAllow) {
+  const Scene scene = twoJoints();
+  const std::vector<VectorXd> q = {values({0, 0}), values({1, 2}), values({1, -2}), values({0, 0})};
+  for (const double t : {0.0, 1000.1, 1.7e9}) {
+    const std::vector<double> times = {t, t + 1, t + 3, t + 4};
+    const double ulp = std::nextafter(t, INFINITY) - t;
+    for (const double blend : {1e-300, 1e-14, 0.3 * ulp, 0.7 * ulp, 2.5 * ulp}) {
+      const JointTrajectory x = JointTrajectory::parabolicBlends(*scene.tree, times, q, std::max(blend, 1e-300));
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_LT((x.configuration(times[k]) - q[k]).norm(), 1e-5) << t << " " << blend;
+    }
+    // The middle segment is all blends, but for what its ends are rounded by.
+    const std::vector<double> close = {t, t + 1, t + 1 + 0.2, t + 3};
+    const JointTrajectory x = JointTrajectory::parabolicBlends(*scene.tree, close, q, 0.1);
+    EXPECT_LT((x.configuration(t + 3) - q[3]).norm(), 1e-5) << t;
+  }
+}
+
 /// Cox and de Boor's recursion.
 double basis(const std::vector<double>& knots, std::size_t i, int degree, double t) {
   if (degree == 0) return knots[i] <= t && t < knots[i + 1];

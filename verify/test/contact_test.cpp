@@ -126,6 +126,49 @@ TEST(VerifyContact, APointIsInsideOfAShape) {
   }
 }
 
+TEST(VerifyContact, APointIsInsideOfASmallShape) {
+  const std::string sphere = "geometry sphere " + hex(1) + "\n";  // moving; its centre is at (x, 0, 0) at t
+  Rng rng(27);
+  for (const double u : {1e-2, 1e-3, 1e-5}) {
+    struct Shape {
+      std::string text;
+      std::function<double(const V&)> gauge;  // below 1 inside
+    };
+    const std::vector<Shape> shapes = {{"geometry sphere " + hex(u) + "\n", [](const V& p) { return norm(p); }},
+                                       {"geometry ellipsoid " + hex(V{u, 0.5 * u, u / 8}) + "\n",
+                                        [](const V& p) {
+                                          return norm({p[0], p[1] / 0.5, p[2] * 8});
+                                        }},
+                                       {"geometry capsule " + hex(u) + " " + hex(u) + "\n",
+                                        [](const V& p) {
+                                          return norm({p[0], p[1], p[2] - std::max(-0.5, std::min(0.5, p[2]))});
+                                        }},
+                                       {"geometry cylinder " + hex(u) + " " + hex(2 * u) + "\n",
+                                        [](const V& p) { return std::max(std::hypot(p[0], p[1]), std::fabs(p[2])); }},
+                                       {"geometry cone " + hex(u) + " " + hex(2 * u) + "\n", [](const V& p) {
+                                          return p[2] < -1 || p[2] > 1 ? 2 : 2 * std::hypot(p[0], p[1]) / (1 - p[2]);
+                                        }}};
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const Pair pair(shapes[k].text, sphere, 0, anyPose(rng, 1));
+      int yes = 0, no = 0;
+      for (int n = 0; n < 200; ++n) {
+        V q;  // in units of u, then so far out that the gauge is next to 1
+        do q = {uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)};
+        while (!(shapes[k].gauge(q) < 1));
+        const bool round = k == 1 || k == 0;  // gauges that scale
+        const double to = n % 2 ? 0.999 : 1.001, by = round ? to / shapes[k].gauge(q) : n % 2 ? 1 : 4;
+        const V x{u * by * q[0], u * by * q[1], u * by * q[2]}, p{x[0] - kX, x[1], x[2]};
+        const double gauge = shapes[k].gauge({by * q[0], by * q[1], by * q[2]});
+        if (std::fabs(gauge - 1) < 1e-4) continue;
+        EXPECT_EQ(pair.shown(1, 0, 0.5, "\2" + place(p) + varint(0)), gauge < 1) << u << " " << k << " " << gauge;
+        (gauge < 1 ? yes : no)++;
+      }
+      EXPECT_GT(yes, 50) << k;
+      EXPECT_GT(no, 20) << k;
+    }
+  }
+}
+
 TEST(VerifyContact, AFlatConeIsADisc) {
   // Its inequality, multiplied by the height, holds for every point of its plane.
   const World world = readWorld(
