@@ -306,7 +306,7 @@ JointTrajectory JointTrajectory::parabolicBlends(const KinematicTree& tree, cons
     if (k + 1 < last) {
       const double next = times[k + 2] - times[k + 1];
       const VectorXd change = (q[k + 2] - q[k + 1]) / next - rate;
-      const double end = times[k + 1] + blend;
+      const double end = std::min(times[k + 1] + blend, times[k + 2]);
       if (!(end > cuts.back())) continue;  // a blend below the resolution of the times: a corner
       MatrixXd c(here.size(), 3);
       c << here, rate, change / (2 * (end - cuts.back()));

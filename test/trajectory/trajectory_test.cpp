@@ -451,7 +451,12 @@ TEST(Trajectory, BlendsAsShortOrAsLongAsNumbersAllow) {
     const std::vector<double> close = {t, t + 1, t + 1 + 0.2, t + 3};
     const JointTrajectory x = JointTrajectory::parabolicBlends(*scene.tree, close, q, 0.1);
     EXPECT_LT((x.configuration(t + 3) - q[3]).norm(), 1e-5) << t;
+    EXPECT_EQ(x.times().back(), t + 3);
   }
+  // The last segment is all blend, and ends where the last waypoint is due.
+  const JointTrajectory x =
+      JointTrajectory::parabolicBlends(*scene.tree, {0, 0.7, 1 - 0x1p-53}, {q[0], q[1], q[2]}, 0.3);
+  EXPECT_EQ(x.times().back(), 1 - 0x1p-53);
 }
 
 /// Cox and de Boor's recursion.
