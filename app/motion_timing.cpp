@@ -114,7 +114,7 @@ double TimedRow::quantile(double share) const {
 
 std::vector<TimedRow> timeMotions(const DrawnMotions& drawn, int passes, const Questions& questions,
                                   std::vector<Contradiction>& contradictions,
-                                  const std::function<void(double)>& progress) {
+                                  const std::function<void(double)>& progress, const std::string& only) {
   struct Kind {
     const char* name;
     const std::vector<MotionEnds>& motions;
@@ -125,31 +125,34 @@ std::vector<TimedRow> timeMotions(const DrawnMotions& drawn, int passes, const Q
   CertifiedResult result;
   std::optional<double> sample;
   std::vector<Task> tasks;
+  const auto add = [&](Task task) {
+    if (only.empty() || task.row.name() == only) tasks.push_back(std::move(task));
+  };
   for (const Kind& kind : kinds) {
     for (const ContactMode mode : {ContactMode::first, ContactMode::any}) {
       const char* question = mode == ContactMode::first ? "first" : "any";
-      tasks.push_back({{kind.name, question, {}, 0},
-                       kind.motions,
-                       [&, mode](std::size_t i) { questions.collide(kind.motions[i], mode, result); },
-                       [&, question](std::size_t i, TimedRow&) {
-                         if (result.isFree() == kind.free) return;
-                         contradictions.push_back({kind.motions[i], fmt::format("asked again, {} says {}; it was {}",
-                                                                                question, textOf(result), kind.name)});
-                       },
-                       kind.motions.size()});
+      add({{kind.name, question, {}, 0},
+           kind.motions,
+           [&, mode](std::size_t i) { questions.collide(kind.motions[i], mode, result); },
+           [&, question](std::size_t i, TimedRow&) {
+             if (result.isFree() == kind.free) return;
+             contradictions.push_back({kind.motions[i], fmt::format("asked again, {} says {}; it was {}", question,
+                                                                    textOf(result), kind.name)});
+           },
+           kind.motions.size()});
     }
   }
-  tasks.push_back({{"free", "clearance", {}, 0},
-                   drawn.free,
-                   [&](std::size_t i) { questions.clearance(drawn.free[i]); },
-                   [](std::size_t, TimedRow&) {},
-                   std::min(kMostClearances, drawn.free.size())});
+  add({{"free", "clearance", {}, 0},
+       drawn.free,
+       [&](std::size_t i) { questions.clearance(drawn.free[i]); },
+       [](std::size_t, TimedRow&) {},
+       std::min(kMostClearances, drawn.free.size())});
   const auto sampled = [&](const Kind& kind, const std::function<void(std::size_t, TimedRow&)>& check) {
-    tasks.push_back({{kind.name, "FCL, 1 %", {}, 0},
-                     kind.motions,
-                     [&](std::size_t i) { sample = questions.sampleInContact(kind.motions[i]); },
-                     check,
-                     kind.motions.size()});
+    add({{kind.name, "FCL, 1 %", {}, 0},
+         kind.motions,
+         [&](std::size_t i) { sample = questions.sampleInContact(kind.motions[i]); },
+         check,
+         kind.motions.size()});
   };
   if (questions.sampleInContact) {
     sampled(kinds[0], [&](std::size_t i, TimedRow&) {

@@ -56,6 +56,7 @@ struct TimedRow {
   std::vector<double> us;  ///< the least of all passes, by motion
   std::size_t missed = 0;  ///< of samples: proven contacts that none of them saw
 
+  std::string name() const { return motions + ", " + question; }
   bool ours() const { return question == "first" || question == "any"; }
   double mean() const;  ///< 0 if there is no motion, as the others
   /// The time that this share of all motions does not exceed.
@@ -70,9 +71,10 @@ constexpr int kPassesOfSlowest = 10;
 /// Asks about all motions in all ways, `passes` times in turns, and holds the answers to what drawMotions() found.
 /// @param[out] contradictions  appended to.
 /// @param progress  called with the share that is done.
+/// @param only  a row's name, for this one alone; empty: all.
 /// @return a row for each kind of motions and way of asking, also for kinds without motions.
 std::vector<TimedRow> timeMotions(const DrawnMotions& drawn, int passes, const Questions& questions,
                                   std::vector<Contradiction>& contradictions,
-                                  const std::function<void(double)>& progress);
+                                  const std::function<void(double)>& progress, const std::string& only = {});
 
 }  // namespace fcl_artic::app

@@ -50,7 +50,7 @@ struct Options {
   std::uint64_t seed = 1;
   int passes = 3;
   bool no_fcl = false, json = false;
-  std::string csv, svg;
+  std::string csv, svg, only;
 };
 
 /// Resident memory of this process, kB; nothing where the system does not say.
@@ -383,7 +383,8 @@ int run(const Options& options) {
     };
     constexpr double kDrawing = 0.3;  // about that part of the whole work
     outcome.drawn = drawMotions(random, options.motions, questions, outcome.contradictions, show(0, kDrawing));
-    outcome.rows = timeMotions(outcome.drawn, options.passes, questions, outcome.contradictions, show(kDrawing, 1));
+    outcome.rows =
+        timeMotions(outcome.drawn, options.passes, questions, outcome.contradictions, show(kDrawing, 1), options.only);
   }
   if (!options.csv.empty()) files::write(options.csv, csvOf(outcome));
   if (!options.svg.empty()) files::write(options.svg, plotOf(outcome));
@@ -437,6 +438,11 @@ void addRobotBench(CLI::App& bench, int& exit_status) {
                    fmt::format("Runs of each query, of the slowest ones {} more; the fastest counts", kPassesOfSlowest))
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  verb->add_option("--only", o.only, "Time this row of the table alone, as for a profile: 'free, first'")
+      ->check(
+          CLI::IsMember({"free, first", "free, any", "contact, first", "contact, any", "touching at the start, first",
+                         "touching at the start, any", "free, clearance", "free, FCL, 1 %", "contact, FCL, 1 %"}))
+      ->type_name("ROW");
   verb->add_flag("--no-fcl", o.no_fcl, "Do not sample with FCL");
   verb->add_flag("--json", o.json, "Print all of it in JSON");
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");

@@ -262,6 +262,19 @@ TEST(MotionTimingTest, TheSlowestAreAskedAgain) {
   EXPECT_LT(rows[0].us[7], 50e3);
 }
 
+TEST(MotionTimingTest, ARowAloneIsTimed) {
+  Fake fake;
+  std::vector<Contradiction> wrong;
+  const DrawnMotions drawn = fake.draw(wrong);
+  for (const TimedRow& row : timeMotions(drawn, 1, fake.questions, wrong, [](double) {})) {
+    const auto alone = timeMotions(
+        drawn, 1, fake.questions, wrong, [](double) {}, row.name());
+    ASSERT_EQ(alone.size(), 1u);
+    EXPECT_EQ(alone[0].name(), row.name());
+    EXPECT_EQ(alone[0].us.size(), row.us.size());
+  }
+}
+
 TEST(TimedRowTest, QuantilesAreTimesOfTheRow) {
   TimedRow row{"free", "first", {}, 0};
   EXPECT_EQ(row.quantile(0.5), 0);
