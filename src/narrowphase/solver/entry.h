@@ -20,6 +20,8 @@ struct Entry {
   bool within = false;   ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
 
   bool isWhole() const { return a == 0 && b == 0; }
+  /// In a lane of its batch; -1: in any.
+  bool isOpenIn(int lane) const { return lane < 0 || (mask >> lane & 1) != 0; }
 };
 
 }  // namespace FCL_ARTIC_ISA

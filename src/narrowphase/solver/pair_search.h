@@ -251,7 +251,7 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
   motion_.set(pair, batch);
   for (int i = begin; i < end && open.size() < out_begin + kEnoughUncertain; ++i) {
     const Entry e = open[i];
-    if (e.mask >> lane & 1) traversal_.descend({pair, e.a, e.b, 1}, Aim::poses, open);
+    if (e.isOpenIn(lane)) traversal_.descend({pair, e.a, e.b, 1}, Aim::poses, open);
   }
   touching_.clear();
   for (int i = out_begin; i < open.size() && touching_.size() < kEnoughUncertain; ++i) {
@@ -412,7 +412,7 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     bool leaves = true;
     for (; i < end && open[i].pair == pair_id; ++i) {
       const Entry e = open[i];
-      if (lane >= 0 && !(e.mask >> lane & 1)) continue;
+      if (!e.isOpenIn(lane)) continue;
       leaves = leaves && isLeafPair(e);
       open.push(e);
     }
@@ -493,7 +493,7 @@ inline PairSearch::Step PairSearch::solveInterval(Buffer<Entry>& open, double st
   const bool finest = horizon_.isFinest();
   for (int i = begin; i < end; ++i) {
     const Entry e = open[i];
-    if (parent_lane >= 0 && !(e.mask >> parent_lane & 1)) continue;
+    if (!e.isOpenIn(parent_lane)) continue;
     motion_.set(e.pair, batch);
     traversal_.descend({e.pair, e.a, e.b, kAllLanes}, aim(), open);
     if (horizon_.isOver()) return Step::done;
@@ -517,7 +517,7 @@ inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double st
   bool leaves = true;
   for (int i = begin; i < end && (finest || count <= kFewLeaves); ++i) {
     const Entry& e = open[i];
-    if (!(e.mask >> lane & 1)) continue;
+    if (!e.isOpenIn(lane)) continue;
     ++count;
     leaves = leaves && isLeafPair(e);
   }
@@ -539,7 +539,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, doub
   const double stop = start + width;
   leaves_.clear();
   for (int i = begin; i < end; ++i) {
-    if (open[i].mask >> lane & 1) leaves_.push(candidateOf(open[i], start));
+    if (open[i].isOpenIn(lane)) leaves_.push(candidateOf(open[i], start));
   }
   *split = false;
   // Of many that can be neither proven apart nor in contact, some are enough: what is not looked at counts as touching
