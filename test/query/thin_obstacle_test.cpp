@@ -151,3 +151,32 @@ TEST(ThinObstacle, WithinALargeMeshHullsAreNotFollowed) {
   std::printf("batches: %.2f a motion\n", static_cast<double>(batches) / kMotions);
   EXPECT_LT(batches, 1.1 * kMotions);
 }
+
+/// A base rests on a table in which a link is deep from the start on: the one ends the search at once, the other must
+/// not have all of its triangles asked then.
+TEST(Resting, WhatIsDeepBesideItAtTheStartIsCheap) {
+  const auto tree = std::make_shared<KinematicTree>("press");
+  tree->addLink("base");
+  tree->addLink("arm");
+  // All of it is tilted, so that rounding leaves open whether the base touches.
+  const Isometry3d M(Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()));
+  tree->addJoint(Joint::prismatic("slide", "base", "arm", M * Vector3d::UnitX()));
+  ArticulatedCollisionManager manager(tree);
+  auto round = std::make_shared<Mesh>();  // its hull has fewer corners, and is rounded for it
+  fcl::generateBVHModel(*round, fcl::Cylinderd(0.1, 0.2), Isometry3d::Identity(), 200, 4);
+  const auto base = object(round, turned({0, 0, 0}));
+  const auto arm = object(fineBoxMesh({0.1, 0.1, 0.1}, 12), turned({0, 0, 0}));
+  const auto table = object(std::make_shared<fcl::Boxd>(4, 4, 1), M * turned({0, 0, -0.5}));
+  manager.bind("base", base.get(), M * turned({0, 0, 0.1}));
+  manager.bind("arm", arm.get(), M * turned({1, 0, -0.02}));
+  manager.registerObject(table.get(), "table");
+  manager.setup();
+  for (const double way : {0.01, 0.1, 1.0}) {
+    const CertifiedResult r = manager.continuousCollide(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Constant(1, way));
+    ASSERT_EQ(r.status, Status::contact);
+    EXPECT_EQ(r.t_lower, 0);
+    std::printf("%g m: %d calls of GJK, %d leaves\n", way, static_cast<int>(r.statistics.gjk),
+                static_cast<int>(r.statistics.leaf_tests));
+    EXPECT_LT(r.statistics.gjk, 500u);
+  }
+}

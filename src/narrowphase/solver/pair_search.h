@@ -450,6 +450,10 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
       continue;
     }
     horizon_.dropSuspicion();
+    // Where something else rests at the start, the search ends there: lanes as narrow as they get, in which nothing is
+    // put off, would have all leaves of what is deep in each other asked (14 ms for a link in a table; now 0.1).
+    const bool ends_at_start = f.t_lower == 0 && horizon_.end() <= finestWidth();
+    if (ends_at_start && touchesAtStart(open, f.first, f.first + f.count, lane)) continue;
     splits_at_start_ = suspected ? 0 : 1;
     solvePieces(open, f, stop, lane);
   }
