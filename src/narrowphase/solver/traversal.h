@@ -233,6 +233,7 @@ inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned
 }
 
 /// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
+/// (Hulls without their roundings: with them GJK may end at a face, from which no depth is known.)
 inline bool Traversal::isWithin() {
   for (int s = 0; s < 2; ++s) {
     const Node &large = motion_.still(s).nodes[0], &small = motion_.moving(s).nodes[0];
