@@ -205,14 +205,14 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     const auto [mover_a, mover_b] = problem().link_movers[p];
     mask &= ~boxesApart(mover_a, mover_b);
     const bool links = task_.isLink(mover_a) && task_.isLink(mover_b);
+    Lanes square;
+    if (mask && links) {
+      mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair), square);
+    }
     for (int n = 0; n < num_advisors && mask; ++n) {
       const unsigned parts = advisors[n]->freePartsOf(advisors[n]->self, p);
       FCL_ARTIC_ASSERT(!(parts & ~kAllLanes));  // it may clear parts, nothing else
       mask &= ~parts;
-    }
-    Lanes square;
-    if (mask && links) {
-      mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair), square);
     }
     if (!mask) continue;
     if (links && look) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
