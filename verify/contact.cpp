@@ -181,6 +181,11 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
   const std::vector<double>& n = g.numbers;
   const auto half = [&](std::size_t k) { return exactly(n[k] / 2); };
   const auto within = [&](const Tm& value, const Tm& size) { return atMost(value, size) && atMost(-value, size); };
+  const auto withinRadius = [&](const Vec& v) {  // |v| <= the first number
+    const int k = unitFor(n[0], 1);
+    const Vec y = doubled(v, k);
+    return atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
+  };
   switch (g.kind) {
     case Geometry::box:
       return within(x[0], half(0)) && within(x[1], half(1)) && within(x[2], half(2));
@@ -190,11 +195,8 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
         if (!within(x[k] - exactly(c[k]), exactly(c[3 + k]))) return false;
       return true;
     }
-    case Geometry::sphere: {
-      const int k = unitFor(n[0], 1);
-      const Vec y = doubled(x, k);
-      return atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
-    }
+    case Geometry::sphere:
+      return withinRadius(x);
     case Geometry::ellipsoid: {  // sum (x_k / a_k)^2 <= 1, times the square of a b c
       if (!(n[0] > 0 && n[1] > 0 && n[2] > 0)) return false;
       const int k = unitFor(n[0] * n[1] * n[2], 3);
@@ -205,15 +207,10 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
     case Geometry::capsule: {  // any point of the segment serves; the nearest is best
       const Fix end = encloseDown(n[1] / 2);
       const Tm nearest = constant(most(-end, least(end, x[2].c0)));
-      const int k = unitFor(n[0], 1);
-      const Vec y = doubled(Vec{x[0], x[1], x[2] - nearest}, k);
-      return end >= Fix{0} && atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
+      return end >= Fix{0} && withinRadius({x[0], x[1], x[2] - nearest});
     }
-    case Geometry::cylinder: {
-      const int k = unitFor(n[0], 1);
-      const Tm x0 = doubled(x[0], k), x1 = doubled(x[1], k);
-      return within(x[2], half(1)) && atMost(square(x0) + square(x1), square(doubled(exactly(n[0]), k)));
-    }
+    case Geometry::cylinder:
+      return within(x[2], half(1)) && withinRadius({x[0], x[1], Tm{}});
     case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z), which says nothing where l is 0
       if (!(n[1] > 0 && within(x[2], half(1)))) return false;
       const int k = unitFor(n[0] * n[1], 2);
