@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "model/eight_boxes.h"
 #include "model/pair_id.h"
 #include "model/sweep.h"
 #include "model/tree_view.h"
@@ -87,14 +88,18 @@ struct Problem : PairNumbering {
   const SweepView* sweeps = nullptr;  ///< sweep 0 starts at the world
   std::int32_t num_sweeps = 0;
   const LinkPair* link_pairs = nullptr;
-  const MoverPair* link_movers = nullptr;  ///< of each link pair: most are done with once these are seen, side by side
+  const MoverPair* link_movers = nullptr;  ///< of each link pair
   std::int32_t num_link_pairs = 0;
+  const MoverRow* mover_rows =
+      nullptr;  ///< all link pairs again, by their movers: most are done with once these are seen
+  std::int32_t num_mover_rows = 0;
+  std::int32_t first_in_rows = 0;               ///< what rows call link pair 0
   const std::uint8_t* link_allowed = nullptr;   ///< per link pair: 1 = may touch; null: none may
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
   const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
   const StillBounds* still_bounds = nullptr;    ///< of obstacle o
-  const Node* obstacle_tree = nullptr;  ///< boxes in the world; leaf piece = obstacle index; null when there is none
+  const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
 

@@ -83,10 +83,17 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
 
 /// Leaves the link pairs that the request asks for. Those with moving obstacles are the scene's, though they stand with
 /// those of two links.
-void restrictPairs(const CertifiedRequest& request, std::int32_t num_self_pairs, engine::Problem& problem,
+void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::Problem& problem,
                    engine::Margins& margins) {
-  if (!request.check_scene) problem.num_link_pairs = num_self_pairs;
+  const std::int32_t num_self_pairs = setup.numSelfPairs(), num_self_rows = setup.numSelfRows();
+  if (!request.check_scene) {
+    problem.num_link_pairs = num_self_pairs;
+    problem.num_mover_rows = num_self_rows;
+  }
   if (!request.check_self) {
+    problem.mover_rows += num_self_rows;
+    problem.num_mover_rows -= num_self_rows;
+    problem.first_in_rows = num_self_pairs;
     problem.link_pairs += num_self_pairs;
     problem.link_movers += num_self_pairs;
     margins.skipLinkPairs(num_self_pairs);
@@ -230,7 +237,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   engine::Problem problem = setup.problem();
   const BoundedParts parts(aspects.time, problem);
   if (aspects.own_margins) setup.margins().putInto(query.margins);
-  restrictPairs(request, setup.numSelfPairs(), problem, query.margins);
+  restrictPairs(request, setup, problem, query.margins);
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (aspects.may_ignore) {

@@ -159,22 +159,23 @@ void Culling::bodyPairs(const std::function<bool(engine::PairId)>& wanted, const
       const int level = movers_[static_cast<std::size_t>(m)].level;
       stack.assign(1, 0);
       while (!stack.empty()) {
-        const Node& node = problem_->obstacle_tree[stack.back()];
+        const engine::WideNode& node = problem_->obstacle_tree[stack.back()];
         stack.pop_back();
-        double lo[3], hi[3];
-        for (int k = 0; k < 3; ++k) lo[k] = node.lo[k], hi[k] = node.hi[k];
-        if (boxOf(m, 0, 0).certainlyApart(lo, hi)) continue;
-        if (!node.isLeaf()) {
-          stack.push_back(node.right());
-          stack.push_back(node.left());
-          continue;
+        for (std::int32_t i = 0; i < node.num_children; ++i) {
+          double lo[3], hi[3];
+          for (int k = 0; k < 3; ++k) lo[k] = node.boxes.lo[k][i], hi[k] = node.boxes.hi[k][i];
+          if (boxOf(m, 0, 0).certainlyApart(lo, hi)) continue;
+          if (node.child[i] >= 0) {
+            stack.push_back(node.child[i]);
+            continue;
+          }
+          const engine::PairId pair = problem_->scenePair(m, ~node.child[i]);
+          if (!wanted(pair)) continue;
+          const int coarse = std::min(kCoarse, level);
+          std::uint64_t mask = divide(m, 0, 1, coarse, lo, hi);
+          if (mask && coarse < level) mask = divide(m, coarse, mask, level, lo, hi);
+          if (mask) add(pair, level, mask);
         }
-        const engine::PairId pair = problem_->scenePair(m, node.piece());
-        if (!wanted(pair)) continue;
-        const int coarse = std::min(kCoarse, level);
-        std::uint64_t mask = divide(m, 0, 1, coarse, lo, hi);
-        if (mask && coarse < level) mask = divide(m, coarse, mask, level, lo, hi);
-        if (mask) add(pair, level, mask);
       }
     }
   }

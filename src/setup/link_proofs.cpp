@@ -2,6 +2,7 @@
 #include "setup/link_proofs.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -95,6 +96,13 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     for (const Pair& pair : *pairs) used.insert(pair.variables.begin(), pair.variables.end());
   }
   used_.assign(used.begin(), used.end());
+  std::set<std::size_t> names;
+  least_allowed_margin_ = std::numeric_limits<double>::infinity();
+  for (const Pair& pair : allowed_) {
+    names.insert(pair.number);
+    least_allowed_margin_ = std::min(least_allowed_margin_, pair.margin);
+  }
+  proven_names_ = names.size();
 }
 
 void ProvenPairs::buildScene(const Registry& registry) {
@@ -134,7 +142,9 @@ std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std:
     return std::all_of(motions, motions + num_motions,
                        [&](const JointMotion* motion) { return within(variables, *motion); });
   };
-  const bool all_within = !allowed_.empty() && allWithin(used_);
+  if (allowed_.empty()) return unproven;
+  const bool all_within = allWithin(used_);  // so it mostly is, and no pair has to be looked at by itself
+  if (all_within && margins.largest() <= least_allowed_margin_) return unproven - proven_names_;
   for (std::size_t i = 0; i < allowed_.size();) {
     // Entries of one pair of names lie together.
     const std::size_t number = allowed_[i].number;

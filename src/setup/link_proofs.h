@@ -73,6 +73,8 @@ class ProvenPairs {
   std::vector<int> used_;                             ///< variables of all of these proofs
   std::vector<ValueRange> ranges_;                    ///< by variable
   std::size_t allowed_self_ = 0, allowed_scene_ = 0;  ///< pairs of names
+  std::size_t proven_names_ = 0;                      ///< of `allowed_self_`, those in `allowed_`
+  double least_allowed_margin_ = 0;                   ///< of `allowed_`
 };
 
 }  // namespace fcl_artic

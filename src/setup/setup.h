@@ -47,6 +47,8 @@ class Setup {
   /// Number of the problem's link pairs, from the first on, that are two links; the others are moving obstacles and
   /// links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
+  /// The same of its rows of movers.
+  std::int32_t numSelfRows() const { return static_cast<std::int32_t>(num_self_rows_); }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -73,10 +75,12 @@ class Setup {
   std::vector<std::int32_t> movers_, obstacle_bodies_;
   std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
   std::vector<engine::MoverPair> link_movers_;
+  std::vector<engine::MoverRow> mover_rows_;  ///< likewise
+  std::size_t num_self_rows_ = 0;
   std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
   std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
   std::int32_t num_scene_allowed_ = 0;
-  std::vector<engine::Node> obstacle_tree_;
+  std::vector<engine::WideNode> obstacle_tree_;
   std::vector<engine::StillBounds> still_bounds_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "geometry/wide_tree.h"
 #include "motion/part_of_motion.h"
 #include "motion/variables.h"
 #include "numerics/baseline_isa.h"
@@ -117,7 +118,7 @@ void Setup::buildObstacles(const Registry& registry) {
     obstacle_bodies_[o] = static_cast<std::int32_t>(first + o);
     still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
   }
-  obstacle_tree_ = buildBoxTree(boxes);
+  obstacle_tree_ = widen(buildBoxTree(boxes));
 }
 
 /// Pairs of link and still obstacle that may touch, or cannot.

@@ -70,7 +70,13 @@ class TwoBalls : public SolverParts {
     problem.obstacles = &obstacle;
     problem.still_bounds = &still;
     problem.num_obstacles = problem.num_scene_pairs = 1;
-    problem.obstacle_tree = &nodes[0];
+    for (int k = 0; k < 3; ++k) {
+      obstacle_tree.boxes.lo[k][0] = nodes[0].lo[k];
+      obstacle_tree.boxes.hi[k][0] = nodes[0].hi[k];
+    }
+    obstacle_tree.child[0] = ~0;
+    obstacle_tree.num_children = 1;
+    problem.obstacle_tree = &obstacle_tree;
     return *this;
   }
 
@@ -90,6 +96,7 @@ class TwoBalls : public SolverParts {
 
   Piece pieces[2];
   Node nodes[2];
+  engine::WideNode obstacle_tree = {};
   TreeView trees[2];
   Body bodies[2];
   engine::SweepStep step;

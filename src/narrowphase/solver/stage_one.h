@@ -49,6 +49,9 @@ class StageOne : PartOfSolver {
 
  private:
   void sweepMover(int mover);
+  void setWholeBox(int mover);
+  SweptBox wholeBox(int mover) const;
+  void meetLinks();
   void cullObstacles(int mover, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
@@ -66,7 +69,9 @@ class StageOne : PartOfSolver {
   AnyContact& any_;
 
   Buffer<SweptBox> mover_box_;
-  Buffer<SweptLss> mover_lss_;  ///< of links
+  Buffer<engine::EightBoxes> whole_boxes_;  ///< of movers over [0, 1], as MoverRow groups them
+  Buffer<std::uint64_t> met_pairs_;         ///< link pairs whose movers' boxes meet, a bit each
+  Buffer<SweptLss> mover_lss_;              ///< of links
   Buffer<BoxHit> met_;
   Buffer<std::int32_t> open_nodes_;
   Buffer<engine::SweptLink> swept_links_;
@@ -91,6 +96,7 @@ inline void StageOne::sweepMover(int mover) {
         box.lo[k] = narrowDown(lo[k]);
         box.hi[k] = narrowUp(hi[k]);
       }
+      setWholeBox(mover);
       return;
     }
   }
@@ -98,41 +104,66 @@ inline void StageOne::sweepMover(int mover) {
     box.lo[k] = narrowDown(Lanes(carried.lo[k] - margin));
     box.hi[k] = narrowUp(Lanes(carried.hi[k] + margin));
   }
+  setWholeBox(mover);
+}
+
+/// The box that holds those of the parts. (The least of a part that overflowed, NaN, and others does not hide it: the
+/// radius is made of bounds for all parts, and is infinite then, so that the others reach to infinity.)
+inline void StageOne::setWholeBox(int mover) {
+  const SweptBox& parts = mover_box_[mover];
+  float lo[3], hi[3];
+  outerLanes(parts.lo, parts.hi, lo, hi);
+  engine::EightBoxes& boxes = whole_boxes_[mover / kLanes];
+  for (int k = 0; k < 3; ++k) {
+    boxes.lo[k][mover % kLanes] = lo[k];
+    boxes.hi[k][mover % kLanes] = hi[k];
+  }
+}
+
+/// A mover's box over [0, 1], in all lanes.
+inline SweptBox StageOne::wholeBox(int mover) const {
+  const engine::EightBoxes& boxes = whole_boxes_[mover / kLanes];
+  float lo[3], hi[3];
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = boxes.lo[k][mover % kLanes];
+    hi[k] = boxes.hi[k][mover % kLanes];
+  }
+  return spreadBox(lo, hi);
 }
 
 inline unsigned StageOne::boxesApart(int mover_a, int mover_b) const {
-  const SweptBox &a = mover_box_[mover_a], &b = mover_box_[mover_b];
-  FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
-  for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
-  return lanesOf(out);
+  return apart(mover_box_[mover_a], mover_box_[mover_b]);
 }
 
-/// Obstacles whose boxes meet that of a mover, and when. The tree is traversed level by level, so that the next nodes
-/// are fetched meanwhile.
+/// Obstacles whose boxes meet that of a mover, and when. Of each node the eight children's boxes are compared with the
+/// mover's over [0, 1] at once, then those left with its boxes in each part. The tree is traversed level by level, so
+/// that the next nodes are fetched meanwhile.
 inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
-  const SweptBox& box = mover_box_[mover];
-  const Node* nodes = problem().obstacle_tree;
+  const SweptBox &parts = mover_box_[mover], whole = wholeBox(mover);
+  const engine::WideNode* nodes = problem().obstacle_tree;
   met_.resize(problem().num_obstacles + 1);
   open_nodes_.resize(problem().num_obstacles + 1);
   BoxHit* met = met_.data();
   std::int32_t *open = open_nodes_.data(), *last = open;
-  const auto meet = [&](int index) {
-    const Node& node = nodes[index];
-    const unsigned mask = kAllLanes & ~apart(box, node);
-    if (!mask) return;
-    if (node.isLeaf()) {
-      *met++ = {node.piece(), mask};
-      prefetch(problem().still_bounds + node.piece());
-    } else {
-      *last++ = node.child;
-      prefetch(nodes + node.child);
-    }
-  };
-  meet(0);
+  *last++ = 0;
   for (; open < last; ++open) {
-    const int left = *open;
-    meet(left);
-    meet(left + 1);
+    const engine::WideNode& node = nodes[*open];
+    const unsigned used = (1u << node.num_children) - 1;
+    for (unsigned left = used & ~apart(whole, load(node.boxes)); left; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      const float lo[3] = {node.boxes.lo[0][i], node.boxes.lo[1][i], node.boxes.lo[2][i]};
+      const float hi[3] = {node.boxes.hi[0][i], node.boxes.hi[1][i], node.boxes.hi[2][i]};
+      const unsigned mask = kAllLanes & ~apart(parts, spreadBox(lo, hi));
+      if (!mask) continue;
+      const std::int32_t child = node.child[i];
+      if (child < 0) {
+        *met++ = {~child, mask};
+        prefetch(problem().still_bounds + ~child);
+      } else {
+        *last++ = child;
+        prefetch(nodes + child);
+      }
+    }
   }
   met_.truncate(static_cast<int>(met - met_.data()));
   return met_;
@@ -185,9 +216,26 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   }
 }
 
+/// Link pairs whose movers' boxes over [0, 1] meet, to met_pairs_: a mover with eight others at once.
+inline void StageOne::meetLinks() {
+  const int words = (problem().num_link_pairs + 63) / 64;
+  met_pairs_.resize(words);
+  for (int i = 0; i < words; ++i) met_pairs_[i] = 0;
+  int mover = -1;
+  SweptBox box;
+  for (int r = 0; r < problem().num_mover_rows; ++r) {
+    const engine::MoverRow& row = problem().mover_rows[r];
+    if (row.mover != mover) box = wholeBox(mover = row.mover);
+    for (unsigned left = row.lanes & ~apart(box, load(whole_boxes_[row.group])); left; left &= left - 1) {
+      const int pair = row.pair[__builtin_ctz(left)] - problem().first_in_rows;
+      met_pairs_[pair / 64] |= std::uint64_t{1} << pair % 64;
+    }
+  }
+}
+
 /// Pairs of movers, also of those that are obstacles. What advisors have proven free is left out.
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
-  const bool look = looksForAny();
+  const bool any = looksForAny();
   const std::uint8_t* free[Query::kMostAdvisors];
   const engine::Advisor* advisors[Query::kMostAdvisors];  // those that are asked of single pairs
   int num_free = 0, num_advisors = 0;
@@ -197,11 +245,12 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (parts) free[num_free++] = parts;
     if (advisor.freePartsOf) advisors[num_advisors++] = &advisor;
   }
-  for (int p = 0; p < problem().num_link_pairs && !horizon_.isOver(); ++p) {
+  meetLinks();
+  const auto look = [&](int p) {
     const PairId pair = problem().linkPair(p);
     unsigned mask = problem().isAllowed(pair) ? 0 : kAllLanes;
     for (int n = 0; n < num_free; ++n) mask &= ~static_cast<unsigned>(free[n][p]);
-    if (!mask) continue;
+    if (!mask) return;
     const auto [mover_a, mover_b] = problem().link_movers[p];
     mask &= ~boxesApart(mover_a, mover_b);
     const bool links = task_.isLink(mover_a) && task_.isLink(mover_b);
@@ -214,9 +263,14 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
       FCL_ARTIC_ASSERT(!(parts & ~kAllLanes));  // it may clear parts, nothing else
       mask &= ~parts;
     }
-    if (!mask) continue;
-    if (links && look) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
+    if (!mask) return;
+    if (links && any) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
     open.push({pair, 0, 0, mask});
+  };
+  for (int i = 0; i < met_pairs_.size(); ++i) {
+    for (std::uint64_t left = met_pairs_[i]; left && !horizon_.isOver(); left &= left - 1) {
+      look(64 * i + __builtin_ctzll(left));
+    }
   }
 }
 
@@ -224,6 +278,7 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   directions_.clear();
   frames_.set(whole());
   mover_box_.resize(problem().num_movers);
+  whole_boxes_.resize((problem().num_movers + kLanes - 1) / kLanes);
   mover_lss_.resize(problem().num_scene_movers);
   const bool check_scene = query().check_scene && problem().obstacle_tree;
   if (check_scene) {

@@ -3,6 +3,7 @@
 // Boxes of tree nodes swept over eight time intervals: the certificate with the frames' axes as directions.
 #pragma once
 
+#include "model/eight_boxes.h"
 #include "model/tree_view.h"
 #include "motion/rigid_lanes.h"
 
@@ -42,12 +43,44 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
   }
 }
 
-/// Lanes in which a swept box and a still one are apart along an axis.
-FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
-  FloatLanes out = greater(box.lo[0], spread(node.hi[0])) | greater(spread(node.lo[0]), box.hi[0]);
-  for (int i = 1; i < 3; ++i)
-    out = out | greater(box.lo[i], spread(node.hi[i])) | greater(spread(node.lo[i]), box.hi[i]);
+/// The same over all lanes at once: one box.
+struct WholeBox {
+  float lo[3], hi[3];
+};
+
+FCL_ARTIC_INLINE FloatLanes load(const float* x) {
+  FloatLanes o;
+  __builtin_memcpy(&o, x, sizeof o);
+  return o;
+}
+/// A box that stands still: the same in all lanes.
+FCL_ARTIC_INLINE SweptBox spreadBox(const float* lo, const float* hi) {
+  SweptBox box;
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = spread(lo[k]);
+    box.hi[k] = spread(hi[k]);
+  }
+  return box;
+}
+/// Eight boxes, one per lane.
+FCL_ARTIC_INLINE SweptBox load(const engine::EightBoxes& boxes) {
+  SweptBox o;
+  for (int k = 0; k < 3; ++k) {
+    o.lo[k] = load(boxes.lo[k]);
+    o.hi[k] = load(boxes.hi[k]);
+  }
+  return o;
+}
+
+/// Lanes in which two boxes are apart along an axis.
+FCL_ARTIC_INLINE unsigned apart(const SweptBox& a, const SweptBox& b) {
+  FloatLanes out = greater(a.lo[0], b.hi[0]) | greater(b.lo[0], a.hi[0]);
+  for (int k = 1; k < 3; ++k) out = out | greater(a.lo[k], b.hi[k]) | greater(b.lo[k], a.hi[k]);
   return lanesOf(out);
+}
+/// The same with a node's box, which stands still.
+FCL_ARTIC_INLINE unsigned apart(const SweptBox& box, const Node& node) {
+  return apart(box, spreadBox(node.lo, node.hi));
 }
 
 }  // namespace FCL_ARTIC_ISA
