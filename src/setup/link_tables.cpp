@@ -2,6 +2,7 @@
 #include "setup/link_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
 
 #include "motion/half_angles.h"
@@ -23,6 +24,7 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   grids_.clear();
   ranges_.clear();
   likely_.clear();
+  most_cells_ = 0;
   const KinematicTree& tree = *registry.tree();
   std::vector<std::size_t> pairs, unknown;  // unknown: into both
   std::size_t next = 0;
@@ -65,6 +67,7 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
 
 void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, const ContactGrid& grid) {
   grids_.push_back({link_pair, grid.axes(), likely_.size()});
+  most_cells_ = std::max(most_cells_, grid.axes().cells);
   likely_.insert(likely_.end(), grid.touching().begin(), grid.touching().end());
   for (int i = 0; i < grid.axes().count; ++i) {
     const int v = grid.axes().variables[i];
@@ -86,22 +89,37 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
   found.clear();
   const Eigen::MatrixXd& variables = motion.variables();
   const engine::HalfAngles half_angles = halfAnglesOf(motion);
-  constexpr int kMost = 64, kParts = 8;
-  double parts[kMost];
+  constexpr int kMost = 64, kLast = 7;
+  double parts[2][kMost];
   if (grids_.empty() || variables.rows() > kMost) return;
-  // Motions that meet something mostly still do at their end.
-  for (int part = kParts; part-- > 0;) {
-    const double t = (part + 0.5) / kParts;
+  const auto evaluate = [&](int part, double* of_ranges) {
+    const double t = (part + 0.5) / (kLast + 1);
     for (const auto& [v, range] : ranges_) {
       double q = variables(v, variables.cols() - 1);
       for (Eigen::Index k = variables.cols() - 2; k >= 0; --k) q = q * t + variables(v, k);
       if (half_angles.has(v)) q = half_angles.reference[v] + 2 * arcTangent(q);
-      parts[v] = range.part(q);
+      of_ranges[v] = range.part(q);
     }
+  };
+  const auto look = [&](int part, const double* of_ranges) {
     for (const Grid& grid : grids_) {
-      if (likely_[grid.first + grid.axes.cell(parts)]) found.push_back({grid.link_pair, part});
+      if (likely_[grid.first + grid.axes.cell(of_ranges)]) found.push_back({grid.link_pair, part});
     }
+  };
+  // Motions that meet something mostly still do at their end.
+  evaluate(kLast, parts[0]);
+  look(kLast, parts[0]);
+  evaluate(0, parts[1]);
+  // About as many poses between the ends as the motion goes through cells.
+  double cells = 0;
+  for (const auto& [v, range] : ranges_) cells = std::max(cells, most_cells_ * std::abs(parts[0][v] - parts[1][v]));
+  const int between = static_cast<int>(std::min<double>(cells, kLast - 1));
+  for (int i = between; i > 0; --i) {
+    const int part = (kLast * i + (between + 1) / 2) / (between + 1);
+    evaluate(part, parts[0]);
+    look(part, parts[0]);
   }
+  look(0, parts[1]);
 }
 
 }  // namespace fcl_artic

@@ -64,6 +64,7 @@ class LinkTables {
   std::size_t num_tables_ = 0;
   std::vector<Grid> grids_;
   std::vector<bool> likely_;                           ///< of all grids' cells
+  int most_cells_ = 0;                                 ///< along a variable's range, in any grid
   std::vector<std::pair<int, VariableRange>> ranges_;  ///< of the variables that grids are over
 };
 

@@ -56,6 +56,41 @@ FCL_ARTIC_INLINE bool isSmaller(const Node& node, double motion) {
   return thin < kThin * kThin * square && thin < motion * motion;
 }
 
+/// The axis along which a node's box is a rod, several times as long as it is thick; -1: it is none.
+FCL_ARTIC_INLINE int axisOfRod(const Node& node) {
+  constexpr double kThick = 0.25;  // half across, as part of half the diagonal
+  const Vec3 size = (doublesOf(node.hi) - doublesOf(node.lo)) * 0.5;
+  int axis = size[1] > size[0] ? 1 : 0;
+  axis = size[2] > size[axis] ? 2 : axis;
+  const double square = dot(size, size), across = square - size[axis] * size[axis];
+  return across < kThick * kThick * square ? axis : -1;
+}
+/// A bounded node's box as a piece.
+inline Piece boxOf(const Node& node) {
+  const Vec3 lo = doublesOf(node.lo), hi = doublesOf(node.hi);
+  Piece box;
+  box.kind = PieceKind::box;
+  middleOf(node).store(box.center);
+  ((hi - lo) * 0.5).store(box.size);
+  box.reach = norm(max(abs(lo), abs(hi))) * (1 + 8 * kUlp);
+  return box;
+}
+
+/// Whether something is still worth trying: while one of kGain tries succeeds; else it is tried a few times in kWait.
+class Worth {
+ public:
+  void begin() { credit_ = kFirst; }
+  bool isTime() { return credit_ >= 0 || ++credit_ == 0; }
+  void tell(bool success) {
+    credit_ = success ? min(credit_ + kGain, kMost) : credit_ - 1;
+    if (credit_ < 0) credit_ = -kWait;
+  }
+
+ private:
+  static constexpr int kFirst = 16, kGain = 8, kMost = 64, kWait = 128;
+  int credit_ = kFirst;
+};
+
 /// What a traversal is for.
 enum class Aim {
   split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
@@ -83,6 +118,7 @@ class Traversal : PartOfSolver {
     for (Buffer<Entry>& stack : stack_) stack.clear();  // what the caller's progress threw out of a query is left
     free_nodes_.clear();
     simplices_.begin();
+    across_rods_.begin();
     roots_tested_ = -1;
   }
   /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
@@ -110,6 +146,7 @@ class Traversal : PartOfSolver {
   unsigned traverse(const Entry& root, Aim aim, Buffer<Entry>& open);
   unsigned partsMayTouch(int a, int b, unsigned mask);
   unsigned apartFromUnbounded(int a, int b);
+  unsigned apartAcrossRods(const Node& a, const Node& b, unsigned mask);
   unsigned leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect);
   bool isWithin();
   /// Lanes of `mask` in which direction n, in the frame of side s's still body, certainly keeps the pieces apart.
@@ -129,6 +166,7 @@ class Traversal : PartOfSolver {
   PoseProofs& proofs_;
 
   HullSimplices simplices_;
+  Worth across_rods_;
   struct FreeNodes {
     PairId pair;
     const std::uint64_t* nodes;
@@ -151,8 +189,31 @@ inline unsigned Traversal::nodesMayTouch(int a, int b, unsigned mask) {
   const int other = 1 - known;
   if (motion_.isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
     mask &= ~box(other);
-  if (!mask || !(A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded)) return mask;
-  return mask & ~apartFromUnbounded(a, b);
+  if (!mask) return 0;
+  if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(a, b);
+  if (across_rods_.isTime()) {
+    mask &= ~apartAcrossRods(A, B, mask);
+    across_rods_.tell(!mask);
+  }
+  return mask;
+}
+
+/// Lanes in which two rods are apart along what is across both: rods that pass each other askew meet in each other's
+/// frame until they are as near as they are long. (Of two tubes of slivers, forty times as long as wide, half a million
+/// pairs of triangles were looked at, all but 2,000 of them apart in this way.)
+inline unsigned Traversal::apartAcrossRods(const Node& a, const Node& b, unsigned mask) {
+  const int axis_a = axisOfRod(a), axis_b = axis_a < 0 ? -1 : axisOfRod(b);
+  if (axis_b < 0) return 0;
+  const Side& side = motion_.side(0);
+  const int lane = middleLane(mask);
+  const Vec3 along_a(axis_a == 0, axis_a == 1, axis_a == 2);
+  Vec3 along_b;
+  for (int k = 0; k < 3; ++k) along_b[k] = side.m.R[0][k][axis_b][lane];
+  const Vec3 n = cross(along_a, along_b);
+  const double length = norm(n);
+  constexpr double kAskew = 1e-6;  // of rods as good as parallel the direction is rounding
+  if (!(length > kAskew)) return 0;
+  return separated(0, boxOf(a), boxOf(b), n * (1 / length), mask);
 }
 
 /// Lanes in which a node is apart from the whole of an unbounded body, along that one's normal.
@@ -163,13 +224,7 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
     const Piece& still = side.still->pieces[0];
     const Node& node = side.moving->nodes[s ? a : b];
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
-    Piece box;
-    box.kind = PieceKind::box;
-    const Vec3 lo = doublesOf(node.lo), hi = doublesOf(node.hi);
-    middleOf(node).store(box.center);
-    ((hi - lo) * 0.5).store(box.size);
-    box.reach = norm(max(abs(lo), abs(hi))) * (1 + 8 * kUlp);
-    apart |= separated(s, still, box, sizeOf(still), kAllLanes);
+    apart |= separated(s, still, boxOf(node), sizeOf(still), kAllLanes);
   }
   return apart;
 }
