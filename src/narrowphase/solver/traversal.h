@@ -76,7 +76,7 @@ inline Piece boxOf(const Node& node) {
   return box;
 }
 
-/// Whether something is still worth trying: while one of kGain tries succeeds; else it is tried a few times in kWait.
+/// Whether something is still worth trying: while about one of kGain tries succeeds; else once in kWait times.
 class Worth {
  public:
   void begin() { credit_ = kFirst; }
