@@ -12,6 +12,7 @@
 #include <optional>
 #include <queue>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -372,6 +373,9 @@ std::string plotOf(const Outcome& o) {
 }
 
 int run(const Options& options) {
+  if (options.no_fcl && options.only.find("FCL") != std::string::npos) {
+    throw std::invalid_argument("--only '" + options.only + "' is a row of FCL's: leave --no-fcl out");
+  }
   Asked asked(options.world, options.visibility);
   RandomMotions random(asked.tree(), options.angle * kRadiansPerDegree, options.seed);
   const Questions questions = asked.questions(!options.no_fcl);

@@ -83,7 +83,10 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   });
   for (const auto& [names, found] : excused) {
     for (const LinkPairProofs::Proof* proof : found) {
-      if (proof) allowed_.push_back({allowed_self_, proof->margin, proof->variables});
+      if (proof) {
+        const double own = registry.margins().of(names.first, names.second);
+        allowed_.push_back({allowed_self_, proof->margin, proof->variables, own});
+      }
     }
     // A pair is proven apart where all of its geometries are.
     if (std::count(found.begin(), found.end(), nullptr) > 0) {
@@ -97,11 +100,14 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   }
   used_.assign(used.begin(), used.end());
   std::set<std::size_t> names;
+  bool own = false;
   least_allowed_margin_ = std::numeric_limits<double>::infinity();
   for (const Pair& pair : allowed_) {
     names.insert(pair.number);
     least_allowed_margin_ = std::min(least_allowed_margin_, pair.margin);
+    own = own || pair.own >= 0;
   }
+  if (own) least_allowed_margin_ = -1;
   proven_names_ = names.size();
 }
 
@@ -144,13 +150,14 @@ std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std:
   };
   if (allowed_.empty()) return unproven;
   const bool all_within = allWithin(used_);  // so it mostly is, and no pair has to be looked at by itself
-  if (all_within && margins.largest() <= least_allowed_margin_) return unproven - proven_names_;
+  if (all_within && margins.ofOwn(-1) <= least_allowed_margin_) return unproven - proven_names_;
   for (std::size_t i = 0; i < allowed_.size();) {
     // Entries of one pair of names lie together.
     const std::size_t number = allowed_[i].number;
     bool all = true;
     for (; i < allowed_.size() && allowed_[i].number == number; ++i) {
-      all = all && margins.largest() <= allowed_[i].margin && (all_within || allWithin(allowed_[i].variables));
+      all = all && margins.ofOwn(allowed_[i].own) <= allowed_[i].margin &&
+            (all_within || allWithin(allowed_[i].variables));
     }
     unproven -= all;
   }

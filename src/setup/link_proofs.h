@@ -63,8 +63,9 @@ class ProvenPairs {
  private:
   struct Pair {
     std::size_t number;  ///< of a link pair, or of an allowed pair of names
-    double margin;
+    double margin;       ///< of the proof
     std::vector<int> variables;
+    double own = -1;  ///< margin of an allowed pair of names, as NamedMargins::of()
   };
   bool within(const std::vector<int>& variables, const JointMotion& motion) const;
 
@@ -74,7 +75,7 @@ class ProvenPairs {
   std::vector<ValueRange> ranges_;                    ///< by variable
   std::size_t allowed_self_ = 0, allowed_scene_ = 0;  ///< pairs of names
   std::size_t proven_names_ = 0;                      ///< of `allowed_self_`, those in `allowed_`
-  double least_allowed_margin_ = 0;                   ///< of `allowed_`
+  double least_allowed_margin_ = 0;                   ///< of proofs in `allowed_`; below 0: some pair's own counts
 };
 
 }  // namespace fcl_artic

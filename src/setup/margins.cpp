@@ -45,6 +45,11 @@ double NamedMargins::ofBody(const std::string& name) const {
   return margin == of_body_.end() ? -1 : margin->second;
 }
 
+double NamedMargins::of(const std::string& a, const std::string& b) const {
+  const auto margin = of_pair_.find(std::minmax(a, b));
+  return margin == of_pair_.end() ? std::max(ofBody(a), ofBody(b)) : margin->second;
+}
+
 PairMargins PairMargins::of(const NamedMargins& margins, const engine::Problem& problem,
                             const std::function<const std::string&(std::int32_t body)>& nameOf) {
   PairMargins of;

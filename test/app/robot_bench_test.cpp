@@ -388,6 +388,9 @@ TEST_F(ProgramTest, BenchRobotRefusesWrongUse) {
   for (const char* option : {"--angle 0", "--motions 0", "--passes 0", "--angle 5deg", "--srdf nowhere.srdf"}) {
     EXPECT_EQ(this->run("bench robot " + arm() + " " + option).status, 2) << option;
   }
+  const Outcome none = this->run("bench robot " + arm() + " --no-fcl --only 'free, FCL, 1 %'");
+  EXPECT_EQ(none.status, 2);
+  expectContains(none.err, "leave --no-fcl out");
   const Outcome missing = this->run("bench robot " + path("nowhere.urdf"));
   EXPECT_EQ(missing.status, 2);
   expectContains(missing.err, "nowhere.urdf");

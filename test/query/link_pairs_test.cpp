@@ -235,7 +235,26 @@ TEST(LinkPairs, AnswersCountAllowedPairsThatNothingProvesApart) {
   EXPECT_EQ(unproven(3.2), 2u);  // beyond the limits
   CertifiedRequest wide = any();
   wide.margin = 0.01;
-  EXPECT_EQ(unproven(2, wide), 2u);  // the proof is for no margin
+  EXPECT_EQ(unproven(2, wide), 2u);         // the proof is for no margin
+  manager.setMargin("base", "hand", 0.01);  // its own, though nobody asks for the pair
+  manager.setup();
+  EXPECT_EQ(unproven(2), 2u);
+  manager.setMargin("base", "hand", 0);
+  manager.setup();
+  EXPECT_EQ(unproven(2), 1u);
+  EXPECT_EQ(unproven(2, wide), 1u);  // its own counts
+  wide.added_margin = 0.01;
+  EXPECT_EQ(unproven(2, wide), 2u);
+  manager.resetMargins();
+  manager.setMargin("hand", 0.01);
+  manager.setup();
+  EXPECT_EQ(unproven(2), 2u);
+  manager.resetMargins();
+  manager.setMargin("upper", 0.01);  // other pairs' margins are not this one's
+  manager.setup();
+  EXPECT_EQ(unproven(2), 1u);
+  manager.resetMargins();
+  manager.setup();
   CertifiedRequest self_only = any();
   self_only.check_scene = false;
   EXPECT_EQ(unproven(2, self_only), 0u);
