@@ -167,15 +167,15 @@ FCL_ARTIC_INLINE unsigned lanesOf(const FloatLanes& a) {
   for (int i = 0; i < kLanes / kFloatLanes; ++i) mask |= regSigns(a.r[i]) << (i * kFloatLanes);
   return mask;
 }
-/// The least lane of each of lo[0..2], the largest of each of hi[0..2]. (Through memory, one by one, an arm's free
-/// motion took 5 % longer.)
-FCL_ARTIC_INLINE void outerLanes(const FloatLanes* lo, const FloatLanes* hi, float* least, float* most) {
+/// The ends of the box that holds eight: `boxes` has their lower ends along three axes, then the upper ones. (Lane by
+/// lane, through memory, an arm's free motion took 5 % longer.)
+/// @param ends  of boxes[i] the least lane, from i = 3 on the largest.
+FCL_ARTIC_INLINE void outerLanes(const FloatLanes* boxes, float* ends) {
   typedef float Eight __attribute__((vector_size(sizeof(FloatLanes))));
   Eight one[6], two[3], four[2];
-  for (int k = 0; k < 3; ++k) {
-    __builtin_memcpy(&one[k], &lo[k], sizeof(Eight));
-    __builtin_memcpy(&one[3 + k], &hi[k], sizeof(Eight));
-    one[3 + k] = -one[3 + k];
+  for (int i = 0; i < 6; ++i) {
+    __builtin_memcpy(&one[i], &boxes[i], sizeof(Eight));
+    if (i >= 3) one[i] = -one[i];
   }
   // Half as many of each every time: a0 b0 a1 b1 a4 b4 a5 b5, then a b c d twice, then all.
   for (int i = 0; i < 3; ++i) {
@@ -193,10 +193,7 @@ FCL_ARTIC_INLINE void outerLanes(const FloatLanes* lo, const FloatLanes* hi, flo
   const Eight x = __builtin_shufflevector(four[0], four[1], 0, 1, 2, 3, 8, 9, 10, 11);
   const Eight y = __builtin_shufflevector(four[0], four[1], 4, 5, 6, 7, 12, 13, 14, 15);
   const Eight all = x < y ? x : y;
-  for (int k = 0; k < 3; ++k) {
-    least[k] = all[k];
-    most[k] = -all[3 + k];
-  }
+  for (int i = 0; i < 6; ++i) ends[i] = i < 3 ? all[i] : -all[i];
 }
 /// Conversion to float errs by at most 2^-23 of the value in any rounding mode; twice that, and a normal number for
 /// values that would vanish, make the result a bound.

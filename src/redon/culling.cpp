@@ -162,8 +162,9 @@ void Culling::bodyPairs(const std::function<bool(engine::PairId)>& wanted, const
         const engine::WideNode& node = problem_->obstacle_tree[stack.back()];
         stack.pop_back();
         for (std::int32_t i = 0; i < node.num_children; ++i) {
-          double lo[3], hi[3];
-          for (int k = 0; k < 3; ++k) lo[k] = node.boxes.lo[k][i], hi[k] = node.boxes.hi[k][i];
+          const engine::EightBoxes& boxes = node.boxes;
+          const double lo[3] = {boxes.lo[0][i], boxes.lo[1][i], boxes.lo[2][i]};
+          const double hi[3] = {boxes.hi[0][i], boxes.hi[1][i], boxes.hi[2][i]};
           if (boxOf(m, 0, 0).certainlyApart(lo, hi)) continue;
           if (node.child[i] >= 0) {
             stack.push_back(node.child[i]);

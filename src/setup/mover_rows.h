@@ -31,4 +31,11 @@ inline void addMoverRows(const std::vector<engine::MoverPair>& pairs, std::size_
   for (const auto& [key, row] : row_of) rows.push_back(row);
 }
 
+/// The movers of link pairs, both ways.
+struct PairMovers {
+  std::vector<engine::MoverPair> pairs;
+  std::vector<engine::MoverRow> rows;  ///< of two links first
+  std::size_t num_self_rows = 0;       ///< of these
+};
+
 }  // namespace fcl_artic

@@ -2,7 +2,6 @@
 #include "setup/setup.h"
 
 #include "geometry/solid_space.h"
-#include "setup/mover_rows.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic {
@@ -33,15 +32,12 @@ void Setup::build(const Registry& registry) {
 }
 
 void Setup::listMovers() {
-  link_movers_.clear();
-  for (const engine::LinkPair& pair : link_pairs_) {
-    const auto mover = [&](std::int32_t body) { return bodies_[static_cast<std::size_t>(body)].mover; };
-    link_movers_.push_back({mover(pair.a), mover(pair.b)});
-  }
-  mover_rows_.clear();
-  addMoverRows(link_movers_, 0, num_self_pairs_, mover_rows_);
-  num_self_rows_ = mover_rows_.size();
-  addMoverRows(link_movers_, num_self_pairs_, link_pairs_.size(), mover_rows_);
+  const auto mover = [&](std::int32_t body) { return bodies_[static_cast<std::size_t>(body)].mover; };
+  link_movers_ = {};
+  for (const engine::LinkPair& pair : link_pairs_) link_movers_.pairs.push_back({mover(pair.a), mover(pair.b)});
+  addMoverRows(link_movers_.pairs, 0, num_self_pairs_, link_movers_.rows);
+  link_movers_.num_self_rows = link_movers_.rows.size();
+  addMoverRows(link_movers_.pairs, num_self_pairs_, link_pairs_.size(), link_movers_.rows);
 }
 
 void Setup::readSolids(const Registry& registry) {
@@ -66,9 +62,9 @@ engine::Problem Setup::problem() const {
   p.sweeps = sweep_views_.data();
   p.num_sweeps = static_cast<std::int32_t>(sweep_views_.size());
   p.link_pairs = link_pairs_.data();
-  p.link_movers = link_movers_.data();
-  p.mover_rows = mover_rows_.data();
-  p.num_mover_rows = static_cast<std::int32_t>(mover_rows_.size());
+  p.link_movers = link_movers_.pairs.data();
+  p.mover_rows = link_movers_.rows.data();
+  p.num_mover_rows = static_cast<std::int32_t>(link_movers_.rows.size());
   p.num_link_pairs = static_cast<std::int32_t>(link_pairs_.size());
   p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * obstacle_bodies_.size());
   p.scene_allowed = scene_allowed_.empty() ? nullptr : scene_allowed_.data();

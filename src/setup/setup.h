@@ -16,6 +16,7 @@
 #include "setup/link_proofs.h"
 #include "setup/link_tables.h"
 #include "setup/margins.h"
+#include "setup/mover_rows.h"
 #include "setup/registry.h"
 
 namespace fcl_artic {
@@ -48,7 +49,7 @@ class Setup {
   /// links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
   /// The same of its rows of movers.
-  std::int32_t numSelfRows() const { return static_cast<std::int32_t>(num_self_rows_); }
+  std::int32_t numSelfRows() const { return static_cast<std::int32_t>(link_movers_.num_self_rows); }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -74,9 +75,7 @@ class Setup {
   std::vector<engine::Body> bodies_;  ///< as the registry's: links, moving obstacles, the others
   std::vector<std::int32_t> movers_, obstacle_bodies_;
   std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
-  std::vector<engine::MoverPair> link_movers_;
-  std::vector<engine::MoverRow> mover_rows_;  ///< likewise
-  std::size_t num_self_rows_ = 0;
+  PairMovers link_movers_;
   std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
   std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
   std::int32_t num_scene_allowed_ = 0;

@@ -60,10 +60,8 @@ void Setup::buildMoving(const Registry& registry) {
     body.tree = &viewOf(obstacle, links);
     body.mover = static_cast<std::int32_t>(movers_.size());
     movers_.push_back(static_cast<std::int32_t>(index));
-    for (int k = 0; k < 3; ++k) {  // stage 1 knows the box of the whole path
-      body.lo[k] = obstacle.path_lower[k];
-      body.hi[k] = obstacle.path_upper[k];
-    }
+    std::copy_n(obstacle.path_lower.data(), 3, body.lo);  // stage 1 knows the box of the whole path
+    std::copy_n(obstacle.path_upper.data(), 3, body.hi);
     FrameSweep sweep;
     Carrier at;
     int last = variable += numVariables(obstacle.motion);
@@ -111,10 +109,8 @@ void Setup::buildObstacles(const Registry& registry) {
     body.placement = makePlacement(obstacle.offset);
     body.inverse = makePlacement(obstacle.offset.inverse());
     obstacle.worldBox(obstacle.offset, body.placement, body.lo, body.hi);
-    for (int k = 0; k < 3; ++k) {
-      boxes[o].lo[k] = body.lo[k];
-      boxes[o].hi[k] = body.hi[k];
-    }
+    std::copy_n(body.lo, 3, boxes[o].lo);
+    std::copy_n(body.hi, 3, boxes[o].hi);
     obstacle_bodies_[o] = static_cast<std::int32_t>(first + o);
     still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
   }

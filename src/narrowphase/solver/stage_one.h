@@ -110,25 +110,17 @@ inline void StageOne::sweepMover(int mover) {
 /// The box that holds those of the parts. (The least of a part that overflowed, NaN, and others does not hide it: the
 /// radius is made of bounds for all parts, and is infinite then, so that the others reach to infinity.)
 inline void StageOne::setWholeBox(int mover) {
-  const SweptBox& parts = mover_box_[mover];
-  float lo[3], hi[3];
-  outerLanes(parts.lo, parts.hi, lo, hi);
+  FloatLanes parts[6];
+  __builtin_memcpy(parts, &mover_box_[mover], sizeof parts);
+  float ends[6];
+  outerLanes(parts, ends);
   engine::EightBoxes& boxes = whole_boxes_[mover / kLanes];
-  for (int k = 0; k < 3; ++k) {
-    boxes.lo[k][mover % kLanes] = lo[k];
-    boxes.hi[k][mover % kLanes] = hi[k];
-  }
+  for (int i = 0; i < 6; ++i) (i < 3 ? boxes.lo : boxes.hi)[i % 3][mover % kLanes] = ends[i];
 }
 
 /// A mover's box over [0, 1], in all lanes.
 inline SweptBox StageOne::wholeBox(int mover) const {
-  const engine::EightBoxes& boxes = whole_boxes_[mover / kLanes];
-  float lo[3], hi[3];
-  for (int k = 0; k < 3; ++k) {
-    lo[k] = boxes.lo[k][mover % kLanes];
-    hi[k] = boxes.hi[k][mover % kLanes];
-  }
-  return spreadBox(lo, hi);
+  return spreadBox(whole_boxes_[mover / kLanes], mover % kLanes);
 }
 
 inline unsigned StageOne::boxesApart(int mover_a, int mover_b) const {
@@ -151,9 +143,7 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
     const unsigned used = (1u << node.num_children) - 1;
     for (unsigned left = used & ~apart(whole, load(node.boxes)); left; left &= left - 1) {
       const int i = __builtin_ctz(left);
-      const float lo[3] = {node.boxes.lo[0][i], node.boxes.lo[1][i], node.boxes.lo[2][i]};
-      const float hi[3] = {node.boxes.hi[0][i], node.boxes.hi[1][i], node.boxes.hi[2][i]};
-      const unsigned mask = kAllLanes & ~apart(parts, spreadBox(lo, hi));
+      const unsigned mask = kAllLanes & ~apart(parts, spreadBox(node.boxes, i));
       if (!mask) continue;
       const std::int32_t child = node.child[i];
       if (child < 0) {

@@ -43,33 +43,26 @@ FCL_ARTIC_INLINE void sweepNode(const RigidLanes& m, const Node& node, double sl
   }
 }
 
-/// The same over all lanes at once: one box.
-struct WholeBox {
-  float lo[3], hi[3];
-};
-
-FCL_ARTIC_INLINE FloatLanes load(const float* x) {
-  FloatLanes o;
-  __builtin_memcpy(&o, x, sizeof o);
-  return o;
-}
-/// A box that stands still: the same in all lanes.
-FCL_ARTIC_INLINE SweptBox spreadBox(const float* lo, const float* hi) {
+/// A box that is the same in all lanes.
+/// @param stride  of its ends in memory.
+FCL_ARTIC_INLINE SweptBox spreadBox(const float* lo, const float* hi, int stride = 1) {
   SweptBox box;
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = spread(lo[k]);
-    box.hi[k] = spread(hi[k]);
+    box.lo[k] = spread(lo[stride * k]);
+    box.hi[k] = spread(hi[stride * k]);
   }
   return box;
 }
+/// The i-th of eight boxes, in all lanes.
+FCL_ARTIC_INLINE SweptBox spreadBox(const engine::EightBoxes& boxes, int i) {
+  return spreadBox(&boxes.lo[0][i], &boxes.hi[0][i], kLanes);
+}
 /// Eight boxes, one per lane.
 FCL_ARTIC_INLINE SweptBox load(const engine::EightBoxes& boxes) {
-  SweptBox o;
-  for (int k = 0; k < 3; ++k) {
-    o.lo[k] = load(boxes.lo[k]);
-    o.hi[k] = load(boxes.hi[k]);
-  }
-  return o;
+  static_assert(sizeof(SweptBox) == sizeof(engine::EightBoxes));
+  SweptBox box;
+  __builtin_memcpy(&box, &boxes, sizeof box);
+  return box;
 }
 
 /// Lanes in which two boxes are apart along an axis.

@@ -206,10 +206,8 @@ inline unsigned Traversal::apartAcrossRods(const Node& a, const Node& b, unsigne
   if (axis_b < 0) return 0;
   const Side& side = motion_.side(0);
   const int lane = middleLane(mask);
-  const Vec3 along_a(axis_a == 0, axis_a == 1, axis_a == 2);
-  Vec3 along_b;
-  for (int k = 0; k < 3; ++k) along_b[k] = side.m.R[0][k][axis_b][lane];
-  const Vec3 n = cross(along_a, along_b);
+  const auto along = [](int axis) { return Vec3(axis == 0, axis == 1, axis == 2); };
+  const Vec3 n = cross(along(axis_a), laneOf(side.m.R[0], lane) * along(axis_b));
   const double length = norm(n);
   constexpr double kAskew = 1e-6;  // of rods as good as parallel the direction is rounding
   if (!(length > kAskew)) return 0;
