@@ -90,8 +90,7 @@ struct Problem : PairNumbering {
   const LinkPair* link_pairs = nullptr;
   const MoverPair* link_movers = nullptr;  ///< of each link pair
   std::int32_t num_link_pairs = 0;
-  const MoverRow* mover_rows =
-      nullptr;  ///< all link pairs again, by their movers: most are done with once these are seen
+  const MoverRow* mover_rows = nullptr;  ///< all link pairs again, by movers: most are done with once these are seen
   std::int32_t num_mover_rows = 0;
   std::int32_t first_in_rows = 0;               ///< what rows call link pair 0
   const std::uint8_t* link_allowed = nullptr;   ///< per link pair: 1 = may touch; null: none may

@@ -10,9 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "numerics/baseline_isa.h"
+#include "ball.h"
 
-#include "narrowphase/solver.h"
 #include "setup/mover_rows.h"
 
 using namespace fcl_artic;
@@ -26,24 +25,12 @@ class ManyBalls : public SolverParts {
   ManyBalls(int count, std::mt19937& random) : count_(count) {
     const auto size = static_cast<std::size_t>(count);
     std::uniform_real_distribution<double> at(-1, 1), length(0, 0.6);
-    pieces.resize(size);
-    nodes.resize(size);
-    trees.resize(size);
+    balls.resize(size);
     bodies.resize(size);
     steps.resize(size);
     coefficients.resize(2 * size);
     for (std::size_t i = 0; i < size; ++i) {
-      const double r = 0.1 + 0.3 * std::abs(at(random));
-      const float side = static_cast<float>(r) * 1.000001f;
-      pieces[i].kind = PieceKind::point;
-      pieces[i].radius = r;
-      nodes[i] = {{-side, -side, -side}, {side, side, side}, side * 1.7320509f, ~0};
-      trees[i].nodes = &nodes[i];
-      trees[i].pieces = &pieces[i];
-      trees[i].num_nodes = trees[i].num_pieces = 1;
-      trees[i].extent = r;
-      bodies[i].tree = &trees[i];
-      bodies[i].lss[6] = r;
+      balls[i].make(0.1 + 0.3 * std::abs(at(random)), bodies[i]);
       bodies[i].step = bodies[i].mover = static_cast<std::int32_t>(i);
       movers.push_back(static_cast<std::int32_t>(i));
       steps[i].kind = engine::StepKind::prismatic;
@@ -98,11 +85,9 @@ class ManyBalls : public SolverParts {
     c[axes[static_cast<std::size_t>(i)]] += coefficients[static_cast<std::size_t>(count_ + i)] * t;
     return c;
   }
-  double radius(int i) const { return pieces[static_cast<std::size_t>(i)].radius; }
+  double radius(int i) const { return balls[static_cast<std::size_t>(i)].piece.radius; }
 
-  std::vector<Piece> pieces;
-  std::vector<Node> nodes;
-  std::vector<TreeView> trees;
+  std::vector<Ball> balls;
   std::vector<Body> bodies;
   std::vector<engine::SweepStep> steps;
   std::vector<int> axes;

@@ -240,9 +240,10 @@ TEST(RelativeMotion, SeesEachBodyFromTheOther) {
   TwoBalls world;
   world.asPair().begin();
   world.motion.set(TwoBalls::kPair, world.task.whole);
-  const DifferenceBody at = world.motion.differenceAt(world.pieces[0], world.pieces[1], 3);
+  const DifferenceBody at = world.motion.differenceAt(world.round[0].piece, world.round[1].piece, 3);
   EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.task.whole.at[3], 1e-14);
-  EXPECT_NEAR(world.motion.differenceAt(world.pieces[0], world.pieces[1], 3, 1).pose.c[2], 0, 1e-12);  // t = 0.5
+  EXPECT_NEAR(world.motion.differenceAt(world.round[0].piece, world.round[1].piece, 3, 1).pose.c[2], 0,
+              1e-12);  // t = 0.5
   for (int k = 0; k < kLanes; ++k) {
     EXPECT_NEAR(world.motion.side(1).m.c[0][2][k], -(-2 + 4 * world.task.whole.at[k]), 1e-14);
   }
@@ -317,7 +318,7 @@ struct BallsInside {
   BallsInside(TwoBalls& world, double radius_a, double radius_b) {
     const double radius[2] = {radius_a, radius_b};
     for (int i = 0; i < 2; ++i) {
-      const double reach = world.pieces[i].radius;
+      const double reach = world.round[i].piece.radius;
       for (int k = 0; k < 3; ++k) {
         parts[i].lo[k] = -reach;
         parts[i].hi[k] = reach;

@@ -4,9 +4,7 @@
 // solver's parts for it, put together as the solver does.
 #pragma once
 
-#include "numerics/baseline_isa.h"
-
-#include "narrowphase/solver.h"
+#include "ball.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -20,19 +18,7 @@ class TwoBalls : public SolverParts {
 
   explicit TwoBalls(double from = -2, double to = 2) {
     const double radius[2] = {0.5, 0.25};
-    for (int i = 0; i < 2; ++i) {
-      const double r = radius[i];
-      const float box = static_cast<float>(r);
-      pieces[i].kind = PieceKind::point;
-      pieces[i].radius = r;
-      nodes[i] = {{-box, -box, -box}, {box, box, box}, static_cast<float>(r * 1.7320509), ~0};
-      trees[i].nodes = &nodes[i];
-      trees[i].pieces = &pieces[i];
-      trees[i].num_nodes = trees[i].num_pieces = 1;
-      trees[i].extent = r;
-      bodies[i].tree = &trees[i];
-      bodies[i].lss[6] = r;
-    }
+    for (int i = 0; i < 2; ++i) round[i].make(radius[i], bodies[i]);
     step.kind = engine::StepKind::prismatic;
     for (int i = 0; i < 9; ++i) step.C[i] = i % 4 == 0;
     for (double& x : step.p) x = 0;
@@ -63,7 +49,7 @@ class TwoBalls : public SolverParts {
     bodies[1].mover = 0;
     still.box.radius = 0.5;
     for (int k = 0; k < 3; ++k) still.box.lo[k] = still.box.hi[k] = 0;
-    still.tree = &trees[0];
+    still.tree = &round[0].tree;
     still.solid = true;
     problem.movers = &mover;
     problem.num_movers = problem.num_scene_movers = 1;
@@ -71,8 +57,8 @@ class TwoBalls : public SolverParts {
     problem.still_bounds = &still;
     problem.num_obstacles = problem.num_scene_pairs = 1;
     for (int k = 0; k < 3; ++k) {
-      obstacle_tree.boxes.lo[k][0] = nodes[0].lo[k];
-      obstacle_tree.boxes.hi[k][0] = nodes[0].hi[k];
+      obstacle_tree.boxes.lo[k][0] = round[0].node.lo[k];
+      obstacle_tree.boxes.hi[k][0] = round[0].node.hi[k];
     }
     obstacle_tree.child[0] = ~0;
     obstacle_tree.num_children = 1;
@@ -94,10 +80,8 @@ class TwoBalls : public SolverParts {
     return lanes;
   }
 
-  Piece pieces[2];
-  Node nodes[2];
+  Ball round[2];
   engine::WideNode obstacle_tree = {};
-  TreeView trees[2];
   Body bodies[2];
   engine::SweepStep step;
   engine::SweepView sweep;
