@@ -19,7 +19,6 @@ constexpr int kCached = 2048;
 constexpr int kCoarse = 3;
 
 using engine::Body;
-using engine::Node;
 
 }  // namespace
 
