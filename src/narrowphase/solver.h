@@ -47,9 +47,8 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   if (!task.ended()) containment.report(open);
   if (!task.ended() && horizon.end() > 0) {
     search.testHulls(open, [&](int i) { return stage_one.direction(i); });
-    const bool over =
-        horizon.isOver() || (query.any && (any.tryLinks(open) || any.tryDeepLinks(open) || any.tryOverlaps(open)));
-    if (!over) search.run(open);
+    if (query.any && !horizon.isOver()) any.tryOverlaps(open);
+    if (!horizon.isOver()) search.run(open);
   }
   statistics.narrowphase_us = task.now() - time1;
   answerWithWhatIsFound(answer);

@@ -4,6 +4,8 @@
 // pair is followed. Nothing rests on the guesses; what is reported is proven.
 #pragma once
 
+#include <utility>
+
 #include "narrowphase/solver/ball_proofs.h"
 #include "narrowphase/solver/traversal.h"
 
@@ -76,19 +78,14 @@ class AnyContact : PartOfSolver {
   void forgetOverlaps() { overlap_guesses_.clear(); }
   bool tryObstacle(PairId pair, int lane, const Vec3& near, bool thin);
   void considerLinks(PairId pair, Lanes square, double radii);
-  bool tryLinks(const Buffer<Entry>& open);
-  bool tryDeepLinks(const Buffer<Entry>& open);
+  const Buffer<std::int32_t>& deepestFirst(const Buffer<Entry>& open);
+  bool tryLinks(const Entry& e);
   bool tryOverlaps(Buffer<Entry>& open);
 
  private:
   bool isLeafPair(PairId pair) const;
   bool tryLeafPair(PairId pair, int lane);
   bool tryTriangles(PairId pair, int lane);
-  static unsigned openLanes(PairId pair, const Buffer<Entry>& open) {
-    unsigned lanes = 0;
-    for (int i = 0; i < open.size(); ++i) lanes |= open[i].pair == pair ? open[i].mask : 0;
-    return lanes;
-  }
 
   SweptFrames& frames_;
   RelativeMotion& motion_;
@@ -104,8 +101,18 @@ class AnyContact : PartOfSolver {
     std::int32_t lane;
     double distance;  ///< of their line swept spheres' segments, as part of the radii
     unsigned near;    ///< other lanes in which balls inside them may meet
+
+    bool isDeep() const { return distance < kDeepLinks; }
   };
+  const PoseGuess* guessOf(PairId pair) const {
+    for (int i = 0; i < pose_guesses_.size(); ++i) {
+      if (pose_guesses_[i].pair == pair) return &pose_guesses_[i];
+    }
+    return nullptr;
+  }
+
   Buffer<PoseGuess> pose_guesses_;
+  Buffer<std::int32_t> order_;
 };
 
 /// Balls inside links, where the query's advisors expect these to meet. (Kept out of every query's way.)
@@ -167,34 +174,37 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   if (near || distance < kDeepLinks) pose_guesses_.push({pair, lane, distance, near});
 }
 
-/// Tries balls inside links whose line swept spheres meet, at all poses at which the balls may meet.
-/// @param open  as in tryDeepLinks().
-inline bool AnyContact::tryLinks(const Buffer<Entry>& open) {
-  frames_.set(whole());
-  for (int i = 0; i < pose_guesses_.size(); ++i) {
-    for (unsigned near = pose_guesses_[i].near & openLanes(pose_guesses_[i].pair, open); near; near &= near - 1) {
-      if (balls_.inLinks(pose_guesses_[i].pair, __builtin_ctz(near))) return true;
-    }
+/// The order in which pairs are to be looked at, as indices into `open`: links deep in each other first, the deepest of
+/// all before the others; what is left as it stands. Empty: all as they stand.
+inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>& open) {
+  order_.clear();
+  bool any = false;
+  for (int i = 0; i < pose_guesses_.size(); ++i) any |= pose_guesses_[i].isDeep();
+  if (!any) return order_;
+  const auto distanceOf = [&](int i) {
+    const PoseGuess* const guess = guessOf(open[i].pair);
+    return guess && guess->isDeep() ? guess->distance : kDeepLinks;
+  };
+  for (int i = 0; i < open.size(); ++i) {
+    order_.push(i);
+    const double distance = distanceOf(i);
+    for (int k = i; k > 0 && distanceOf(order_[k - 1]) > distance; --k) std::swap(order_[k - 1], order_[k]);
   }
-  return false;
+  return order_;
 }
 
-/// For links whose line swept spheres are deep in each other: tries each pair's triangles at the pose at which they are
-/// deepest.
-/// @param open  what is not proven apart by now; only these pairs, in these lanes, are tried.
-inline bool AnyContact::tryDeepLinks(const Buffer<Entry>& open) {
-  for (int done = 0; done < pose_guesses_.size(); ++done) {
-    int first = done;
-    for (int i = done + 1; i < pose_guesses_.size(); ++i) {
-      if (pose_guesses_[i].distance < pose_guesses_[first].distance) first = i;
-    }
-    const PoseGuess guess = pose_guesses_[first];
-    pose_guesses_[first] = pose_guesses_[done];
-    if (guess.distance >= kDeepLinks) break;
-    const bool is_open = openLanes(guess.pair, open) >> guess.lane & 1;
-    if (is_open && tryTriangles(guess.pair, guess.lane)) return true;
+/// Of links whose line swept spheres meet, and whose hulls are not proven apart: tries balls inside them at all other
+/// poses at which the balls may meet; and if the spheres are deep in each other, triangles at the pose at which they
+/// are deepest.
+/// @param e  only its lanes are tried.
+inline bool AnyContact::tryLinks(const Entry& e) {
+  const PoseGuess* const guess = guessOf(e.pair);
+  if (!guess) return false;
+  frames_.set(whole());
+  for (unsigned near = guess->near & e.mask; near; near &= near - 1) {
+    if (balls_.inLinks(e.pair, __builtin_ctz(near))) return true;
   }
-  return false;
+  return guess->isDeep() && (e.mask >> guess->lane & 1) && tryTriangles(e.pair, guess->lane);
 }
 
 /// Tries the triangles of two links at a lane's middle: first those in boxes whose middles are near each other.

@@ -42,7 +42,7 @@ class PairSearch : PartOfSolver {
         any_(any) {}
 
   /// Tests boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`, and removes those
-  /// that are apart.
+  /// that are apart. Where any contact will do, it is looked for in links whose hulls are not.
   /// @param directionOf  (i) -> the i-th pair's direction, null where there is none (LaneSearch::towards).
   template <class DirectionOf>
   void testHulls(Buffer<Entry>& open, const DirectionOf& directionOf);
@@ -291,7 +291,9 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
   any_.forgetOverlaps();
   const int roots = open.size();
   int kept = 0;
-  for (int i = 0; i < roots && !horizon_.isOver(); ++i) {
+  const Buffer<std::int32_t>& order = any_.deepestFirst(open);
+  for (int n = 0; n < roots && !horizon_.isOver(); ++n) {
+    const int i = order.size() ? order[n] : n;
     Entry& e = open[i];
     if (e.mask & horizon_.live()) {
       motion_.set(e.pair, whole());
@@ -303,6 +305,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
         e.mask = look.mask;
         e.within = look.within;
         if (look.overlaps) any_.guessOverlap(e.pair, look.overlaps);
+        if (e.mask && !horizon_.isOver()) any_.tryLinks(e);
       }
       horizon_.mustEnd();
     }
