@@ -82,8 +82,8 @@ Isometry3d current(const fcl::MotionBase<S>& motion) {
 template <class S, class Motion>
 double farthestFromOwnPath(const Motion& motion) {
   const BodyMotion read = readMotion<S>(motion);
-  const Motion copy(
-      motion);  // NOLINT(performance-unnecessary-copy-initialization): integrate() changes what const hides
+  // integrate() changes what const hides
+  const Motion copy(motion);  // NOLINT(performance-unnecessary-copy-initialization)
   double farthest = 0;
   for (int i = 0; i <= 100; ++i) {
     const S t = static_cast<S>(i) / 100;

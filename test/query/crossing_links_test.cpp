@@ -2,10 +2,14 @@
 //
 // Links that are meshes, where any contact will do: it is proven at a pose at which the bodies' bounds are deep in each
 // other, and a mesh deep within another one touches nothing.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -80,4 +84,44 @@ TEST(CrossingLinks, AnyContactLiesOnBothTriangles) {
   std::printf("%d contacts at poses, %d free, %d of them small and within\n", at_poses, free, free_within);
   EXPECT_GT(at_poses, 200);
   EXPECT_GT(free_within, 20);
+}
+
+/// Plates over each other, all of them askew in their frames, so that the boxes around any two meet and only their
+/// hulls part them, are deep in each other's line swept spheres. None touches; but the last is crossed by a small one.
+/// That pair is the deepest: its triangles are tried before other pairs' hulls.
+TEST(CrossingLinks, TheDeepestAreTriedBeforeOthersHulls) {
+  constexpr int kPlates = 8;
+  constexpr double kStep = 0.05;
+  const Eigen::AngleAxisd askew(0.7, Vector3d(1, 1, 0).normalized());
+  const auto plateOf = [&](const Vector3d& half) {
+    const auto box = fineBoxMesh(half, 2);
+    for (int i = 0; i < box->num_vertices; ++i) box->vertices[i] = askew * box->vertices[i];
+    return withTriangleTwice(*box);
+  };
+  const auto plate = plateOf({0.2, 0.2, 0.005}), small = plateOf({0.005, 0.15, 0.02});
+  std::vector<std::string> links;
+  for (int i = 0; i <= kPlates; ++i) {
+    if (i) links.push_back("between" + std::to_string(i));
+    links.push_back("plate" + std::to_string(i));
+  }
+  ArticulatedCollisionManager manager(sliderTree(links));
+  std::vector<std::unique_ptr<fcl::CollisionObjectd>> objects;
+  for (int i = 0; i <= kPlates; ++i) {
+    objects.push_back(std::make_unique<fcl::CollisionObjectd>(i < kPlates ? plate : small));
+    const Vector3d at = askew * Vector3d(0, 0, kStep * std::min(i, kPlates - 1));
+    manager.bind("plate" + std::to_string(i), objects.back().get(), Isometry3d(Eigen::Translation3d(at)));
+  }
+  manager.setup();
+  const auto num_joints = static_cast<Eigen::Index>(links.size()) - 1;
+  const auto gjkOf = [&](ContactMode mode) {
+    CertifiedRequest request;
+    request.mode = mode;
+    const CertifiedResult result =
+        ask(manager, Eigen::VectorXd::Zero(num_joints), Eigen::VectorXd::Constant(num_joints, 0.001), request);
+    EXPECT_EQ(result.status, Status::contact);
+    EXPECT_TRUE(result.certain);
+    return result.statistics.gjk;
+  };
+  EXPECT_GT(gjkOf(ContactMode::first), 20u);  // many pairs of plates are left to their hulls
+  EXPECT_LE(gjkOf(ContactMode::any), 12u);
 }
