@@ -139,23 +139,23 @@ class Shapes {
  public:
   explicit Shapes(const std::vector<PageBody>& bodies) {
     for (const PageBody& body : bodies) {
-      const fcl::CollisionGeometryd* geometry = body.geometry.get();
-      if (content_.count(geometry)) continue;
-      Content& content = content_[geometry];
-      if (const auto* cloud = dynamic_cast<const PointCloud*>(geometry)) {
+      const fcl::CollisionGeometryd& geometry = *body.geometry;
+      if (content_.count(&geometry)) continue;
+      Content& content = content_[&geometry];
+      if (const auto* cloud = dynamic_cast<const PointCloud*>(&geometry)) {
         content.kind = "points";
         for (std::size_t i = 0; i < cloud->points().size(); ++i) {
           content.balls.push_back({cloud->points()[i], cloud->radius(i)});
         }
-      } else if (geometry->getNodeType() == fcl::GEOM_OCTREE) {
+      } else if (geometry.getNodeType() == fcl::GEOM_OCTREE) {
         content.kind = "cells";
 #if FCL_HAVE_OCTOMAP
-        for (const auto& cell : static_cast<const fcl::OcTreed*>(geometry)->toBoxes()) {
+        for (const auto& cell : static_cast<const fcl::OcTreed&>(geometry).toBoxes()) {
           content.balls.push_back({{cell[0], cell[1], cell[2]}, cell[3] / 2});
         }
 #endif
       } else {
-        content.triangles = render::triangulate(*geometry);
+        content.triangles = render::triangulate(geometry);
       }
       triangles_.count(content.triangles.faces.size());
       balls_.count(content.balls.size());
