@@ -2,6 +2,7 @@
 //
 // What large robots cost: set-up, set-up again after an obstacle has come, memory, and free motions. Links of many
 // elements, each a ball of its own, beside the same balls as one PointCloud; and chains of many links.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -113,7 +114,7 @@ struct World {
 
 struct Asked {
   std::vector<CertifiedResult> answers;
-  std::vector<double> us[2];  ///< in contact, free: the fastest of three each
+  std::array<std::vector<double>, 2> us;  ///< in contact, free: the fastest of three each
 };
 
 Asked ask(const World& world, std::size_t count, double angle, std::uint64_t seed) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <fcl/geometry/geometric_shape_to_BVH_model.h>
 #include <gtest/gtest.h>
 
 #include "crossing_links.h"
@@ -124,4 +125,23 @@ TEST(CrossingLinks, TheDeepestAreTriedBeforeOthersHulls) {
   };
   EXPECT_GT(gjkOf(ContactMode::first), 20u);  // many pairs of plates are left to their hulls
   EXPECT_LE(gjkOf(ContactMode::any), 12u);
+}
+
+/// A body that begins as its own copy shares all faces, edges and vertices with it, of which none can be proven to
+/// touch; right after the start both cross, along a line. That is found without dividing time down to the finest.
+TEST(CrossingLinks, ACopyAtTheStartIsCheapAndCertain) {
+  auto ball = std::make_shared<Mesh>();
+  fcl::generateBVHModel(*ball, fcl::Sphered(0.2), Isometry3d::Identity(), 24, 24);
+  // Off by less than rounding lets tell, and somewhat more.
+  for (const double off : {0.0, 1e-15, 1e-12}) {
+    Isometry3d at = Isometry3d::Identity();
+    at.translation().z() = off;
+    const CertifiedResult r = CrossingLinks(ball, ball, at).run(0, 0.1, ContactMode::first);
+    ASSERT_EQ(r.status, Status::contact);
+    EXPECT_TRUE(r.certain);
+    EXPECT_EQ(r.t_lower, 0);
+    std::printf("%g m: contact until %g, %d leaves, %d calls of GJK\n", off, r.t_upper,
+                static_cast<int>(r.statistics.leaf_tests), static_cast<int>(r.statistics.gjk));
+    EXPECT_LT(r.statistics.gjk, 5000u);
+  }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // For queries that any contact answers: stage 1 gathers poses at which contact is likely, and they are tried before any
-// pair is followed. Nothing rests on the guesses; what is reported is proven.
+// pair is followed. And for bodies in each other at the start, whatever is asked. Nothing rests on the guesses; what is
+// reported is proven.
 #pragma once
 
 #include <utility>
@@ -14,9 +15,9 @@ namespace FCL_ARTIC_ISA {
 
 /// Two links are expected to touch if the segments of their line swept spheres are nearer than this part of the radii.
 constexpr double kDeepLinks = 0.7;
-/// Maximum number of pairs of boxes that are tested in one pose. Measured: twice as many prove more contacts of a UR5,
-/// and make its free motions 5 % slower.
-constexpr int kMostAtPose = 512;
+/// Maximum number of pairs of boxes that are tested in one pose, of which two triangles count as kTwoTriangles.
+/// Measured: twice as many prove more contacts of a UR5, and make its free motions 5 % slower.
+constexpr int kMostAtPose = 1024, kTwoTriangles = 8;
 
 /// Two bodies' boxes at one pose: nothing rests on what is said of them.
 struct BoxesAtPose {
@@ -81,11 +82,11 @@ class AnyContact : PartOfSolver {
   const Buffer<std::int32_t>& deepestFirst(const Buffer<Entry>& open);
   bool tryLinks(const Entry& e);
   bool tryOverlaps(Buffer<Entry>& open);
+  bool tryTriangles(PairId pair, const TimeBatch& poses, int lane, int most);
 
  private:
   bool isLeafPair(PairId pair) const;
   bool tryLeafPair(PairId pair, int lane);
-  bool tryTriangles(PairId pair, int lane);
 
   SweptFrames& frames_;
   RelativeMotion& motion_;
@@ -204,13 +205,15 @@ inline bool AnyContact::tryLinks(const Entry& e) {
   for (unsigned near = guess->near & e.mask; near; near &= near - 1) {
     if (balls_.inLinks(e.pair, __builtin_ctz(near))) return true;
   }
-  return guess->isDeep() && (e.mask >> guess->lane & 1) && tryTriangles(e.pair, guess->lane);
+  return guess->isDeep() && (e.mask >> guess->lane & 1) && tryTriangles(e.pair, whole(), guess->lane, kMostAtPose);
 }
 
-/// Tries the triangles of two links at a lane's middle: first those in boxes whose middles are near each other.
-inline bool AnyContact::tryTriangles(PairId pair, int lane) {
-  motion_.set(pair, whole());
+/// Tries the triangles of two bodies at a lane's middle: first those in boxes whose middles are near each other.
+/// @param most  pairs of boxes, as kMostAtPose.
+inline bool AnyContact::tryTriangles(PairId pair, const TimeBatch& poses, int lane, int most) {
+  motion_.set(pair, poses);
   const TreeView &A = motion_.a(), &B = motion_.b();
+  if (A.pieces[0].kind != PieceKind::vertices || B.pieces[0].kind != PieceKind::vertices) return false;
   const BoxesAtPose boxes(motion_.differenceAt(A.pieces[0], B.pieces[0], lane).pose);
   struct NodePair {
     std::int32_t a, b;
@@ -218,11 +221,12 @@ inline bool AnyContact::tryTriangles(PairId pair, int lane) {
   constexpr int kDeepest = 64;
   NodePair waiting[kDeepest], at = {0, 0};
   int count = 0;
-  for (int left = kMostAtPose; left > 0;) {
+  for (int left = most; left > 0 && !horizon_.mustEnd();) {
     const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
     if (x.isLeaf() && y.isLeaf()) {
+      ++statistics().leaf_tests;
       if (proofs_.triangles(x.piece(), y.piece(), lane)) return true;
-      --left;
+      left -= kTwoTriangles;
     } else {
       const bool of_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
       NodePair child[2] = {at, at};

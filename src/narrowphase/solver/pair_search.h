@@ -28,6 +28,9 @@ constexpr int kEnoughUncertain = 16;
 constexpr double kShallow = 0.01;
 /// Maximum number of a body's pieces that are examined around a point where it may rest.
 constexpr int kMostAround = 4;
+/// Maximum number of pairs of boxes, as kMostAtPose, that are tested right after the start where nothing was proven at
+/// it: a hundredth of a second, where without a proof all that touches is divided down to the finest lanes.
+constexpr int kMostAfterStart = 1 << 20;
 
 class PairSearch : PartOfSolver {
  public:
@@ -80,7 +83,7 @@ class PairSearch : PartOfSolver {
   bool stayNear(const Candidate& f);
   bool restsAt(PairId pair, double t);
   bool touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane);
-  bool recordTouching(double t, bool may_rest);
+  bool recordTouching(double t, bool may_rest, bool* near = nullptr);
   void search(Buffer<Entry>& open, int begin, int end);
   void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
   void lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later);
@@ -237,15 +240,17 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
   return recordTouching(t, true);
 }
 
-/// For bodies that overlap at t = 0: the first leaves that touch there are the contact, and it does not matter how many
-/// others do. (Without it all of them are divided down to the finest lanes.) Where no contact of them is
-/// proven, one of all others may be.
+/// For bodies that overlap at t = 0: triangles that cross there are the contact, or the first leaves that touch; it
+/// does not matter how many others do. (Without it all of them are divided down to the finest lanes.) Where no contact
+/// of them is proven, triangles may cross within the tolerance after it: a body that begins as its own copy shares
+/// faces and edges with it at first, and soon crosses it along a line, which is looked for all over.
 /// @param begin, end  entries of `open` that are left of one pair, those of this lane.
 /// @return false where others may touch earlier.
 inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane) {
   const PairId pair = open[begin].pair;
   const int out_begin = open.size();
   if (contacts_.watchFrom(pair) > 0) return false;
+  if (any_.tryTriangles(pair, TimeBatch::around(0), 0, kMostAtPose)) return true;
   const TimeBatch batch = TimeBatch::partsOf(0, finestWidth());
   watch(batch);
   motion_.set(pair, batch);
@@ -258,12 +263,17 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
     if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], 0));
   }
   open.truncate(out_begin);
-  return recordTouching(0, false);
+  bool near;
+  if (recordTouching(0, false, &near)) return true;
+  if (!near) return false;
+  const TimeBatch after = TimeBatch::around(min(1.0, 0.5 * query().tolerance_time));
+  return any_.tryTriangles(pair, after, 0, kMostAfterStart);
 }
 
 /// Whether a leaf pair of `touching_` touches at t; it is recorded.
 /// @param may_rest  also record one that no proof can separate from contact.
-inline bool PairSearch::recordTouching(double t, bool may_rest) {
+/// @param[out] near  there is such a one.
+inline bool PairSearch::recordTouching(double t, bool may_rest, bool* near) {
   const double stop = t + finestWidth();
   Candidate resting = {};
   int uncertain = 0;
@@ -280,6 +290,7 @@ inline bool PairSearch::recordTouching(double t, bool may_rest) {
       resting = f;
     }
   }
+  if (near) *near = uncertain > 0;
   if (uncertain == 0 || !may_rest) return false;
   horizon_.closeAt(t + query().tolerance_time);
   follower_.record(resting);
