@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "narrowphase/solver/ball_proofs.h"
-#include "narrowphase/solver/traversal.h"
+#include "narrowphase/solver/resting.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -86,6 +86,7 @@ class AnyContact : PartOfSolver {
 
  private:
   bool isLeafPair(PairId pair) const;
+  bool restsFromTheStart(PairId pair);
   bool tryLeafPair(PairId pair, int lane);
 
   SweptFrames& frames_;
@@ -251,6 +252,18 @@ inline bool AnyContact::tryTriangles(PairId pair, const TimeBatch& poses, int la
   return false;
 }
 
+/// Whether a pair whose hulls overlap rests at t = 0, or nearly so: then it may do so at all poses, with many pieces of
+/// which nothing can be proven. (Without it any contact of two arms on their table took 100 us; now 27.)
+inline bool AnyContact::restsFromTheStart(PairId pair) {
+  motion_.set(pair, whole());
+  const TreeView &A = motion_.a(), &B = motion_.b();
+  const double shallow = kShallow * motion_.smallerRadius();
+  if (isLeafPair(pair) || !A.outer || !B.outer || depthWithin(traversal_.simplexOf(pair)) > shallow) return false;
+  GjkResult g;
+  ++statistics().gjk;
+  return abs(restingGap(motion_, 0, g)) <= shallow;
+}
+
 /// Tries the poses in the middles of the lanes in which hulls overlap, with all pieces.
 /// @param open  scratch for what the traversals leave; as before on return.
 /// @return true when the search is over: contact is proven, or the query has ended.
@@ -262,6 +275,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   const int roots = open.size();
   for (int i = 0; i < overlap_guesses_.size() && !horizon_.isOver(); ++i) {
     const Entry& e = overlap_guesses_[i];
+    if (restsFromTheStart(e.pair)) continue;
     motion_.set(e.pair, middles);
     traversal_.descend(e, Aim::poses, open);
     open.truncate(roots);

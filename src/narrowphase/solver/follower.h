@@ -241,8 +241,11 @@ inline bool Follower::proveAhead(Candidate& f, int lane) {
 /// contact is proven.
 inline bool Follower::decide(Candidate& f, double stop) {
   if (prove(f)) return false;
+  const double before = f.t_lower;
+  const bool had_normal = f.have_normal;
   if (followToRoot(f, stop, true)) return true;
-  if (!f.certain) prove(f);
+  const bool news = f.t_lower > before || f.have_normal != had_normal;  // without, the same poses would fail again
+  if (news && !f.certain) prove(f);
   return false;
 }
 

@@ -8,7 +8,7 @@
 
 #include "narrowphase/solver/any_contact.h"
 #include "narrowphase/solver/earliest_first.h"
-#include "narrowphase/solver/follower.h"
+#include "narrowphase/solver/resting.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -24,10 +24,6 @@ constexpr double kLongMotion = 0.2;
 
 /// Maximum number of leaf pairs of one lane that are recorded although nothing can be proven of them.
 constexpr int kEnoughUncertain = 16;
-/// Hulls may rest on each other if their depth is at most about this part of the smaller body's radius.
-constexpr double kShallow = 0.01;
-/// Maximum number of a body's pieces that are examined around a point where it may rest.
-constexpr int kMostAround = 4;
 /// Maximum number of pairs of boxes, as kMostAtPose, that are tested right after the start where nothing was proven at
 /// it: a hundredth of a second, where without a proof all that touches is divided down to the finest lanes.
 constexpr int kMostAfterStart = 1 << 20;
@@ -66,9 +62,7 @@ class PairSearch : PartOfSolver {
   }
   /// Whether the present pair moves so far in a lane that only its hulls can be separated, and hardly its pieces,
   /// before the lane is split.
-  bool movesFar() const { return motion_.amplitude() > kLongMotion * smallerRadius(); }
-  /// Radius of the smaller of the present pair's bodies.
-  double smallerRadius() const { return min(motion_.a().nodes[0].radius, motion_.b().nodes[0].radius); }
+  bool movesFar() const { return motion_.amplitude() > kLongMotion * motion_.smallerRadius(); }
 
   /// Whether points of both bodies are so near that no proof can separate them. (A direction along which little is
   /// proven says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow
@@ -79,7 +73,10 @@ class PairSearch : PartOfSolver {
   double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
 
   Candidate candidateOf(const Entry& e, double start) const;
-  double restingGapOfHulls(int lane, GjkResult& g);
+  double restingGapOfHulls(int lane, GjkResult& g) {
+    ++statistics().gjk;
+    return restingGap(motion_, lane, g);
+  }
   bool stayNear(const Candidate& f);
   bool restsAt(PairId pair, double t);
   bool touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane);
@@ -120,87 +117,13 @@ inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
   return f;
 }
 
-/// Pieces at a witness of the body's hull: the one that holds its vertices, and some whose boxes, enlarged by `reach`,
-/// hold the point itself.
-/// @param point  of the hull, in the tree's frame.
-/// @return their number, kMostAround at most.
-inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a, const Vec3& point, double reach,
-                        std::int32_t* pieces) {
-  constexpr int kDeepest = 64;
-  std::int32_t waiting[kDeepest] = {0};
-  int found = 0;
-  const int at_vertices = pieceAtWitness(tree, simplex, of_a);
-  if (at_vertices >= 0) pieces[found++] = at_vertices;
-  for (int count = 1; count && found < kMostAround;) {
-    const Node& node = tree.nodes[waiting[--count]];
-    bool holds = true;
-    for (int k = 0; k < 3; ++k) holds &= point[k] >= node.lo[k] - reach && point[k] <= node.hi[k] + reach;
-    if (!holds) continue;
-    if (node.isLeaf()) {
-      if (node.piece() != at_vertices) pieces[found++] = node.piece();
-    } else if (count + 2 <= kDeepest) {
-      waiting[count++] = node.right();
-      waiting[count++] = node.left();
-    }
-  }
-  return found;
-}
-
-/// The largest gap, mostly a negative one, of two hulls along directions in which bodies mostly rest on each other: the
-/// axes of their frames, the triangles at a witness, and the faces of a simplex that holds the origin, which lies on
-/// one of them where they touch.
-inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
-  double gap = -kFarApart;
-  const auto look = [&](const Vec3& n) {
-    const double length = norm(n);
-    if (!(length > 0)) return;
-    for (const double sign : {1 / length, -1 / length}) {
-      DifferencePoint lowest;
-      hulls.support(n * sign, lowest);
-      gap = max(gap, dot(n * sign, lowest.w));
-    }
-  };
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 axis(k == 0, k == 1, k == 2);
-    look(axis);
-    look(hulls.pose.R * axis);
-  }
-  const int a = pieceAtWitness(*hulls.tree_a, simplex, true), b = pieceAtWitness(*hulls.tree_b, simplex, false);
-  if (a >= 0 && hasDirection(hulls.tree_a->pieces[a])) look(sizeOf(hulls.tree_a->pieces[a]));
-  if (b >= 0 && hasDirection(hulls.tree_b->pieces[b])) look(hulls.pose.R * sizeOf(hulls.tree_b->pieces[b]));
-  for (int out = 0; out < simplex.n && simplex.n >= 3; ++out) {
-    const Vec3 &x = simplex.v[(out + 1) % simplex.n].w, &y = simplex.v[(out + 2) % simplex.n].w;
-    const Vec3& z = simplex.v[(out + 3) % simplex.n].w;
-    look(cross(y - x, z - x));
-    if (simplex.n == 3) break;
-  }
-  return gap;
-}
-
-/// The gap of two hulls, as GJK sees it; a negative one, where they rest on each other. Far below 0 where they are in
-/// each other by more than `shallow`.
-inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
-  gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
-  if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
-  return depthWithin(g.simplex) + radii > shallow ? -kFarApart : gapWhereTheyRest(hulls, g.simplex) - radii;
-}
-
-/// The same of the present pair, where a lane of the present batch begins. (In a wide lane the pose is off by what the
-/// quadratic leaves out.)
-inline double PairSearch::restingGapOfHulls(int lane, GjkResult& g) {
-  const Piece &a = *motion_.a().outer, &b = *motion_.b().outer;
-  ++statistics().gjk;
-  return restingGap(motion_.differenceAt(a, b, lane, -1), a.radius + b.radius + motion_.margin(),
-                    kShallow * smallerRadius(), g);
-}
-
 /// Whether hulls that were followed to f.t_lower are where bodies rest, and do not just pass there on their way into
 /// each other.
 inline bool PairSearch::stayNear(const Candidate& f) {
   constexpr double kLater = 64;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
   motion_.set(f.entry.pair, TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time)));
-  if (depthWithin(f.simplex) > kShallow * smallerRadius()) return false;
+  if (depthWithin(f.simplex) > kShallow * motion_.smallerRadius()) return false;
   if (f.t_lower == 0 || !f.have_normal) return true;
   DifferencePoint lowest;
   motion_.differenceAt(*A.outer, *B.outer, 0).support(f.normal, lowest);
@@ -218,7 +141,7 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
   if (contacts_.watchFrom(pair) > t) return false;
   motion_.set(pair, TimeBatch::partsOf(t, finestWidth()));
   GjkResult g;
-  if (restingGapOfHulls(0, g) < -kShallow * smallerRadius()) return false;
+  if (restingGapOfHulls(0, g) < -kShallow * motion_.smallerRadius()) return false;
   if (!g.overlap && !isNear(g.distance - (A.outer->radius + B.outer->radius + motion_.margin()))) return false;
   if (g.overlap && !originWeights(g.simplex)) return false;
   Vec3 x(0, 0, 0), y(0, 0, 0);  // the witness, in each body's own frame
@@ -374,7 +297,7 @@ inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int en
     bool whole_first = movesFar() && !e.within;
     if (!whole_first && !e.within && !isLeafPair(e) && motion_.a().outer && motion_.b().outer) {
       GjkResult g;
-      const double gap = abs(restingGapOfHulls(__builtin_ctz(e.mask), g)) / smallerRadius();
+      const double gap = abs(restingGapOfHulls(__builtin_ctz(e.mask), g)) / motion_.smallerRadius();
       whole_first = gap <= kBarely;
       if (!whole_first && gap <= kShallow && (e.mask & 1) && restsAt(e.pair, 0)) continue;
       motion_.set(e.pair, whole());

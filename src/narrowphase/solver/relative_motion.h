@@ -47,6 +47,7 @@ class RelativeMotion : PartOfSolver {
   std::int32_t batchNumber() const { return frames_.number(); }
   const TreeView& a() const { return *side_[0].still; }
   const TreeView& b() const { return *side_[0].moving; }
+  double smallerRadius() const { return min(a().nodes[0].radius, b().nodes[0].radius); }
 
   /// One body seen from the other, ready for certificates: 0: B from A, 1: A from B. Made when first asked for, as many
   /// a pair needs only one of them, or none.
