@@ -165,7 +165,8 @@ class Search {
     return cost;
   }
 
-  /// A motion at random: half of them slide or stand still as they rest, some touch almost.
+  /// A motion at random: half of them slide or stand still as they rest, some touch almost; a quarter begin exactly
+  /// where they rest, of which copies begin as one body.
   Motion draw(Random& random) const {
     Motion motion;
     const double shift = random.logUniform(1e-4, 0.3), turn = random.logUniform(1e-3, 1);
@@ -177,6 +178,7 @@ class Search {
         if (random.below(2)) motion.x[6 * end + 5] = 0;
       }
     }
+    if (random.below(4) == 0) std::fill_n(motion.x.begin(), 6, 0.0);
     return motion;
   }
 
