@@ -420,4 +420,39 @@ TEST(ContactModes, AnyIsCertainWhateverTheWidthOfItsBracket) {
   EXPECT_EQ(r.contacts[0].t_upper, r.t_upper);
 }
 
+/// Boxes that come down on another one, and that would touch a little after the motion's end: at no time do they,
+/// however wide the tolerance is.
+TEST(ContactModes, WhatWouldTouchAfterTheEndDoesNot) {
+  std::mt19937 random(3);
+  const auto in = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  const auto table = fineBoxMesh({0.3, 0.3, 0.25}, 1), box = fineBoxMesh({0.1, 0.1, 0.1}, 1);
+  const fcl::Transform3d still = fcl::Transform3d::Identity();
+  int free = 0, undecided = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double gap = std::pow(10, in(-9, -0.5));
+    fcl::Transform3d from = still, to;
+    from.translation() = Vector3d(in(-0.1, 0.1), in(-0.1, 0.1), 0.35 + gap);
+    to = from;
+    to.translation().z() -= gap * (1 - std::pow(10, in(-8, -0.1)));
+    if (i % 2) to.linear() = Eigen::AngleAxisd(in(-0.5, 0.5), Vector3d::UnitZ()).toRotationMatrix();
+    const double left = to.translation().z() - 0.35;
+    CertifiedPairRequest request;
+    request.mode = kModes[i % 3];
+    request.tolerance_time = i % 4 ? std::pow(10, in(-8, 2)) : 1e-6;
+    request.tolerance_distance = 1e-12;
+    CertifiedPairResult result;
+    continuousCollide(table.get(), still, still, box.get(), from, to, fcl::CCDM_LINEAR, request, result);
+    for (const CertifiedContact& contact : result.contacts) {
+      ASSERT_FALSE(contact.certain) << i << ": " << left << " m are left at the end, tolerance "
+                                    << request.tolerance_time;
+    }
+    ASSERT_FALSE(result.status == Status::contact && result.certain) << i;
+    free += result.isFree();
+    undecided += !result.isFree() && left > 1e-12;
+  }
+  std::printf("%d free, %d not but for 1e-12 m\n", free, undecided);
+  EXPECT_EQ(undecided, 0);
+  EXPECT_GT(free, 2500);
+}
+
 }  // namespace

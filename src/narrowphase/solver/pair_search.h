@@ -71,6 +71,8 @@ class PairSearch : PartOfSolver {
 
   /// Of a window in which nothing is divided on.
   double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
+  /// The end of one that begins at t: the motion may end before.
+  double finestEnd(double t) const { return min(1.0, t + finestWidth()); }
 
   Candidate candidateOf(const Entry& e, double start) const;
   double restingGapOfHulls(int lane, GjkResult& g) {
@@ -139,7 +141,7 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
   const PairParts parts = problem().parts(pair);
   const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
   if (contacts_.watchFrom(pair) > t) return false;
-  motion_.set(pair, TimeBatch::partsOf(t, finestWidth()));
+  motion_.set(pair, TimeBatch::partsOf(t, finestEnd(t) - t));
   GjkResult g;
   if (restingGapOfHulls(0, g) < -kShallow * motion_.smallerRadius()) return false;
   if (!g.overlap && !isNear(g.distance - (A.outer->radius + B.outer->radius + motion_.margin()))) return false;
@@ -174,7 +176,7 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
   const int out_begin = open.size();
   if (contacts_.watchFrom(pair) > 0) return false;
   if (any_.tryTriangles(pair, TimeBatch::around(0), 0, kMostAtPose)) return true;
-  const TimeBatch batch = TimeBatch::partsOf(0, finestWidth());
+  const TimeBatch batch = TimeBatch::partsOf(0, finestEnd(0));
   watch(batch);
   motion_.set(pair, batch);
   for (int i = begin; i < end && open.size() < out_begin + kEnoughUncertain; ++i) {
@@ -197,7 +199,7 @@ inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, 
 /// @param may_rest  also record one that no proof can separate from contact.
 /// @param[out] near  there is such a one.
 inline bool PairSearch::recordTouching(double t, bool may_rest, bool* near) {
-  const double stop = t + finestWidth();
+  const double stop = finestEnd(t);
   Candidate resting = {};
   int uncertain = 0;
   for (int i = 0; i < touching_.size() && (!may_rest || uncertain < kMostAround); ++i) {
