@@ -32,7 +32,7 @@ enum class FeatureKind {
   faceEdge,      ///< A face of body 1 and an edge of body 2.
   faceFace,      ///< A face of each body.
   /// No features are known: a body is not a triangle there, one body lies within the other, the pair has a margin above
-  /// 0, or the triangles' equations have no root there.
+  /// 0 and its triangles are not seen to cross, or the triangles' equations have no root there.
   volume
 };
 
@@ -62,7 +62,8 @@ struct CertifiedContact {
   std::intptr_t b1 = -1, b2 = -1;
   /// The kinds of features that meet, body 1's first.
   FeatureKind feature = FeatureKind::volume;
-  /// Point of contact in the world, m: at this contact's t_upper if it is certain, else at its t_lower.
+  /// Point of contact in the world, m: at this contact's t_upper if it is certain, else at its t_lower. As the pieces
+  /// touch at some time of the bracket, it may be off them by about as much as they move in it.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   /// Unit normal in the world, from body 1 to body 2, at the same time as `point`.
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();

@@ -64,7 +64,7 @@ static inline void joinNextPiece(Bracket& whole, const Bracket& piece, bool cont
 
 /// Takes in that a contact of this answer is proven by t_upper.
 static inline void sharpen(Bracket& bracket, double t_upper, double tolerance_time, bool any) {
-  if (bracket.status == Status::free || t_upper >= bracket.t_upper) return;
+  if (bracket.status == Status::free || t_upper > bracket.t_upper) return;  // at 1, where none is proven yet, it counts
   bracket.t_upper = t_upper;
   bracket.certain = bracket.certain || isCertain({bracket.t_lower, t_upper}, tolerance_time, any);
 }

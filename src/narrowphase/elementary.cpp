@@ -315,7 +315,7 @@ class Refinement {
  public:
   Refinement(const Vector3d a[3], const Vector3d b[3], const MotionAt& motion) : a_(a), b_(b), motion_(motion) {}
 
-  bool run(double t_lower, double t_upper, RefinedContact& out) {
+  bool run(double t_lower, double t_upper, bool proven, RefinedContact& out) {
     out = RefinedContact();
     out.t_lower = t_lower;
     out.t_upper = t_upper;
@@ -325,7 +325,7 @@ class Refinement {
     for (int k = 0; k < kNumEquations; ++k) {
       if (first.active >> k & 1) proveCrossing(equation(k), first, out);
     }
-    nameFeatures(first.active, out);
+    nameFeatures(first.active, proven, out);
     return true;
   }
 
@@ -398,7 +398,7 @@ class Refinement {
 
   /// Two triangles meet in a convex set, at first contact a point, a segment or a polygon. A feature is the smallest
   /// one that holds all of it: the smallest that all equations at one point agree on, then the hull over the points.
-  void nameFeatures(int active, RefinedContact& out) const {
+  void nameFeatures(int active, bool proven, RefinedContact& out) const {
     struct Place {
       Vector3d point;
       int equation, a, b;
@@ -431,7 +431,7 @@ class Refinement {
     if (num_places == 0) return;  // not a number somewhere
 
     Vector3d x[3], before[3], toward = Vector3d::Zero();
-    verticesAt(out.certain ? out.t_upper : out.t_lower, x);
+    verticesAt(out.certain || proven ? out.t_upper : out.t_lower, x);
     verticesAt(std::max(0.0, out.t_lower - kStepBack), before);
     out.point.setZero();
     double gap = INFINITY;
@@ -493,8 +493,8 @@ class Refinement {
 }  // namespace
 
 bool refineTriangleContact(const Vector3d a[3], const Vector3d b[3], const MotionAt& motion, double t_lower,
-                           double t_upper, RefinedContact& out) {
-  return Refinement(a, b, motion).run(t_lower, t_upper, out);
+                           double t_upper, RefinedContact& out, bool proven) {
+  return Refinement(a, b, motion).run(t_lower, t_upper, proven, out);
 }
 
 }  // namespace fcl_artic

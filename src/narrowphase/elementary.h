@@ -25,7 +25,7 @@ struct RefinedContact {
   double t_lower = 0;                         ///< proven: no contact in [the t_lower given, this)
   double t_upper = 1;    ///< proven, when `certain`: a contact at or before; else the t_upper given
   bool certain = false;  ///< an equation changes sign over the window while its features keep crossing each other
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< A's frame, at t_upper when certain, else at t_lower
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< A's frame, at t_upper if certain or `proven`, else at t_lower
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< A's frame, unit, from A to B; same time
   int feature_a = -1, feature_b = -1;  ///< vertex i, or edge from vertex i to (i + 1) % 3; -1 for the face
 };
@@ -35,9 +35,10 @@ struct RefinedContact {
 ///
 /// Degenerate contacts (a vertex on an edge, parallel edges, coplanar faces, grazing) get the features within the
 /// rounding floor of each other at the refined t_lower, a raised t_lower, the t_upper given and certain = false.
+/// @param proven  contact at t_upper is: point and normal are of that time in any case.
 /// @return false, with the window as given and no feature, when it is proven that no equation has a root in the window:
 ///   the triangles are free there, or they cross each other in all of it.
 bool refineTriangleContact(const Eigen::Vector3d a[3], const Eigen::Vector3d b[3], const MotionAt& motion,
-                           double t_lower, double t_upper, RefinedContact& out);
+                           double t_lower, double t_upper, RefinedContact& out, bool proven = false);
 
 }  // namespace fcl_artic

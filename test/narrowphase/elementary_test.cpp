@@ -570,6 +570,20 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
   }
 }
 
+// A's corner stands in B's plane, which turns about it: no crossing is proven. The face's normal is that of the time at
+// which the contact is, t_upper where it is proven otherwise.
+TEST(ElementaryTest, NormalIsOfTheTimeOfThePoint) {
+  const Pair pair = {{{0, 0, 0}, {1, 0, -3}, {-1, 1, -3}}, {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Point::UnitX(), 0.5}};
+  for (const bool proven : {false, true}) {
+    RefinedContact r;
+    ASSERT_TRUE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r, proven));
+    EXPECT_FALSE(r.certain);
+    EXPECT_EQ(r.feature, FeatureKind::vertexFace);
+    const double angle = proven ? 0.5 : 0;
+    expectNear(r.normal, {0, -std::sin(angle), std::cos(angle)}, 1e-9);
+  }
+}
+
 // Both in z = 0 at all times: every s vanishes identically. B's corner slides into A's lower edge at y = -4.
 TEST(ElementaryTest, CoplanarSliding) {
   Pair pair = over(kGround, {1, -5, 0}, {2, -6, 0}, {0, -6, 0});

@@ -439,6 +439,18 @@ TEST(Follower, FindsTheRootAndProvesTheContact) {
   EXPECT_EQ(world.horizon.first().t_upper, f.t_upper);
 }
 
+TEST(Bracket, AContactAtTheEndMakesItCertain) {
+  Bracket any = {Status::contact, 0.5, 1, false}, first = any, free = {Status::free, 1, 1, false};
+  engine::sharpen(any, 1, 1e-6, true);
+  EXPECT_TRUE(any.certain);
+  EXPECT_EQ(any.t_upper, 1);
+  engine::sharpen(first, 1, 1e-6, false);
+  EXPECT_FALSE(first.certain);  // wider than the tolerance
+  engine::sharpen(free, 1, 1e-6, true);
+  EXPECT_EQ(free.status, Status::free);
+  EXPECT_FALSE(free.certain);
+}
+
 TEST(Follower, ComesToTheEndOfWhatIsFree) {
   TwoBalls world;
   world.asPair().begin();
