@@ -19,8 +19,8 @@ struct CertifiedPairResult : Bracket {
   std::vector<CertifiedContact> contacts;
   /// Poses of the objects in the world at t_lower, before which they are proven not to touch; at t = 1 if free.
   Eigen::Isometry3d tf1_at_lower = Eigen::Isometry3d::Identity(), tf2_at_lower = Eigen::Isometry3d::Identity();
-  /// Poses of the objects in the world at t_upper; if `certain`, they touch there or within the bracket before. At t = 1 if
-  /// free.
+  /// Poses of the objects in the world at t_upper; if `certain`, they touch there, or within the bracket before. At
+  /// t = 1 if free.
   Eigen::Isometry3d tf1_at_upper = Eigen::Isometry3d::Identity(), tf2_at_upper = Eigen::Isometry3d::Identity();
   /// Whether the objects touch at t = 0 and that was ignored (CertifiedPairRequest::ignore_initial_contact).
   bool ignored_initial_contact = false;

@@ -315,17 +315,17 @@ class Refinement {
  public:
   Refinement(const Vector3d a[3], const Vector3d b[3], const MotionAt& motion) : a_(a), b_(b), motion_(motion) {}
 
-  bool run(double t_lower, double t_upper, bool proven, RefinedContact& out) {
+  bool run(const ContactWindow& window, RefinedContact& out) {
     out = RefinedContact();
-    out.t_lower = t_lower;
-    out.t_upper = t_upper;
+    out.t_lower = window.t_lower;
+    out.t_upper = window.t_upper;
     Interval first;
-    if (!findFirst(t_lower, t_upper, first)) return false;
+    if (!findFirst(window.t_lower, window.t_upper, first)) return false;
     out.t_lower = first.lo;
     for (int k = 0; k < kNumEquations; ++k) {
       if (first.active >> k & 1) proveCrossing(equation(k), first, out);
     }
-    nameFeatures(first.active, proven, out);
+    nameFeatures(first.active, window.proven, out);
     return true;
   }
 
@@ -492,9 +492,9 @@ class Refinement {
 
 }  // namespace
 
-bool refineTriangleContact(const Vector3d a[3], const Vector3d b[3], const MotionAt& motion, double t_lower,
-                           double t_upper, RefinedContact& out, bool proven) {
-  return Refinement(a, b, motion).run(t_lower, t_upper, proven, out);
+bool refineTriangleContact(const Vector3d a[3], const Vector3d b[3], const MotionAt& motion,
+                           const ContactWindow& window, RefinedContact& out) {
+  return Refinement(a, b, motion).run(window, out);
 }
 
 }  // namespace fcl_artic

@@ -30,15 +30,19 @@ struct RefinedContact {
   int feature_a = -1, feature_b = -1;  ///< vertex i, or edge from vertex i to (i + 1) % 3; -1 for the face
 };
 
-/// Refines the first contact of triangles a (A's frame) and b (B's frame), known to lie in [t_lower, t_upper] within
-/// [0, 1].
+/// Where a contact is looked for: known to lie in [t_lower, t_upper] within [0, 1].
+struct ContactWindow {
+  double t_lower, t_upper;
+  bool proven = false;  ///< contact at t_upper is: point and normal are of that time in any case
+};
+
+/// Refines the first contact of triangles a (A's frame) and b (B's frame), in its window.
 ///
 /// Degenerate contacts (a vertex on an edge, parallel edges, coplanar faces, grazing) get the features within the
 /// rounding floor of each other at the refined t_lower, a raised t_lower, the t_upper given and certain = false.
-/// @param proven  contact at t_upper is: point and normal are of that time in any case.
 /// @return false, with the window as given and no feature, when it is proven that no equation has a root in the window:
 ///   the triangles are free there, or they cross each other in all of it.
 bool refineTriangleContact(const Eigen::Vector3d a[3], const Eigen::Vector3d b[3], const MotionAt& motion,
-                           double t_lower, double t_upper, RefinedContact& out, bool proven = false);
+                           const ContactWindow& window, RefinedContact& out);
 
 }  // namespace fcl_artic

@@ -123,7 +123,7 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
   const MotionAt motion = [&](double tm, double d, ScalarMotion& out) { out = pairMotion(contact.pair, tm, d); };
   RefinedContact refined;
   const double end = contact.certain ? contact.t_upper : std::min(1.0, contact.t_lower + query.tolerance_time);
-  if (!refineTriangleContact(p, q, motion, contact.t_lower, end, refined, contact.certain)) return;
+  if (!refineTriangleContact(p, q, motion, {contact.t_lower, end, contact.certain}, refined)) return;
   contact.feature = static_cast<std::int32_t>(refined.feature);
   // t_lower stays: before refined.t_lower these two pieces are free, but not all others of their bodies.
   if (refined.certain) {

@@ -284,7 +284,7 @@ Campaign runCampaign(unsigned seed, int count, const Mutant& mutant, bool narrow
     RefinedContact r;
     const MotionAt motion = enclosure(pair.turn, mutant);
     std::fesetround(mutant.rounding);
-    const bool found = refineTriangleContact(pair.a, pair.b, motion, lower, upper, r);
+    const bool found = refineTriangleContact(pair.a, pair.b, motion, {lower, upper}, r);
     std::fesetround(FE_TONEAREST);
     const std::string fault = faultOf(pair, truth, found, r, upper);
     if (!fault.empty()) {
@@ -387,7 +387,7 @@ TEST(ElementaryTest, CampaignCatchesADroppedPad) {
 
 RefinedContact refine(const Pair& pair, double lower = 0, double upper = 1) {
   RefinedContact r;
-  EXPECT_TRUE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), lower, upper, r));
+  EXPECT_TRUE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {lower, upper}, r));
   return r;
 }
 
@@ -538,7 +538,7 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
     pair.turn.slide = {0, 0, -2};
     RefinedContact r;
     if (tie.feature == FeatureKind::volume) {  // no contact at all
-      EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r));
+      EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r));
       EXPECT_EQ(r.feature, FeatureKind::volume);
       continue;
     }
@@ -556,7 +556,7 @@ TEST(ElementaryTest, DegenerateContactsAreNamed) {
     // Without derivatives the remainder is all of the way: it decides when an interval is narrow.
     RefinedContact first_order;
     ASSERT_TRUE(
-        refineTriangleContact(pair.a, pair.b, withoutDerivatives(pair.turn), 0.5 - 4e-7, 0.5 + 4e-7, first_order));
+        refineTriangleContact(pair.a, pair.b, withoutDerivatives(pair.turn), {0.5 - 4e-7, 0.5 + 4e-7}, first_order));
     EXPECT_EQ(static_cast<int>(first_order.feature), static_cast<int>(tie.feature));
     EXPECT_GT(first_order.t_lower, 0.5 - 1e-12);
     if (tie.normal.norm() > 0) expectNear(first_order.normal, tie.normal, 1e-9);
@@ -576,7 +576,7 @@ TEST(ElementaryTest, NormalIsOfTheTimeOfThePoint) {
   const Pair pair = {{{0, 0, 0}, {1, 0, -3}, {-1, 1, -3}}, {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Point::UnitX(), 0.5}};
   for (const bool proven : {false, true}) {
     RefinedContact r;
-    ASSERT_TRUE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r, proven));
+    ASSERT_TRUE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1, proven}, r));
     EXPECT_FALSE(r.certain);
     EXPECT_EQ(r.feature, FeatureKind::vertexFace);
     const double angle = proven ? 0.5 : 0;
@@ -600,7 +600,7 @@ TEST(ElementaryTest, CoplanarSliding) {
   expectNear(r.normal, {0, -1, 0}, 1e-9);
 
   pair.turn.slide = {-12, 0, 0};  // along the edge, 1 m beside it
-  EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r));
+  EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r));
   EXPECT_EQ(r.t_lower, 0);
   EXPECT_EQ(r.t_upper, 1);
 }
@@ -646,7 +646,7 @@ TEST(ElementaryTest, GrazingIsNotCertain) {
   EXPECT_EQ(r.feature_b, 0);
 
   pair.turn.pivot[2] += 1e-9L;
-  EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r));
+  EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r));
 }
 
 // A vertex passes each of the ground's edges, and an edge each end of another, by less than the floor: no contact,
@@ -804,7 +804,7 @@ TEST(ElementaryTest, NearParallelMissesAreFree) {
     lateral.b[2][1] = miss;
     lateral.turn.slide[1] = 0;
     RefinedContact r;
-    EXPECT_FALSE(refineTriangleContact(lateral.a, lateral.b, enclosure(lateral.turn), 0, 1, r));
+    EXPECT_FALSE(refineTriangleContact(lateral.a, lateral.b, enclosure(lateral.turn), {0, 1}, r));
     EXPECT_FALSE(r.certain);
     // Normal: the edge comes down on a circle of radius 1 about an axis along x, to `miss` above A's edge, and rises.
     Pair normal = nearParallel(source, miss, 0);
@@ -815,7 +815,7 @@ TEST(ElementaryTest, NearParallelMissesAreFree) {
     for (int j = 0; j < 2; ++j) normal.b[j][2] = -std::sqrt(1 - normal.b[j][1] * normal.b[j][1]);
     normal.b[2] = {0, 0.1, -0.5};
     normal.turn.pivot = {0, 0, 1 + static_cast<Real>(miss)};
-    EXPECT_FALSE(refineTriangleContact(normal.a, normal.b, enclosure(normal.turn), 0, 1, r));
+    EXPECT_FALSE(refineTriangleContact(normal.a, normal.b, enclosure(normal.turn), {0, 1}, r));
     EXPECT_FALSE(r.certain);
   }
 }
@@ -854,7 +854,7 @@ TEST(ElementaryTest, NeedlesAndPointsGiveFiniteAnswers) {
     if (closestAt(pair, 0).distance < 1e-3L || crossing(pair, 0)) continue;
     const Truth truth = advance(pair);
     RefinedContact r;
-    const bool hit = refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r);
+    const bool hit = refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r);
     found += hit;
     EXPECT_TRUE(r.point.allFinite());
     EXPECT_NEAR(r.normal.norm(), 1, 1e-12);
@@ -880,7 +880,7 @@ TEST(ElementaryTest, WindowsWithoutWidthAndInputsThatAreNotNumbers) {
   EXPECT_NEAR(std::abs(r.normal[2]), 1, 1e-12);
 
   pair.b[0][0] = std::numeric_limits<double>::quiet_NaN();
-  refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), 0, 1, r);
+  refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r);
   EXPECT_FALSE(r.certain);
   EXPECT_EQ(r.t_lower, 0);
   EXPECT_EQ(r.t_upper, 1);

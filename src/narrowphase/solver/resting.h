@@ -4,6 +4,8 @@
 // a proof.
 #pragma once
 
+#include <initializer_list>
+
 #include "narrowphase/solver/follower.h"
 #include "narrowphase/solver/traversal.h"
 
