@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "plans/write.h"
@@ -22,7 +23,6 @@ namespace fcl_artic::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 std::vector<std::string> filesOf(const std::string& path) {
   std::error_code none;

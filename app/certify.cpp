@@ -10,14 +10,15 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "certificate_file.h"
 #include "certification.h"
 #include "certify_report.h"
 #include "configuration.h"
-#include "edges/certify_edges.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "plan_variables.h"
 #include "plans/write.h"
 #include "query_options.h"
 #include "usage.h"
@@ -26,39 +27,17 @@
 namespace fcl_artic::app {
 namespace {
 
-struct Options {
+struct CertifyVerb {
   WorldOptions world;
-  std::vector<std::string> plans, joints, state;
-  std::string format, interpolation = "auto", turns = "ask", csv, out, certificate;
+  PlanVariables variables;
+  std::vector<std::string> plans;
+  std::string format, interpolation = "auto", csv, out, certificate;
   double blend = 0;
   CertifyOptions certify;
   bool clearance = false, json = false, failed_only = false, mend = false;
   ClearanceRequest clearance_request;
   MendOptions mending;
-  EdgesOptions edges;
-  bool merge = false, any = false;
 };
-
-plans::Turns turnsNamed(const std::string& name) {
-  if (name == "given") return plans::Turns::given;
-  return name == "shortest" ? plans::Turns::shortest : plans::Turns::ask;
-}
-
-int runEdges(Options& o) {
-  if (o.out.empty()) throw CLI::RequiredError("--out DIR, the folder of the run's blocks,");
-  if (o.merge) return mergeEdges(o.out, o.edges.partial, o.json);
-  if (o.world.robot.robot.empty()) throw CLI::RequiredError("--robot");
-  o.edges.out = o.out;
-  o.edges.columns.joints = o.joints;
-  o.edges.columns.turns = turnsNamed(o.turns);
-  o.edges.columns.ignore_limits = o.certify.motion.ignore_limits;
-  o.edges.state = o.state;
-  o.edges.request = o.certify.request;
-  o.edges.request.mode = o.any ? ContactMode::any : ContactMode::first;
-  o.edges.request.certificate = o.edges.certificates;
-  o.edges.threads = o.certify.threads;
-  return certifyEdges(o.world, o.edges);
-}
 
 /// By file, as a message's objects are looked for.
 std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::vector<Attachment>& attachments) {
@@ -75,7 +54,7 @@ std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::ve
 }
 
 /// The plans that are free, mended ones among them, as a file.
-void writeOut(const Options& o, const std::vector<CertifiedPlan>& all) {
+void writeOut(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   std::vector<plans::Plan> out;
   for (const CertifiedPlan& plan : all) {
     if (plan.exitStatus() != kExitFree) continue;
@@ -104,7 +83,7 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
   return all.size() == 1 ? note : fmt::format("certificates of {} of {} plans; {}", proofs, all.size(), note);
 }
 
-int run(Options& o) {
+int runCertify(CertifyVerb& o) {
   if (o.mend) requireMending();
   if (!o.out.empty()) (void)plans::formatOf(o.out);
   World world(o.world);
@@ -113,10 +92,11 @@ int run(Options& o) {
   if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = plans::interpolationNamed(o.interpolation);
-  o.certify.motion.turns = turnsNamed(o.turns);
   o.certify.motion.blend = o.blend;
-  o.certify.motion.joints = o.joints;
-  o.certify.motion.state = parseValues(tree, o.state, "--state");
+  o.certify.motion.turns = turnsOf(o.variables);
+  o.certify.motion.joints = o.variables.joints;
+  o.certify.motion.state = parseValues(tree, o.variables.state, "--state");
+  o.certify.motion.ignore_limits = o.variables.ignore_limits;
   if (o.clearance) o.certify.clearance = o.clearance_request;
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
@@ -154,8 +134,8 @@ int run(Options& o) {
 }  // namespace
 
 void addCertify(CLI::App& program, int& exit_status) {
-  auto options = std::make_shared<Options>();
-  Options& o = *options;
+  auto options = std::make_shared<CertifyVerb>();
+  CertifyVerb& o = *options;
   CLI::App* certify = program.add_subcommand(
       "certify", "Does anybody's plan touch anything? Plans of files, one or thousands, against a robot and a scene");
   certify->footer(
@@ -164,11 +144,11 @@ void addCertify(CLI::App& program, int& exit_status) {
       "(.path, .txt), NumPy's arrays (.npy, .npz); - is standard input, with --format.\n"
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
-      "before 3; with --mend a plan counts as what it is mended to.");
-  CLI::Option* plans =
-      certify->add_option("PLAN", o.plans, "Files and folders of plans")->group("Plans")->type_name("PLAN...");
+      "before 3; with --mend a plan counts as what it is mended to.\n"
+      "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --edges --help says "
+      "more.");
+  certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");
-  certify->get_option("--robot")->required(false);  // --merge needs none
   // One value each, so that plans may stand after them.
   for (const char* name : {"--scene", "--attach", "--package", "--solid"}) {
     certify->get_option(name)->allow_extra_args(false);
@@ -186,26 +166,7 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->group("Plans")
       ->capture_default_str();
   certify->add_option("--blend", o.blend, "Half the duration of a blend, in s")->check(requirePositive)->group("Plans");
-  certify
-      ->add_option("--turns", o.turns,
-                   "Joints that turn forever: as the values are given, or the shortest way round; ask: an error where "
-                   "that makes a difference")
-      ->check(CLI::IsMember({"ask", "given", "shortest"}))
-      ->group("Plans")
-      ->capture_default_str();
-  certify->add_option("--joints", o.joints, "Joints of plans without names (OMPL's, NumPy's), in their order")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->group("Plans")
-      ->type_name("NAME,...");
-  certify->add_option("--state", o.state, "Values of joints that plans do not name: NAME=VALUE; may be repeated")
-      ->allow_extra_args(false)
-      ->group("Plans")
-      ->type_name("NAME=VALUE");
-  certify
-      ->add_flag("--ignore-limits", o.certify.motion.ignore_limits,
-                 "Waypoints beyond the joints' limits are noted, and certified all the same")
-      ->group("Plans");
+  addPlanVariables(*certify, o.variables);
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
@@ -223,52 +184,9 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->group("Mending")
       ->capture_default_str();
   certify
-      ->add_option("--out", o.out,
-                   "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...); with --edges and "
-                   "--merge: the run's folder")
+      ->add_option("--out", o.out, "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...)")
       ->group("Mending")
-      ->type_name("FILE|DIR");
-
-  CLI::Option* edges = certify
-                           ->add_option("--edges", o.edges.edges,
-                                        "In place of plans: many edges or trajectories, HDF5, each in each scene; "
-                                        "answers go to the folder --out, and what is there is not computed again")
-                           ->check(requireInput)
-                           ->excludes(plans)
-                           ->group("Edges")
-                           ->type_name("FILE.h5");
-  CLI::Option* merge =
-      certify->add_flag("--merge", o.merge, "Merge the blocks of the folder --out: table.h5, summary.json")
-          ->excludes(plans)
-          ->excludes(edges)
-          ->group("Edges");
-  certify
-      ->add_option("--scenes", o.edges.scenes,
-                   "Scenes, one after the other: files as --scene takes them, folders of them, HDF5; what --scene "
-                   "names stands in all of them")
-      ->needs(edges)
-      ->allow_extra_args(false)
-      ->group("Edges")
-      ->type_name("PATH");
-  certify->add_option("--shard", o.edges.shard, "Only the blocks I, I + N, I + 2 N ... of a job array; I from 1 to N")
-      ->needs(edges)
-      ->group("Edges")
-      ->type_name("I/N");
-  certify->add_option("--block-rows", o.edges.block_rows, "Edges of a block: what is lost where a process is killed")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 24))
-      ->needs(edges)
-      ->group("Edges")
-      ->capture_default_str();
-  certify->add_flag("--any", o.any, "Any contact, not the first: cheaper where only the verdict matters")
-      ->needs(edges)
-      ->group("Edges");
-  certify->add_flag("--certificates", o.edges.certificates, "Proofs of all answers, in the run's folder")
-      ->needs(edges)
-      ->group("Edges");
-  certify->add_flag("--partial", o.edges.partial, "Merge what is there: rows of blocks that are missing say so")
-      ->needs(merge)
-      ->group("Edges");
-  certify->add_flag("--quiet", o.edges.quiet, "No progress, no notes")->needs(edges)->group("Edges");
+      ->type_name("FILE");
 
   certify->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
   certify->add_option("--csv", o.csv, "Write a row for each plan")->group("Output")->type_name("FILE");
@@ -279,17 +197,11 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->type_name("FILE");
   certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
   certify->callback([options, &exit_status] {
-    if (!options->edges.edges.empty() || options->merge) {
-      exit_status = runEdges(*options);
-      return;
-    }
-    if (options->world.robot.robot.empty()) throw CLI::RequiredError("--robot");
-    if (options->plans.empty()) throw CLI::RequiredError("PLAN");
     if ((options->interpolation == "blends") != (options->blend > 0)) {
       throw CLI::RequiresError("--interpolation blends", "--blend");
     }
     try {
-      exit_status = run(*options);
+      exit_status = runCertify(*options);
     } catch (const std::exception& error) {
       if (options->json) {
         fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));

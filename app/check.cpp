@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "certificate_file.h"
 #include "configuration.h"
@@ -35,7 +36,7 @@ namespace {
 constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
 
-struct Options {
+struct CheckVerb {
   WorldOptions world;
   std::string certificate, image, html, trajectory, lines, interpolation = "linear";
   std::vector<std::string> from, to;
@@ -99,7 +100,7 @@ void writePage(const std::string& file, const World& world, const ArticulatedCol
   files::write(file, htmlPage(report, bodies, measureDistances(manager, motion, measured)));
 }
 
-int run(const Options& options) {
+int runCheck(const CheckVerb& options) {
   if (!options.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
   World world(options.world);
@@ -225,8 +226,8 @@ int run(const Options& options) {
 }  // namespace
 
 void addCheck(CLI::App& program, int& exit_status) {
-  auto options = std::make_shared<Options>();
-  Options& o = *options;
+  auto options = std::make_shared<CheckVerb>();
+  CheckVerb& o = *options;
   CertifiedRequest& request = o.request;
   CLI::App* check = program.add_subcommand(
       "check",
@@ -338,7 +339,7 @@ void addCheck(CLI::App& program, int& exit_status) {
       throw CLI::ExcludesError("--shortest", "--interpolation tangent-half-angle");
     }
     try {
-      exit_status = run(*options);
+      exit_status = runCheck(*options);
     } catch (const std::exception& error) {
       if (options->json)
         fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));

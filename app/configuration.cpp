@@ -9,12 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "angles.h"
 #include "plans/variables.h"
 
 namespace fcl_artic::app {
 namespace {
-
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
 
 std::vector<std::string> splitTokens(const std::vector<std::string>& words) {
   std::vector<std::string> tokens;

@@ -13,6 +13,7 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "exit_status.h"

@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 constexpr LinkPairKind kKinds[] = {LinkPairKind::neighbours, LinkPairKind::never, LinkPairKind::always,
                                    LinkPairKind::sometimes, LinkPairKind::unproven};
 
-struct Options {
+struct SrdfVerb {
   RobotOptions robot;
   std::string check, write, images;
   LinkPairOptions search;
@@ -139,7 +139,7 @@ void printPairs(const KinematicTree& tree, const LinkPairReport& report, bool al
   }
 }
 
-int run(const Options& options) {
+int runSrdf(const SrdfVerb& options) {
   Robot robot = loadUrdf(options.robot.robot, urdfOptions(options.robot));
   const KinematicTree& tree = *robot.tree;
   std::optional<AllowedCollisionMatrix> disabled;
@@ -226,8 +226,8 @@ std::vector<std::string> doubtsOf(const LinkPairReport& disabled) {
 }
 
 void addSrdf(CLI::App& program, int& exit_status) {
-  auto options = std::make_shared<Options>();
-  Options& o = *options;
+  auto options = std::make_shared<SrdfVerb>();
+  SrdfVerb& o = *options;
   CLI::App* srdf = program.add_subcommand(
       "srdf", "Which pairs of a robot's links need no check, proven; and whether an SRDF's are right");
   srdf->footer(
@@ -253,7 +253,7 @@ void addSrdf(CLI::App& program, int& exit_status) {
   srdf->add_option("--images", o.images, "Draw each pair that touches sometimes to a PNG in this folder")
       ->type_name("DIR");
   srdf->add_flag("--json", o.json, "JSON instead of text");
-  srdf->callback([options, &exit_status] { exit_status = run(*options); });
+  srdf->callback([options, &exit_status] { exit_status = runSrdf(*options); });
 }
 
 }  // namespace fcl_artic::app

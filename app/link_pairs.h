@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "cli_app.h"
 #include "fcl_artic/link_pairs.h"
 #include "fcl_artic/urdf/urdf.h"
-
-namespace CLI {
-class App;
-}
 
 namespace fcl_artic::app {
 

@@ -16,6 +16,7 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 
+#include "elapsed.h"
 #include "fcl_artic/ompl/planning_setup.h"
 #include "plans/variables.h"
 
@@ -24,7 +25,6 @@ namespace {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
-using Clock = std::chrono::steady_clock;
 using Eigen::VectorXd;
 using Points = std::vector<VectorXd>;
 

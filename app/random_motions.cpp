@@ -8,10 +8,11 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "angles.h"
+
 namespace fcl_artic::app {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kPlaces = 1e6;  // a multiple of its inverse is what its six decimals read as
 
 /// The values that variable v may begin with; v is no part of a quaternion.

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "fcl_artic/kinematic_tree.h"
-#include "step_bench.h"
+#include "random.h"
 
 namespace fcl_artic::app {
 

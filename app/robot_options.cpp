@@ -9,13 +9,13 @@
 
 #include <fmt/format.h>
 
+#include "angles.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
 namespace {
 
-constexpr const char* kGroup = "Robot and scene";
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+constexpr const char* kWorldGroup = "Robot and scene";
 
 std::string requirePackage(const std::string& text) {
   const std::size_t equals = text.find('=');
@@ -75,10 +75,14 @@ std::optional<Eigen::Isometry3d> poseOf(const std::string& text) {
 }  // namespace
 
 void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
-  verb.add_option(names, o.robot, "Robot (URDF)")->required()->check(requireInput)->group(kGroup)->type_name("FILE");
+  verb.add_option(names, o.robot, "Robot (URDF)")
+      ->required()
+      ->check(requireInput)
+      ->group(kWorldGroup)
+      ->type_name("FILE");
   verb.add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)
-      ->group(kGroup)
+      ->group(kWorldGroup)
       ->type_name("NAME=DIR");
 }
 
@@ -86,15 +90,15 @@ CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string&
   addRobotFile(verb, o, names);
   CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
                           ->check(requireInput)
-                          ->group(kGroup)
+                          ->group(kWorldGroup)
                           ->type_name("FILE");
   verb.add_option("--base", o.base,
                   "Where the robot's root stands in the world: x,y,z or x,y,z,roll,pitch,yaw (m, rad or 90deg)")
-      ->group(kGroup)
+      ->group(kWorldGroup)
       ->type_name("POSE");
   verb.add_flag("--floating-base", o.floating_base,
                 "The robot's root moves freely: seven values more, floating_base/trans_x to floating_base/rot_w, first")
-      ->group(kGroup);
+      ->group(kWorldGroup);
   return srdf;
 }
 
@@ -103,7 +107,7 @@ void addAttachOption(CLI::App& verb, RobotOptions& o) {
           "--attach", o.attached,
           "Object that a link carries, a scene file at a pose in the link's frame; LINK+LINK2=FILE: it may touch "
           "LINK2 too; may be repeated")
-      ->group(kGroup)
+      ->group(kWorldGroup)
       ->type_name("LINK=FILE[@POSE]");
 }
 

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The instruction sets for which engine and batches are compiled, one source each, and what the compiler is told for them.
+# The instruction sets for which batches and engines are compiled, one source each, and the compiler's flags for them.
 # Which of them a processor has is asked at run time: src/numerics/instruction_sets.h, which lists the same names.
 #   FCL_ARTIC_INSTRUCTION_SETS      names, the baseline's flags being the compiler's own
+#   FCL_ARTIC_ENGINES               those of them that have an engine
 #   FCL_ARTIC_WIDER_SETS            those of them that take flags, FCL_ARTIC_ENGINE_FLAGS_<set>, FCL_ARTIC_BATCH_FLAGS_<set>
 include(CheckCXXSymbolExists)
 option(FCL_ARTIC_PORTABLE "Use no processor's own instructions: one engine in plain C++, rounding modes by <cfenv>" OFF)
@@ -29,6 +30,11 @@ elseif(FCL_ARTIC_AARCH64)
   set(FCL_ARTIC_INSTRUCTION_SETS portable neon)
 else()
   set(FCL_ARTIC_INSTRUCTION_SETS portable)
+endif()
+# The portable engine is for processors without another one, and for the preset `portable`.
+set(FCL_ARTIC_ENGINES ${FCL_ARTIC_INSTRUCTION_SETS})
+if(NOT FCL_ARTIC_ENGINES STREQUAL portable)
+  list(REMOVE_ITEM FCL_ARTIC_ENGINES portable)
 endif()
 # Where every processor has FMA, g++ fuses a * b + c unless told otherwise: not in proofs, nor in tests and benchmarks,
 # which draw the same scenes everywhere then. (x86-64's baseline has none; the core library says so for itself.)

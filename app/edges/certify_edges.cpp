@@ -18,10 +18,12 @@
 
 #include "certificate/sha256.h"
 #include "configuration.h"
+#include "edges/columns.h"
 #include "edges/inputs.h"
 #include "edges/ranks.h"
 #include "edges/run_folder.h"
 #include "edges/scene_source.h"
+#include "elapsed.h"
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
@@ -32,14 +34,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
-
-/// Motions that are asked at once: memory does not grow with blocks.
-constexpr std::size_t kMotionsAtOnce = 4096;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 /// "850", "12.3 k", "4.56 M"
 std::string shortNumber(double x) {

@@ -13,6 +13,9 @@
 
 namespace fcl_artic::app {
 
+/// Motions that are asked at once: memory does not grow with blocks.
+constexpr std::size_t kMotionsAtOnce = 4096;
+
 /// What a row of the table says. 0 is never an answer: what a disk or a program fills in says nothing.
 enum class RowStatus : std::int8_t {
   missing = 0,    ///< not computed

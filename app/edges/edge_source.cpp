@@ -14,8 +14,6 @@
 namespace fcl_artic::app {
 namespace {
 
-constexpr std::size_t kRowsAtOnce = 1 << 16;
-
 std::vector<std::string> variableNames(const KinematicTree& tree) {
   std::vector<std::string> names;
   for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "hdf5/hdf5.h"
 
 namespace fcl_artic::app {
+
+/// Rows that are read at once: memory does not grow with files.
+constexpr std::size_t kRowsAtOnce = 1 << 16;
 
 /// Requires that a column of first rows, of trajectories or scenes, leaves out no row of what it divides: a scene with
 /// an obstacle less would be called free.

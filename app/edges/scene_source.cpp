@@ -22,7 +22,6 @@ namespace fcl_artic::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t kRowsAtOnce = 1 << 16;
 
 std::string endingOf(const std::string& path) {
   std::string ending = fs::path(path).extension().string();

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "angles.h"
 #include "renderer.h"
 #include "text.h"
 #include "triangles.h"
@@ -18,8 +19,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using Poses = std::vector<Isometry3d>;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Linear colour of an sRGB value 0xRRGGBB.
 Vector3f color(unsigned hex) {

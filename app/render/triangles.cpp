@@ -17,6 +17,7 @@
 #include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
+#include "angles.h"
 #include "fcl_artic/point_cloud.h"
 #if FCL_HAVE_OCTOMAP
 #include <fcl/geometry/octree/octree.h>
@@ -27,7 +28,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSectors = 64;            // around an axis
 constexpr int kRings = 16;              // pole to equator
 constexpr double kPlaneHalfWidth = 10;  // m

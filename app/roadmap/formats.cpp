@@ -15,7 +15,7 @@
 namespace fcl_artic::app {
 namespace {
 
-constexpr const char* kFormat = "fcl-artic-roadmap/1";
+constexpr const char* kRoadmapFormat = "fcl-artic-roadmap/1";
 
 bool isValid(const Roadmap& roadmap, std::size_t edge) {
   return roadmap.answers.size() == 0 || roadmap.answers.status[edge] == static_cast<std::int8_t>(RowStatus::free);
@@ -131,21 +131,21 @@ std::string hdf5Bytes(const Roadmap& roadmap, const std::vector<std::size_t>& ed
       image.add(name, {edges.size()}, written.data());
     });
   }
-  image.attribute("", "format", kFormat);
+  image.attribute("", "format", kRoadmapFormat);
   image.attribute("", "robot", roadmap.robot);
   image.attribute("", "self_margin", roadmap.self_proven ? fmt::format("{}", roadmap.self_margin) : "none");
   image.attribute("", "sha256", edgesHash(roadmap.configurations, ends));
   return image.bytes();
 }
 
-std::string endingOf(const std::string& path) {
+std::string roadmapEndingOf(const std::string& path) {
   return std::filesystem::path(path).extension().string();
 }
 
 }  // namespace
 
 void requireRoadmapEnding(const std::string& path) {
-  const std::string ending = endingOf(path);
+  const std::string ending = roadmapEndingOf(path);
   if (ending == ".h5" || ending == ".hdf5" || ending == ".graphml" || ending == ".csv") return;
   throw std::invalid_argument(fmt::format("'{}': roadmaps are written as .h5, .graphml or .csv", path));
 }
@@ -157,7 +157,7 @@ Roadmap readRoadmap(const std::string& path, const KinematicTree& tree) {
     const std::vector<std::string> values = file.strings("", name);
     return values.size() == 1 ? values[0] : std::string();
   };
-  if (text("format") != kFormat) fail("is no roadmap that `fcl_artic roadmap make` has written");
+  if (text("format") != kRoadmapFormat) fail("is no roadmap that `fcl_artic roadmap make` has written");
   Roadmap roadmap;
   roadmap.joints = file.strings("configurations", "joints");
   std::vector<std::string> known;
@@ -184,7 +184,7 @@ Roadmap readRoadmap(const std::string& path, const KinematicTree& tree) {
 void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_only) {
   requireRoadmapEnding(path);
   const std::vector<std::size_t> edges = writtenEdges(roadmap, valid_only);
-  const std::string ending = endingOf(path);
+  const std::string ending = roadmapEndingOf(path);
   if (ending == ".graphml") {
     files::write(path, graphml(roadmap, edges));
   } else if (ending == ".csv") {

@@ -8,13 +8,12 @@
 
 #include <fmt/format.h>
 
+#include "edges/columns.h"
 #include "random_motions.h"
 #include "roadmap/nearest.h"
 
 namespace fcl_artic::app {
 namespace {
-
-constexpr std::size_t kMotionsAtOnce = 4096;
 
 /// Values that variable v is drawn from.
 struct Range {

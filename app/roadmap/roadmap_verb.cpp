@@ -9,8 +9,10 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "edges/inputs.h"
+#include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "plans/plan.h"
@@ -23,9 +25,7 @@
 namespace fcl_artic::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-struct Options {
+struct RoadmapVerb {
   WorldOptions world;
   CertifiedRequest request;
   RoadmapOptions make;
@@ -33,12 +33,8 @@ struct Options {
   bool valid_only = false, any = false;
 };
 
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 /// Robot and allowed pairs, without a scene.
-void readRobot(World& world, const Options& o) {
+void readRobot(World& world, const RoadmapVerb& o) {
   world.readRobot();
   const bool check_allowed = !o.world.robot.srdf.empty() && o.request.check_self;
   if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
@@ -74,7 +70,7 @@ std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const
   return configurations;
 }
 
-int make(Options& o) {
+int make(RoadmapVerb& o) {
   requireRoadmapEnding(o.out);
   World world(o.world);
   readRobot(world, o);
@@ -92,7 +88,7 @@ int make(Options& o) {
   return kExitFree;
 }
 
-int certify(Options& o) {
+int certify(RoadmapVerb& o) {
   requireRoadmapEnding(o.out);
   World world(o.world);
   readRobot(world, o);
@@ -125,7 +121,7 @@ int certify(Options& o) {
   return kExitFree;
 }
 
-void addCommon(CLI::App& verb, Options& o) {
+void addCommon(CLI::App& verb, RoadmapVerb& o) {
   addWorldOptions(verb, o.world, "--robot,--urdf");
   for (const char* name : {"--scene", "--attach", "--package", "--solid"})
     verb.get_option(name)->allow_extra_args(false);
@@ -144,7 +140,7 @@ void addRoadmap(CLI::App& program, int& exit_status) {
       "roadmap", "A probabilistic roadmap of a robot: made once, proven free again in each new scene");
   roadmap->require_subcommand(1);
 
-  auto making = std::make_shared<Options>();
+  auto making = std::make_shared<RoadmapVerb>();
   CLI::App* make_verb = roadmap->add_subcommand(
       "make",
       "Draw configurations, join the nearest ones; what is not proven free, of links against links, is left out");
@@ -169,7 +165,7 @@ void addRoadmap(CLI::App& program, int& exit_status) {
   make_verb->add_option("--out", making->out, "File to write: .h5, .graphml or .csv")->required()->group("Output");
   make_verb->callback([making, &exit_status] { exit_status = make(*making); });
 
-  auto asking = std::make_shared<Options>();
+  auto asking = std::make_shared<RoadmapVerb>();
   CLI::App* certify_verb = roadmap->add_subcommand(
       "certify", "Which edges of a roadmap are free in a scene, and when the others touch first");
   certify_verb->add_option("ROADMAP", asking->roadmap, "File of `roadmap make`, .h5")->required()->check(requireInput);

@@ -16,10 +16,11 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
 
+#include "pairs/constants.h"
+
 namespace pairs {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 using Triangles = std::vector<std::array<int, 3>>;
 
 /// Faces of the hull of points in general position, all of them its corners: the triangles with everything on one side.

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "pairs/constants.h"
 
 namespace pairs {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double relativeSpeed(const PairQuery& q) {
   // Of an unbounded body only what is near the other one counts.

@@ -7,12 +7,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pairs/constants.h"
 #include "pairs/judge.h"
 
 namespace pairs {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One convex piece in the world.
 template <class R>

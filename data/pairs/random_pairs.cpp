@@ -3,10 +3,11 @@
 
 #include <algorithm>
 
+#include "pairs/constants.h"
+
 namespace pairs {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr Kind kBounded[] = {Kind::box,  Kind::sphere,    Kind::capsule, Kind::cylinder,
                              Kind::cone, Kind::ellipsoid, Kind::convex,  Kind::triangle};
 

@@ -133,6 +133,10 @@ Doubles arrayOf(const Eigen::Ref<const Eigen::VectorXd>& vector) {
   return array;
 }
 
+Doubles array3(const Eigen::Vector3d& vector) {
+  return arrayOf(Eigen::VectorXd(vector));
+}
+
 Doubles arrayOfRows(const RowMajor& matrix) {
   Doubles array({matrix.rows(), matrix.cols()});
   std::copy_n(matrix.data(), matrix.size(), array.mutable_data());

@@ -52,6 +52,7 @@ Eigen::Isometry3d poseOf(py::handle value, const char* what);
 std::vector<Eigen::Matrix<std::size_t, 3, 1>> facesOf(py::handle value, std::size_t vertices);
 
 Doubles arrayOf(const Eigen::Ref<const Eigen::VectorXd>& vector);
+Doubles array3(const Eigen::Vector3d& vector);
 Doubles arrayOfRows(const RowMajor& matrix);
 /// 4x4.
 Doubles arrayOf(const Eigen::Isometry3d& pose);

@@ -67,26 +67,26 @@ py::array_t<std::int64_t> arrayOfFaces(const fcl::Triangle* faces, std::size_t c
 }
 
 template <class Shape, class... Sizes>
-Geometry make(Sizes&&... sizes) {
+Geometry makeShape(Sizes&&... sizes) {
   return {std::make_shared<Shape>(std::forward<Sizes>(sizes)...)};
 }
 
 Geometry box(py::handle size) {
   const Vector3d s = vector3Of(size, "size");
   if (!(s.array() > 0).all()) valueError("size has an entry that is not a positive length");
-  return make<fcl::Boxd>(s);
+  return makeShape<fcl::Boxd>(s);
 }
 Geometry sphere(py::handle radius) {
-  return make<fcl::Sphered>(lengthOf(radius, "radius"));
+  return makeShape<fcl::Sphered>(lengthOf(radius, "radius"));
 }
 Geometry ellipsoid(py::handle radii) {
   const Vector3d r = vector3Of(radii, "radii");
   if (!(r.array() > 0).all()) valueError("radii has an entry that is not a positive length");
-  return make<fcl::Ellipsoidd>(r);
+  return makeShape<fcl::Ellipsoidd>(r);
 }
 template <class Shape>
 Geometry round(py::handle radius, py::handle length) {
-  return make<Shape>(lengthOf(radius, "radius"), lengthOf(length, "length"));
+  return makeShape<Shape>(lengthOf(radius, "radius"), lengthOf(length, "length"));
 }
 template <class Shape>
 Geometry unbounded(py::handle normal, py::handle offset) {
@@ -96,10 +96,10 @@ Geometry unbounded(py::handle normal, py::handle offset) {
   if (!std::isfinite(d)) valueError("offset is not finite");
   // FCL divides both by the normal's length; the offset here is the distance from the origin.
   const Vector3d unit = n.normalized();
-  return make<Shape>(unit, d);
+  return makeShape<Shape>(unit, d);
 }
 Geometry triangle(py::handle a, py::handle b, py::handle c) {
-  return make<fcl::TrianglePd>(vector3Of(a, "a"), vector3Of(b, "b"), vector3Of(c, "c"));
+  return makeShape<fcl::TrianglePd>(vector3Of(a, "a"), vector3Of(b, "b"), vector3Of(c, "c"));
 }
 
 Geometry meshOf(const std::vector<Vector3d>& vertices, const Faces& faces, bool solid) {
@@ -135,7 +135,7 @@ Geometry convex(py::handle vertices, py::handle faces) {
   for (const auto& f : triangles) {
     code->insert(code->end(), {3, static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2])});
   }
-  return make<fcl::Convexd>(points, static_cast<int>(triangles.size()), code);
+  return makeShape<fcl::Convexd>(points, static_cast<int>(triangles.size()), code);
 }
 
 Geometry octree(py::handle points, py::handle resolution) {
@@ -157,7 +157,7 @@ Geometry octree(py::handle points, py::handle resolution) {
   }
   tree->updateInnerOccupancy();
   tree->prune();
-  return make<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
+  return makeShape<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
 }
 
 Geometry points(py::handle points, py::handle radius) {
@@ -176,7 +176,7 @@ Geometry points(py::handle points, py::handle radius) {
   } else {
     radii.push_back(lengthOf(radius, "radius"));
   }
-  return make<PointCloud>(std::move(places), std::move(radii));
+  return makeShape<PointCloud>(std::move(places), std::move(radii));
 }
 
 /// What OctoMap's readData() reads of a node: its log-odds, then a bit for each of its eight children, then these.
@@ -206,7 +206,7 @@ Geometry octreeOfState(double resolution, const std::string& data) {
   std::istringstream in(data);
   if (!data.empty()) tree->readData(in);
   if (!in) valueError("the pickled octree is cut short");
-  return make<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
+  return makeShape<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
 }
 
 /// The mesh of a BVHModel; null for another geometry or kind of bounding volume.
@@ -217,10 +217,6 @@ const fcl::BVHModel<fcl::OBBRSSd>* asMesh(const fcl::CollisionGeometryd& g) {
 template <class Shape>
 const Shape& as(const fcl::CollisionGeometryd& g) {
   return static_cast<const Shape&>(g);
-}
-
-Doubles array3(const Vector3d& v) {
-  return arrayOf(Eigen::VectorXd(v));
 }
 
 }  // namespace
@@ -271,12 +267,12 @@ py::tuple geometryState(const Geometry& geometry) {
 
 Geometry geometryOfState(const py::tuple& s) {
   const std::string kind = py::cast<std::string>(s[0]);
-  if (kind == "box") return make<fcl::Boxd>(vector3Of(s[1], "size"));
-  if (kind == "sphere") return make<fcl::Sphered>(py::cast<double>(s[1]));
-  if (kind == "ellipsoid") return make<fcl::Ellipsoidd>(vector3Of(s[1], "radii"));
-  if (kind == "capsule") return make<fcl::Capsuled>(py::cast<double>(s[1]), py::cast<double>(s[2]));
-  if (kind == "cylinder") return make<fcl::Cylinderd>(py::cast<double>(s[1]), py::cast<double>(s[2]));
-  if (kind == "cone") return make<fcl::Coned>(py::cast<double>(s[1]), py::cast<double>(s[2]));
+  if (kind == "box") return makeShape<fcl::Boxd>(vector3Of(s[1], "size"));
+  if (kind == "sphere") return makeShape<fcl::Sphered>(py::cast<double>(s[1]));
+  if (kind == "ellipsoid") return makeShape<fcl::Ellipsoidd>(vector3Of(s[1], "radii"));
+  if (kind == "capsule") return makeShape<fcl::Capsuled>(py::cast<double>(s[1]), py::cast<double>(s[2]));
+  if (kind == "cylinder") return makeShape<fcl::Cylinderd>(py::cast<double>(s[1]), py::cast<double>(s[2]));
+  if (kind == "cone") return makeShape<fcl::Coned>(py::cast<double>(s[1]), py::cast<double>(s[2]));
   if (kind == "triangle") return triangle(s[1], s[2], s[3]);
   if (kind == "convex") return convex(s[1], py::none());
   if (kind == "mesh") return mesh(s[1], s[2], py::cast<bool>(s[3]));
@@ -284,13 +280,13 @@ Geometry geometryOfState(const py::tuple& s) {
   if (kind == "octree") return octreeOfState(py::cast<double>(s[1]), py::cast<std::string>(s[2]));
   // Not through the constructor, which would divide by the length, not 1 to the last bit, of the normal.
   if (kind == "halfspace") {
-    Geometry g = make<fcl::Halfspaced>();
+    Geometry g = makeShape<fcl::Halfspaced>();
     static_cast<fcl::Halfspaced&>(*g.shape).n = vector3Of(s[1], "normal");
     static_cast<fcl::Halfspaced&>(*g.shape).d = py::cast<double>(s[2]);
     return g;
   }
   if (kind == "plane") {
-    Geometry g = make<fcl::Planed>();
+    Geometry g = makeShape<fcl::Planed>();
     static_cast<fcl::Planed&>(*g.shape).n = vector3Of(s[1], "normal");
     static_cast<fcl::Planed&>(*g.shape).d = py::cast<double>(s[2]);
     return g;

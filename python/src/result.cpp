@@ -50,10 +50,6 @@ QueryStatistics statisticsOfDict(const py::dict& d) {
   return s;
 }
 
-Doubles array3(const Vector3d& v) {
-  return arrayOf(Eigen::VectorXd(v));
-}
-
 /// A triangle's index or a cell's id; None where there is none.
 py::object pieceOf(std::intptr_t piece) {
   return piece < 0 ? py::object(py::none()) : py::int_(piece);

@@ -34,7 +34,7 @@ using Eigen::Vector3d;
 /// @param kind   also the name of Motion's member that makes it.
 /// @param given  what that was called with.
 template <class Kind, class... Arguments>
-Motion make(const char* kind, const py::tuple& given, const Arguments&... arguments) {
+Motion makeMotion(const char* kind, const py::tuple& given, const Arguments&... arguments) {
   const auto twin = std::make_shared<const Kind>(arguments...);
   return {kind, std::make_shared<const Kind>(arguments...),
           [twin](double t) {
@@ -48,34 +48,34 @@ Motion make(const char* kind, const py::tuple& given, const Arguments&... argume
 
 Motion still(py::handle pose) {
   const Isometry3d at = poseOf(pose, "pose");
-  return make<fcl::TranslationMotiond>("still", py::make_tuple(pose), at, at);
+  return makeMotion<fcl::TranslationMotiond>("still", py::make_tuple(pose), at, at);
 }
 
 Motion translation(py::handle begin, py::handle displacement) {
   const Isometry3d from = poseOf(begin, "begin");
   Isometry3d to = from;
   to.translation() += vector3Of(displacement, "displacement");
-  return make<fcl::TranslationMotiond>("translation", py::make_tuple(begin, displacement), from, to);
+  return makeMotion<fcl::TranslationMotiond>("translation", py::make_tuple(begin, displacement), from, to);
 }
 
 Motion linear(py::handle begin, py::handle end) {
   const Isometry3d from = poseOf(begin, "begin"), to = poseOf(end, "end");
   // With the point that goes straight: FCL's constructor of two poses leaves it uninitialised.
-  return make<fcl::InterpMotion<double>>("linear", py::make_tuple(begin, end), from.linear(), from.translation(),
-                                         to.linear(), to.translation(), Vector3d(Vector3d::Zero()));
+  return makeMotion<fcl::InterpMotion<double>>("linear", py::make_tuple(begin, end), from.linear(), from.translation(),
+                                               to.linear(), to.translation(), Vector3d(Vector3d::Zero()));
 }
 
 Motion screw(py::handle begin, py::handle end) {
-  return make<fcl::ScrewMotion<double>>("screw", py::make_tuple(begin, end), poseOf(begin, "begin"),
-                                        poseOf(end, "end"));
+  return makeMotion<fcl::ScrewMotion<double>>("screw", py::make_tuple(begin, end), poseOf(begin, "begin"),
+                                              poseOf(end, "end"));
 }
 
 Motion spline(py::handle positions, py::handle rotations) {
   const Matrix T = matrixOf(positions, "positions", 3), R = matrixOf(rotations, "rotations", 3);
   if (T.array.shape(0) != 4 || R.array.shape(0) != 4) valueError("a spline has 4 positions and 4 rotation vectors");
   const auto row = [](const Matrix& m, int i) { return Vector3d(m.rows().row(i).transpose()); };
-  return make<fcl::SplineMotion<double>>("spline", py::make_tuple(positions, rotations), row(T, 0), row(T, 1),
-                                         row(T, 2), row(T, 3), row(R, 0), row(R, 1), row(R, 2), row(R, 3));
+  return makeMotion<fcl::SplineMotion<double>>("spline", py::make_tuple(positions, rotations), row(T, 0), row(T, 1),
+                                               row(T, 2), row(T, 3), row(R, 0), row(R, 1), row(R, 2), row(R, 3));
 }
 
 Motion ofLink(py::handle tree, py::handle motion, py::handle link, py::handle offset) {
@@ -314,7 +314,7 @@ class Bodies {
   std::map<std::string, Body> bodies_;
 };
 
-void bindMotion(py::module_& module) {
+void bindRigidMotion(py::module_& module) {
   py::class_<Motion>(module, "Motion", "How a rigid body moves in the world over t in [0, 1].")
       .def_static("still", &still, "Stands still at a pose.", py::arg("pose") = py::none())
       .def_static("translation", &translation, "Goes straight by a displacement, without turning.", py::arg("begin"),
@@ -353,7 +353,7 @@ Motion motionOf(py::handle value, const char* what) {
 }
 
 void bindRigid(py::module_& module) {
-  bindMotion(module);
+  bindRigidMotion(module);
   module.def(
       "continuous_collide", &collidePair,
       "Finds the first contact of two geometries along two motions, or proves that there is none. In place of a\n"

@@ -48,7 +48,7 @@ Geometry geometryOfObstacle(const Scene::Obstacle& o) {
   return {std::const_pointer_cast<fcl::CollisionGeometryd>(o.object->collisionGeometry())};
 }
 
-py::tuple state(const Scene& scene) {
+py::tuple sceneState(const Scene& scene) {
   py::list obstacles;
   for (const Scene::Obstacle& o : scene.obstacles) {
     obstacles.append(py::make_tuple(o.name, geometryState(geometryOfObstacle(o)),
@@ -101,7 +101,7 @@ void bindScene(py::module_& module) {
       .def("__iter__", [](const Scene& s) { return py::iter(py::cast(s.obstacles)); })
       .def("__len__", [](const Scene& s) { return s.obstacles.size(); })
       .def("__repr__", [](const Scene& s) { return py::str("<Scene: {} obstacles>").format(s.obstacles.size()); })
-      .def(py::pickle(&state, &sceneOfState));
+      .def(py::pickle(&sceneState, &sceneOfState));
 
   module.def(
       "load_scene", &load,

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "certificate/baseline_vectors.h"
 #include "certificate/proof_bytes.h"
 
 #include "numerics/baseline_isa.h"
@@ -28,13 +29,6 @@ enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
 
 constexpr int kMostTimeCuts = 40;  ///< of one root: 1e-12 of the motion
 constexpr int kMostSearchSteps = 40;
-
-Vec3 fromEigen(const Vector3d& v) {
-  return {v[0], v[1], v[2]};
-}
-Vector3d toEigen(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
 
 /// What a node is about: A's pieces below `node`, partners [first, last) of its list, of a single one the pieces below
 /// `partner_node`, and times [begin, end].

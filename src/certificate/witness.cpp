@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "certificate/baseline_vectors.h"
 #include "certificate/proof_bytes.h"
 
 #include "numerics/baseline_isa.h"
@@ -26,10 +27,6 @@ constexpr int kContact = 0x20, kCross = 0, kInside = 2, kNear = 4;
 /// Witnesses are so far from failing, in m: the first, if there is one. What a verifier's poses are off by grows with
 /// the chain, to some 1e-12 m after thirty joints.
 constexpr double kSure[] = {1e-9, 1e-11};
-
-Vector3d toEigen(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
 
 /// One of the two pieces.
 struct Side {

@@ -14,6 +14,7 @@
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 
+#include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
 
@@ -23,8 +24,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kFarthest = 1e9;  // m
 
 std::string typeName(const std::type_info& type) {
   const std::unique_ptr<char, void (*)(void*)> name(abi::__cxa_demangle(type.name(), nullptr, nullptr, nullptr),

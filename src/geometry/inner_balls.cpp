@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <queue>
 
 #include <Eigen/Geometry>
 
 #include "geometry/mesh_triangle.h"
+#include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace {
@@ -20,14 +20,13 @@ using engine::InnerBalls;
 using engine::Node;
 using engine::PieceKind;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Points looked at in a mesh, and in its smallest part at least.
 constexpr int kSamples = 400, kFewestSamples = 40;
 /// Parts that get balls: at most kMostParts, none smaller than kLeastPart of the largest.
 constexpr std::size_t kMostParts = 8;
 constexpr double kLeastPart = 0.1;
 /// Steps by which a ball is moved away from where it touches.
-constexpr int kSteps = 6;
+constexpr int kMoveSteps = 6;
 
 double distanceFromSegment(const LineSweptSphere& around, const Vector3d& x) {
   const Vector3d begin = Vector3d::Map(&around[0]), along = Vector3d::Map(&around[3]) - begin;
@@ -82,7 +81,7 @@ void enlarge(const EnclosedSpace& space, Ball& ball) {
   Vector3d nearest;
   ball.radius = space.clearance(ball.part, ball.center, nearest);
   double way = 0.5 * ball.radius;
-  for (int i = 0; i < kSteps && ball.radius > 0; ++i) {
+  for (int i = 0; i < kMoveSteps && ball.radius > 0; ++i) {
     const Vector3d center = ball.center + way * (ball.center - nearest).normalized();
     Vector3d touched;
     const double radius = space.clearance(ball.part, center, touched);

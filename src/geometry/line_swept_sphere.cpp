@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <random>
 
 #include <Eigen/Eigenvalues>
 
 #include "geometry/point_lanes.h"
 #include "geometry/spread_directions.h"
+#include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace {
@@ -19,14 +19,13 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Points = std::vector<Vector3d>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The search works on extreme points: the farthest ones along kDirections directions, among about kSampled points
-/// at most.
-constexpr int kDirections = 100;
+/// The search works on extreme points: the farthest ones along kExtremeDirections directions, among about kSampled
+/// points at most.
+constexpr int kExtremeDirections = 100;
 constexpr std::size_t kSampled = 20000;
 /// Steps of the search from each axis. Measured on a Panda: 35 % less volume than about the principal axis, and of
 /// 1,000 obstacles about it stage 1 leaves 9.4 pairs in place of 14.8; 150 leave 9.6, 2000 as many as 400.
-constexpr int kSteps = 400;
+constexpr int kSearchSteps = 400;
 
 struct Segment {
   Vector3d p0, p1;
@@ -118,10 +117,10 @@ Segment alongAxis(const Matrix3d& axes, const Points& points) {
 
 /// The few points that a good segment depends on, about: the farthest ones along directions all around.
 Points extremePoints(const Points& points) {
-  if (points.size() <= static_cast<std::size_t>(kDirections)) return points;
+  if (points.size() <= static_cast<std::size_t>(kExtremeDirections)) return points;
   const PointLanes lanes(points, 1 + points.size() / kSampled);
   Points kept;
-  for (const Vector3d& n : spreadDirections(kDirections)) kept.push_back(points[lanes.farthest(n)]);
+  for (const Vector3d& n : spreadDirections(kExtremeDirections)) kept.push_back(points[lanes.farthest(n)]);
   return kept;
 }
 
@@ -132,7 +131,7 @@ Segment searched(Segment best, Points points, double radius) {
   double least = volume(best, r + radius), step = 0.2 * r;
   std::minstd_rand random(1);
   const auto moved = [&] { return step * (2.0 * static_cast<double>(random()) / std::minstd_rand::max() - 1); };
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kSearchSteps; ++i) {
     Segment tried = best;
     for (int k = 0; k < 3; ++k) {
       tried.p0[k] += moved();

@@ -16,7 +16,7 @@ namespace {
 
 /// A body with more points than this, or more different ones, must be a whole scene: it gets no hull.
 constexpr std::size_t kMaxPoints = 1000000, kMaxDifferent = 60000;
-constexpr int kDirections = 32;
+constexpr int kHullDirections = 32;
 /// Points that are nearer to the hull than this part of the body's size are left to its radius.
 constexpr double kGoodEnough = 0.002;
 
@@ -112,7 +112,7 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& all_points, std::siz
   // as the hull grows: those in the heap are upper bounds, and only its top needs to be looked at again.
   const PointLanes lanes(points);
   std::set<std::size_t> first;
-  for (const Eigen::Vector3d& direction : spreadDirections(kDirections)) {
+  for (const Eigen::Vector3d& direction : spreadDirections(kHullDirections)) {
     first.insert(lanes.farthest(direction));
   }
   for (std::size_t point : first) choose(point);

@@ -17,6 +17,7 @@
 #include "numerics/baseline_isa.h"
 
 #include "convex/piece_kinds.h"
+#include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace {
@@ -25,14 +26,11 @@ using engine::Node;
 using engine::Piece;
 using engine::PieceKind;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Coordinates allowed: what the pads still leave precise.
-constexpr double kFarthest = 1e9;
 /// So that three coordinates each are counted in 32 bits.
 constexpr std::size_t kMostHullPoints = 500000000;
 
 /// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
-float roundUp(double x) {
+float roundUpToFloat(double x) {
   const float f = static_cast<float>(x);
   std::int32_t bits;
   std::memcpy(&bits, &f, sizeof bits);
@@ -45,7 +43,7 @@ float roundUp(double x) {
   return up;
 }
 float roundDown(double x) {
-  return -roundUp(-x);
+  return -roundUpToFloat(-x);
 }
 
 void setRadius(Node& node) {
@@ -54,14 +52,14 @@ void setRadius(Node& node) {
     const double half = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
     radius += half * half;
   }
-  node.radius = roundUp(std::sqrt(radius));
+  node.radius = roundUpToFloat(std::sqrt(radius));
 }
 
 Node makeLeaf(const BoxBounds& box, std::int32_t piece) {
   Node node;
   for (int k = 0; k < 3; ++k) {
     node.lo[k] = roundDown(box.lo[k]);
-    node.hi[k] = roundUp(box.hi[k]);
+    node.hi[k] = roundUpToFloat(box.hi[k]);
   }
   setRadius(node);
   node.child = ~piece;

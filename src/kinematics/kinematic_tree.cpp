@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "kinematics/joint_factors.h"
+#include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
 #include "text/nearest_name.h"
@@ -17,8 +18,6 @@ namespace {
 
 /// How far R^T R of a joint's origin may be from the identity, in each entry; it is made orthonormal then.
 constexpr double kOrthonormal = 1e-9;
-/// Farther out, m, rounding would swallow what tolerances ask for.
-constexpr double kFarthest = 1e9;
 
 bool isRotation(const Eigen::Matrix3d& R) {
   const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

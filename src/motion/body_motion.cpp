@@ -20,6 +20,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/sine_cosine.h"
 
@@ -31,7 +32,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Coefficients = Eigen::Matrix<double, 3, kMaxDegree + 1>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Sine and cosine of a and b, each off by at most 2.5 * 2^-52, and by 2 * 2^-52 of itself as far as pi / 4
 /// (doc/NUMERICS.md, section 7). NaN beyond kLargestAngle, where nothing is claimed: motions are refused before.

@@ -8,7 +8,7 @@ namespace engine {
 namespace {
 
 #define FCL_ARTIC_ENGINE(set, Set) &kEngine##Set,
-const Engine* const kEngines[] = {FCL_ARTIC_INSTRUCTION_SETS(FCL_ARTIC_ENGINE)};
+const Engine* const kEngines[] = {FCL_ARTIC_ENGINES(FCL_ARTIC_ENGINE)};
 #undef FCL_ARTIC_ENGINE
 
 bool runs(const Engine& engine) {

@@ -20,13 +20,12 @@
 #include <cmath>
 
 #include "narrowphase/parting_direction.h"
+#include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kUlp = 0x1p-52;  ///< bounds the relative error of one operation in any rounding mode
 
 /// Upper bound of a sum of terms >= 0 that took up to 60 operations; the constant covers underflow, flushed or gradual.
 double roundUp(double x) {

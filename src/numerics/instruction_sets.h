@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The instruction sets for which this build has an engine and batches, and the choice among them at run time. What one
-// more takes: a line here, numerics/register_*.h and where it has directed rounding interval/processor_*.h, a file of
+// The instruction sets for which this build has batches and an engine, and the choice among them at run time. One more
+// takes: a line here, numerics/register_*.h and where it has directed rounding interval/processor_*.h, a file of
 // its own for what is compiled for it (narrowphase/engine_*.cpp, redon/box_batch_*.cpp), and a name in
 // cmake/InstructionSets.cmake, which lists the compiler's flags.
 #pragma once
@@ -12,13 +12,17 @@
 #error "fcl_artic reads binary files and packs numbers for little-endian processors; this one is big-endian"
 #endif
 
-// The widest first: X(name, Name). The last one runs everywhere.
+// The widest first: X(name, Name). FCL_ARTIC_ENGINES are those with an engine: the last one runs on every processor of
+// the kind. All sets have batches; "portable" ones need no rounding mode.
 #if defined(__x86_64__) && !defined(FCL_ARTIC_PORTABLE)
 #define FCL_ARTIC_INSTRUCTION_SETS(X) X(avx512, Avx512) X(avx2, Avx2) X(sse2, Sse2) X(portable, Portable)
+#define FCL_ARTIC_ENGINES(X) X(avx512, Avx512) X(avx2, Avx2) X(sse2, Sse2)
 #elif defined(__aarch64__) && !defined(FCL_ARTIC_PORTABLE)
 #define FCL_ARTIC_INSTRUCTION_SETS(X) X(neon, Neon) X(portable, Portable)
+#define FCL_ARTIC_ENGINES(X) X(neon, Neon)
 #else
 #define FCL_ARTIC_INSTRUCTION_SETS(X) X(portable, Portable)
+#define FCL_ARTIC_ENGINES(X) X(portable, Portable)
 #endif
 
 namespace fcl_artic {

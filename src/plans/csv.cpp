@@ -41,13 +41,6 @@ double parseNumber(std::string_view text, const std::string& where, const std::s
   return value;
 }
 
-bool isVariable(const KinematicTree& tree, const std::string& name) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return true;
-  }
-  return false;
-}
-
 /// The name without one of the endings; empty where it has none of them.
 std::string without(const std::string& name, const std::vector<std::string>& endings) {
   for (const std::string& ending : endings) {
@@ -58,8 +51,8 @@ std::string without(const std::string& name, const std::vector<std::string>& end
   return {};
 }
 
-/// Columns of one quantity, by joint.
-struct Columns {
+/// QuantityColumns of one quantity, by joint.
+struct QuantityColumns {
   std::vector<std::string> joints;
   std::vector<std::size_t> at;
 
@@ -70,7 +63,7 @@ struct Columns {
 };
 
 /// The columns in the order of `joints`.
-Plan::Rows take(const Table& table, const Columns& columns, const std::vector<std::string>& joints,
+Plan::Rows take(const Table& table, const QuantityColumns& columns, const std::vector<std::string>& joints,
                 const std::string& what) {
   if (columns.at.empty()) return {};
   std::vector<std::size_t> order;
@@ -140,7 +133,7 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content) {
   const Table table = parseTable(content, "");
   if (table.columns.empty()) throw std::invalid_argument("it is empty: no line names the columns");
   Plan plan;
-  Columns positions, velocities, accelerations;
+  QuantityColumns positions, velocities, accelerations;
   std::vector<std::size_t> times;
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& column = table.columns[i];

@@ -11,19 +11,16 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "plans/refuse.h"
 #include "plans/variables.h"
 
 namespace fcl_artic::plans {
 namespace {
 
-constexpr int kDeepest = 20;        // messages within messages
-constexpr double kFlat = 1e-6;      // of a planar joint's pose: m out of its plane, and part of the quaternion
-constexpr double kIdentity = 1e-9;  // a pose that nobody has to know of
-constexpr double kFollows = 1e-6;   // rad or m: within it a mimic joint is where the joint that it follows has it
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
-}
+constexpr int kDeepestMessage = 20;  // messages within messages
+constexpr double kFlat = 1e-6;       // of a planar joint's pose: m out of its plane, and part of the quaternion
+constexpr double kIdentity = 1e-9;   // a pose that nobody has to know of
+constexpr double kFollows = 1e-6;    // rad or m: within it a mimic joint is where the joint that it follows has it
 
 /// Of a message's start state.
 struct Start {
@@ -141,13 +138,6 @@ std::vector<double> valuesAt(const PoseJoint& joint, const std::vector<double>& 
     refuse(where + ": the pose leaves the plane of the planar joint");
   }
   return {pose[0], pose[1], 2 * std::atan2(pose[5], pose[6])};
-}
-
-bool isVariable(const KinematicTree& tree, const std::string& name) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return true;
-  }
-  return false;
 }
 
 bool isMimic(const KinematicTree& tree, const std::string& name) {
@@ -339,7 +329,7 @@ class Reader {
   Reader(const KinematicTree& tree, std::vector<Plan>& out) : tree_(tree), out_(out) {}
 
   void read(const Json& value, const std::string& label, const Start& start, int depth) {
-    if (depth > kDeepest) return fail(label, "too many messages within messages");
+    if (depth > kDeepestMessage) return fail(label, "too many messages within messages");
     if (value.is_array()) return readList(value, label, start, depth);
     if (!value.is_object()) return fail(label, fmt::format("{} is no plan", shown(value)));
     if (const Json* plans = find(value, {"plans"})) return read(*plans, label, start, depth + 1);

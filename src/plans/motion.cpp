@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "plans/refuse.h"
 #include "plans/variables.h"
 
 namespace fcl_artic::plans {
@@ -27,22 +28,18 @@ const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto"
                                                                          {"quintic", Interpolation::quintic},
                                                                          {"blends", Interpolation::blends}};
 
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
-}
-
 std::string plural(std::size_t n, const std::string& what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
 
-/// Columns of a plan as variables of the tree.
-struct Columns {
+/// PlanColumns of a plan as variables of the tree.
+struct PlanColumns {
   std::vector<std::string> names;
   std::vector<int> variables;
 };
 
-Columns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
-  Columns out;
+PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
+  PlanColumns out;
   out.names = plan.joints.empty() ? options.joints : plan.joints;
   if (out.names.empty()) {
     for (int v = 0; v < tree.dof(); ++v) out.names.push_back(tree.variableName(v));
@@ -63,7 +60,7 @@ Columns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptio
 }
 
 /// Values of all variables that the plan does not name.
-VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options, const Columns& columns,
+VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options, const PlanColumns& columns,
                 std::vector<std::string>& notes) {
   VectorXd q = tree.neutralConfiguration();
   std::vector<bool> known(static_cast<std::size_t>(tree.dof()), false);
@@ -94,7 +91,7 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   return q;
 }
 
-void requireRows(const Plan::Rows& rows, const char* what, std::size_t waypoints, const Columns& columns) {
+void requireRows(const Plan::Rows& rows, const char* what, std::size_t waypoints, const PlanColumns& columns) {
   if (rows.size() != waypoints) refuse(fmt::format("{} {} for {}", rows.size(), what, plural(waypoints, "waypoint")));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (rows[k].size() != columns.names.size()) {
@@ -121,7 +118,7 @@ void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
   }
 }
 
-void judgeLimits(const KinematicTree& tree, const Plan& plan, const Columns& columns, bool ignore,
+void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns, bool ignore,
                  std::vector<std::string>& notes) {
   for (std::size_t k = 0; k < plan.positions.size(); ++k) {
     for (std::size_t j = 0; j < columns.names.size(); ++j) {
@@ -138,7 +135,7 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const Columns& col
 
 /// A controller goes from the start state to the first waypoint; if that is another place, nobody has asked about the
 /// way.
-void noteStart(const Plan& plan, const Columns& columns, std::vector<std::string>& notes) {
+void noteStart(const Plan& plan, const PlanColumns& columns, std::vector<std::string>& notes) {
   for (std::size_t j = 0; j < columns.names.size(); ++j) {
     const auto start = plan.state.find(columns.names[j]);
     if (start == plan.state.end() || std::abs(start->second - plan.positions[0][j]) <= kSameStart) continue;
@@ -149,7 +146,8 @@ void noteStart(const Plan& plan, const Columns& columns, std::vector<std::string
   }
 }
 
-JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, const Columns& columns, Turns turns) {
+JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns,
+                                   Turns turns) {
   if (turns == Turns::shortest) return JointTrajectory::Unwrap::yes;
   if (turns == Turns::given) return JointTrajectory::Unwrap::no;
   for (std::size_t j = 0; j < columns.names.size(); ++j) {
@@ -206,7 +204,7 @@ Interpolation chosen(const Plan& plan, const MotionOptions& options) {
 }
 
 /// Rows of some columns as vectors of all variables.
-std::vector<VectorXd> spread(const Plan::Rows& rows, const Columns& columns, const VectorXd& rest) {
+std::vector<VectorXd> spread(const Plan::Rows& rows, const PlanColumns& columns, const VectorXd& rest) {
   std::vector<VectorXd> out;
   for (const std::vector<double>& row : rows) {
     VectorXd& q = out.emplace_back(rest);
@@ -240,7 +238,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
   if (!plan.error.empty()) refuse(plan.error);
   const std::size_t waypoints = plan.positions.size();
   if (waypoints < 2) refuse(fmt::format("it has {}, a plan needs two", plural(waypoints, "waypoint")));
-  const Columns columns = columnsOf(tree, plan, options);
+  const PlanColumns columns = columnsOf(tree, plan, options);
   std::vector<std::string> notes = plan.notes;
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   requireRows(plan.positions, "positions", waypoints, columns);

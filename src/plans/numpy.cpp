@@ -12,14 +12,11 @@
 
 #include <fmt/format.h>
 
+#include "plans/refuse.h"
 #include "plans/zip.h"
 
 namespace fcl_artic::plans {
 namespace {
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw std::invalid_argument(what);
-}
 
 /// An array as the file has it.
 struct Array {

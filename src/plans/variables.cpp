@@ -16,6 +16,13 @@ std::string variableNames(const KinematicTree& tree) {
   return names;
 }
 
+bool isVariable(const KinematicTree& tree, const std::string& name) {
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (tree.variableName(v) == name) return true;
+  }
+  return false;
+}
+
 int variableOf(const KinematicTree& tree, const std::string& name, const std::string& what) {
   for (int v = 0; v < tree.dof(); ++v) {
     if (tree.variableName(v) == name) return v;

@@ -10,6 +10,8 @@ namespace fcl_artic::plans {
 /// Names of all variables, separated by commas.
 std::string variableNames(const KinematicTree& tree);
 
+bool isVariable(const KinematicTree& tree, const std::string& name);
+
 /// Variable of that name.
 /// @param what  begins the message.
 /// @throws std::invalid_argument: no such joint, or one that takes no value.

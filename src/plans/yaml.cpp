@@ -16,7 +16,7 @@
 namespace fcl_artic::plans {
 namespace {
 
-constexpr std::size_t kDeepest = 100;  // no message is deeper
+constexpr std::size_t kDeepestYaml = 100;  // no message is deeper
 
 Json valueOf(const std::string& text) {
   if (text.empty() || text == "~" || text == "null") return nullptr;
@@ -68,7 +68,7 @@ class Builder : public YAML::EventHandler {
   bool expectsKey() const { return !levels_.empty() && levels_.back().value.is_object() && !levels_.back().has_key; }
   void open(const YAML::Mark& mark, Json value) {
     if (expectsKey()) refuse(mark, "a key that is no text");
-    if (levels_.size() >= kDeepest) refuse(mark, fmt::format("more than {} levels", kDeepest));
+    if (levels_.size() >= kDeepestYaml) refuse(mark, fmt::format("more than {} levels", kDeepestYaml));
     levels_.push_back({std::move(value), {}, false});
   }
   void close() {

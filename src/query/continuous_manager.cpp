@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
@@ -13,6 +12,7 @@
 #include "fcl/fcl_motion.h"
 #include "geometry/box_overlap.h"
 #include "model/bracket.h"
+#include "numerics/constants.h"
 #include "numerics/shown.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
@@ -71,7 +71,6 @@ Item readObject(Object* object, const std::string& what) {
 }
 
 fcl::AABBd publicBox(const BoxBounds& box) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   fcl::AABBd aabb;
   for (int k = 0; k < 3; ++k) {
     aabb.min_[k] = box.lo[k] > -kFarAway ? box.lo[k] : -kInfinity;
@@ -84,7 +83,6 @@ fcl::AABBd publicBox(const BoxBounds& box) {
 /// mode.
 BoxBounds grown(const BoxBounds& box, double margin) {
   if (margin == 0) return box;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   BoxBounds out;
   for (int k = 0; k < 3; ++k) {
     out.lo[k] = std::nextafter(box.lo[k] - margin, -kInfinity);

@@ -10,11 +10,12 @@
 #include "narrowphase/engine_workspace.h"
 #include "numerics/arc_tangent.h"
 #include "numerics/assertion.h"
+#include "numerics/constants.h"
+#include "tables/value_range.h"
 
 namespace fcl_artic {
 namespace {
 
-constexpr double kUlp = 0x1p-52;
 /// Cells along the variable that the engine moves; and at most along the one that is paid for by a margin, where they
 /// are cut so fine that this margin is kRowMargin. Measured: 96 rows take three times as long for the UR5, whose base
 /// and upper arm pass each other at 16 mm.
@@ -26,8 +27,6 @@ constexpr double kMostMargin = 0.03;
 constexpr int kPlanes = 3;
 // Of a plane's cells that are not proven, PairTable::free counts those in a box of at most one turn.
 static_assert(kColumns * kMostRows < 1 << 16);
-/// Joints may stand at their limits: cells extend beyond them by this part of the range.
-constexpr double kBeyondLimits = 1e-3;
 /// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint
 /// values.
 constexpr double kCellSlack = 1e-6;
@@ -37,8 +36,6 @@ constexpr std::uint64_t kWork = 60;
 /// A table of few rows, as that of a gripper's fingers, which one joint drives, has more for each: as many in all as
 /// kMostRows rows, and up to kMostTries times that where it takes several tries.
 constexpr std::uint64_t kMostTries = 4;
-/// Joints with limits beyond, rad or m, or that follow others by larger factors, are left alone.
-constexpr double kMostValue = 100;
 /// Of a row's cells neither of whose ends is proven, fewer than these are not looked into; in tables of few rows, fewer
 /// than so many a row.
 constexpr int kIsland = 40, kIslandOfRow = 4;

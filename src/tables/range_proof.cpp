@@ -9,17 +9,14 @@
 #include "geometry/shape_tree.h"
 #include "kinematics/angles.h"
 #include "numerics/assertion.h"
+#include "numerics/constants.h"
 #include "numerics/sine_cosine.h"
 #include "tables/bring_together.h"
+#include "tables/value_range.h"
 
 namespace fcl_artic {
 namespace {
 
-constexpr double kUlp = 0x1p-52;
-/// Joints may stand at their limits: ranges extend beyond them by this part of their width.
-constexpr double kBeyondLimits = 1e-3;
-/// Variables, factors and offsets beyond, rad or m, are left alone: the pads below are for these.
-constexpr double kMostValue = 100;
 /// Work of a look at the witnesses (mustFail()), in tests of nodes and leaves.
 constexpr std::uint64_t kGlanceWork = 15;
 /// Tests of nodes and leaves for one box; what needs more is cut in two, each of which may take twice as many. Measured

@@ -3,6 +3,12 @@
 
 namespace fcl_artic {
 
+/// Joints may stand at their limits: tables and proofs extend beyond them by this part of the joint's range.
+constexpr double kBeyondLimits = 1e-3;
+/// Tables and proofs leave out joints with values, or mimic joints with multipliers or offsets, beyond this (rad or m):
+/// their pads are derived for smaller ones.
+constexpr double kMostValue = 100;
+
 /// Values of a joint variable, both ends included. Any value is meant where they are infinite.
 struct ValueRange {
   double lower = 0, upper = 0;

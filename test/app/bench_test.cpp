@@ -8,7 +8,7 @@
 #include <vector>
 
 #ifdef FCL_ARTIC_HAS_PLANS
-#include "bars.h"
+#include "bench/bars.h"
 #endif
 #include "run_program.h"
 

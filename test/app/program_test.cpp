@@ -375,8 +375,12 @@ TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   const std::set<std::string> sets = {"avx512\n", "avx2\n", "sse2\n", "neon\n", "portable\n"};
   ASSERT_EQ(version.out.rfind(head, 0), 0u) << version.out;
   EXPECT_EQ(sets.count(version.out.substr(head.size())), 1u) << version.out;
-  ASSERT_EQ(setenv("FCL_ARTIC_ISA", "portable", 1), 0);
-  EXPECT_EQ(this->run("--version").out, head + "portable\n");
+  int baselines = 0;  // each build has one engine that all processors of its kind run
+  for (const char* set : {"sse2", "neon", "portable"}) {
+    ASSERT_EQ(setenv("FCL_ARTIC_ISA", set, 1), 0);
+    baselines += this->run("--version").out == head + set + "\n";
+  }
+  EXPECT_EQ(baselines, 1);
   unsetenv("FCL_ARTIC_ISA");
   const Outcome help = this->run("check --help");
   EXPECT_EQ(help.status, 0);

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "motion_timing.h"
+#include "bench/motion_timing.h"
+#include "bench/robot_bench.h"
 #include "planning/fcl_state_check.h"
 #include "random_motions.h"
-#include "robot_bench.h"
 #include "run_program.h"
 #include "world.h"
 

@@ -1,46 +1,37 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Fails when an object calls a function of libm whose result rests on no promise (sin, exp, ...), outside of those that
-# make motions, report poses or only choose what is then proven. sqrt, ldexp and the rounding functions are exact or an
-# instruction; hypot is within 1 ulp, and allowed for.
-string(REPLACE "|" ";" OBJECTS "${OBJECTS}")
-set(others
-  kinematics/                      # makes motions from joint values; poses for reports
-  fcl/fcl_motion          # makes motions from FCL's
-  fcl/fcl_link_motion     # gives FCL poses
-  tables/contact_grid tables/bring_together  # guesses, proven afterwards
-  certificate/moving_world          # hints for a verifier
-  query/link_pairs                  # configurations to try
-  geometry/outer_hull geometry/line_swept_sphere geometry/inner_balls  # directions and sizes to try
-  visibility/adversary)            # where to look
+# Fails when an object calls a function of libm whose result rests on no promise (sin, exp, ...), outside of the target
+# fcl_artic_choices, whose sources make motions from joint values, report poses, or only choose what is then proven. sqrt,
+# ldexp and the rounding functions are exact or an instruction; hypot is within 1 ulp, and allowed for.
+#   cmake -D NM=... -D OBJECTS=a.o|b.o -D CHOICES=c.o -P no_libm.cmake
 set(inexact "a?(sin|cos|tan)h?|atan2|sincos|exp2?|expm1|log(2|10|1p)?|pow|cbrt|erfc?|[tl]gamma")
-set(faults "")
-set(looked_at 0)
-set(libm_elsewhere 0)
-foreach(object IN LISTS OBJECTS)
+# The calls in an object, separated by blanks.
+function(calls_of object result)
   execute_process(COMMAND ${NM} --undefined-only ${object} OUTPUT_VARIABLE symbols RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
     message(FATAL_ERROR "${NM} can't read ${object}")
   endif()
   string(REGEX MATCHALL "[ \t]U (${inexact})[fl]?(@[^\n]*)?\n" calls "${symbols}")
-  math(EXPR looked_at "${looked_at} + 1")
-  if(NOT calls)
-    continue()
-  endif()
-  set(allowed FALSE)
-  foreach(part IN LISTS others)
-    if(object MATCHES "/src/${part}|/${part}" )
-      set(allowed TRUE)
-    endif()
-  endforeach()
-  if(allowed)
-    math(EXPR libm_elsewhere "${libm_elsewhere} + 1")
-  else()
-    string(REGEX REPLACE "[ \t\n;]*U " " " calls "${calls}")
+  string(REGEX REPLACE "[ \t\n;]*U " " " calls "${calls}")
+  set(${result} "${calls}" PARENT_SCOPE)
+endfunction()
+
+string(REPLACE "|" ";" OBJECTS "${OBJECTS}")
+string(REPLACE "|" ";" CHOICES "${CHOICES}")
+set(faults "")
+list(LENGTH OBJECTS looked_at)
+foreach(object IN LISTS OBJECTS)
+  calls_of(${object} calls)
+  if(calls)
     string(APPEND faults "  ${object}:${calls}\n")
   endif()
 endforeach()
-message("${looked_at} objects, ${libm_elsewhere} of them make motions, report or guess by libm")
-if(looked_at LESS 30 OR libm_elsewhere EQUAL 0)
+set(elsewhere "")
+foreach(object IN LISTS CHOICES)
+  calls_of(${object} calls)
+  string(APPEND elsewhere "${calls}")
+endforeach()
+message("${looked_at} objects; what makes motions, reports or chooses calls${elsewhere}")
+if(looked_at LESS 8 OR NOT elsewhere MATCHES "sin")
   message(FATAL_ERROR "more objects expected, and calls of libm where they are allowed")
 endif()
 if(faults)

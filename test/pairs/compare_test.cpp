@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "../app/run_program.h"
-#include "children.h"
+#include "bench/children.h"
 
 namespace {
 

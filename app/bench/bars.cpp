@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bars.h"
+#include "bench/bars.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "cli_app.h"
 
-#include "motion_timing.h"
+#include "bench/motion_timing.h"
 
 namespace fcl_artic::app {
 

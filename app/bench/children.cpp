@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "children.h"
+#include "bench/children.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -17,10 +17,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "elapsed.h"
+
 namespace fcl_artic::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// What parent and children share: the results, and how far the children have come.
 class SharedResults {

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "bench/pipe_steps.h"
+#include "bench/step_bench.h"
+#include "bench/table1.h"
 #include "exit_status.h"
 #include "files/files.h"
-#include "pipe_steps.h"
 #include "progress.h"
-#include "step_bench.h"
-#include "table1.h"
 
 namespace fcl_artic::app {
 namespace {

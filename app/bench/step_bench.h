@@ -4,27 +4,13 @@
 // CSV.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "fcl_artic/fcl_artic.h"
+#include "fcl_artic/manager.h"
+#include "random.h"
 
 namespace fcl_artic::app {
-
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
-
-/// Numbers that are the same on every machine (splitmix64).
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double uniform(double a, double b) { return a + (b - a) * static_cast<double>(next() >> 11) * 0x1p-53; }
-  double sign() { return next() & 1 ? 1 : -1; }
-
- private:
-  std::uint64_t next();
-  std::uint64_t state_;
-};
 
 /// Means over queries, us and counts; those of a query are of its fastest run.
 struct StepCosts {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare.h"
+#include "bench/compare.h"
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,10 @@
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/detail/conservative_advancement_func_matrix.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "children.h"
+#include "bench/children.h"
 #include "exit_status.h"
 #include "fcl_artic/continuous_collision.h"
 #include "pairs/random_pairs.h"
@@ -36,9 +37,9 @@ constexpr double kEarly = 1e-3;      ///< in t
 constexpr double kNear = 1e-4;       ///< m
 constexpr double kRounding = 1e-12;  ///< m
 
-constexpr const char* kOurs = "fcl_artic";  ///< how the names of this library's ways begin
+constexpr const char* kOursPrefix = "fcl_artic";  ///< how the names of this library's ways begin
 
-struct Options {
+struct CompareOptions {
   std::size_t queries = 200;
   std::uint64_t seed = 20040401;
   std::string set = "all";
@@ -47,7 +48,7 @@ struct Options {
 };
 
 /// One way to answer a query. Called with fresh motions, at t = 0.
-struct Way {
+struct FclWay {
   std::string name;
   pairs::Volume volume;  ///< of the meshes: the one that suits it best
   std::function<TaskResult(const PairQuery&, const fcl::MotionBased&, const fcl::MotionBased&)> ask;
@@ -61,7 +62,7 @@ TaskResult answered(bool contact, double time) {
   return r;
 }
 
-Way publicEntry(const std::string& name, pairs::Volume volume, const fcl::ContinuousCollisionRequestd& request) {
+FclWay publicEntry(const std::string& name, pairs::Volume volume, const fcl::ContinuousCollisionRequestd& request) {
   return {name, volume, [request](const PairQuery& q, const fcl::MotionBased& m1, const fcl::MotionBased& m2) {
             fcl::ContinuousCollisionResultd result;
             const double toc =
@@ -112,13 +113,13 @@ TaskResult redon2004(const PairQuery& q, const fcl::MotionBased& m1, const fcl::
 }
 
 /// FCL's ways, then this library's.
-std::vector<Way> waysFor(Bodies bodies) {
+std::vector<FclWay> waysFor(Bodies bodies) {
   fcl::ContinuousCollisionRequestd naive(1000), advance;
   advance.ccd_solver_type = fcl::CCDC_CONSERVATIVE_ADVANCEMENT;
   // Static checks of RSS trees copy both meshes each time, so naive stepping gets the volumes that are fastest for it.
   constexpr auto kRss = pairs::Volume::rss, kObbRss = pairs::Volume::obbrss;
-  std::vector<Way> ways{publicEntry("FCL, defaults (naive, 10 steps)", kObbRss, {}),
-                        publicEntry("FCL naive, 1000 steps", kObbRss, naive)};
+  std::vector<FclWay> ways{publicEntry("FCL, defaults (naive, 10 steps)", kObbRss, {}),
+                           publicEntry("FCL naive, 1000 steps", kObbRss, naive)};
   if (bodies == Bodies::meshes) {
     ways.push_back(publicEntry("FCL conservative advancement", kRss, advance));
     ways.push_back({"FCL oriented advancement, internal", kRss, orientedAdvancement});
@@ -127,14 +128,14 @@ std::vector<Way> waysFor(Bodies bodies) {
     advance.gjk_solver_type = fcl::GST_INDEP;
     ways.push_back(publicEntry("FCL conservative adv., indep", kRss, advance));
   }
-  ways.push_back({kOurs, kRss, dropIn});
+  ways.push_back({kOursPrefix, kRss, dropIn});
   // Curved shapes the paper's method leaves to the library's own.
-  if (bodies == Bodies::meshes) ways.push_back({kOurs + std::string(", method redon2004"), kRss, redon2004});
+  if (bodies == Bodies::meshes) ways.push_back({kOursPrefix + std::string(", method redon2004"), kRss, redon2004});
   return ways;
 }
 
 /// Runs a way on all queries, in children. The time is the lesser one of two runs.
-std::vector<TaskResult> runWay(const Way& way, const std::vector<PairQuery>& queries, double limit_s,
+std::vector<TaskResult> runWay(const FclWay& way, const std::vector<PairQuery>& queries, double limit_s,
                                const std::function<void(std::size_t)>& done) {
   return runInChildren(
       queries.size(), limit_s,
@@ -203,12 +204,12 @@ struct SetReport {
   std::vector<Score> scores;
 };
 
-SetReport compareSet(const std::string& name, Bodies bodies, const Options& options,
+SetReport compareSet(const std::string& name, Bodies bodies, const CompareOptions& options,
                      const std::function<void(double)>& progress) {
   SetReport report;
   report.name = name;
   report.queries = options.queries;
-  const std::vector<Way> ways = waysFor(bodies);
+  const std::vector<FclWay> ways = waysFor(bodies);
   const double parts = static_cast<double>(ways.size()) + 2;
   std::vector<PairQuery> queries;
   const auto show = [&](double part, std::size_t done) {
@@ -284,7 +285,7 @@ Json jsonOf(const SetReport& r) {
           {"grazes", r.grazes}, {"shown_by_fcl_artic", r.added}, {"ways", ways}};
 }
 
-int run(const Options& options) {
+int runCompare(const CompareOptions& options) {
   const std::vector<std::pair<std::string, Bodies>> sets{
       {"meshes", Bodies::meshes}, {"shapes", Bodies::shapes}, {"mixed", Bodies::mixed}};
   std::vector<SetReport> reports;
@@ -301,7 +302,7 @@ int run(const Options& options) {
   Json all{{"seed", options.seed}, {"sets", Json::array()}};
   for (const SetReport& r : reports) {
     for (const Score& s : r.scores) {
-      if (s.way.rfind(kOurs, 0) == 0) good = good && s.count[right] == r.queries;
+      if (s.way.rfind(kOursPrefix, 0) == 0) good = good && s.count[right] == r.queries;
     }
     all["sets"].push_back(jsonOf(r));
     if (!options.json) fmt::print("{}\n", textOf(r));
@@ -313,8 +314,8 @@ int run(const Options& options) {
 }  // namespace
 
 void addCompare(CLI::App& program, int& exit_status) {
-  auto options = std::make_shared<Options>();
-  Options& o = *options;
+  auto options = std::make_shared<CompareOptions>();
+  CompareOptions& o = *options;
   CLI::App* compare =
       program.add_subcommand("compare", "How often are FCL's ways of continuous collision right, and this library?");
   compare->footer(
@@ -341,7 +342,7 @@ void addCompare(CLI::App& program, int& exit_status) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   compare->add_flag("--json", o.json, "Answer in JSON");
-  compare->callback([options, &exit_status] { exit_status = run(*options); });
+  compare->callback([options, &exit_status] { exit_status = runCompare(*options); });
 }
 
 }  // namespace fcl_artic::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planning_bench.h"
+#include "bench/planning_bench.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <ompl/base/ScopedState.h>
 
-#include "averages.h"
-#include "bars.h"
+#include "bench/averages.h"
+#include "bench/bars.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "planning/fcl_state_check.h"
@@ -29,10 +29,10 @@ using planning::PlanningSetup;
 
 /// OMPL's default, and ten times finer: parts of the space's extent. Then ours, which has no resolution.
 constexpr double kResolutions[] = {0.01, 0.001};
-constexpr int kValidators = 3, kOurs = 2;
-constexpr const char* kNames[kValidators] = {"FCL, OMPL's 1 %", "FCL, 0.1 %", "fcl_artic"};
+constexpr int kPlanningValidators = 3, kPlanningOurs = 2;
+constexpr const char* kPlanningNames[kPlanningValidators] = {"FCL, OMPL's 1 %", "FCL, 0.1 %", "fcl_artic"};
 
-struct Outcome {
+struct PlanningOutcome {
   std::string environment;
   int problem = 0, seed = 0, validator = 0;
   bool solved = false;
@@ -65,10 +65,10 @@ std::optional<std::pair<std::size_t, CertifiedResult>> firstContact(const Planni
   return std::nullopt;
 }
 
-class Bench {
+class PlanningBench {
  public:
-  explicit Bench(const PlanningBenchOptions& options)
-      : options_(options), data_(options.data), robot_(readRobot(data_, options.robot)) {
+  explicit PlanningBench(const PlanningBenchOptions& options)
+      : options_(options), data_(options.data), robot_(planning_data::readRobot(data_, options.robot)) {
     std::vector<std::string> names = options.environments;
     if (names.empty()) names = environmentsOf(data_, options.robot);
     for (const std::string& name : names) {
@@ -89,8 +89,9 @@ class Bench {
   }
 
   bool sound() const {
-    return std::none_of(outcomes_.begin(), outcomes_.end(), [](const Outcome& o) {
-      return o.validator == kOurs && (o.raw_sampled || o.simplified_sampled || o.raw_proven || o.simplified_proven);
+    return std::none_of(outcomes_.begin(), outcomes_.end(), [](const PlanningOutcome& o) {
+      return o.validator == kPlanningOurs &&
+             (o.raw_sampled || o.simplified_sampled || o.raw_proven || o.simplified_proven);
     });
   }
 
@@ -102,7 +103,7 @@ class Bench {
                        "validator", "solved", "plan ms", "simplify ms", "valid us (n)", "invalid us (n)",
                        "raw plans collide", "simplified collide");
     for (const std::string& name : groups()) {
-      for (int v = 0; v < kValidators; ++v) out += tableRow(name, v);
+      for (int v = 0; v < kPlanningValidators; ++v) out += tableRow(name, v);
     }
     if (left_out_) out += fmt::format("\n{} problems left out: their start or goal touches something\n", left_out_);
     return out + "\ncollide: seen by FCL in steps 100 times finer than OMPL's default / contact proven by fcl_artic\n";
@@ -114,12 +115,13 @@ class Bench {
         "us,"
         "invalid_motions,invalid_median_us,invalid_mean_us,raw_collides_sampled,raw_collides_proven,"
         "simplified_collides_sampled,simplified_collides_proven\n";
-    for (const Outcome& o : outcomes_) {
-      out += fmt::format(
-          "{},{},{},{},\"{}\",{:d},{:.4f},{:.4f},{},{:.3f},{:.3f},{},{:.3f},{:.3f},{:d},{:d},{:d},{:d}\n",
-          options_.robot, o.environment, o.problem, o.seed, kNames[o.validator], o.solved, o.plan_ms, o.simplify_ms,
-          o.valid_us.size(), median(o.valid_us), mean(o.valid_us), o.invalid_us.size(), median(o.invalid_us),
-          mean(o.invalid_us), o.raw_sampled, o.raw_proven, o.simplified_sampled, o.simplified_proven);
+    for (const PlanningOutcome& o : outcomes_) {
+      out +=
+          fmt::format("{},{},{},{},\"{}\",{:d},{:.4f},{:.4f},{},{:.3f},{:.3f},{},{:.3f},{:.3f},{:d},{:d},{:d},{:d}\n",
+                      options_.robot, o.environment, o.problem, o.seed, kPlanningNames[o.validator], o.solved,
+                      o.plan_ms, o.simplify_ms, o.valid_us.size(), median(o.valid_us), mean(o.valid_us),
+                      o.invalid_us.size(), median(o.invalid_us), mean(o.invalid_us), o.raw_sampled, o.raw_proven,
+                      o.simplified_sampled, o.simplified_proven);
     }
     return out;
   }
@@ -127,8 +129,8 @@ class Bench {
   std::string plot() const {
     const auto chart = [&](const std::string& title, const std::string& label, bool logarithmic, const auto& value) {
       BarChart out{title, label, logarithmic, groups(), {}};
-      for (int v = 0; v < kValidators; ++v) {
-        out.series.push_back({kNames[v], {}});
+      for (int v = 0; v < kPlanningValidators; ++v) {
+        out.series.push_back({kPlanningNames[v], {}});
         for (const std::string& name : out.groups) out.series.back().values.push_back(value(sumOf(name, v)));
       }
       return out;
@@ -174,18 +176,18 @@ class Bench {
       return;
     }
     FclStateCheck check(robot_, problem.scene);
-    const ob::SpaceInformationPtr spaces[kValidators] = {discreteOverFcl(robot_, environment, problem, kResolutions[0]),
-                                                         discreteOverFcl(robot_, environment, problem, kResolutions[1]),
-                                                         ours.si};
-    std::shared_ptr<TimedMotionValidator> timed[kValidators];
-    for (int v = 0; v < kValidators; ++v) timed[v] = TimedMotionValidator::wrap(spaces[v]);
+    const ob::SpaceInformationPtr spaces[kPlanningValidators] = {
+        discreteOverFcl(robot_, environment, problem, kResolutions[0]),
+        discreteOverFcl(robot_, environment, problem, kResolutions[1]), ours.si};
+    std::shared_ptr<TimedMotionValidator> timed[kPlanningValidators];
+    for (int v = 0; v < kPlanningValidators; ++v) timed[v] = TimedMotionValidator::wrap(spaces[v]);
     for (int seed = 1; seed <= options_.seeds; ++seed) {
-      for (int v = 0; v < kValidators; ++v) {
+      for (int v = 0; v < kPlanningValidators; ++v) {
         timed[v]->valid_us.clear();
         timed[v]->invalid_us.clear();
         const Plans plans = plan(spaces[v], ours, problem.start, problem.goal, static_cast<unsigned>(seed),
                                  options_.seconds, options_.range);
-        Outcome o;
+        PlanningOutcome o;
         o.environment = environment.name;
         o.problem = problem.index;
         o.seed = seed;
@@ -250,7 +252,7 @@ class Bench {
 
   Sum sumOf(const std::string& environment, int validator) const {
     Sum sum;
-    for (const Outcome& o : outcomes_) {
+    for (const PlanningOutcome& o : outcomes_) {
       if (o.validator != validator || (environment != "ALL" && o.environment != environment)) continue;
       ++sum.runs;
       sum.solved += o.solved;
@@ -272,7 +274,7 @@ class Bench {
     const Sum s = sumOf(environment, validator);
     const auto cost = [](const std::vector<double>& us) { return fmt::format("{:.2f} ({})", median(us), us.size()); };
     return fmt::format("{:<{}}{:<17}{:>8}{:>10.2f}{:>12.2f}{:>19}{:>19}{:>22}{:>22}\n", environment, nameWidth(),
-                       kNames[validator], fmt::format("{}/{}", s.solved, s.runs), s.plan_ms, s.simplify_ms,
+                       kPlanningNames[validator], fmt::format("{}/{}", s.solved, s.runs), s.plan_ms, s.simplify_ms,
                        cost(s.valid_us), cost(s.invalid_us), fmt::format("{} / {}", s.raw_sampled, s.raw_proven),
                        fmt::format("{} / {}", s.simplified_sampled, s.simplified_proven));
   }
@@ -281,7 +283,7 @@ class Bench {
   fs::path data_;
   Robot robot_;
   std::vector<Environment> environments_;
-  std::vector<Outcome> outcomes_;
+  std::vector<PlanningOutcome> outcomes_;
   int left_out_ = 0;  ///< problems whose start or goal touches something
   Example example_;
 };
@@ -300,7 +302,7 @@ bool hasPictures() {
 int benchPlanning(const PlanningBenchOptions& options) {
   const fs::path out = options.out;
   if (!options.out.empty()) fs::create_directories(out);
-  Bench bench(options);
+  PlanningBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());
   if (!options.out.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "rigid_bench.h"
+#include "bench/rigid_bench.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,7 +12,7 @@
 #include <boost/property_tree/ini_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 
-#include "averages.h"
+#include "bench/averages.h"
 #include "exit_status.h"
 #include "fcl_artic/ompl/planning_setup.h"
 #include "fcl_artic/urdf/urdf.h"
@@ -28,11 +28,11 @@ namespace ob = ompl::base;
 using namespace planning_data;
 using planning::PlanningSetup;
 
-enum Validator { kDiscrete, kAdvancement, kOurs, kValidators };
-constexpr const char* kNames[kValidators] = {"FCL, OMPL's 1 %", "FCL, as OMPL.app", "fcl_artic"};
+enum Validator { kDiscrete, kAdvancement, kRigidOurs, kRigidValidators };
+constexpr const char* kRigidNames[kRigidValidators] = {"FCL, OMPL's 1 %", "FCL, as OMPL.app", "fcl_artic"};
 
 /// A body's way to be planned.
-struct Task {
+struct PlanningTask {
   std::string name;
   std::shared_ptr<fcl::CollisionGeometryd> body;
   Scene scene;
@@ -83,7 +83,7 @@ Scene readSurroundings(const fs::path& path) {
 
 /// Reads the section [problem] of a problem of OMPL.app: meshes beside the file, start and goal as a position and a
 /// turn about an axis, bounds of the position.
-Task readTask(const std::string& path) {
+PlanningTask readTask(const std::string& path) {
   boost::property_tree::ptree tree;
   try {
     boost::property_tree::read_ini(path, tree);
@@ -112,7 +112,7 @@ Task readTask(const std::string& path) {
     const Eigen::Quaterniond q(Eigen::AngleAxisd(number(key + ".theta"), axis.normalized()));
     return std::vector<double>{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
   };
-  Task task;
+  PlanningTask task;
   task.name = text("name");
   task.start = pose("start");
   task.goal = pose("goal");
@@ -129,7 +129,7 @@ fcl::Transform3d toPose(const std::vector<double>& values) {
          Eigen::Quaterniond(values[6], values[3], values[4], values[5]).normalized();
 }
 
-bool touches(const Task& task, const std::vector<double>& values) {
+bool touches(const PlanningTask& task, const std::vector<double>& values) {
   const fcl::Transform3d pose = toPose(values);
   return std::any_of(task.scene.obstacles.begin(), task.scene.obstacles.end(), [&](const Scene::Obstacle& obstacle) {
     fcl::CollisionResultd result;
@@ -141,19 +141,19 @@ bool touches(const Task& task, const std::vector<double>& values) {
 /// FCL's static test of a state.
 class FclState : public ob::StateValidityChecker {
  public:
-  FclState(const ob::SpaceInformationPtr& si, PlanningSetup setup, const Task& task)
+  FclState(const ob::SpaceInformationPtr& si, PlanningSetup setup, const PlanningTask& task)
       : StateValidityChecker(si), setup_(std::move(setup)), task_(task) {}
   bool isValid(const ob::State* state) const override { return !touches(task_, setup_.values(state)); }
 
  private:
   PlanningSetup setup_;  ///< for the values of states
-  const Task& task_;
+  const PlanningTask& task_;
 };
 
 /// FCL's continuous collision by conservative advancement along a screw, with the numbers that OMPL.app asks with.
 class FclAdvancement : public ob::MotionValidator {
  public:
-  FclAdvancement(const ob::SpaceInformationPtr& si, PlanningSetup setup, const Task& task)
+  FclAdvancement(const ob::SpaceInformationPtr& si, PlanningSetup setup, const PlanningTask& task)
       : MotionValidator(si), setup_(std::move(setup)), task_(task) {}
   bool checkMotion(const ob::State* s1, const ob::State* s2) const override {
     double time = 1;
@@ -185,10 +185,10 @@ class FclAdvancement : public ob::MotionValidator {
   }
 
   PlanningSetup setup_;
-  const Task& task_;
+  const PlanningTask& task_;
 };
 
-struct Outcome {
+struct RigidOutcome {
   std::string task;
   int validator = 0, seed = 0;
   bool solved = false, raw_collides = false, simplified_collides = false;
@@ -196,30 +196,31 @@ struct Outcome {
   std::vector<double> valid_us, invalid_us;
 };
 
-class Bench {
+class RigidBench {
  public:
-  explicit Bench(const RigidBenchOptions& options) : options_(options) {
+  explicit RigidBench(const RigidBenchOptions& options) : options_(options) {
     for (const std::string& path : options.problems) tasks_.push_back(readTask(path));
   }
 
   void run() {
     ProgressBar bar;
     int done = 0;
-    for (const Task& task : tasks_) {
+    for (const PlanningTask& task : tasks_) {
       if (touches(task, task.start)) throw std::runtime_error(task.name + ": the body touches at the start");
       if (touches(task, task.goal)) throw std::runtime_error(task.name + ": the body touches at the goal");
       for (int seed = 1; seed <= options_.seeds; ++seed) {
-        for (int v = 0; v < kValidators; ++v) {
+        for (int v = 0; v < kRigidValidators; ++v) {
           planWith(task, v, seed);
-          bar.show(static_cast<double>(++done) / (static_cast<double>(tasks_.size()) * options_.seeds * kValidators));
+          bar.show(static_cast<double>(++done) /
+                   (static_cast<double>(tasks_.size()) * options_.seeds * kRigidValidators));
         }
       }
     }
   }
 
   bool sound() const {
-    return std::none_of(outcomes_.begin(), outcomes_.end(), [](const Outcome& o) {
-      return o.validator == kOurs && (o.raw_collides || o.simplified_collides);
+    return std::none_of(outcomes_.begin(), outcomes_.end(), [](const RigidOutcome& o) {
+      return o.validator == kRigidOurs && (o.raw_collides || o.simplified_collides);
     });
   }
 
@@ -227,11 +228,11 @@ class Bench {
     std::string out = fmt::format("A mesh among meshes, RRTConnect, {} seeds each; times: medians\n\n", options_.seeds);
     out += fmt::format("{:<14}{:<18}{:>8}{:>10}{:>13}{:>18}{:>18}{:>14}{:>14}\n", "problem", "validator", "solved",
                        "plan ms", "simplify ms", "valid us (n)", "invalid us (n)", "raw collide", "simplified");
-    for (const Task& task : tasks_) {
-      for (int v = 0; v < kValidators; ++v) {
+    for (const PlanningTask& task : tasks_) {
+      for (int v = 0; v < kRigidValidators; ++v) {
         std::size_t asked = 0, solved = 0, raw = 0, simplified = 0;
         std::vector<double> plan, simplify, valid, invalid;
-        for (const Outcome& o : outcomes_) {
+        for (const RigidOutcome& o : outcomes_) {
           if (o.task != task.name || o.validator != v) continue;
           ++asked;
           valid.insert(valid.end(), o.valid_us.begin(), o.valid_us.end());
@@ -243,7 +244,7 @@ class Bench {
           plan.push_back(o.plan_ms);
           simplify.push_back(o.simplify_ms);
         }
-        out += fmt::format("{:<14}{:<18}{:>8}{:>10.0f}{:>13.0f}{:>18}{:>18}{:>14}{:>14}\n", task.name, kNames[v],
+        out += fmt::format("{:<14}{:<18}{:>8}{:>10.0f}{:>13.0f}{:>18}{:>18}{:>14}{:>14}\n", task.name, kRigidNames[v],
                            fmt::format("{} of {}", solved, asked), median(plan), median(simplify),
                            fmt::format("{:.1f} ({})", median(valid), valid.size()),
                            fmt::format("{:.1f} ({})", median(invalid), invalid.size()), raw, simplified);
@@ -258,19 +259,20 @@ class Bench {
     std::string out =
         "problem,validator,seed,solved,plan_ms,simplify_ms,valid_motions,valid_median_us,invalid_motions,"
         "invalid_median_us,raw_collides,simplified_collides\n";
-    for (const Outcome& o : outcomes_) {
-      out += fmt::format("{},\"{}\",{},{:d},{:.3f},{:.3f},{},{:.3f},{},{:.3f},{:d},{:d}\n", o.task, kNames[o.validator],
-                         o.seed, o.solved, o.plan_ms, o.simplify_ms, o.valid_us.size(), median(o.valid_us),
-                         o.invalid_us.size(), median(o.invalid_us), o.raw_collides, o.simplified_collides);
+    for (const RigidOutcome& o : outcomes_) {
+      out += fmt::format("{},\"{}\",{},{:d},{:.3f},{:.3f},{},{:.3f},{},{:.3f},{:d},{:d}\n", o.task,
+                         kRigidNames[o.validator], o.seed, o.solved, o.plan_ms, o.simplify_ms, o.valid_us.size(),
+                         median(o.valid_us), o.invalid_us.size(), median(o.invalid_us), o.raw_collides,
+                         o.simplified_collides);
     }
     return out;
   }
 
  private:
-  void planWith(const Task& task, int validator, int seed) {
+  void planWith(const PlanningTask& task, int validator, int seed) {
     const PlanningSetup ours = planning::setUpRigidBody(task.body, task.scene, task.options);
     ob::SpaceInformationPtr si = ours.si;
-    if (validator != kOurs) {
+    if (validator != kRigidOurs) {
       si = std::make_shared<ob::SpaceInformation>(ours.space);
       si->setStateValidityChecker(std::make_shared<FclState>(si, ours, task));
       if (validator == kAdvancement) si->setMotionValidator(std::make_shared<FclAdvancement>(si, ours, task));
@@ -278,7 +280,7 @@ class Bench {
     }
     const auto timed = TimedMotionValidator::wrap(si);
     const Plans made = plan(si, ours, task.start, task.goal, static_cast<unsigned>(seed), options_.seconds);
-    Outcome outcome;
+    RigidOutcome outcome;
     outcome.task = task.name;
     outcome.validator = validator;
     outcome.seed = seed;
@@ -298,14 +300,14 @@ class Bench {
   }
 
   const RigidBenchOptions& options_;
-  std::vector<Task> tasks_;
-  std::vector<Outcome> outcomes_;
+  std::vector<PlanningTask> tasks_;
+  std::vector<RigidOutcome> outcomes_;
 };
 
 }  // namespace
 
 int benchRigid(const RigidBenchOptions& options) {
-  Bench bench(options);
+  RigidBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());
   if (!options.csv.empty()) files::write(options.csv, bench.csv());

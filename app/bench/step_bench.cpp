@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "step_bench.h"
+#include "bench/step_bench.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 namespace fcl_artic::app {
-
-std::uint64_t Random::next() {
-  std::uint64_t z = state_ += 0x9e3779b97f4a7c15ull;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebull;
-  return z ^ z >> 31;
-}
 
 StepCosts measureSteps(const ArticulatedCollisionManager& manager, const std::vector<JointMotion>& motions,
                        CertifiedRequest request, int passes, bool contact, std::size_t& differ) {

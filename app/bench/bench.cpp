@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench.h"
+#include "bench/bench.h"
 
 #include <memory>
 
-#include "certify_bench.h"
-#include "planning_bench.h"
-#include "rigid_bench.h"
-#include "robot_bench.h"
-#include "table1.h"
+#include <CLI/CLI.hpp>
+
+#include "bench/certify_bench.h"
+#include "bench/planning_bench.h"
+#include "bench/rigid_bench.h"
+#include "bench/robot_bench.h"
+#include "bench/table1.h"
 
 namespace fcl_artic::app {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands in for the parts of the program that need OMPL, in builds without it.
+// What stands in for the benchmarks that need OMPL, in builds without it.
 #include <stdexcept>
 
-#include "certify_bench.h"
-#include "mend.h"
-#include "planning_bench.h"
-#include "rigid_bench.h"
+#include "bench/certify_bench.h"
+#include "bench/planning_bench.h"
+#include "bench/rigid_bench.h"
 
 namespace fcl_artic::app {
 
@@ -19,19 +18,6 @@ int benchCertify(const CertifyBenchOptions&) {
 
 int benchRigid(const RigidBenchOptions&) {
   throw std::runtime_error("bench rigid: this program was built without OMPL (component ompl)");
-}
-
-void requireMending() {
-  throw std::runtime_error(
-      "--mend: this program was built without OMPL, which finds the detours; install it (Debian: libompl-dev) and "
-      "build "
-      "again");
-}
-
-Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>&, const plans::PlanMotion&, plans::Turns,
-            const MendOptions&) {
-  requireMending();
-  return {};
 }
 
 }  // namespace fcl_artic::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot_bench.h"
+#include "bench/robot_bench.h"
 
 #include <unistd.h>
 
@@ -19,15 +19,18 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bars.h"
+#include "angles.h"
+#include "bench/bars.h"
+#include "bench/step_bench.h"
+#include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "planning/fcl_state_check.h"
 #include "progress.h"
 #include "random_motions.h"
-#include "step_bench.h"
 #include "usage.h"
 #include "visibility_options.h"
 #include "world.h"
@@ -38,12 +41,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using planning_data::CarriedObject;
 using planning_data::FclStateCheck;
-using Clock = std::chrono::steady_clock;
 
 constexpr double kResolution = 0.01;  // OMPL's default
 constexpr std::size_t kContradictionsShown = 10;
 
-struct Options {
+struct RobotBenchOptions {
   WorldOptions world;
   VisibilityChoice visibility;
   double angle = 5;  ///< degrees
@@ -193,7 +195,7 @@ class Asked {
 
 /// All that one run found out.
 struct Outcome {
-  const Options& options;
+  const RobotBenchOptions& options;
   const Asked& asked;
   DrawnMotions drawn;
   std::vector<TimedRow> rows;
@@ -372,7 +374,7 @@ std::string plotOf(const Outcome& o) {
                 chart("the slowest motion", 1)});
 }
 
-int run(const Options& options) {
+int benchRobot(const RobotBenchOptions& options) {
   if (options.no_fcl && options.only.find("FCL") != std::string::npos) {
     throw std::invalid_argument("--only '" + options.only + "' is a row of FCL's: leave --no-fcl out");
   }
@@ -414,8 +416,8 @@ int tellContradictions(const std::vector<Contradiction>& wrong,
 }
 
 void addRobotBench(CLI::App& bench, int& exit_status) {
-  auto options = std::make_shared<Options>();
-  Options& o = *options;
+  auto options = std::make_shared<RobotBenchOptions>();
+  RobotBenchOptions& o = *options;
   CLI::App* verb =
       bench.add_subcommand("robot", "What queries cost on one's own robot and scene, beside FCL's samples");
   verb->footer(
@@ -451,7 +453,7 @@ void addRobotBench(CLI::App& bench, int& exit_status) {
   verb->add_flag("--json", o.json, "Print all of it in JSON");
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->add_option("--svg", o.svg, "Draw the times")->type_name("FILE");
-  verb->callback([options, &exit_status] { exit_status = run(*options); });
+  verb->callback([options, &exit_status] { exit_status = benchRobot(*options); });
 }
 
 }  // namespace fcl_artic::app

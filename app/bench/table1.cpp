@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "table1.h"
+#include "bench/table1.h"
 
 #include <memory>
 #include <stdexcept>
@@ -7,15 +7,16 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-#include "bars.h"
+#include "bench/bars.h"
+#include "bench/pipe_steps.h"
+#include "bench/step_bench.h"
 #include "exit_status.h"
 #include "files/files.h"
-#include "pipe_steps.h"
 #include "progress.h"
 #include "redon_options.h"
 #include "render/picture.h"
-#include "step_bench.h"
 #include "usage.h"
 #include "visibility_options.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "certify_bench.h"
+#include "bench/certify_bench.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "averages.h"
+#include "bench/averages.h"
 #include "certification.h"
 #include "exit_status.h"
 #include "files/files.h"
@@ -20,10 +20,10 @@ namespace {
 
 using namespace planning_data;
 
-constexpr double kResolution = 0.01;  // OMPL's default, of the space's extent
-constexpr int kPasses = 3;            // of which the fastest counts
+constexpr double kCertifyResolution = 0.01;  // OMPL's default, of the space's extent
+constexpr int kPasses = 3;                   // of which the fastest counts
 
-struct Row {
+struct PlanRow {
   std::string environment;
   int problem = 0, seed = 0;
   std::size_t waypoints = 0;
@@ -35,10 +35,10 @@ struct Row {
   std::string not_mended;
 };
 
-class Bench {
+class CertifyBench {
  public:
-  explicit Bench(const CertifyBenchOptions& options)
-      : options_(options), robot_(readRobot(options.data, options.robot)) {}
+  explicit CertifyBench(const CertifyBenchOptions& options)
+      : options_(options), robot_(planning_data::readRobot(options.data, options.robot)) {}
 
   void run() {
     std::vector<CertifiedPlan> given;
@@ -73,7 +73,7 @@ class Bench {
   /// No plan certified free is seen to collide.
   bool sound() const {
     return std::none_of(rows_.begin(), rows_.end(),
-                        [](const Row& r) { return (r.sampled && r.verdict == Status::free) || r.mended_sampled; });
+                        [](const PlanRow& r) { return (r.sampled && r.verdict == Status::free) || r.mended_sampled; });
   }
 
   std::string table() const {
@@ -86,7 +86,7 @@ class Bench {
         "environment", nameWidth(), "plans", "sampling", "certify", "missed", "median us", "slowest us", "mended",
         "median ms", "deviation", "longer", "hidden");
     std::vector<std::string> names;
-    for (const Row& row : rows_) {
+    for (const PlanRow& row : rows_) {
       if (std::find(names.begin(), names.end(), row.environment) == names.end()) names.push_back(row.environment);
     }
     if (names.size() > 1) names.emplace_back("ALL");
@@ -103,7 +103,7 @@ class Bench {
     std::string out =
         "robot,environment,problem,seed,waypoints,sampled,verdict,us,mended,mended_sampled,mend_ms,deviation,length_"
         "ratio,not_mended\n";
-    for (const Row& r : rows_) {
+    for (const PlanRow& r : rows_) {
       out += fmt::format("{},{},{},{},{},{:d},{},{:.3f},{:d},{:d},{:.3f},{:.6g},{:.6g},\"{}\"\n", options_.robot,
                          r.environment, r.problem, r.seed, r.waypoints, r.sampled, toString(r.verdict), r.us, r.mended,
                          r.mended_sampled, r.mend_ms, r.deviation, r.length_ratio, r.not_mended);
@@ -114,7 +114,7 @@ class Bench {
  private:
   void planAndLook(const Environment& environment, const Problem& problem) {
     const planning::PlanningSetup ours = setUp(robot_, environment, problem);
-    const auto theirs = discreteOverFcl(robot_, environment, problem, kResolution);
+    const auto theirs = discreteOverFcl(robot_, environment, problem, kCertifyResolution);
     for (int seed = 1; seed <= options_.seeds; ++seed) {
       const Plans made = plan(theirs, ours, problem.start, problem.goal, static_cast<unsigned>(seed), options_.seconds,
                               options_.range);
@@ -163,7 +163,7 @@ class Bench {
       if (!one.error.empty()) throw std::runtime_error(fmt::format("{}: {}", one.title(), one.error));
       if (pass > 0) one.us = std::min(one.us, least);
     }
-    Row row;
+    PlanRow row;
     row.environment = environment.name;
     row.problem = problem.index;
     row.seed = seed;
@@ -189,14 +189,14 @@ class Bench {
 
   std::size_t nameWidth() const {
     std::size_t width = 17;
-    for (const Row& row : rows_) width = std::max(width, row.environment.size());
+    for (const PlanRow& row : rows_) width = std::max(width, row.environment.size());
     return width + 1;
   }
 
   std::string tableRow(const std::string& environment) const {
     std::size_t plans = 0, sampled = 0, touching = 0, missed = 0, mended = 0, hidden = 0;
     std::vector<double> us, ms, deviation, longer;
-    for (const Row& r : rows_) {
+    for (const PlanRow& r : rows_) {
       if (environment != "ALL" && r.environment != environment) continue;
       ++plans;
       sampled += r.sampled;
@@ -218,13 +218,13 @@ class Bench {
 
   const CertifyBenchOptions& options_;
   Robot robot_;
-  std::vector<Row> rows_;
+  std::vector<PlanRow> rows_;
 };
 
 }  // namespace
 
 int benchCertify(const CertifyBenchOptions& options) {
-  Bench bench(options);
+  CertifyBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());
   if (!options.csv.empty()) files::write(options.csv, bench.csv());

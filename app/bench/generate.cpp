@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "generate.h"
+#include "bench/generate.h"
 
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "edges/generate_edges.h"
 #include "exit_status.h"

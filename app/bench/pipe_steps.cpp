@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pipe_steps.h"
+#include "bench/pipe_steps.h"
 
 #include <filesystem>
 #include <random>
@@ -9,8 +9,9 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
+#include "angles.h"
+#include "bench/step_bench.h"
 #include "generator.h"
-#include "step_bench.h"
 #include "usage.h"
 
 namespace fcl_artic::app {

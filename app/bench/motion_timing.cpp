@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion_timing.h"
+#include "bench/motion_timing.h"
 
 #include <algorithm>
 #include <chrono>

@@ -9,13 +9,14 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
-#include "bars.h"
+#include "angles.h"
+#include "bench/bars.h"
+#include "bench/step_bench.h"
+#include "bench/table1.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "generator.h"
 #include "redon_options.h"
-#include "step_bench.h"
-#include "table1.h"
 
 namespace fcl_artic::app {
 namespace {

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "cli_app.h"
+
+namespace fcl_artic::app {
+
+/// Adds the verb `certify` of many edges: with --edges or --merge.
+/// @param[out] exit_status  set when it runs.
+void addCertifyEdges(CLI::App& program, int& exit_status);
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What verbs say about the joints of plans and edges, in the group "Plans".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "plans/motion.h"
+
+namespace fcl_artic::app {
+
+struct PlanVariables {
+  std::vector<std::string> joints;  ///< of plans without names, in their order
+  std::vector<std::string> state;   ///< NAME=VALUE, of joints that plans do not name
+  std::string turns = "ask";
+  bool ignore_limits = false;
+};
+
+/// Adds --turns, --joints, --state and --ignore-limits.
+void addPlanVariables(CLI::App& verb, PlanVariables& options);
+
+plans::Turns turnsOf(const PlanVariables& options);
+
+}  // namespace fcl_artic::app
