@@ -65,6 +65,13 @@ int CertifiedPlan::exitStatus() const {
 
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
                                      const std::optional<plans::Format>& format) {
+  std::error_code none;
+  for (const std::string& path : paths) {
+    if (format || fs::is_directory(path, none) || plans::hasPlanEnding(path)) continue;
+    throw std::invalid_argument(fmt::format(
+        "'{}' is no plan by its ending: if it is one, --format says what it is; each scene has a --scene of its own",
+        path));
+  }
   std::vector<CertifiedPlan> out;
   for (const std::string& path : paths) {
     for (const std::string& file : filesOf(path)) readFile(tree, file, format, out);

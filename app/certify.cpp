@@ -18,6 +18,7 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "plan_variables.h"
 #include "plans/write.h"
 #include "query_options.h"
@@ -86,6 +87,15 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
 int runCertify(CertifyVerb& o) {
   if (o.mend) requireMending();
   if (!o.out.empty()) (void)plans::formatOf(o.out);
+  std::vector<std::string> inputs = inputsOf(o.world);
+  inputs.insert(inputs.end(), o.plans.begin(), o.plans.end());
+  std::string certificate_world = o.certificate.empty() ? "" : CertificateFile(o.certificate).worldPath();
+  removeEarlierOutputs({{"--out", &o.out},
+                        {"--csv", &o.csv},
+                        {"--certificate", &o.certificate},
+                        {"--certificate's world", &certificate_world},
+                        {"--auto-srdf", &o.world.auto_srdf}},
+                       inputs);
   World world(o.world);
   world.readRobot();
   const bool check_allowed = !o.world.robot.srdf.empty() && o.certify.request.check_self;

@@ -19,6 +19,7 @@
 #include "fcl_artic/fcl_artic.h"
 #include "files/files.h"
 #include "lines.h"
+#include "outputs.h"
 #include "progress.h"
 #include "query_options.h"
 #include "redon_options.h"
@@ -100,9 +101,20 @@ void writePage(const std::string& file, const World& world, const ArticulatedCol
   files::write(file, htmlPage(report, bodies, measureDistances(manager, motion, measured)));
 }
 
-int runCheck(const CheckVerb& options) {
+int runCheck(CheckVerb& options) {
   if (!options.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
+  std::vector<std::string> inputs = inputsOf(options.world);
+  for (const std::string& file : {options.trajectory, options.lines}) {
+    if (!file.empty()) inputs.push_back(file);
+  }
+  std::string certificate_world = options.certificate.empty() ? "" : CertificateFile(options.certificate).worldPath();
+  removeEarlierOutputs({{"--image", &options.image},
+                        {"--html", &options.html},
+                        {"--certificate", &options.certificate},
+                        {"--certificate's world", &certificate_world},
+                        {"--auto-srdf", &options.world.auto_srdf}},
+                       inputs);
   World world(options.world);
   world.readRobot();
   const bool check_allowed = !options.world.robot.srdf.empty() && options.request.check_self;

@@ -82,6 +82,7 @@ void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
       ->type_name("FILE");
   verb.add_option("--package", o.packages, "Folder that package://NAME/ stands for; may be repeated")
       ->check(requirePackage)
+      ->allow_extra_args(false)
       ->group(kWorldGroup)
       ->type_name("NAME=DIR");
 }

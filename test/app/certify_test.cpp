@@ -184,10 +184,68 @@ TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
   EXPECT_EQ(certify("/nowhere.csv").status, 2);
   const Outcome unknown = certifyFile("way.plan", "hinge,rail\n0,0\n0.5,0\n");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_NE(unknown.out.find("--format says what it is"), std::string::npos) << unknown.out;
+  EXPECT_NE(unknown.err.find("--format says what it is"), std::string::npos) << unknown.err;
   EXPECT_EQ(certifyFile("way.plan", "hinge,rail\n0,0\n0.5,0\n", "--format csv").status, 0);
   EXPECT_EQ(certify("- --format csv <" + write("in", "hinge,rail\n0,0\n0.5,0\n")).status, 0);
   EXPECT_EQ(run("certify --robot " + arm() + " --scene " + ball() + " " + path("folder/b.csv")).status, 0);
+}
+
+/// A second scene after one --scene is no plan, and must not be left out of the scene.
+TEST_F(CertifyProgramTest, WhatIsNoPlanStopsTheRun) {
+  const std::string plan = write("way.csv", "hinge,rail\n0,0\n0.5,0\n"), second = write("wall.obj", "v 0 0 0\n");
+  const std::string out = path("safe.csv");
+  const Outcome two =
+      run("certify " + plan + " --robot " + arm() + " --scene " + ball() + " " + second + " --out " + out);
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.err.find("wall.obj' is no plan by its ending"), std::string::npos) << two.err;
+  EXPECT_EQ(two.out, "");
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const Outcome check = run("check --robot " + arm() + " --scene " + ball() + " " + second + " --from 0,0 --to 0.5,0");
+  EXPECT_EQ(check.status, 2) << check.out;
+}
+
+/// What this run did not write was written by no run: a plan that collides is not left under the name of a free one.
+TEST_F(CertifyProgramTest, FilesOfEarlierRunsAreNotLeft) {
+  const std::string free = "hinge,rail\n0,0\n0.5,0\n", touching = "hinge,rail\n0,0\n1.5,0\n";
+  const std::string out = path("safe.csv"), csv = path("rows.csv"), proof = path("proof.fac");
+  const std::string outputs = " --out " + out + " --csv " + csv + " --certificate " + proof;
+  const auto exist = [&](const std::string& file) { return std::filesystem::exists(file); };
+  EXPECT_EQ(certifyFile("free.csv", free, outputs).status, 0);
+  EXPECT_TRUE(exist(out) && exist(csv) && exist(proof) && exist(proof + ".world"));
+  EXPECT_EQ(certifyFile("touching.csv", touching, outputs).status, 1);
+  EXPECT_FALSE(exist(out));
+  EXPECT_TRUE(exist(csv));
+  EXPECT_EQ(certifyFile("free.csv", free, outputs).status, 0);
+  EXPECT_TRUE(exist(out));
+  // A run that ends with an error leaves nothing either.
+  EXPECT_EQ(certifyFile("free.csv", free, outputs + " --state elbow=1").status, 2);
+  EXPECT_FALSE(exist(out) || exist(csv) || exist(proof) || exist(proof + ".world"));
+  // A link stays one.
+  std::filesystem::create_symlink(path("target.csv"), path("link.csv"));
+  write("target.csv", free);
+  EXPECT_EQ(certifyFile("free.csv", free, " --out " + path("link.csv")).status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.csv")));
+  EXPECT_TRUE(exist(path("target.csv")));
+  EXPECT_EQ(certifyFile("touching.csv", touching, " --out " + path("link.csv")).status, 1);
+  EXPECT_FALSE(exist(path("target.csv")));
+}
+
+TEST_F(CertifyProgramTest, OutputsAreNoInputs) {
+  const std::string plan = "hinge,rail\n0,0\n0.5,0\n", file = write("way.csv", plan);
+  for (const std::string& more : {" --out " + file, " --csv " + file,
+                                  " --out " + path("x.csv") + " --csv " + path("x.csv"), " --certificate " + ball()}) {
+    const Outcome run = certify(file, more);
+    EXPECT_EQ(run.status, 2) << more;
+    EXPECT_TRUE(run.err.find("is a file that this run reads") != std::string::npos ||
+                run.err.find("name one file") != std::string::npos)
+        << run.err;
+    EXPECT_EQ(read(file), plan);
+    EXPECT_TRUE(std::filesystem::exists(ball()));
+  }
+  // Of a folder of plans, too.
+  write("folder/way.csv", plan);
+  EXPECT_EQ(certify(path("folder"), " --out " + path("folder/way.csv")).status, 2);
+  EXPECT_EQ(read(path("folder/way.csv")), plan);
 }
 
 TEST_F(CertifyProgramTest, OtherJointsAndCarriedObjectsAreAskedFor) {
