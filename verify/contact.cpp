@@ -113,8 +113,8 @@ bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backw
 /// Whether each part of A's surface, or each piece of another geometry, has a point outside of the solid B.
 void checkOutside(const World& world, Poses& poses, int a, int b, const Span& span, Budget& budget) {
   const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
-  if (!B.solid || A.unbounded()) return;  // what is without bounds is not inside of what has them
-  if (!B.closed) throw NotProven("SOLID needs a closed surface, and that of " + world.describe(b) + " is not closed");
+  // What is without bounds is not inside of what has them. (B's surface is closed: readWorld() has seen to it.)
+  if (!B.solid || A.unbounded()) return;
   const Relative toB(world, poses, span, a, b);
   // A point is tried along six half-lines; of a mesh several points are, for corners and edges may be met exactly.
   const auto outside = [&](const Vec& p) {

@@ -239,6 +239,8 @@ void readGeometry(Lines& lines, Geometry& g) {
   }
   if (g.kind == Geometry::boxes) rows(list("cells", 24), 6, g.cells);
   g.prepare();
+  if (g.solid && !g.joinSurfaces())
+    lines.fail("the surface of this 'mesh solid' is not closed, or its triangles do not face the same way");
 }
 
 void readElement(Lines& lines, std::string_view kind, std::size_t variables, Frame& frame) {
@@ -469,7 +471,8 @@ World readWorldText(std::string_view text) {
   }
   const auto solid = [](const Geometry& g) { return g.solid; };
   if (std::any_of(world.geometries.begin(), world.geometries.end(), solid))
-    for (Geometry& g : world.geometries) g.joinSurfaces();
+    for (Geometry& g : world.geometries)
+      if (!g.solid) g.joinSurfaces();
   derivePairs(world);
   return world;
 }

@@ -303,16 +303,53 @@ TEST(VerifyProof, SolidAroundTheMovingOne) {
   }
 }
 
-TEST(VerifyProof, AnOpenSolidIsRefused) {
-  const std::string open =
-      meshText({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, true);
-  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
-                                hex(1) + " " + hex(0) + "\n" + open + "geometry sphere " + hex(0.1) +
-                                "\nbody obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(kHere) + "\n");
-  const MotionText m = moving({2, 1});
-  expectVerified(judge(world, m.write(world), sep({1, 0, 0})));
-  expectRefused(judge(world, m.write(world), "\x14" + others({sep({1, 0, 0}), sep({1, 0, 0}), sep({1, 0, 0})})),
-                "not closed");
+// Where the world is read: nothing later asks again.
+TEST(VerifyStatement, AnOpenSolidIsRefused) {
+  const std::vector<V> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const auto bodies = [](const std::string& mesh, const std::string& other) {
+    return kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+           hex(0) + "\n" + mesh + other + "body obstacle o 0 1 " + hex(kHere) + "\nbody link l 1 0 " + hex(kHere) +
+           "\n";
+  };
+  const std::string ball = "geometry sphere " + hex(0.1) + "\n";
+  const auto isRead = [&](const std::vector<std::array<int, 3>>& triangles, const std::string& other) {
+    EXPECT_NO_THROW(readWorld(bodies(meshText(corners, triangles, false), other)));  // as a surface
+    try {
+      readWorld(bodies(meshText(corners, triangles, true), other));
+      return true;
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()).find("not closed"), std::string::npos) << error.what();
+      return false;
+    }
+  };
+  EXPECT_TRUE(isRead({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, ball));
+  EXPECT_TRUE(isRead({{0, 2, 1}, {0, 1, 2}}, ball));                         // a plate with two sides
+  EXPECT_FALSE(isRead({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, ball));             // a face is missing
+  EXPECT_FALSE(isRead({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 3, 2}}, ball));  // a face is turned round
+  EXPECT_FALSE(isRead({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}}, "geometry plane " + hex(V{1, 0, 0}) + " " + hex(9) + "\n"));
+}
+
+// Two plates, x = -1 and x = 1, that are no solid; the plane x = 0 between them meets neither. A box, whose inside
+// meets the plane, has its faces cut apart so, too.
+TEST(VerifyProof, NoPlaneGoesThroughASolid) {
+  const auto world = [](const std::string& mesh) {
+    return kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " +
+           hex(0) + "\n" + mesh + "geometry plane " + hex(V{1, 0, 0}) + " " + hex(0) + "\nbody obstacle o 0 1 " +
+           hex(kHere) + "\nbody link l 1 0 " + hex(kHere) + "\n";
+  };
+  const std::string plates = meshText({{-1, -9, -9}, {-1, 9, -9}, {-1, 0, 9}, {1, -9, -9}, {1, 9, -9}, {1, 0, 9}},
+                                      {{0, 2, 1}, {3, 4, 5}}, true);
+  const MotionText m = moving({0, 0.5});
+  try {
+    const World open = readWorld(world(plates));
+    EXPECT_FALSE(judge(open, m.write(open), "\x14" + cutNode(kOwn, 1, "\x0a", "\x09")).verified);
+  } catch (const BadInput& error) {
+    EXPECT_NE(std::string(error.what()).find("not closed"), std::string::npos) << error.what();
+  }
+  const World two =
+      readWorld(world(meshText({{-1, -9, -9}, {-1, 9, -9}, {-1, 0, 9}, {1, -9, -9}, {1, 9, -9}, {1, 0, 9}},
+                               {{0, 2, 1}, {0, 1, 2}, {3, 4, 5}, {3, 5, 4}}, true)));  // each plate has two sides
+  expectVerified(judge(two, m.write(two), "\x14" + cutNode(kOwn, 2, "\x0a", "\x09")));
 }
 
 TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {

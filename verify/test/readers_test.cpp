@@ -65,7 +65,7 @@ std::string goodWorld() {
          hex(0.1) + "\nframe empty 3 " + hex(M{}) + "\ngeometry box " + hex(V{1, 0.5, 0.25}) + "\ngeometry cylinder " +
          hex(0.1) + " " + hex(0.7) + "\n" +
          meshText({{0, 0, 0}, {s * 1, 0, 0}, {0, s * 2.5, 0}, {0, 0, s * 7}}, {{1, 2, 0}, {0, 3, 1}}, false) +
-         meshText({{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, true) + "geometry sphere " +
+         meshText({{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, false) + "geometry sphere " +
          hex(0.05) + "\nbody link base 1 0 " + hex(M{}) + "\nbody link arm 2 2 " + hex(M{}) + "\nbody link arm 2 1 " +
          hex(fromRpy(0.3, -0.2, 1, {0.1, 0, 0})) + "\nbody link hand 3 3 " + hex(M{}) + "\nbody link finger 4 4 " +
          hex(M{}) + "\nunchecked allowed base hand\nunchecked neighbours base arm\n";
