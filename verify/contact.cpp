@@ -276,7 +276,7 @@ void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& b
   checkOutside(world, poses, b, a, {t, t}, budget);
 }
 
-std::string checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
+Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
   bytes.byte();
   const std::uint32_t piece = bytes.varint(), first = bytes.varint(), second = bytes.varint();
   const std::uint64_t bits = bytes.little(8);
@@ -344,7 +344,7 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     throw NotProven("the witness does not show that " + world.describe(a) + " and " + world.describe(b) + " meet");
   char text[64];
   std::snprintf(text, sizeof text, " at t = %.17g of piece %u", t, piece);
-  return world.describe(a) + " and " + world.describe(b) + text;
+  return {kind == 4, world.describe(a) + " and " + world.describe(b) + text};
 }
 
 }  // namespace verify

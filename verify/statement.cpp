@@ -2,6 +2,7 @@
 #include "statement.h"
 
 #include <algorithm>
+#include <set>
 
 namespace verify {
 namespace {
@@ -300,6 +301,25 @@ bool areNeighbours(const World& world, const std::vector<char>& links, const Bod
   return !links[f] || f == a.frame || f == b.frame;
 }
 
+/// Lines that say nothing: who wrote them meant something else.
+void refuseUnused(const World& world, const std::set<std::pair<int, int>>& used_pairs) {
+  std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
+  for (const Body& body : world.bodies) {
+    there[static_cast<std::size_t>(body.name_id)] = 1;
+    used[static_cast<std::size_t>(body.geometry)] = 1;
+  }
+  for (std::size_t k = 0; k < there.size(); ++k)
+    if (!there[k])
+      throw BadInput("world: 'margin' or 'unchecked' names " + quoted(world.names[k]) + ": no body is called so");
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
+  for (const auto& [pair, reason] : world.unchecked)
+    if (used_pairs.count(pair) == 0)
+      throw BadInput("world: 'unchecked' of " + quoted(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                     quoted(world.names[static_cast<std::size_t>(pair.second)]) +
+                     ": no two bodies of these names would be checked");
+}
+
 void derivePairs(World& world) {
   const std::size_t n = world.bodies.size();
   std::vector<char> links(world.frames.size(), 0);
@@ -308,6 +328,7 @@ void derivePairs(World& world) {
   world.partners.resize(n);
   std::vector<int> others;  // no obstacles
   std::uint64_t obstacles = 0, steps = 0;
+  std::set<std::pair<int, int>> used;  // pairs of names that are listed as unchecked
   for (std::size_t a = 0; a < n; ++a) {
     const Body& A = world.bodies[a];
     const bool obstacle = A.role == Role::obstacle;
@@ -319,12 +340,13 @@ void derivePairs(World& world) {
         ++world.not_checked[static_cast<int>(Reason::same_frame)];
       } else if (listed != world.unchecked.end()) {
         ++world.not_checked[static_cast<int>(listed->second)];
+        used.insert(listed->first);
         if (listed->second == Reason::neighbours && world.false_neighbours.empty() &&
             !areNeighbours(world, links, A, B, steps))
           world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
         if (listed->second == Reason::touch_link &&
             (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
-          throw BadInput("world: 'touch-link' of " + A.name + " and " + B.name +
+          throw BadInput("world: 'touch-link' of " + quoted(A.name) + " and " + quoted(B.name) +
                          ": it is for what a link carries, and a link");
       } else {
         world.partners[a].push_back({b, !obstacle && B.role != Role::obstacle});
@@ -338,6 +360,7 @@ void derivePairs(World& world) {
       others.push_back(static_cast<int>(a));
     }
   }
+  refuseUnused(world, used);
 }
 
 }  // namespace
@@ -350,6 +373,20 @@ const char* nameOf(Reason reason) {
 const char* nameOf(Role role) {
   static const char* const kNames[] = {"link", "carried", "obstacle"};
   return kNames[static_cast<int>(role)];
+}
+
+std::string quoted(std::string_view name) {
+  std::string text = "'";
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 || byte > 126 || c == '\'' || c == '\\') {
+      const char* const digits = "0123456789abcdef";
+      text += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+    } else {
+      text += c;
+    }
+  }
+  return text + "'";
 }
 
 Mat statedRotation(const double numbers[9]) {
@@ -378,7 +415,8 @@ double World::margin(int a, int b, double general) const {
 }
 
 std::string World::describe(int body) const {
-  return std::string(nameOf(bodies[body].role)) + " '" + bodies[body].name + "' (body " + std::to_string(body) + ")";
+  return std::string(nameOf(bodies[body].role)) + " " + quoted(bodies[body].name) + " (body " + std::to_string(body) +
+         ")";
 }
 
 namespace {
@@ -567,8 +605,30 @@ Motion readMotion(std::string_view text, const World& world) {
     return std::adjacent_find(list.begin(), list.end(),
                               [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
   };
-  for (Piece& piece : motion.pieces)
+  std::vector<char> moves(world.variables.size(), 0), turns(world.variables.size(), 0);
+  for (const Frame& frame : world.frames)
+    for (const Element& e : frame.elements) {
+      const auto v = static_cast<std::size_t>(e.variable);
+      for (std::size_t k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k) moves[v + k] = 1;
+      if (e.kind == Element::rotate) turns[v] = 1;
+    }
+  for (Piece& piece : motion.pieces) {
     if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");
+    for (const Polynomial& q : piece.polynomials)
+      if (!moves[static_cast<std::size_t>(q.variable)])
+        lines.fail("'q' of the variable " + std::to_string(q.variable) + ", which moves nothing");
+    for (const Orientation& o : piece.orientations)
+      if (!turns[static_cast<std::size_t>(o.variable)])
+        lines.fail("'orientation' of the variable " + std::to_string(o.variable) + ", which is not that of a 'rotate'");
+    for (const Ignored& i : piece.ignored) {
+      const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(i.b)];
+      const auto at =
+          std::lower_bound(list.begin(), list.end(), i.a, [](const Partner& p, int b) { return p.body < b; });
+      if (at == list.end() || at->body != i.a || !(at->self ? motion.self : motion.scene))
+        lines.fail("'ignored' of bodies " + std::to_string(i.a) + " and " + std::to_string(i.b) +
+                   ", which are not checked anyway");
+    }
+  }
   return motion;
 }
 

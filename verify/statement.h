@@ -34,6 +34,9 @@ enum class Reason { same_frame, obstacles, neighbours, allowed, touch_link, scop
 constexpr int kReasons = 7;
 const char* nameOf(Reason reason);
 const char* nameOf(Role role);
+/// A name in quotes, such that no name looks like another text: quotes, backslashes and what is no printing character
+/// as \xNN.
+std::string quoted(std::string_view name);
 
 struct Body {
   Role role;

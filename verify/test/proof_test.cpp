@@ -105,52 +105,54 @@ TEST(VerifyProof, UntilAndIgnored) {
   m.until = 1e-3;  // no number of 2^-64
   for (const double t : {1e-3, 1.0, 0.999e-3}) {
     m.ignored = "ignored 0 1 " + hex(t) + "\n";
-    EXPECT_EQ(judge(world, m.write(world), sep({-1, 0, 0})).verified, t >= m.until);
+    // Ignored to the end, nothing is checked: that is no proof either.
+    expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), t >= m.until ? "nothing is checked" : "apart");
   }
   m = moving({2.8, -2.8});
   m.ignored = "ignored 0 1 " + hex(0.4999) + "\n";
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
   m.ignored = "";
-  m.pieces = {"q 0 " + hex(0.0) + "\n", "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n"};
-  m.ignored = "ignored 0 1 " + hex(0.9) + "\n";  // of the first piece only
+  m.pieces = {"q 0 " + hex(0.0) + " " + hex(2.8) + "\n", "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n"};
+  m.ignored = "ignored 0 1 " + hex(1) + "\n";  // of the first piece only
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0}) + sep({-1, 0, 0})), "of piece 1");
 }
 
 TEST(VerifyProof, APairThatIsIgnoredToTheEndIsNotChecked) {
-  const World world = cart(2);
+  const World world = cart(2, "body obstacle far 0 0 " + hex(at(1000, 0, 0)) + "\n");  // one more pair, always checked
   const auto countsOf = [&](const MotionText& m, const std::string& proof) {
     const Verdict v = judge(world, m.write(world), proof);
     expectVerified(v);
     return std::array{v.checked, v.late, v.not_checked[static_cast<int>(Reason::ignored)]};
   };
   using Counts = std::array<std::uint64_t, 3>;
-  const std::string x = sep({-1, 0, 0}), whole = "ignored 0 1 " + hex(1) + "\n",
+  const std::string x = sep({-1, 0, 0}) + sep({1, 0, 0}), whole = "ignored 0 1 " + hex(1) + "\n",
                     part = "ignored 0 1 " + hex(0.5001) + "\n";
   MotionText m = moving({2.8, 0});
   m.ignored = whole;
-  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
+  EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 1}));
   m.ignored = whole + part;  // listed twice: once a pair
-  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
+  EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 1}));
   m.until = 0.5;
   m.ignored = part;
-  EXPECT_EQ(countsOf(m, x), (Counts{0, 0, 1}));
-  // Of two pieces in one, in both to the end, in both.
-  const std::string inside = "q 0 " + hex(2.8) + "\n", leaving = "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n";
+  EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 1}));
+  // Of two pieces in one, in both to the end, in both up to a time.
+  const std::string inside = "q 0 " + hex(2.8) + "\n", leaving = "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n",
+                    back = "q 0 " + hex(0) + " " + hex(2.8) + "\n";
   m = MotionText();
   m.pieces = {inside + whole, leaving + part};
-  EXPECT_EQ(countsOf(m, x + x), (Counts{1, 1, 0}));
+  EXPECT_EQ(countsOf(m, x + x), (Counts{2, 1, 0}));
   m.pieces = {inside + whole, inside + whole};
-  EXPECT_EQ(countsOf(m, x + x), (Counts{0, 0, 1}));
-  m.pieces = {leaving + part, leaving + part};
-  EXPECT_EQ(countsOf(m, x + x), (Counts{1, 1, 0}));
+  EXPECT_EQ(countsOf(m, x + x), (Counts{1, 0, 1}));
+  m.pieces = {leaving + part, back + whole, leaving + part};
+  EXPECT_EQ(countsOf(m, x + x + x), (Counts{2, 1, 0}));
   m.pieces = {"q 0 " + hex(0.0) + "\n"};
-  EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 0}));
+  EXPECT_EQ(countsOf(m, x), (Counts{2, 0, 0}));
 }
 
 TEST(VerifyProof, EveryRootOfEveryPieceIsThere) {
   const World world = cart(2);
   MotionText m = moving({0, 1});
-  m.pieces.push_back(m.pieces[0]);
+  m.pieces.push_back("q 0 " + hex(1) + " " + hex(-1) + "\n");
   const std::string good = sep({-1, 0, 0});
   expectVerified(judge(world, m.write(world), good + good));
   expectRefused(judge(world, m.write(world), good), "ends too early");
@@ -159,7 +161,7 @@ TEST(VerifyProof, EveryRootOfEveryPieceIsThere) {
   // `until` is of the last piece: the one before must be free to its end.
   m.until = 0.1;
   expectVerified(judge(world, m.write(world), good + good));
-  m.pieces[0] = "q 0 " + hex(0) + " " + hex(2) + "\n";
+  m.pieces = {"q 0 " + hex(0) + " " + hex(2) + "\n", "q 0 " + hex(2) + " " + hex(-20) + "\n"};
   expectRefused(judge(world, m.write(world), good + good), "of piece 0");
 }
 
@@ -387,7 +389,7 @@ TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
   expectVerified(verdict(chain("unchecked touch-link tool upper\n"), x + x + x));
   m.scope = "scene";
   v = verdict(chain(""), "");
-  expectVerified(v);
+  expectRefused(v, "nothing is checked");
   EXPECT_EQ(v.checked, 0u);
   EXPECT_EQ(v.not_checked[static_cast<int>(Reason::scope)], 5u);
 }
@@ -451,6 +453,88 @@ TEST(VerifyProof, BothPartsOfABodyAreShown) {
   for (const std::string& proof :
        {cutNode(kOwn, 1, left, left), cutNode(kOwn, 1, right, right), cutNode(kOwn, 1, right, left), left, right})
     EXPECT_FALSE(judge(world, m.write(world), proof).verified);
+}
+
+TEST(VerifyProof, NothingCheckedIsNoProof) {
+  const World world = cart(2);
+  MotionText m = moving({0, 1});
+  m.scope = "self";  // there is one link only
+  expectRefused(judge(world, m.write(world), ""), "nothing is checked");
+  const World empty = readWorld(kHead);
+  m.pieces = {""};
+  expectRefused(judge(empty, m.write(empty), ""), "nothing is checked");
+  const World allowed = cart(2, "unchecked allowed wall cart\n");
+  m = moving({0, 9});
+  expectRefused(judge(allowed, m.write(allowed), ""), "nothing is checked");
+  EXPECT_TRUE(splitRecords("").empty());  // which the program refuses
+}
+
+// From 0 to 1, then from 3 to 2: over a wall of thickness 0.2 at 2 that the box does not meet in either piece.
+TEST(VerifyProof, PiecesJoin) {
+  const World world = readWorld(
+      kHead + "variable x\nvariable w\nvariable w\nvariable w\nframe cart 0 " + hex(kHere) + "\nslide " +
+      hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) + "\nrotate 1\ngeometry sphere " + hex(0.25) + "\ngeometry box " +
+      hex(V{0.2, 4, 4}) + "\nbody obstacle wall 0 1 " + hex(at(2, 0, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n");
+  const auto verdict = [&](const std::vector<std::string>& pieces, const std::vector<V>& directions) {
+    MotionText m;
+    m.pieces = pieces;
+    std::string proof;
+    for (const V& n : directions) proof += sep(n);
+    return judge(world, m.write(world), proof);
+  };
+  const auto q = [](double a, double b) { return "q 0 " + hex(a) + " " + hex(b) + "\n"; };
+  expectVerified(verdict({q(0, 1), q(1, -1)}, {{-1, 0, 0}, {-1, 0, 0}}));
+  expectRefused(verdict({q(0, 1), q(3, 1)}, {{-1, 0, 0}, {1, 0, 0}}), "the motion jumps");
+  expectRefused(verdict({q(0, 1), ""}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps");
+  expectRefused(verdict({q(0, 1), q(1, 0), q(0.9, 0)}, {{-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}}), "piece 2");
+  // What rounding does is no jump, and is said; 4e-9 is one.
+  const Verdict v = verdict({q(0, 1), q(1 + 1e-10, 0)}, {{-1, 0, 0}, {-1, 0, 0}});
+  expectVerified(v);
+  EXPECT_NEAR(v.jump, 1e-10, 1e-15);
+  expectRefused(verdict({q(0, 1), q(1 + 4e-9, 0)}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps");
+  // Orientations: w and the orientation before it make one.
+  const std::string turned = "orientation 1 0x0p+0 -0x1p+0 0x0p+0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n",
+                    turning = "q 3 " + hex(0) + " " + hex(std::acos(0.0)) + "\n";
+  expectVerified(verdict({turning, turned}, {{-1, 0, 0}, {-1, 0, 0}}));
+  expectRefused(verdict({turning, turning}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps: the frame 'cart'");
+  expectRefused(verdict({turned, ""}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps: the frame 'cart'");
+}
+
+TEST(VerifyStatement, LinesThatSayNothingAreRefused) {
+  const std::string world = kHead + "variable x\nvariable idle\nframe cart 0 " + hex(kHere) + "\nslide " +
+                            hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) + "\ngeometry box " + hex(V{1, 1, 1}) +
+                            "\nbody obstacle wall 0 0 " + hex(at(9, 0, 0)) + "\nbody obstacle floor 0 0 " +
+                            hex(at(0, 9, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n";
+  const auto isRead = [](const std::string& text) {
+    try {
+      readWorld(text);
+      return true;
+    } catch (const BadInput&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(isRead(world + "margin cart 0x0p+0\nmargin cart wall 0x0p+0\nunchecked allowed wall cart\n"));
+  EXPECT_FALSE(isRead(world + "margin card 0x0p+0\n"));
+  EXPECT_FALSE(isRead(world + "margin cart wal 0x0p+0\n"));
+  EXPECT_FALSE(isRead(world + "unchecked allowed wall card\n"));
+  EXPECT_FALSE(isRead(world + "unchecked allowed wall floor\n"));
+  EXPECT_FALSE(isRead(world + "unchecked allowed cart cart\n"));
+  EXPECT_FALSE(isRead(world + "geometry sphere 0x1p+0\n"));
+  const World read = readWorld(world);
+  const auto motion = [&](const std::string& lines) {
+    MotionText m;
+    m.pieces = {lines};
+    try {
+      readMotion(m.write(read), read);
+      return true;
+    } catch (const BadInput&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(motion("q 0 0x1p+0\nignored 0 2 0x1p-1\n"));
+  EXPECT_FALSE(motion("q 1 0x1p+0\n"));
+  EXPECT_FALSE(motion("ignored 0 1 0x1p-1\n"));
+  EXPECT_FALSE(motion("orientation 0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n"));
 }
 
 TEST(VerifyProof, HostileProofs) {
