@@ -20,6 +20,8 @@ is claimed, and how it is proven.
 
   --urdf FILE      compare the world with a URDF: frames, joints, collision geometry (shapes, STL, OBJ)
   --package N=DIR  the folder of "package://N/" in the URDF
+  --solid-meshes   meshes of the URDF are meant as solids; without, as surfaces or solids
+  --solid LINK     those of this link are
   --srdf FILE      compare pairs that the world allows to touch with an SRDF
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
@@ -92,6 +94,7 @@ int main(int argc, char** argv) {
   verify::Options options;
   std::vector<const char*> files, urdf, srdf;
   std::map<std::string, std::string> packages;
+  verify::Solids solids;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     if (word == "--help") {
@@ -102,6 +105,10 @@ int main(int argc, char** argv) {
       return 0;
     } else if (word == "--json") {
       json = true;
+    } else if (word == "--solid-meshes") {
+      solids.all = true;
+    } else if (word == "--solid" && k + 1 < argc) {
+      solids.links.insert(argv[++k]);
     } else if (word == "--compare-only") {
       compare_only = true;
     } else if (word == "--quiet") {
@@ -143,7 +150,7 @@ int main(int argc, char** argv) {
       printer.comparison(path, comparison);
       same = same && comparison.differences.empty();
     };
-    for (const char* path : urdf) report(path, verify::compareWithUrdf(world, path, packages));
+    for (const char* path : urdf) report(path, verify::compareWithUrdf(world, path, packages, solids));
     for (const char* path : srdf) report(path, verify::compareWithSrdf(world, path));
     printer.world(files[0], world);
     for (std::size_t f = 1; f < files.size(); ++f) {

@@ -418,13 +418,13 @@ double largestJump(const World& world, const Motion& motion, Budget& budget) {
         rotates = rotates || e.kind == Element::rotate;
         if (e.kind == Element::rotate) continue;
         const Fix x = valueAt(before, e.variable, true), y = valueAt(after, e.variable, false);
-        jumps("the variable " + quoted(world.variables[static_cast<std::size_t>(e.variable)]), abs(x - y),
+        jumps("the variable " + inQuotes(world.variables[static_cast<std::size_t>(e.variable)]), abs(x - y),
               Fix{kOne >> 29} + shifted(verify::most(abs(x), abs(y)), 39));
       }
       if (!rotates) continue;
       const Mat R = end.local(frame, {Fix{kOne}, Fix{kOne}}).R, S = begin.local(frame, {Fix{0}, Fix{0}}).R;
       for (std::size_t c = 0; c < 9; ++c)
-        jumps("the frame " + quoted(world.frames[f].name), bound(R[c] - S[c]), Fix{kOne >> 27});
+        jumps("the frame " + inQuotes(world.frames[f].name), bound(R[c] - S[c]), Fix{kOne >> 27});
     }
   }
   return toDouble(largest);

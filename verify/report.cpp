@@ -37,10 +37,10 @@ std::string startOrGoal(const World& world, const Piece& piece, const double* un
       for (std::size_t k = until ? q.coefficients.size() : 1; k-- > 0;)
         value = value * (until ? *until : 0) + q.coefficients[k];
     }
-    line += (v > 0 ? ", " : " ") + quoted(world.variables[v]) + " " + decimal(value);
+    line += (v > 0 ? ", " : " ") + inQuotes(world.variables[v]) + " " + decimal(value);
   }
   for (const Orientation& o : piece.orientations) {
-    line += ", " + quoted(world.variables[static_cast<std::size_t>(o.variable)]) + " turns what is turned by";
+    line += ", " + inQuotes(world.variables[static_cast<std::size_t>(o.variable)]) + " turns what is turned by";
     for (const double x : o.numbers) line += " " + decimal(x);
   }
   return line;
@@ -57,32 +57,32 @@ std::vector<std::string> linesOf(const World& world) {
       if (body.role == role) ++names[body.name], ++count;
     std::vector<std::string> items;
     for (const auto& [name, n] : names)
-      items.push_back(quoted(name) + (n > 1 ? " (" + std::to_string(n) + " bodies)" : ""));
+      items.push_back(inQuotes(name) + (n > 1 ? " (" + std::to_string(n) + " bodies)" : ""));
     addList(lines, std::to_string(count) + (count == 1 ? " body" : " bodies") + " of role " + nameOf(role), items);
   }
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const Body& body = world.bodies[b];
     const int carrier = carrierOf(world, body.frame);
     const std::string who = world.describe(static_cast<int>(b));
-    const std::string frame = quoted(world.frames[static_cast<std::size_t>(body.frame)].name);
+    const std::string frame = inQuotes(world.frames[static_cast<std::size_t>(body.frame)].name);
     if (body.role == Role::obstacle && carrier > 0)
-      lines.push_back(who + " moves with the frame " + quoted(world.frames[static_cast<std::size_t>(carrier)].name));
+      lines.push_back(who + " moves with the frame " + inQuotes(world.frames[static_cast<std::size_t>(carrier)].name));
     if (body.role == Role::carried) lines.push_back(who + " is carried by the frame " + frame);
   }
   for (const Reason reason : {Reason::neighbours, Reason::allowed, Reason::touch_link}) {
     std::vector<std::string> pairs;
     for (const auto& [pair, why] : world.unchecked)
       if (why == reason)
-        pairs.push_back(quoted(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
-                        quoted(world.names[static_cast<std::size_t>(pair.second)]));
+        pairs.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                        inQuotes(world.names[static_cast<std::size_t>(pair.second)]));
     addList(lines, std::string("not checked, ") + nameOf(reason), pairs);
   }
   std::vector<std::string> margins;
   for (const auto& [name, margin] : world.margins)
-    margins.push_back(quoted(world.names[static_cast<std::size_t>(name)]) + " " + decimal(margin) + " m");
+    margins.push_back(inQuotes(world.names[static_cast<std::size_t>(name)]) + " " + decimal(margin) + " m");
   for (const auto& [pair, margin] : world.pair_margins)
-    margins.push_back(quoted(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
-                      quoted(world.names[static_cast<std::size_t>(pair.second)]) + " " + decimal(margin) + " m");
+    margins.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                      inQuotes(world.names[static_cast<std::size_t>(pair.second)]) + " " + decimal(margin) + " m");
   addList(lines, "margins of their own", margins);
   return lines;
 }

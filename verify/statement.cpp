@@ -258,7 +258,10 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
     e.offset = lines.number();
     Fix unit[3];
     unitVector(e.axis, unit);
-    for (int k = 0; k < 3; ++k) e.unit[k] = constant(unit[k], ulps(2));
+    const bool coordinate = isCoordinateAxis(e.axis);
+    for (int k = 0; k < 3; ++k)
+      e.unit[k] = coordinate ? constant(integer((e.axis[k] > 0) - (e.axis[k] < 0)))
+                             : constant(unit[k], ulps(2) + Fix{kOne >> kAxisBits});
     for (int k = 0; k < 9; ++k) e.products[k] = e.unit[k / 3] * e.unit[k % 3];
   }
   lines.end();
@@ -310,13 +313,13 @@ void refuseUnused(const World& world, const std::set<std::pair<int, int>>& used_
   }
   for (std::size_t k = 0; k < there.size(); ++k)
     if (!there[k])
-      throw BadInput("world: 'margin' or 'unchecked' names " + quoted(world.names[k]) + ": no body is called so");
+      throw BadInput("world: 'margin' or 'unchecked' names " + inQuotes(world.names[k]) + ": no body is called so");
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
   for (const auto& [pair, reason] : world.unchecked)
     if (used_pairs.count(pair) == 0)
-      throw BadInput("world: 'unchecked' of " + quoted(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
-                     quoted(world.names[static_cast<std::size_t>(pair.second)]) +
+      throw BadInput("world: 'unchecked' of " + inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                     inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
                      ": no two bodies of these names would be checked");
 }
 
@@ -346,7 +349,7 @@ void derivePairs(World& world) {
           world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
         if (listed->second == Reason::touch_link &&
             (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
-          throw BadInput("world: 'touch-link' of " + quoted(A.name) + " and " + quoted(B.name) +
+          throw BadInput("world: 'touch-link' of " + inQuotes(A.name) + " and " + inQuotes(B.name) +
                          ": it is for what a link carries, and a link");
       } else {
         world.partners[a].push_back({b, !obstacle && B.role != Role::obstacle});
@@ -375,7 +378,7 @@ const char* nameOf(Role role) {
   return kNames[static_cast<int>(role)];
 }
 
-std::string quoted(std::string_view name) {
+std::string inQuotes(std::string_view name) {
   std::string text = "'";
   for (const char c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -387,6 +390,10 @@ std::string quoted(std::string_view name) {
     }
   }
   return text + "'";
+}
+
+bool isCoordinateAxis(const double axis[3]) {
+  return (axis[0] != 0) + (axis[1] != 0) + (axis[2] != 0) == 1;
 }
 
 Mat statedRotation(const double numbers[9]) {
@@ -415,7 +422,7 @@ double World::margin(int a, int b, double general) const {
 }
 
 std::string World::describe(int body) const {
-  return std::string(nameOf(bodies[body].role)) + " " + quoted(bodies[body].name) + " (body " + std::to_string(body) +
+  return std::string(nameOf(bodies[body].role)) + " " + inQuotes(bodies[body].name) + " (body " + std::to_string(body) +
          ")";
 }
 

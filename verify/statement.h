@@ -13,11 +13,14 @@
 
 namespace verify {
 
+/// Axes that are no coordinate axis may be off what they mean by 2^-kAxisBits in each entry.
+constexpr int kAxisBits = 50;
+
 struct Element {
   enum Kind { turn, slide, rotate } kind;
   int variable;
   double axis[3], multiplier, offset;
-  Vec unit;  // turn and slide: the unit axis
+  Vec unit;  // turn and slide: every unit axis that is meant
   Mat products;
 };
 
@@ -36,7 +39,7 @@ const char* nameOf(Reason reason);
 const char* nameOf(Role role);
 /// A name in quotes, such that no name looks like another text: quotes, backslashes and what is no printing character
 /// as \xNN.
-std::string quoted(std::string_view name);
+std::string inQuotes(std::string_view name);
 
 struct Body {
   Role role;
@@ -105,6 +108,8 @@ struct Motion {
 World readWorld(std::string_view text);
 Motion readMotion(std::string_view text, const World& world);
 
+/// Whether two of three numbers are 0: such an axis is meant exactly.
+bool isCoordinateAxis(const double axis[3]);
 /// Numbers of a rotation (by rows) and a translation as the statement means them: any rotation whose entries are within
 /// 2^-49 of the numbers, exactly that translation.
 Mat statedRotation(const double numbers[9]);

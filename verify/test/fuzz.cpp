@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../meshes.h"
 #include "../readers.h"
 #include "../report.h"
 #include "worlds.h"
