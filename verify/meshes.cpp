@@ -265,7 +265,9 @@ Edge edgeOf(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return edge;
 }
 
-/// Whether what a triangle without area covers is edges, or a corner, of the mesh.
+/// Whether what triangles without area cover is edges, or corners, of the mesh: the longest edge of each, or both other
+/// ones, are edges of the mesh, or of such a triangle that has been found to be covered. Each step may be off by 2^-47
+/// of a length, so no more than 16 follow one after the other.
 bool areEdgesOf(const std::vector<Triangle>& missing, const std::vector<Triangle>& mesh) {
   std::vector<Edge> edges;
   for (const Triangle& t : mesh) {
@@ -276,16 +278,34 @@ bool areEdgesOf(const std::vector<Triangle>& missing, const std::vector<Triangle
     }
   }
   std::sort(edges.begin(), edges.end());
-  const auto has = [&](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return std::binary_search(edges.begin(), edges.end(), edgeOf(a, b));
+  std::map<Edge, int> more;  // and how many steps they are away
+  constexpr int kMostSteps = 16, kNone = 1000;
+  const auto steps = [&](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    const Edge edge = edgeOf(a, b);
+    if (std::binary_search(edges.begin(), edges.end(), edge)) return 0;
+    const auto found = more.find(edge);
+    return found == more.end() ? kNone : found->second;
   };
-  return std::all_of(missing.begin(), missing.end(), [&](const Triangle& t) {
-    std::size_t k = 0;
-    if (!hasNoArea(t, k)) return false;
-    const Corners c = cornersOf(t);
-    const auto &apex = c.x[k], &a = c.x[(k + 1) % 3], &b = c.x[(k + 2) % 3];
-    return has(a, b) || (has(a, apex) && has(apex, b));
-  });
+  std::vector<Triangle> open = missing;
+  for (int pass = 0; pass < kMostSteps && !open.empty(); ++pass) {
+    std::vector<Triangle> left;
+    for (const Triangle& t : open) {
+      std::size_t k = 0;
+      if (!hasNoArea(t, k)) return false;
+      const Corners c = cornersOf(t);
+      const auto &apex = c.x[k], &a = c.x[(k + 1) % 3], &b = c.x[(k + 2) % 3];
+      const int n = std::min(steps(a, b), std::max(steps(a, apex), steps(apex, b))) + 1;
+      if (n > kMostSteps) {
+        left.push_back(t);
+        continue;
+      }
+      for (const auto& [x, y] : {std::pair(a, b), std::pair(a, apex), std::pair(apex, b)})
+        if (steps(x, y) > n) more[edgeOf(x, y)] = n;
+    }
+    if (left.size() == open.size()) return false;
+    open = std::move(left);
+  }
+  return open.empty();
 }
 
 }  // namespace
@@ -298,6 +318,7 @@ MeshFile readMesh(const std::string& path) {
   try {
     MeshFile mesh = ending == ".stl" ? readStl(readFile(path)) : readObj(readFile(path));
     if (mesh.ends.empty()) throw BadInput("it has no faces");
+    mesh.text_stl = ending == ".stl" && !isBinaryStl(readFile(path));
     return mesh;
   } catch (const BadInput& error) {
     throw BadInput("'" + path + "' is not compared: " + error.what());
@@ -397,7 +418,7 @@ bool MeshComparison::cut(const File& file, const Sorted& mesh, bool solid, std::
 }
 
 bool MeshComparison::same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,
-                          std::size_t& missing) {
+                          std::size_t& missing, bool& text_stl) {
   const auto [entry, is_new] = meshes_.try_emplace(number);
   if (is_new) {
     std::vector<Triangle> triangles;
@@ -410,6 +431,7 @@ bool MeshComparison::same(const Geometry& mesh, int number, const std::string& p
   const auto [answer, unknown] = known_.try_emplace({number, &file});
   if (unknown) answer->second.first = compare(mesh, entry->second, file, answer->second.second);
   missing = answer->second.second;
+  text_stl = file.faces.text_stl;
   return answer->second.first;
 }
 

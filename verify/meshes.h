@@ -18,6 +18,7 @@ struct MeshFile {
   std::vector<double> points;          // three each
   std::vector<std::uint32_t> corners;  // of all faces, one after the other
   std::vector<std::size_t> ends;       // of each face, in `corners`
+  bool text_stl = false;
 };
 /// STL (binary or text; each number as the nearest float) or OBJ (as the nearest double). @throws BadInput
 MeshFile readMesh(const std::string& path);
@@ -31,10 +32,10 @@ class MeshComparison {
  public:
   /// Whether the world's mesh is the file with its coordinates multiplied. Each triangle of either is one of the other,
   /// with the same orientation and as often; a face of more than three corners is cut into triangles at its corners. Of
-  /// a surface, a triangle without area may be missing whose longest edge, or both other ones, are edges of the mesh.
+  /// a surface, triangles without area may be missing that lie on edges of the mesh.
   /// @param missing  set to how many are.
   bool same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,
-            std::size_t& missing);
+            std::size_t& missing, bool& text_stl);
 
  private:
   struct Sorted {

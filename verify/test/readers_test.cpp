@@ -167,18 +167,36 @@ TEST_F(VerifyReaders, TextStl) {
 }
 
 TEST_F(VerifyReaders, AnStlThatIsBothIsRefused) {
-  const std::string text = "solid" + std::string(70, ' ') + "\n" + facet("0 0 0", "1 0 0", "0 1 0");
-  // Padded so that bytes 80 to 83 say how many times 50 bytes follow 84.
-  std::string both = text.substr(0, 76) + "    " + std::string("\x0a\x20\x20\x20", 4);
-  EXPECT_EQ(both.size(), 84u);
-  std::string binary = "solid" + std::string(75, ' ') + little(1, 4) + std::string(50, '\0');
-  EXPECT_NO_THROW(readMesh(write("solid_head.stl", binary)));  // only its head says text
+  // Its first line goes on over the count of a binary file, and blanks at its end make it as long as that says.
+  const auto file = [](std::uint32_t count, std::size_t longer) {
+    std::string text =
+        "solid" + std::string(75, ' ') + little(count, 4) + "\n" + facet("0 0 0", "1 0 0", "0 1 0") + "endsolid\n";
+    EXPECT_LT(text.size(), 84 + 50 * count);
+    text.resize(84 + 50 * count + longer, ' ');
+    return text;
+  };
+  EXPECT_THROW(readMesh(write("both.stl", file(4, 0))), BadInput);
+  EXPECT_EQ(readMesh(write("text.stl", file(4, 1))).ends.size(), 1u);
+  const std::string binary = "solid" + std::string(75, ' ') + little(1, 4) + std::string(50, '\0');
+  EXPECT_EQ(readMesh(write("binary.stl", binary)).ends.size(), 1u);  // only its head says text
   EXPECT_THROW(readMesh(write("longer.stl", binary + "x")), BadInput);
   EXPECT_THROW(readMesh(write("shorter.stl", binary.substr(0, 133))), BadInput);
-  // 0x20202020 triangles are 27 GB; a count of printing characters that is small has leading control characters, which
-  // a text's blanks are: \t, \n, \r are 9, 10, 13, and the higher bytes would have to be blanks, too.
-  const std::uint32_t least = 0x09090909;
-  EXPECT_GT(84 + 50 * static_cast<std::uint64_t>(least), std::uint64_t{7} << 30);
+}
+
+TEST_F(VerifyReaders, SurfacesAreNoSolids) {
+  writeMeshes([&](const std::string& name, const std::string& text) { return write(name, text); });
+  const std::string urdf = write("robot.urdf", kUrdf);
+  const std::map<std::string, std::string> packages{{"elsewhere", folder_ + "/deep"}};
+  const World world = readWorld(goodWorld());  // its meshes are surfaces
+  Solids solids;
+  EXPECT_TRUE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
+  solids.links = {"base"};  // has no mesh
+  EXPECT_TRUE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
+  solids.links = {"hand"};
+  EXPECT_FALSE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
+  solids.links.clear();
+  solids.all = true;
+  EXPECT_FALSE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
 }
 
 TEST_F(VerifyReaders, Obj) {

@@ -258,6 +258,13 @@ TEST_F(VerifyMeshes, FacesOfManyCorners) {
   EXPECT_EQ(saidOf(meshText(square, {{0, 2, 3}, {0, 3, 4}, {0, 1, 2}}, false), "s.obj", five), "same");
   const std::vector<V> rest{square[0], square[2], square[3], square[4]};
   EXPECT_EQ(saidOf(meshText(rest, {{0, 1, 2}, {0, 2, 3}}, false), "s.obj", five), "same");
+  // Of a fan along an edge of many corners each triangle lies on the edge of the next one.
+  std::vector<V> comb;
+  std::string face = "f";
+  for (int k = 0; k < 12; ++k) comb.push_back({0.1 * k, 0, 0}), face += " " + std::to_string(k + 1);
+  comb.push_back({0, 1, 0});
+  EXPECT_EQ(saidOf(meshText({comb[0], comb[11], comb[12]}, {{0, 1, 2}}, false), "c.obj", obj(comb, face + " 13\n")),
+            "same");
   EXPECT_NE(saidOf(meshText(rest, {{0, 1, 2}}, false), "s.obj", five), "same");
 }
 
