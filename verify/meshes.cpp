@@ -325,6 +325,10 @@ MeshFile readMesh(const std::string& path) {
   }
 }
 
+MeshComparison::MeshComparison(const World& world) {
+  for (const Geometry& g : world.geometries) steps_left_ += 20 * g.triangles.size();
+}
+
 void MeshComparison::spend(std::uint64_t steps) {
   if (steps > steps_left_) throw BadInput("the meshes are not compared: it would be too much work");
   steps_left_ -= steps;

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sha256.h"
-#include "support.h"
+#include "statement.h"
 
 namespace verify {
 
@@ -30,6 +29,7 @@ using Triangle = std::array<double, 9>;
 /// Compares geometries with mesh files: each is read and put in order once.
 class MeshComparison {
  public:
+  explicit MeshComparison(const World& world);
   /// Whether the world's mesh is the file with its coordinates multiplied. Each triangle of either is one of the other,
   /// with the same orientation and as often; a face of more than three corners is cut into triangles at its corners. Of
   /// a surface, triangles without area may be missing that lie on edges of the mesh.
@@ -59,7 +59,7 @@ class MeshComparison {
   void spend(std::uint64_t steps);
 
   std::map<std::pair<int, const File*>, std::pair<bool, std::size_t>> known_;
-  std::uint64_t steps_left_ = 300000000;  // corners that are read, put in order or cut off
+  std::uint64_t steps_left_ = 8000000;  // corners that are read, put in order or cut off; more of a large world
 };
 
 }  // namespace verify

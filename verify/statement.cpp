@@ -268,40 +268,50 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
-bool moves(const World& world, int frame) {
-  return !world.frames[frame].elements.empty();
-}
+/// What of each frame counts for neighbours, found once.
+struct FrameFacts {
+  bool moves;  // has elements
+  bool free;   // and moves freely on what stands still
+  bool still;  // neither this frame nor one above it moves
+  bool link;   // a body of role link is in it
+};
 
-bool movesFreely(const World& world, int frame) {
-  int slides = 0, first = -1;
-  bool after = false;
-  for (const Element& e : world.frames[frame].elements) {
-    if (e.kind == Element::slide) {
-      if (first < 0 || e.variable != first) ++slides;
-      first = e.variable;
+std::vector<FrameFacts> factsOf(const World& world) {
+  std::vector<FrameFacts> facts;
+  for (const Frame& frame : world.frames) {  // parents first
+    const bool on_still = facts.empty() || facts[static_cast<std::size_t>(frame.parent)].still;
+    int slides = 0, first = -1;
+    bool after = false;
+    for (const Element& e : frame.elements) {
+      if (e.kind == Element::slide) {
+        if (first < 0 || e.variable != first) ++slides;
+        first = e.variable;
+      }
+      after = after || (e.kind == Element::rotate && slides > 0);
     }
-    after = after || (e.kind == Element::rotate && slides > 0);
+    const bool moves = !frame.elements.empty();
+    facts.push_back({moves, on_still && (slides > 1 || after), on_still && !moves, false});
   }
-  if (slides < 2 && !after) return false;
-  for (int f = world.frames[frame].parent; f > 0; f = world.frames[f].parent)
-    if (moves(world, f)) return false;
-  return true;
+  for (const Body& body : world.bodies)
+    if (body.role == Role::link) facts[static_cast<std::size_t>(body.frame)].link = true;
+  return facts;
 }
 
-/// See "Pairs" in doc/CERTIFICATES.md. @param links  per frame: whether a body of role link is in it.
-bool areNeighbours(const World& world, const std::vector<char>& links, const Body& a, const Body& b,
+/// See "Pairs" in doc/CERTIFICATES.md.
+bool areNeighbours(const World& world, const std::vector<FrameFacts>& facts, const Body& a, const Body& b,
                    std::uint64_t& steps) {
   if (a.role != Role::link || b.role != Role::link) return false;
   int moving = 0, f = a.frame, g = b.frame;
   while (f != g) {  // a parent's number is below the frame's own: the larger one is not the common ancestor
     int& up = f > g ? f : g;
+    const FrameFacts& at = facts[static_cast<std::size_t>(up)];
     ++steps;
-    if (moves(world, up) && ++moving > 1) return false;
-    if (movesFreely(world, up)) return false;
-    if (links[up] && up != a.frame && up != b.frame) return false;
-    up = world.frames[up].parent;
+    if (at.moves && ++moving > 1) return false;
+    if (at.free) return false;
+    if (at.link && up != a.frame && up != b.frame) return false;
+    up = world.frames[static_cast<std::size_t>(up)].parent;
   }
-  return !links[f] || f == a.frame || f == b.frame;
+  return !facts[static_cast<std::size_t>(f)].link || f == a.frame || f == b.frame;
 }
 
 /// Lines that say nothing: who wrote them meant something else.
@@ -325,9 +335,7 @@ void refuseUnused(const World& world, const std::set<std::pair<int, int>>& used_
 
 void derivePairs(World& world) {
   const std::size_t n = world.bodies.size();
-  std::vector<char> links(world.frames.size(), 0);
-  for (const Body& body : world.bodies)
-    if (body.role == Role::link) links[body.frame] = 1;
+  const std::vector<FrameFacts> facts = factsOf(world);
   world.partners.resize(n);
   std::vector<int> others;  // no obstacles
   std::uint64_t obstacles = 0, steps = 0;
@@ -345,7 +353,7 @@ void derivePairs(World& world) {
         ++world.not_checked[static_cast<int>(listed->second)];
         used.insert(listed->first);
         if (listed->second == Reason::neighbours && world.false_neighbours.empty() &&
-            !areNeighbours(world, links, A, B, steps))
+            !areNeighbours(world, facts, A, B, steps))
           world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
         if (listed->second == Reason::touch_link &&
             (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
@@ -514,6 +522,14 @@ World readWorldText(std::string_view text) {
     }
     lines.end();
   }
+  world.moves.assign(world.variables.size(), 0);
+  world.turns = world.moves;
+  for (const Frame& frame : world.frames)
+    for (const Element& e : frame.elements) {
+      const auto v = static_cast<std::size_t>(e.variable);
+      for (std::size_t k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k) world.moves[v + k] = 1;
+      if (e.kind == Element::rotate) world.turns[v] = 1;
+    }
   const auto solid = [](const Geometry& g) { return g.solid; };
   if (std::any_of(world.geometries.begin(), world.geometries.end(), solid))
     for (Geometry& g : world.geometries)
@@ -612,20 +628,13 @@ Motion readMotion(std::string_view text, const World& world) {
     return std::adjacent_find(list.begin(), list.end(),
                               [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
   };
-  std::vector<char> moves(world.variables.size(), 0), turns(world.variables.size(), 0);
-  for (const Frame& frame : world.frames)
-    for (const Element& e : frame.elements) {
-      const auto v = static_cast<std::size_t>(e.variable);
-      for (std::size_t k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k) moves[v + k] = 1;
-      if (e.kind == Element::rotate) turns[v] = 1;
-    }
   for (Piece& piece : motion.pieces) {
     if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");
     for (const Polynomial& q : piece.polynomials)
-      if (!moves[static_cast<std::size_t>(q.variable)])
+      if (!world.moves[static_cast<std::size_t>(q.variable)])
         lines.fail("'q' of the variable " + std::to_string(q.variable) + ", which moves nothing");
     for (const Orientation& o : piece.orientations)
-      if (!turns[static_cast<std::size_t>(o.variable)])
+      if (!world.turns[static_cast<std::size_t>(o.variable)])
         lines.fail("'orientation' of the variable " + std::to_string(o.variable) + ", which is not that of a 'rotate'");
     for (const Ignored& i : piece.ignored) {
       const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(i.b)];

@@ -70,6 +70,7 @@ struct World {
   std::map<std::pair<int, int>, double> pair_margins;
   std::map<std::pair<int, int>, Reason> unchecked;
   // Derived:
+  std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
   std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
   std::uint64_t not_checked[kReasons] = {};
   std::string false_neighbours;  // a pair that the world calls neighbours, and that are not; empty: none

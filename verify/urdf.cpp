@@ -91,33 +91,37 @@ class Robot {
   bool has(const std::string& link) const { return link_of_.count(link) > 0; }
 
   /// What drives a joint of one variable: its own, or what it follows in the end. A chain's multipliers and offsets are
-  /// put together in doubles, as `m1 (m2 q + c2) + c1 = (m1 m2) q + (m1 c2 + c1)`. @param still  set where the joint at
-  /// the end is fixed: then it stands at `offset`.
-  Driver driverOf(const Joint& joint, bool& still) const {
-    Driver driver{joint.name, 1, 0};
-    const Joint* at = &joint;
-    std::vector<Driver> chain;  // from the joint to the one at the end
-    while (at->mimics) {
-      const auto next = joint_of_.find(at->mimic.variable);
+  /// put together in doubles, as `m1 (m2 q + c2) + c1 = (m1 m2) q + (m1 c2 + c1)`. Where the joint at the end is fixed,
+  /// it stands at `offset`.
+  struct Driven {
+    Driver driver;
+    bool still = false;
+  };
+  const Driven& drivenBy(std::size_t joint) {
+    std::vector<std::size_t> chain;  // of joints that mimic, and of which it is not known yet
+    std::size_t at = joint;
+    while (joints[at].mimics && known_.count(at) == 0) {
+      const Joint& j = joints[at];
+      chain.push_back(at);
+      if (chain.size() > joints.size()) throw BadInput("URDF: joint " + inQuotes(j.name) + " mimics itself in the end");
+      const auto next = joint_of_.find(j.mimic.variable);
       if (next == joint_of_.end())
-        throw BadInput("URDF: joint " + inQuotes(at->name) + " mimics " + inQuotes(at->mimic.variable) +
+        throw BadInput("URDF: joint " + inQuotes(j.name) + " mimics " + inQuotes(j.mimic.variable) +
                        ", which is not there");
-      chain.push_back(at->mimic);
-      if (chain.size() > joints.size())
-        throw BadInput("URDF: joint " + inQuotes(joint.name) + " mimics itself in the end");
-      at = &joints[next->second];
+      at = next->second;
     }
-    if (at->type == "planar" || at->type == "floating")
-      throw BadInput("URDF: joint " + inQuotes(joint.name) + " mimics one of several variables");
-    still = at->type == "fixed" && !chain.empty();
-    driver.variable = at->name;
+    if (!chain.empty() && (joints[at].type == "planar" || joints[at].type == "floating"))
+      throw BadInput("URDF: joint " + inQuotes(joints[joint].name) + " mimics one of several variables");
+    Driven driven = known_.try_emplace(at, Driven{{joints[at].name, 1, 0}, joints[at].type == "fixed"}).first->second;
     for (std::size_t k = chain.size(); k-- > 0;) {  // doubles, each rounded
-      const volatile double product = chain[k].multiplier * driver.multiplier,
-                            moved = chain[k].multiplier * driver.offset;
-      driver.multiplier = k + 1 == chain.size() ? chain[k].multiplier : product;
-      driver.offset = k + 1 == chain.size() ? chain[k].offset : moved + chain[k].offset;
+      const Driver& mimic = joints[chain[k]].mimic;
+      const volatile double product = mimic.multiplier * driven.driver.multiplier,
+                            moved = mimic.multiplier * driven.driver.offset;
+      driven.driver.multiplier = product;
+      driven.driver.offset = moved + mimic.offset;
+      known_[chain[k]] = driven;
     }
-    return driver;
+    return known_.at(joint);
   }
 
  private:
@@ -229,6 +233,7 @@ class Robot {
   const std::filesystem::path folder_;
   const std::map<std::string, std::string>& packages_;
   std::map<std::string, std::size_t> link_of_, joint_of_;
+  std::map<std::size_t, Driven> known_;
 };
 
 // ---- and the world
@@ -274,8 +279,8 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
 
 class UrdfComparison {
  public:
-  UrdfComparison(const World& world, const Robot& robot, const Solids& solids)
-      : world_(world), robot_(robot), solids_(solids) {}
+  UrdfComparison(const World& world, Robot& robot, const Solids& solids)
+      : world_(world), robot_(robot), solids_(solids), meshes_(world) {}
 
   Comparison run() {
     for (std::size_t v = 0; v < world_.variables.size(); ++v)
@@ -288,7 +293,7 @@ class UrdfComparison {
       if (world_.bodies[b].role == Role::link)
         bodies_[static_cast<std::size_t>(world_.bodies[b].frame)].push_back(static_cast<int>(b));
     for (const Link& link : robot_.links) frameOf(link.name);
-    for (const Joint& j : robot_.joints) joint(j);
+    for (std::size_t j = 0; j < robot_.joints.size(); ++j) joint(j);
     for (const Link& l : robot_.links) link(l);
     nothingLeft();
     root();
@@ -318,7 +323,8 @@ class UrdfComparison {
     return -1;
   }
 
-  void joint(const Joint& j) {
+  void joint(std::size_t number) {
+    const Joint& j = robot_.joints[number];
     const int parent = frameOf(j.parent), child = frameOf(j.child);
     if (parent < 0 || child < 0) return;
     const Frame& frame = world_.frames[static_cast<std::size_t>(child)];
@@ -344,11 +350,10 @@ class UrdfComparison {
             "joint " + inQuotes(j.name) +
             " is planar: its x and y are those of its frame, turned the shortest way that takes z to the axis");
     } else if (j.type != "fixed") {
-      bool still = false;
-      const Driver driver = robot_.driverOf(j, still);
-      if (!still)
-        steps = {{j.type == "prismatic" ? Element::slide : Element::turn, j.axis, driver}};
-      else if (driver.offset != 0)
+      const Robot::Driven& driven = robot_.drivenBy(number);
+      if (!driven.still)
+        steps = {{j.type == "prismatic" ? Element::slide : Element::turn, j.axis, driven.driver}};
+      else if (driven.driver.offset != 0)
         return wrong("it mimics a fixed joint and stands at another place than 0: that is not compared");
     }
     if (frame.elements.size() != steps.size()) return wrong("another kind of motion");
@@ -478,7 +483,7 @@ class UrdfComparison {
   }
 
   const World& world_;
-  const Robot& robot_;
+  Robot& robot_;
   const Solids& solids_;
   std::map<std::string, std::vector<int>> frames_;  // of the robot's links
   std::map<std::string, int> variable_of_;
@@ -501,7 +506,7 @@ std::string readFile(const std::string& path) {
 
 Comparison compareWithUrdf(const World& world, const std::string& path,
                            const std::map<std::string, std::string>& packages, const Solids& solids) {
-  const Robot robot(path, packages);
+  Robot robot(path, packages);
   return UrdfComparison(world, robot, solids).run();
 }
 

@@ -2,6 +2,8 @@
 // True claims are proven, false ones never: hand-made worlds of which the truth is known.
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "worlds.h"
 
 namespace verify::test {
@@ -535,6 +537,38 @@ TEST(VerifyStatement, LinesThatSayNothingAreRefused) {
   EXPECT_FALSE(motion("q 1 0x1p+0\n"));
   EXPECT_FALSE(motion("ignored 0 1 0x1p-1\n"));
   EXPECT_FALSE(motion("orientation 0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n"));
+}
+
+// 1,000 by 1,000 pairs of neighbours below a frame of 3,000 elements: once each pair looked at each element.
+TEST(VerifyStatement, NeighboursOfAWorldTakeNoTime) {
+  std::string text = kHead + "variable x\nframe f 0 " + hex(kHere) + "\n";
+  for (int k = 0; k < 3000; ++k) text += "slide " + hex(V{1, 0, 0}) + " 0 " + hex(1) + " " + hex(0) + "\n";
+  text += "geometry sphere " + hex(0.1) + "\n";
+  for (int k = 0; k < 1000; ++k) text += "body link a 0 0 " + hex(kHere) + "\nbody link b 1 0 " + hex(kHere) + "\n";
+  const auto begin = std::chrono::steady_clock::now();
+  const World world = readWorld(text + "unchecked neighbours a b\n");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 4);  // 0.1 s; was 10 s
+  EXPECT_EQ(world.false_neighbours, "");
+  EXPECT_EQ(world.not_checked[static_cast<int>(Reason::neighbours)], 1000000u);
+}
+
+// In steps of 20 ns or so, as measured: the limit of work is one of time.
+TEST(VerifyMotion, PosesAreChargedForWhatTheyCost) {
+  const auto steps = [](const std::string& element, double size) {
+    const World world = readWorld(kHead + "variable a\nvariable b\nvariable c\nframe f 0 " + hex(kHere) + "\n" +
+                                  element + "geometry sphere " + hex(1) + "\nbody link l 1 0 " + hex(kHere) + "\n");
+    const MotionText m = moving({size, 1});
+    const Motion motion = readMotion(m.write(world), world);
+    Budget budget{1000000};
+    Poses(world, motion.pieces[0], budget).local(1, {Fix{0}, Fix{kOne}});
+    return 1000000 - budget.left;
+  };
+  const std::string ones = " " + hex(V{1, 1, 1}) + " 0 " + hex(1) + " " + hex(0) + "\n";
+  EXPECT_GE(steps("slide" + ones, 1), 100u);
+  EXPECT_GE(steps("turn" + ones, 1), 300u);
+  EXPECT_GE(steps("rotate 0\n", 1), 1000u);
+  EXPECT_LE(steps("rotate 0\n", 1), 2000u);
+  EXPECT_GE(steps("rotate 0\n", 3e5), 4000u);  // halved 15 times
 }
 
 TEST(VerifyProof, HostileProofs) {

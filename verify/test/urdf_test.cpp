@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whose robot a proof is about: worlds that are not the file's to the last digit, and files that are not read in full.
+#include <chrono>
 #include <cmath>
 
 #include "files.h"
@@ -281,6 +282,50 @@ TEST_F(VerifyMeshes, WhatHasNoAreaIsNotLost) {
   // A sliver of 2^-41 of its length: it has an area.
   const std::vector<V> sliver{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, std::ldexp(1, -41)}};
   EXPECT_NE(saidOf(mesh, "f.obj", obj(sliver, "f 1 2 3\nf 1 4 2\n")), "same");
+}
+
+// 100 collision geometries of one mesh in the reverse order of the world's bodies: once the mesh was put in order for
+// each pair of them. 3,000 joints that mimic each other in a chain; what would be too much work is refused.
+TEST_F(VerifyMeshes, ComparingTakesNoTime) {
+  std::vector<V> v;
+  std::vector<std::array<int, 3>> t;
+  std::string faces;
+  Rng rng(43);
+  for (int k = 0; k < 6000; ++k) {
+    v.push_back({uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)});
+    if (k % 3 == 2)
+      t.push_back({k - 2, k - 1, k}),
+          faces += "f " + std::to_string(k - 1) + " " + std::to_string(k) + " " + std::to_string(k + 1) + "\n";
+  }
+  write("m.obj", obj(v, faces));
+  std::string world = kHead + frame("a", 0) + meshText(v, t, false), urdf;
+  const int n = 100;
+  for (int k = 0; k < n; ++k) world += body("link", "a", 1);
+  for (int k = 0; k < n; ++k) urdf += "<collision><geometry><mesh filename='m.obj'/></geometry></collision>";
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(said(world, robot(link("a", urdf))), "same");
+  std::string other = urdf;  // the last in the file is none of them: all are looked at
+  other = "<collision><geometry><mesh filename='m.obj' scale='2 2 2'/></geometry></collision>" +
+          other.substr(other.find("</collision>") + 12);
+  EXPECT_NE(said(world, robot(link("a", other))), "same");
+  std::string chain = link("l0", ""), frames = kHead + "variable j1\n" + frame("l0", 0);
+  const int joints = 3000;
+  for (int k = 1; k <= joints; ++k) {
+    const std::string name = std::to_string(k);
+    chain += link("l" + name, "") +
+             joint("j" + name, "revolute", "l0", "l" + name,
+                   "<axis xyz='0 0 1'/>" + (k > 1 ? "<mimic joint='j" + std::to_string(k - 1) + "'/>" : ""));
+    frames += frame("l" + name, 1, element("turn", Z, 0));
+  }
+  EXPECT_EQ(said(frames, robot(chain)), "same");
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 8);  // 0.3 s
+  // Each of 2,000 scales asks for the mesh to be put in order anew: 12 million corners.
+  std::string scales;
+  for (int k = 0; k < 2000; ++k)
+    scales += "<collision><geometry><mesh filename='m.obj' scale='1 1 1." + std::to_string(10000 + k) +
+              "'/></geometry></collision>";
+  for (int k = n; k < 2000; ++k) world += body("link", "a", 1);
+  EXPECT_NE(said(world, robot(link("a", scales))).find("too much work"), std::string::npos);
 }
 
 TEST_F(VerifyMeshes, NumbersAreReadInFull) {
