@@ -253,6 +253,7 @@ TEST_F(VerifyMeshes, FacesOfManyCorners) {
   EXPECT_NE(saidOf(meshText(dart, {{3, 0, 1}}, false), "d.obj", four), "same");
   EXPECT_NE(saidOf(meshText(dart, {{3, 0, 1}, {1, 2, 3}, {0, 1, 2}}, false), "d.obj", four), "same");
   EXPECT_NE(saidOf(meshText(dart, {{3, 0, 1}, {0, 1, 2}}, false), "d.obj", four), "same");
+  EXPECT_NE(saidOf(meshText(dart, {{3, 0, 1}, {1, 2, 3}, {1, 2, 3}}, false), "d.obj", four), "same");
   // Collinear corners, and what has no area left out: what is left out lies on an edge of the others.
   const std::vector<V> square{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}};
   const std::string five = obj(square, "f 1 2 3 4 5\n");
