@@ -140,6 +140,10 @@ int main(int argc, char** argv) {
                              : "fcl_artic_verify: a world and certificates are needed (see --help)\n");
     return 2;
   }
+  if ((solids.all || !solids.links.empty()) && urdf.empty()) {
+    std::fprintf(stderr, "fcl_artic_verify: --solid and --solid-meshes say how --urdf is meant\n");
+    return 2;
+  }
   std::size_t verified = 0, all = 0;
   bool bad = false, same = true;
   const Printer printer(json, quiet);

@@ -293,6 +293,8 @@ class UrdfComparison {
       if (world_.bodies[b].role == Role::link)
         bodies_[static_cast<std::size_t>(world_.bodies[b].frame)].push_back(static_cast<int>(b));
     for (const Link& link : robot_.links) frameOf(link.name);
+    for (const std::string& link : solids_.links)
+      if (!robot_.has(link)) different("link " + inQuotes(link) + ", whose meshes are solids, is not in the file");
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) joint(j);
     for (const Link& l : robot_.links) link(l);
     nothingLeft();

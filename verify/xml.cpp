@@ -69,8 +69,10 @@ Xml::Xml(const std::string& path) : path_(path) {
   const std::string text = readFile(path);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     throw BadInput("'" + path + "' is no XML that can be read");
+  if (text.find('\0') != std::string::npos) throw BadInput("'" + path + "' has a byte 0");
   for (const tinyxml2::XMLNode* node = document_.FirstChild(); node != nullptr; node = node->NextSibling()) {
     if (node->ToUnknown() != nullptr) throw BadInput("'" + path + "' has a document type, which is not read");
+    if (node->ToText() != nullptr) throw BadInput("'" + path + "' has text outside of <robot>");
     if (node->ToElement() == nullptr) continue;
     if (robot_ != nullptr) throw BadInput("'" + path + "' has two root elements");
     robot_ = node->ToElement();

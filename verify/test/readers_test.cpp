@@ -194,6 +194,8 @@ TEST_F(VerifyReaders, SurfacesAreNoSolids) {
   EXPECT_TRUE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
   solids.links = {"hand"};
   EXPECT_FALSE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
+  solids.links = {"nobody"};
+  EXPECT_FALSE(compareWithUrdf(world, urdf, packages, solids).differences.empty());
   solids.links.clear();
   solids.all = true;
   EXPECT_FALSE(compareWithUrdf(world, urdf, packages, solids).differences.empty());

@@ -420,6 +420,9 @@ TEST_F(VerifyUrdf, WhatIsNotKnownIsRefused) {
     EXPECT_NE(answer.find(words), std::string::npos) << by << ": " << answer;
   }
   EXPECT_NE(said(world, urdf + "<robot name='other'/>"), "same");
+  EXPECT_NE(said(world, urdf + "text"), "same");
+  EXPECT_NE(said(world, urdf + std::string(1, '\0') + "<robot name='other'/>"), "same");
+  EXPECT_EQ(said(world, "<?xml version='1.0'?><!-- for people -->\n" + urdf + "\n"), "same");
 }
 
 TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
