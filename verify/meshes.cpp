@@ -441,14 +441,14 @@ bool MeshComparison::same(const Geometry& mesh, int number, const std::string& p
 
 bool MeshComparison::compare(const Geometry& mesh, const Sorted& stated, const File& file, std::size_t& missing) {
   std::vector<Triangle> out;
-  if (stated.hash == file.sorted.hash) {
-    const std::vector<Triangle>&in_file = file.sorted.flat, &in_mesh = stated.flat;
-    if (!std::includes(in_file.begin(), in_file.end(), in_mesh.begin(), in_mesh.end())) return false;
+  const std::vector<Triangle>&in_file = file.sorted.flat, &in_mesh = stated.flat;
+  const bool fans = stated.hash == file.sorted.hash &&
+                    std::includes(in_file.begin(), in_file.end(), in_mesh.begin(), in_mesh.end()) &&
+                    (!mesh.solid || in_file.size() == in_mesh.size());
+  if (fans)
     std::set_difference(in_file.begin(), in_file.end(), in_mesh.begin(), in_mesh.end(), std::back_inserter(out));
-    if (mesh.solid && !out.empty()) return false;
-  } else if (!file.polygons || !cut(file, stated, mesh.solid, out)) {
+  else if (!file.polygons || !cut(file, stated, mesh.solid, out))
     return false;
-  }
   missing = out.size();
   spend(out.empty() ? 0 : stated.all.size());
   return out.empty() || areEdgesOf(out, stated.all);

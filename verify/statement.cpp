@@ -237,6 +237,9 @@ void readGeometry(Lines& lines, Geometry& g) {
         g.triangles.push_back(static_cast<std::uint32_t>(lines.integer(g.vertices.size() / 3)));
       lines.end();
     }
+    std::vector<char> used(g.vertices.size() / 3, 0);
+    for (const std::uint32_t v : g.triangles) used[v] = 1;
+    if (std::count(used.begin(), used.end(), 0) > 0) lines.fail("a vertex of this mesh is that of no triangle");
   }
   if (g.kind == Geometry::boxes) rows(list("cells", 24), 6, g.cells);
   g.prepare();

@@ -522,6 +522,12 @@ TEST(VerifyStatement, LinesThatSayNothingAreRefused) {
   EXPECT_FALSE(isRead(world + "unchecked allowed wall floor\n"));
   EXPECT_FALSE(isRead(world + "unchecked allowed cart cart\n"));
   EXPECT_FALSE(isRead(world + "geometry sphere 0x1p+0\n"));
+  const auto mesh = [](const char* triangles) {
+    return "geometry mesh surface\nvertices 4\n" + hex(V{0, 0, 0}) + "\n" + hex(V{1, 0, 0}) + "\n" + hex(V{0, 1, 0}) +
+           "\n" + hex(V{0, 0, 1}) + "\ntriangles 2\n" + triangles + "body obstacle more 0 1 " + hex(kHere) + "\n";
+  };
+  EXPECT_TRUE(isRead(world + mesh("0 1 2\n1 2 3\n")));
+  EXPECT_FALSE(isRead(world + mesh("0 1 2\n0 2 1\n")));
   const World read = readWorld(world);
   const auto motion = [&](const std::string& lines) {
     MotionText m;

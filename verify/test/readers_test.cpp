@@ -94,7 +94,7 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
        {replaced(g, "body link finger 4 4 ", "body link other 4 4 "),
         replaced(g, "body link finger 4", "body carried finger 4"),
         replaced(g, "body link finger 4", "body link finger 3"),
-        replaced(g, "triangles 2\n1 2 0\n0 1 3\n", "triangles 1\n1 2 0\n"),
+        replaced(g, "triangles 2\n1 2 0\n0 1 3\n", "triangles 2\n1 2 0\n0 2 3\n"),
         replaced(g, "triangles 2\n1 2 0\n0 1 3\n", "triangles 3\n1 2 0\n0 1 3\n1 2 3\n"),
         replaced(g, "frame empty 3", "frame finger 3"),
         replaced(g, "body link base 1 0", "body link base 1 4") + "body link base 1 0 " + hex(M{}) + "\n"})
