@@ -31,7 +31,7 @@ is claimed, and how it is proven.
 
 Prints what the world says beside its numbers, and for each record VERIFIED, with the number of pairs that were checked
 and of those that were not, by reason, then what the motion says; or NOT VERIFIED, with what could not be proven: bodies
-and interval of time. A claim about no pair is not verified.
+and interval of time. A claim about no pair is not verified, nor one about a world that differs from --urdf or --srdf.
 Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input, or no record.
 )";
 
@@ -162,7 +162,11 @@ int main(int argc, char** argv) {
       const std::vector<verify::Record> records = verify::splitRecords(bytes);
       if (records.empty()) throw verify::BadInput("'" + std::string(files[f]) + "' has no record: nothing is proven");
       for (std::size_t number = 0; number < records.size(); ++number) {
-        const verify::Verdict verdict = verify::verifyRecord(world, records[number], options);
+        verify::Verdict verdict = verify::verifyRecord(world, records[number], options);
+        if (!same && verdict.verified) {  // proven of another robot
+          verdict.verified = false;
+          verdict.reason = "it is proven of this world, which is not what the files say (DIFFERENT, above)";
+        }
         ++all;
         verified += verdict.verified;
         bad = bad || verdict.bad_input;
