@@ -485,7 +485,8 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
     if (!bytes.empty() && bytes.peek() == kContact) {
       const Meeting meeting = checkContact(world, motion, bytes, budget);
       verdict.contact_text = meeting.text;
-      (meeting.near ? verdict.near : verdict.contact) = true;
+      verdict.contact = true;
+      verdict.near = meeting.near;
     }
     if (!bytes.empty()) throw BadInput("the proof has " + std::to_string(bytes.left()) + " bytes after its end");
     verdict.verified = true;

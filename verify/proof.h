@@ -26,8 +26,8 @@ struct Verdict {
   bool verified = false;
   bool bad_input = false;    // the record is not what the format says
   std::string reason;        // why not
-  bool contact = false;      // the record also shows that two bodies meet: have a point in common
-  bool near = false;         // or that they are nearer than their margin, at least
+  bool contact = false;      // the record also shows that two bodies meet: have a point in common,
+  bool near = false;         // or only that they are nearer than their margin
   std::string contact_text;  // which, and when
   std::size_t pieces = 0;
   double until = 0;           // of the last piece

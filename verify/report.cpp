@@ -123,8 +123,7 @@ std::string lineOf(const Verdict& v) {
     line += before + std::to_string(v.not_checked[k]) + " " + nameOf(static_cast<Reason>(k));
     before = ", ";
   }
-  if (v.contact) line += "; CONTACT of " + shown(v.contact_text);
-  if (v.near) line += "; WITHIN THEIR MARGIN " + shown(v.contact_text);
+  if (v.contact) line += (v.near ? "; WITHIN THEIR MARGIN " : "; CONTACT of ") + shown(v.contact_text);
   return line;
 }
 
@@ -157,8 +156,7 @@ std::string verdictAsJson(const Verdict& v) {
     before = ", ";
   }
   s += "}";
-  if (v.contact) s += ", \"contact\": " + quotedJson(v.contact_text);
-  if (v.near) s += ", \"within_margin\": " + quotedJson(v.contact_text);
+  if (v.contact) s += (v.near ? ", \"within_margin\": " : ", \"contact\": ") + quotedJson(v.contact_text);
   return s + "}";
 }
 

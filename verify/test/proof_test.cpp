@@ -413,6 +413,27 @@ TEST(VerifyProof, WhatMovesFreelyHasNoNeighbourInTheWorld) {
   EXPECT_NE(base(slide(0) + "rotate 3\n").false_neighbours, "");
 }
 
+TEST(VerifyProof, NeighboursHaveNoLinkBetweenThem) {
+  const auto chain = [](const std::string& first, const std::string& second, const std::string& role,
+                        const std::string& pair) {
+    return readWorld(kHead + "variable x\nvariable y\nvariable z\nframe a 0 " + hex(kHere) + "\n" + first +
+                     "frame b 1 " + hex(kHere) + "\n" + second + "geometry sphere " + hex(1) +
+                     "\nbody link floor 0 0 " + hex(kHere) + "\nbody " + role + " a 1 0 " + hex(kHere) +
+                     "\nbody link b 2 0 " + hex(kHere) + "\nunchecked neighbours " + pair + "\n")
+        .false_neighbours;
+  };
+  const auto slide = [](int v) {
+    return "slide " + hex(V{1, 0, 0}) + " " + std::to_string(v) + " " + hex(1) + " " + hex(0) + "\n";
+  };
+  EXPECT_EQ(chain("", "", "link", "floor a"), "");
+  EXPECT_EQ(chain("", "", "link", "a b"), "");
+  EXPECT_NE(chain("", "", "link", "b floor"), "");
+  EXPECT_EQ(chain("", "", "carried", "b floor"), "");
+  // Of two variables is free only what stands on what stands still.
+  EXPECT_NE(chain("", slide(0) + slide(1), "link", "a b"), "");
+  EXPECT_EQ(chain(slide(2), slide(0) + slide(1), "link", "a b"), "");
+}
+
 // More poses than are kept: those in use stay.
 TEST(VerifyProof, ALongChainOverManyIntervals) {
   std::string text = kHead + "variable a\n";

@@ -81,14 +81,13 @@ TEST(VerifyReport, OfIgnoredPairsNobodyKnowsThatTheyPart) {
 
 TEST(VerifyReport, WithinTheMarginIsNoContact) {
   Verdict v;
-  v.verified = v.near = true;
+  v.verified = v.contact = v.near = true;
   v.contact_text = "link 'a' (body 0) and link 'b' (body 1) at t = 1";
   EXPECT_EQ(lineOf(v).find("CONTACT"), std::string::npos) << lineOf(v);
   EXPECT_NE(lineOf(v).find("WITHIN THEIR MARGIN link 'a'"), std::string::npos) << lineOf(v);
   EXPECT_NE(verdictAsJson(v).find("\"within_margin\""), std::string::npos);
   EXPECT_EQ(verdictAsJson(v).find("\"contact\""), std::string::npos);
   v.near = false;
-  v.contact = true;
   EXPECT_NE(lineOf(v).find("CONTACT of link 'a'"), std::string::npos) << lineOf(v);
 }
 
