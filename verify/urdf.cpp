@@ -34,7 +34,7 @@ struct Place {
   Mat R;
   std::vector<double> t;
 };
-/// An axis's joint's variable is m q + c.
+/// What moves along or about an axis: multiplier * q + offset, q being the variable of that name.
 struct Driver {
   std::string variable;
   double multiplier = 1, offset = 0;
@@ -386,7 +386,7 @@ class UrdfComparison {
     const int frame = frameOf(l.name);
     if (frame < 0) return;
     std::vector<int>& bodies = bodies_[static_cast<std::size_t>(frame)];
-    // A writer has them in the file's order; where not, each is looked for.
+    // Most writers keep the file's order; where one does not, each body is looked for.
     std::vector<char> used(bodies.size(), 0);
     std::vector<std::size_t> open;
     for (std::size_t k = 0; k < l.collisions.size(); ++k)
