@@ -69,7 +69,7 @@ class Robot {
       : xml_(path), folder_(std::filesystem::absolute(path).parent_path()), packages_(packages) {
     const Xml::Element& robot = xml_.robot();
     xml_.only(robot, {"name", "version", "xmlns"}, {"link", "joint"},
-              {"material", "gazebo", "transmission", "ros2_control"});
+              {"material", "gazebo", "transmission", "ros2_control", "sensor"});
     for (const Xml::Element* e = robot.FirstChildElement("link"); e; e = e->NextSiblingElement("link")) readLink(*e);
     for (const Xml::Element* e = robot.FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) readJoint(*e);
     std::set<std::string> children;

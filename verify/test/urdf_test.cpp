@@ -374,7 +374,7 @@ TEST_F(VerifyUrdf, NumbersOfTheFileAreReadInFull) {
 // By a whitelist: what is not known is refused by its name.
 TEST_F(VerifyUrdf, WhatIsNotKnownIsRefused) {
   const std::string urdf =
-      robot("<material name='red'/><gazebo reference='a'><anything/></gazebo>" +
+      robot("<material name='red'/><gazebo reference='a'><anything/></gazebo><sensor name='s'/>" +
             link("a",
                  "<visual><geometry><mesh filename='x.dae'/></geometry></visual><inertial/><collision name='c'><origin "
                  "xyz='0 0 0' rpy='0 0 0'/><geometry><sphere radius='0.5'/></geometry></collision>") +
