@@ -113,8 +113,8 @@ bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backw
 /// Whether each part of A's surface, or each piece of another geometry, has a point outside of the solid B.
 void checkOutside(const World& world, Poses& poses, int a, int b, const Span& span, Budget& budget) {
   const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
-  if (!B.solid || A.unbounded()) return;  // what is without bounds is not inside of what has them
-  if (!B.closed) throw NotProven("SOLID needs a closed surface, and that of " + world.describe(b) + " is not closed");
+  // What is without bounds is not inside of what has them. (B's surface is closed: readWorld() has seen to it.)
+  if (!B.solid || A.unbounded()) return;
   const Relative toB(world, poses, span, a, b);
   // A point is tried along six half-lines; of a mesh several points are, for corners and edges may be met exactly.
   const auto outside = [&](const Vec& p) {
@@ -276,7 +276,7 @@ void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& b
   checkOutside(world, poses, b, a, {t, t}, budget);
 }
 
-std::string checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
+Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
   bytes.byte();
   const std::uint32_t piece = bytes.varint(), first = bytes.varint(), second = bytes.varint();
   const std::uint64_t bits = bytes.little(8);
@@ -344,7 +344,7 @@ std::string checkContact(const World& world, const Motion& motion, Bytes& bytes,
     throw NotProven("the witness does not show that " + world.describe(a) + " and " + world.describe(b) + " meet");
   char text[64];
   std::snprintf(text, sizeof text, " at t = %.17g of piece %u", t, piece);
-  return world.describe(a) + " and " + world.describe(b) + text;
+  return {kind == 4, world.describe(a) + " and " + world.describe(b) + text};
 }
 
 }  // namespace verify

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A record for people. Nothing is proven here.
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
-#include "proof.h"
+#include "report.h"
 
 namespace verify {
 namespace {
 
-std::string quoted(std::string_view text) {
-  std::string s = "\"";
-  for (const char c : text) {
-    char escape[8];
-    if (c == '"' || c == '\\') {
-      s += '\\';
-      s += c;
-    } else if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) {
-      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
-      s += escape;
-    } else {
-      s += c;
-    }
-  }
-  return s + "\"";
+/// A double's bits as a JSON number; as a string where JSON has none.
+std::string number(std::uint64_t bits) {
+  double x = 0;
+  std::memcpy(&x, &bits, sizeof x);
+  char text[40];
+  std::snprintf(text, sizeof text, std::isfinite(x) ? "%.17g" : "\"%g\"", x);
+  return text;
 }
 
 std::string vector(Bytes& bytes, int width) {
@@ -82,12 +75,7 @@ std::string point(const World& world, std::uint32_t body, Bytes& bytes) {
   }
   s += ", \"at\": [";
   for (int k = 0; k < 3; ++k) {
-    const std::uint64_t bits = bytes.little(8);
-    double x = 0;
-    std::memcpy(&x, &bits, sizeof x);
-    char text[40];
-    std::snprintf(text, sizeof text, "%s%.17g", k ? ", " : "", x);
-    s += text;
+    s += (k ? ", " : "") + number(bytes.little(8));
   }
   return s + "]}";
 }
@@ -96,14 +84,10 @@ std::string contact(const World& world, Bytes& bytes) {
   bytes.byte();
   const std::uint32_t piece = bytes.varint(), a = bytes.varint(), b = bytes.varint();
   if (a >= world.bodies.size() || b >= world.bodies.size()) throw BadInput("the contact's body is not there");
-  const std::uint64_t bits = bytes.little(8);
-  double t = 0;
-  std::memcpy(&t, &bits, sizeof t);
-  char text[64];
-  std::snprintf(text, sizeof text, "%.17g", t);
+  const std::string t = number(bytes.little(8));
   std::string s = "{\"piece\": " + std::to_string(piece) + ", \"bodies\": [" +
-                  quoted(world.describe(static_cast<int>(a))) + ", " + quoted(world.describe(static_cast<int>(b))) +
-                  "], \"t\": " + text;
+                  quotedJson(world.describe(static_cast<int>(a))) + ", " +
+                  quotedJson(world.describe(static_cast<int>(b))) + "], \"t\": " + t;
   const std::uint8_t kind = bytes.byte();
   if (kind > 4) throw BadInput("there is no witness of kind " + std::to_string(kind));
   s += std::string(", \"of\": \"") + (kind % 2 == 0 || kind == 4 ? "first" : "second") + "\", ";
@@ -127,8 +111,25 @@ std::string contact(const World& world, Bytes& bytes) {
 
 }  // namespace
 
+std::string quotedJson(std::string_view text) {
+  std::string s = "\"";
+  for (const char c : text) {
+    char escape[8];
+    if (c == '"' || c == '\\') {
+      s += '\\';
+      s += c;
+    } else if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) {
+      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+      s += escape;
+    } else {
+      s += c;
+    }
+  }
+  return s + "\"";
+}
+
 std::string proofAsJson(const World& world, const Record& record) {
-  std::string s = "{\"motion\": " + quoted(record.motion) + ",\n \"proof\": {";
+  std::string s = "{\"motion\": " + quotedJson(record.motion) + ",\n \"proof\": {";
   try {
     const Motion motion = readMotion(record.motion, world);
     Bytes bytes(record.proof);
@@ -144,7 +145,7 @@ std::string proofAsJson(const World& world, const Record& record) {
         const std::vector<Opponent> partners = opponents(world, motion, piece, static_cast<int>(a));
         if (partners.empty()) continue;
         s += before;
-        s += "{\"piece\": " + std::to_string(piece) + ", \"body\": " + quoted(world.describe(static_cast<int>(a))) +
+        s += "{\"piece\": " + std::to_string(piece) + ", \"body\": " + quotedJson(world.describe(static_cast<int>(a))) +
              ", \"partners\": " + std::to_string(partners.size()) + ", \"node\": " + node(bytes, 0) + "}";
         before = ",\n  ";
       }

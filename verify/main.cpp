@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "proof.h"
 #include "readers.h"
+#include "report.h"
 
 namespace {
 
 constexpr const char* kHelp =
-    R"(fcl_artic_verify [options] WORLD [CERTIFICATES...]
+    R"(fcl_artic_verify [options] WORLD CERTIFICATES...
 
 Proves again what certificates claim: that along a motion no two bodies that are checked come nearer than their margin.
 Uses integers, GMP and MPFR; shares nothing with the library that wrote the certificates. doc/CERTIFICATES.md says what
@@ -20,68 +20,81 @@ is claimed, and how it is proven.
 
   --urdf FILE      compare the world with a URDF: frames, joints, collision geometry (shapes, STL, OBJ)
   --package N=DIR  the folder of "package://N/" in the URDF
+  --solid-meshes   meshes of the URDF are meant as solids; without, as surfaces or solids
+  --solid LINK     those of this link are
   --srdf FILE      compare pairs that the world allows to touch with an SRDF
-  --json           print each record's motion and proof as JSON, and the verdict
-  --quiet          print no line for what is verified
+  --compare-only   no certificates: only compare the world with the files
+  --json           print everything as JSON, and each record's motion and proof
+  --quiet          print no line for what is verified, and none about the world
   --work N         limit of work per record, in steps of roughly 20 ns (default 2000000000)
   --help, --version
 
-Prints a line per record: VERIFIED, with the number of pairs that were checked and of those that were not, by reason; or
-NOT VERIFIED, with what could not be proven: bodies and interval of time.
-Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input.
+Prints what the world says beside its numbers, and for each record VERIFIED, with the number of pairs that were checked
+and of those that were not, by reason, then what the motion says; or NOT VERIFIED, with what could not be proven: bodies
+and interval of time. A claim about no pair is not verified, nor one about a world that differs from --urdf or --srdf.
+Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input, or no record.
 )";
 
-/// A text that may hold names: what is no printing character as \xNN, so that no name can look like a line of this
-/// program.
-std::string shown(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    char escape[8];
-    std::snprintf(escape, sizeof escape, byte < 32 || byte > 126 ? "\\x%02x" : "%c", byte);
-    safe += escape;
-  }
-  return safe;
-}
+/// Prints what the program says, in text or as JSON: a document a line or more, one after the other.
+class Printer {
+ public:
+  Printer(bool json, bool quiet) : json_(json), quiet_(quiet) {}
 
-/// @return whether the world is what the file says.
-bool report(const char* path, const verify::Comparison& comparison) {
-  for (const std::string& note : comparison.notes) std::printf("%s: %s\n", path, shown(note).c_str());
-  for (const std::string& what : comparison.differences) std::printf("%s: DIFFERENT: %s\n", path, shown(what).c_str());
-  return comparison.differences.empty();
-}
-
-void printJson(const verify::World& world, const verify::Record& record) {
-  try {
-    std::printf("%s\n", verify::proofAsJson(world, record).c_str());
-  } catch (const verify::BadInput& error) {  // the verdict says why, too
-    std::printf("null\n");
+  void comparison(const char* path, const verify::Comparison& c) const {
+    if (json_) {
+      std::printf("{\"file\": %s, \"notes\": %s, \"different\": %s}\n", verify::quotedJson(path).c_str(),
+                  verify::listAsJson(c.notes).c_str(), verify::listAsJson(c.differences).c_str());
+      return;
+    }
+    for (const std::string& note : c.notes) line(path, note);
+    for (const std::string& what : c.differences) line(path, "DIFFERENT: " + what);
   }
-}
-
-void print(const verify::Verdict& v) {
-  std::printf("VERIFIED %llu pairs", static_cast<unsigned long long>(v.checked));
-  if (v.late > 0) std::printf(" (%llu not before they part)", static_cast<unsigned long long>(v.late));
-  if (v.pieces > 1) std::printf(", %zu pieces", v.pieces);
-  if (v.until < 1) std::printf(", until t = %.17g", v.until);
-  const char* before = "; not checked: ";
-  for (int k = 0; k < verify::kReasons; ++k) {
-    if (v.not_checked[k] == 0) continue;
-    std::printf("%s%llu %s", before, static_cast<unsigned long long>(v.not_checked[k]),
-                verify::nameOf(static_cast<verify::Reason>(k)));
-    before = ", ";
+  void world(const char* path, const verify::World& world) const {
+    const std::vector<std::string> lines = verify::linesOf(world);
+    if (json_)
+      std::printf("{\"world\": %s, \"says\": %s}\n", verify::quotedJson(path).c_str(),
+                  verify::listAsJson(lines).c_str());
+    if (json_ || quiet_) return;
+    for (const std::string& text : lines) line(path, text);
   }
-  if (v.contact) std::printf("; CONTACT of %s", shown(v.contact_text).c_str());
-  std::printf("\n");
-}
+  void record(const verify::World& world, const char* path, std::size_t number, const verify::Record& record,
+              const verify::Verdict& verdict) const {
+    std::vector<std::string> lines;
+    if (verdict.verified) lines = verify::linesOf(world, verify::readMotion(record.motion, world), verdict);
+    if (json_) {
+      std::string statement = "null";
+      try {
+        statement = verify::proofAsJson(world, record);
+      } catch (const verify::BadInput&) {  // the verdict says why, too
+      }
+      std::printf("{\"file\": %s, \"record\": %zu, \"verdict\": %s, \"says\": %s,\n\"statement\": %s}\n",
+                  verify::quotedJson(path).c_str(), number, verify::verdictAsJson(verdict).c_str(),
+                  verify::listAsJson(lines).c_str(), statement.c_str());
+      return;
+    }
+    if (quiet_ && verdict.verified) return;
+    std::printf("%s:%zu: %s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str());
+    for (const std::string& text : lines) std::printf("  %s\n", verify::shown(text).c_str());
+  }
+  void sum(std::size_t verified, std::size_t all) const {
+    std::printf(json_ ? "{\"verified\": %zu, \"records\": %zu}\n" : "%zu of %zu records verified\n", verified, all);
+  }
+
+ private:
+  static void line(const char* path, const std::string& text) {
+    std::printf("%s: %s\n", verify::shown(path).c_str(), verify::shown(text).c_str());
+  }
+  const bool json_, quiet_;
+};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool json = false, quiet = false;
+  bool json = false, quiet = false, compare_only = false;
   verify::Options options;
   std::vector<const char*> files, urdf, srdf;
   std::map<std::string, std::string> packages;
+  verify::Solids solids;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     if (word == "--help") {
@@ -92,6 +105,12 @@ int main(int argc, char** argv) {
       return 0;
     } else if (word == "--json") {
       json = true;
+    } else if (word == "--solid-meshes") {
+      solids.all = true;
+    } else if (word == "--solid" && k + 1 < argc) {
+      solids.links.insert(argv[++k]);
+    } else if (word == "--compare-only") {
+      compare_only = true;
     } else if (word == "--quiet") {
       quiet = true;
     } else if (word == "--urdf" && k + 1 < argc) {
@@ -115,36 +134,49 @@ int main(int argc, char** argv) {
       files.push_back(argv[k]);
     }
   }
-  if (files.empty() || (files.size() == 1 && urdf.empty() && srdf.empty())) {
-    std::fprintf(stderr, "fcl_artic_verify: a world and certificates are needed (see --help)\n");
+  if (compare_only ? files.size() != 1 || (urdf.empty() && srdf.empty()) : files.size() < 2) {
+    std::fprintf(stderr, compare_only
+                             ? "fcl_artic_verify: --compare-only takes a world, no certificates, and --urdf or --srdf\n"
+                             : "fcl_artic_verify: a world and certificates are needed (see --help)\n");
+    return 2;
+  }
+  if ((solids.all || !solids.links.empty()) && urdf.empty()) {
+    std::fprintf(stderr, "fcl_artic_verify: --solid and --solid-meshes say how --urdf is meant\n");
     return 2;
   }
   std::size_t verified = 0, all = 0;
   bool bad = false, same = true;
+  const Printer printer(json, quiet);
   try {
     const std::string world_text = verify::readFile(files[0]);
     const verify::World world = verify::readWorld(world_text);
-    for (const char* path : urdf) same = report(path, verify::compareWithUrdf(world, path, packages)) && same;
-    for (const char* path : srdf) same = report(path, verify::compareWithSrdf(world, path)) && same;
+    const auto report = [&](const char* path, const verify::Comparison& comparison) {
+      printer.comparison(path, comparison);
+      same = same && comparison.differences.empty();
+    };
+    for (const char* path : urdf) report(path, verify::compareWithUrdf(world, path, packages, solids));
+    for (const char* path : srdf) report(path, verify::compareWithSrdf(world, path));
+    printer.world(files[0], world);
     for (std::size_t f = 1; f < files.size(); ++f) {
       const std::string bytes = verify::readFile(files[f]);
-      std::size_t number = 0;
-      for (const verify::Record& record : verify::splitRecords(bytes)) {
-        const verify::Verdict verdict = verify::verifyRecord(world, record, options);
+      const std::vector<verify::Record> records = verify::splitRecords(bytes);
+      if (records.empty()) throw verify::BadInput("'" + std::string(files[f]) + "' has no record: nothing is proven");
+      for (std::size_t number = 0; number < records.size(); ++number) {
+        verify::Verdict verdict = verify::verifyRecord(world, records[number], options);
+        if (!same && verdict.verified) {  // proven of another robot
+          verdict.verified = false;
+          verdict.reason = "it is proven of this world, which is not what the files say (DIFFERENT, above)";
+        }
         ++all;
         verified += verdict.verified;
         bad = bad || verdict.bad_input;
-        if (json) printJson(world, record);
-        if (!verdict.verified || !quiet) std::printf("%s:%zu: ", files[f], number);
-        if (!verdict.verified) std::printf("NOT VERIFIED: %s\n", shown(verdict.reason).c_str());
-        if (verdict.verified && !quiet) print(verdict);
-        ++number;
+        printer.record(world, files[f], number, records[number], verdict);
       }
     }
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "fcl_artic_verify: %s\n", shown(error.what()).c_str());
+    std::fprintf(stderr, "fcl_artic_verify: %s\n", verify::shown(error.what()).c_str());
     return 2;
   }
-  std::printf("%zu of %zu records verified\n", verified, all);
+  if (!compare_only) printer.sum(verified, all);
   return bad ? 2 : verified == all && same ? 0 : 1;
 }

@@ -22,10 +22,12 @@ Pose Poses::compute(int index, const Span& span) const {
   const Frame& frame = world_.frames[index];
   Pose pose = frame.origin;
   for (const Element& e : frame.elements) {
+    // As measured: 2 us of a slide, 6 of a turn, 20 of a rotation vector and 5 more each time that it is halved.
+    budget_.spend(e.kind == Element::rotate ? 1000 : e.kind == Element::turn ? 300 : 100);
     if (e.kind == Element::rotate) {
-      const Mat turn =
-          rotation(Vec{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)});
-      pose.R = pose.R * turn;
+      const Vec w{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)};
+      for (Fix z = bound(dot(w, w)); z > integer(100); z = shifted(z, 2)) budget_.spend(250);
+      pose.R = pose.R * rotation(w);
       const auto at = std::lower_bound(piece_.orientations.begin(), piece_.orientations.end(), e.variable,
                                        [](const Orientation& o, int w) { return o.variable < w; });
       if (at != piece_.orientations.end() && at->variable == e.variable) pose.R = pose.R * statedRotation(at->numbers);
@@ -51,7 +53,6 @@ const Pose& Poses::local(int frame, const Span& span) {
   const auto found = at.find(frame);
   if (found != at.end()) return found->second;
   ++count_;
-  budget_.spend(100 * world_.frames[frame].elements.size());
   return at.emplace(frame, compute(frame, span)).first->second;
 }
 

@@ -384,6 +384,52 @@ class Walk {
   std::vector<Opponent> partners_;
 };
 
+Fix valueAt(const Piece& piece, int variable, bool end) {
+  Fix sum;
+  for (const Polynomial& q : piece.polynomials)
+    if (q.variable == variable)
+      for (const double c : q.coefficients) {
+        sum += enclose(c).x;
+        if (!end) break;
+      }
+  return sum;
+}
+
+// A motion goes on in each piece where it was at the end of the one before. Coefficients are rounded: 2^-29 rad or m,
+// and 2^-39 of a value, are no jump. Of `rotate` the orientations are compared, each entry of their matrices.
+double largestJump(const World& world, const Motion& motion, Budget& budget) {
+  Fix largest;
+  for (std::size_t k = 1; k < motion.pieces.size(); ++k) {
+    const Piece &before = motion.pieces[k - 1], &after = motion.pieces[k];
+    const auto jumps = [&](const std::string& what, Fix jump, Fix most) {
+      largest = verify::most(largest, jump);
+      if (jump <= most) return;
+      char text[60];
+      std::snprintf(text, sizeof text, " by %.9g", toDouble(jump));
+      throw NotProven("the motion jumps: " + what + " is elsewhere at the beginning of piece " + std::to_string(k) +
+                      " than at the end of the one before," + text);
+    };
+    Poses end(world, before, budget), begin(world, after, budget);
+    for (std::size_t f = 1; f < world.frames.size(); ++f) {
+      const int frame = static_cast<int>(f);
+      bool rotates = false;
+      for (const Element& e : world.frames[f].elements) {
+        budget.spend(10 + before.polynomials.size() + after.polynomials.size());
+        rotates = rotates || e.kind == Element::rotate;
+        if (e.kind == Element::rotate) continue;
+        const Fix x = valueAt(before, e.variable, true), y = valueAt(after, e.variable, false);
+        jumps("the variable " + inQuotes(world.variables[static_cast<std::size_t>(e.variable)]), abs(x - y),
+              Fix{kOne >> 29} + shifted(verify::most(abs(x), abs(y)), 39));
+      }
+      if (!rotates) continue;
+      const Mat R = end.local(frame, {Fix{kOne}, Fix{kOne}}).R, S = begin.local(frame, {Fix{0}, Fix{0}}).R;
+      for (std::size_t c = 0; c < 9; ++c)
+        jumps("the frame " + inQuotes(world.frames[f].name), bound(R[c] - S[c]), Fix{kOne >> 27});
+    }
+  }
+  return toDouble(largest);
+}
+
 // How many pairs the claim is about, and how many not. A pair that every piece ignores to its end is not.
 void countPairs(const World& world, const Motion& motion, Verdict& verdict) {
   std::copy(std::begin(world.not_checked), std::end(world.not_checked), std::begin(verdict.not_checked));
@@ -425,7 +471,10 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
     if (motion.world != hexOf(world.hash)) throw NotProven("the motion is about another world: " + motion.world);
     if (!world.false_neighbours.empty())
       throw NotProven("the world calls them neighbours, and they are not: " + world.false_neighbours);
+    for (const std::vector<Partner>& partners : world.partners) budget.spend(1 + partners.size() / 8);
     countPairs(world, motion, verdict);
+    if (verdict.checked == 0) throw NotProven("nothing is checked: the claim is about no pair of bodies");
+    verdict.jump = largestJump(world, motion, budget);
     Bytes bytes(record.proof);
     const std::string_view hash = bytes.take(32);
     if (!std::equal(hash.begin(), hash.end(), motion.hash.begin(),
@@ -434,8 +483,10 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
     for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece)
       Walk(world, motion, piece, bytes, options, budget, verdict).run();
     if (!bytes.empty() && bytes.peek() == kContact) {
-      verdict.contact_text = checkContact(world, motion, bytes, budget);
+      const Meeting meeting = checkContact(world, motion, bytes, budget);
+      verdict.contact_text = meeting.text;
       verdict.contact = true;
+      verdict.near = meeting.near;
     }
     if (!bytes.empty()) throw BadInput("the proof has " + std::to_string(bytes.left()) + " bytes after its end");
     verdict.verified = true;

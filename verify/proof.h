@@ -26,21 +26,20 @@ struct Verdict {
   bool verified = false;
   bool bad_input = false;    // the record is not what the format says
   std::string reason;        // why not
-  bool contact = false;      // the record also shows that two bodies meet
+  bool contact = false;      // the record also shows that two bodies meet: have a point in common,
+  bool near = false;         // or only that they are nearer than their margin
   std::string contact_text;  // which, and when
   std::size_t pieces = 0;
   double until = 0;           // of the last piece
   std::uint64_t checked = 0;  // pairs, of some of the claim's time at least
-  std::uint64_t late = 0;     // of these, not before they have parted: they are ignored at the beginning of a piece
+  std::uint64_t late = 0;     // of these, not at the beginning of some piece: ignored up to a time there
   std::uint64_t not_checked[kReasons] = {};
   std::uint64_t leaves = 0, steps = 0;
+  double jump = 0;  // the largest between a piece's end and the next one's beginning, rad or m; for people
 };
 
 /// Proves a record's claim again. Never throws on account of what the record contains.
 Verdict verifyRecord(const World& world, const Record& record, const Options& options = {});
-
-/// The proof as JSON, for people. @throws BadInput where it has no form at all.
-std::string proofAsJson(const World& world, const Record& record);
 
 // Shared by the parts of the verifier.
 
@@ -91,7 +90,11 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
 
 /// Whether at time t no part of either surface lies in the other body; see SOLID. @throws NotProven
 void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& budget);
-/// The witness of a contact. @throws NotProven, BadInput. @return what it shows.
-std::string checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget);
+struct Meeting {
+  bool near;         // nearer than the margin, and nothing more; else they have a point in common
+  std::string text;  // who, and when
+};
+/// The witness of a contact. @throws NotProven, BadInput
+Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget);
 
 }  // namespace verify

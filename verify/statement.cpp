@@ -2,6 +2,7 @@
 #include "statement.h"
 
 #include <algorithm>
+#include <set>
 
 namespace verify {
 namespace {
@@ -236,9 +237,14 @@ void readGeometry(Lines& lines, Geometry& g) {
         g.triangles.push_back(static_cast<std::uint32_t>(lines.integer(g.vertices.size() / 3)));
       lines.end();
     }
+    std::vector<char> used(g.vertices.size() / 3, 0);
+    for (const std::uint32_t v : g.triangles) used[v] = 1;
+    if (std::count(used.begin(), used.end(), 0) > 0) lines.fail("a vertex of this mesh is that of no triangle");
   }
   if (g.kind == Geometry::boxes) rows(list("cells", 24), 6, g.cells);
   g.prepare();
+  if (g.solid && !g.joinSurfaces())
+    lines.fail("the surface of this 'mesh solid' is not closed, or its triangles do not face the same way");
 }
 
 void readElement(Lines& lines, std::string_view kind, std::size_t variables, Frame& frame) {
@@ -255,57 +261,88 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
     e.offset = lines.number();
     Fix unit[3];
     unitVector(e.axis, unit);
-    for (int k = 0; k < 3; ++k) e.unit[k] = constant(unit[k], ulps(2));
+    const bool coordinate = isCoordinateAxis(e.axis);
+    for (int k = 0; k < 3; ++k)
+      e.unit[k] = coordinate ? constant(integer((e.axis[k] > 0) - (e.axis[k] < 0)))
+                             : constant(unit[k], ulps(2) + Fix{kOne >> kAxisBits});
     for (int k = 0; k < 9; ++k) e.products[k] = e.unit[k / 3] * e.unit[k % 3];
   }
   lines.end();
   frame.elements.push_back(e);
 }
 
-bool moves(const World& world, int frame) {
-  return !world.frames[frame].elements.empty();
-}
+/// What of each frame counts for neighbours, found once.
+struct FrameFacts {
+  bool moves;  // has elements
+  bool free;   // and moves freely on what stands still
+  bool still;  // neither this frame nor one above it moves
+  bool link;   // a body of role link is in it
+};
 
-bool movesFreely(const World& world, int frame) {
-  int slides = 0, first = -1;
-  bool after = false;
-  for (const Element& e : world.frames[frame].elements) {
-    if (e.kind == Element::slide) {
-      if (first < 0 || e.variable != first) ++slides;
-      first = e.variable;
+std::vector<FrameFacts> factsOf(const World& world) {
+  std::vector<FrameFacts> facts;
+  for (const Frame& frame : world.frames) {  // parents first
+    const bool on_still = facts.empty() || facts[static_cast<std::size_t>(frame.parent)].still;
+    int slides = 0, first = -1;
+    bool after = false;
+    for (const Element& e : frame.elements) {
+      if (e.kind == Element::slide) {
+        if (first < 0 || e.variable != first) ++slides;
+        first = e.variable;
+      }
+      after = after || (e.kind == Element::rotate && slides > 0);
     }
-    after = after || (e.kind == Element::rotate && slides > 0);
+    const bool moves = !frame.elements.empty();
+    facts.push_back({moves, on_still && (slides > 1 || after), on_still && !moves, false});
   }
-  if (slides < 2 && !after) return false;
-  for (int f = world.frames[frame].parent; f > 0; f = world.frames[f].parent)
-    if (moves(world, f)) return false;
-  return true;
+  for (const Body& body : world.bodies)
+    if (body.role == Role::link) facts[static_cast<std::size_t>(body.frame)].link = true;
+  return facts;
 }
 
-/// See "Pairs" in doc/CERTIFICATES.md. @param links  per frame: whether a body of role link is in it.
-bool areNeighbours(const World& world, const std::vector<char>& links, const Body& a, const Body& b,
+/// See "Pairs" in doc/CERTIFICATES.md.
+bool areNeighbours(const World& world, const std::vector<FrameFacts>& facts, const Body& a, const Body& b,
                    std::uint64_t& steps) {
   if (a.role != Role::link || b.role != Role::link) return false;
   int moving = 0, f = a.frame, g = b.frame;
   while (f != g) {  // a parent's number is below the frame's own: the larger one is not the common ancestor
     int& up = f > g ? f : g;
+    const FrameFacts& at = facts[static_cast<std::size_t>(up)];
     ++steps;
-    if (moves(world, up) && ++moving > 1) return false;
-    if (movesFreely(world, up)) return false;
-    if (links[up] && up != a.frame && up != b.frame) return false;
-    up = world.frames[up].parent;
+    if (at.moves && ++moving > 1) return false;
+    if (at.free) return false;
+    if (at.link && up != a.frame && up != b.frame) return false;
+    up = world.frames[static_cast<std::size_t>(up)].parent;
   }
-  return !links[f] || f == a.frame || f == b.frame;
+  return !facts[static_cast<std::size_t>(f)].link || f == a.frame || f == b.frame;
+}
+
+/// Lines that say nothing: who wrote them meant something else.
+void refuseUnused(const World& world, const std::set<std::pair<int, int>>& used_pairs) {
+  std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
+  for (const Body& body : world.bodies) {
+    there[static_cast<std::size_t>(body.name_id)] = 1;
+    used[static_cast<std::size_t>(body.geometry)] = 1;
+  }
+  for (std::size_t k = 0; k < there.size(); ++k)
+    if (!there[k])
+      throw BadInput("world: 'margin' or 'unchecked' names " + inQuotes(world.names[k]) + ": no body is called so");
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
+  for (const auto& [pair, reason] : world.unchecked)
+    if (used_pairs.count(pair) == 0)
+      throw BadInput("world: 'unchecked' of " + inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                     inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
+                     ": no two bodies of these names would be checked");
 }
 
 void derivePairs(World& world) {
   const std::size_t n = world.bodies.size();
-  std::vector<char> links(world.frames.size(), 0);
-  for (const Body& body : world.bodies)
-    if (body.role == Role::link) links[body.frame] = 1;
+  const std::vector<FrameFacts> facts = factsOf(world);
   world.partners.resize(n);
   std::vector<int> others;  // no obstacles
   std::uint64_t obstacles = 0, steps = 0;
+  std::set<std::pair<int, int>> used;  // pairs of names that are listed as unchecked
   for (std::size_t a = 0; a < n; ++a) {
     const Body& A = world.bodies[a];
     const bool obstacle = A.role == Role::obstacle;
@@ -317,12 +354,13 @@ void derivePairs(World& world) {
         ++world.not_checked[static_cast<int>(Reason::same_frame)];
       } else if (listed != world.unchecked.end()) {
         ++world.not_checked[static_cast<int>(listed->second)];
+        used.insert(listed->first);
         if (listed->second == Reason::neighbours && world.false_neighbours.empty() &&
-            !areNeighbours(world, links, A, B, steps))
+            !areNeighbours(world, facts, A, B, steps))
           world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
         if (listed->second == Reason::touch_link &&
             (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
-          throw BadInput("world: 'touch-link' of " + A.name + " and " + B.name +
+          throw BadInput("world: 'touch-link' of " + inQuotes(A.name) + " and " + inQuotes(B.name) +
                          ": it is for what a link carries, and a link");
       } else {
         world.partners[a].push_back({b, !obstacle && B.role != Role::obstacle});
@@ -336,6 +374,7 @@ void derivePairs(World& world) {
       others.push_back(static_cast<int>(a));
     }
   }
+  refuseUnused(world, used);
 }
 
 }  // namespace
@@ -348,6 +387,24 @@ const char* nameOf(Reason reason) {
 const char* nameOf(Role role) {
   static const char* const kNames[] = {"link", "carried", "obstacle"};
   return kNames[static_cast<int>(role)];
+}
+
+std::string inQuotes(std::string_view name) {
+  std::string text = "'";
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 || byte > 126 || c == '\'' || c == '\\') {
+      const char* const digits = "0123456789abcdef";
+      text += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+    } else {
+      text += c;
+    }
+  }
+  return text + "'";
+}
+
+bool isCoordinateAxis(const double axis[3]) {
+  return (axis[0] != 0) + (axis[1] != 0) + (axis[2] != 0) == 1;
 }
 
 Mat statedRotation(const double numbers[9]) {
@@ -376,7 +433,8 @@ double World::margin(int a, int b, double general) const {
 }
 
 std::string World::describe(int body) const {
-  return std::string(nameOf(bodies[body].role)) + " '" + bodies[body].name + "' (body " + std::to_string(body) + ")";
+  return std::string(nameOf(bodies[body].role)) + " " + inQuotes(bodies[body].name) + " (body " + std::to_string(body) +
+         ")";
 }
 
 namespace {
@@ -467,9 +525,18 @@ World readWorldText(std::string_view text) {
     }
     lines.end();
   }
+  world.moves.assign(world.variables.size(), 0);
+  world.turns = world.moves;
+  for (const Frame& frame : world.frames)
+    for (const Element& e : frame.elements) {
+      const auto v = static_cast<std::size_t>(e.variable);
+      for (std::size_t k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k) world.moves[v + k] = 1;
+      if (e.kind == Element::rotate) world.turns[v] = 1;
+    }
   const auto solid = [](const Geometry& g) { return g.solid; };
   if (std::any_of(world.geometries.begin(), world.geometries.end(), solid))
-    for (Geometry& g : world.geometries) g.joinSurfaces();
+    for (Geometry& g : world.geometries)
+      if (!g.solid) g.joinSurfaces();
   derivePairs(world);
   return world;
 }
@@ -564,8 +631,23 @@ Motion readMotion(std::string_view text, const World& world) {
     return std::adjacent_find(list.begin(), list.end(),
                               [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
   };
-  for (Piece& piece : motion.pieces)
+  for (Piece& piece : motion.pieces) {
     if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");
+    for (const Polynomial& q : piece.polynomials)
+      if (!world.moves[static_cast<std::size_t>(q.variable)])
+        lines.fail("'q' of the variable " + std::to_string(q.variable) + ", which moves nothing");
+    for (const Orientation& o : piece.orientations)
+      if (!world.turns[static_cast<std::size_t>(o.variable)])
+        lines.fail("'orientation' of the variable " + std::to_string(o.variable) + ", which is not that of a 'rotate'");
+    for (const Ignored& i : piece.ignored) {
+      const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(i.b)];
+      const auto at =
+          std::lower_bound(list.begin(), list.end(), i.a, [](const Partner& p, int b) { return p.body < b; });
+      if (at == list.end() || at->body != i.a || !(at->self ? motion.self : motion.scene))
+        lines.fail("'ignored' of bodies " + std::to_string(i.a) + " and " + std::to_string(i.b) +
+                   ", which are not checked anyway");
+    }
+  }
   return motion;
 }
 

@@ -13,11 +13,14 @@
 
 namespace verify {
 
+/// Axes that are no coordinate axis may be off what they mean by 2^-kAxisBits in each entry.
+constexpr int kAxisBits = 50;
+
 struct Element {
   enum Kind { turn, slide, rotate } kind;
   int variable;
   double axis[3], multiplier, offset;
-  Vec unit;  // turn and slide: the unit axis
+  Vec unit;  // turn and slide: every unit axis that is meant
   Mat products;
 };
 
@@ -34,6 +37,9 @@ enum class Reason { same_frame, obstacles, neighbours, allowed, touch_link, scop
 constexpr int kReasons = 7;
 const char* nameOf(Reason reason);
 const char* nameOf(Role role);
+/// A name in quotes, such that no name looks like another text: quotes, backslashes and what is no printing character
+/// as \xNN.
+std::string inQuotes(std::string_view name);
 
 struct Body {
   Role role;
@@ -64,6 +70,7 @@ struct World {
   std::map<std::pair<int, int>, double> pair_margins;
   std::map<std::pair<int, int>, Reason> unchecked;
   // Derived:
+  std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
   std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
   std::uint64_t not_checked[kReasons] = {};
   std::string false_neighbours;  // a pair that the world calls neighbours, and that are not; empty: none
@@ -102,6 +109,8 @@ struct Motion {
 World readWorld(std::string_view text);
 Motion readMotion(std::string_view text, const World& world);
 
+/// Whether two of three numbers are 0: such an axis is meant exactly.
+bool isCoordinateAxis(const double axis[3]);
 /// Numbers of a rotation (by rows) and a translation as the statement means them: any rotation whose entries are within
 /// 2^-49 of the numbers, exactly that translation.
 Mat statedRotation(const double numbers[9]);

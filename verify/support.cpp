@@ -129,7 +129,7 @@ Box Geometry::boxOf(std::uint32_t item) const {
 }
 
 // Corners at one place are one: so what is joined does hang together, and edges that meet cancel.
-void Geometry::joinSurfaces() {
+bool Geometry::joinSurfaces() {
   const auto n = static_cast<std::uint32_t>(vertices.size() / 3);
   std::vector<std::uint32_t> order(n), same(n), root(n);
   for (std::uint32_t k = 0; k < n; ++k) order[k] = root[k] = k;
@@ -153,13 +153,14 @@ void Geometry::joinSurfaces() {
     }
   }
   std::sort(edges.begin(), edges.end());
-  closed = true;
+  bool closed = true;
   for (std::size_t i = 0, j; i < edges.size(); i = j) {
     std::int64_t sum = 0;
     for (j = i; j < edges.size() && edges[j].first == edges[i].first; ++j) sum += edges[j].second;
     closed = closed && sum == 0;
   }
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) part.push_back(find(same[triangles[t]]));
+  return closed;
 }
 
 // Halves of the list: neighbours in the list are near each other where the writer ordered it well.

@@ -51,11 +51,11 @@ struct Geometry {
   std::vector<Round> rounds;    // of round shapes: the one piece is their hull
   std::vector<Box> cell_boxes;  // of boxes and box, each end within 2 ulp
 
-  /// Of a mesh, after joinSurfaces(): a part that hangs together per triangle, and whether each edge of each triangle
-  /// is met by the same edge of another one in the other direction.
+  /// Of a mesh, after joinSurfaces(): a part that hangs together per triangle.
   std::vector<std::uint32_t> part;
-  bool closed = false;
-  void joinSurfaces();
+  /// @return whether the surface is closed and consistently oriented: each edge is passed by triangles as often in one
+  /// direction as in the other. Of every `mesh solid` of a World it is: readWorld() refuses the others.
+  bool joinSurfaces();
 
   /// Upper bounds of f(p) over all points p of the pieces [i, j), for f(p) = v.p + d: of the three Bernstein
   /// coefficients, remainder included, and at s = 0.

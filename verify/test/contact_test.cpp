@@ -9,14 +9,16 @@ namespace {
 
 constexpr double kX = 0.125;  // where the first body is at t = 1/2
 
-/// Body 0 stands still in the world, body 1 slides along x as x = t - 3/8, both turned by the same pose.
+/// Body 0 stands still in the world, body 1 slides along x as x = t - 3/8, both turned by the same pose. Body 2 is far
+/// away, so that something is checked.
 struct Pair {
   World world;
   std::string motion;
   Pair(const std::string& still, const std::string& moving, double margin = 0, const M& pose = {}) {
     world = readWorld(kHead + "variable x\nframe f 0 " + hex(pose) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
-                      " " + hex(0) + "\n" + still + moving + "body obstacle o 0 0 " + hex(pose) + "\nbody link l 1 1 " +
-                      hex(M{}) + "\n");
+                      " " + hex(0) + "\n" + still + moving + "geometry sphere " + hex(0.5) + "\nbody obstacle o 0 0 " +
+                      hex(pose) + "\nbody link l 1 1 " + hex(M{}) + "\nbody obstacle far 0 2 " +
+                      hex(M{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1000, 0, 0}}) + "\n");
     MotionText m;
     m.margin = margin;
     m.scope = "scene";
@@ -24,13 +26,15 @@ struct Pair {
     m.until = 0.25;
     motion = m.write(world);
   }
-  /// The root: the pair is ignored until the end of the claim, so that any node proves it.
+  /// Of the first root the pair is ignored until the end of the claim, so that any node proves it.
   mutable std::string last;
   bool shown(int first, int second, double t, const std::string& witness) const {
-    const Verdict v = judge(world, motion,
-                            sep({1, 0, 0}) + "\x20" + varint(0) + varint(static_cast<std::uint32_t>(first)) +
-                                varint(static_cast<std::uint32_t>(second)) + number(t) + witness);
+    const Verdict v =
+        judge(world, motion,
+              sep({1, 0, 0}) + sep({1, 0, 0}) + "\x20" + varint(0) + varint(static_cast<std::uint32_t>(first)) +
+                  varint(static_cast<std::uint32_t>(second)) + number(t) + witness);
     EXPECT_EQ(v.verified, v.contact);
+    EXPECT_EQ(v.near, v.verified && witness[0] == '\4');
     if (v.bad_input) ADD_FAILURE() << v.reason;
     last = v.reason;
     return v.verified;
@@ -206,7 +210,7 @@ TEST(VerifyContact, TwoPointsAreNear) {
 TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   const std::string sphere = "geometry sphere " + hex(0.25) + "\n";
   const Pair pair(sphere, sphere);
-  const std::string root = sep({1, 0, 0}), in = "\2" + place({0, 0, 0}) + varint(0);
+  const std::string root = sep({1, 0, 0}) + sep({1, 0, 0}), in = "\2" + place({0, 0, 0}) + varint(0);
   const auto verdict = [&](const std::string& contact) { return judge(pair.world, pair.motion, root + contact); };
   const auto contact = [&](std::uint32_t piece, std::uint32_t a, std::uint32_t b, double t,
                            const std::string& witness) {
@@ -216,6 +220,7 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   EXPECT_FALSE(verdict(contact(1, 1, 0, 0.5, in)).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 1, 0.5, in)).verified);
   EXPECT_FALSE(verdict(contact(0, 2, 0, 0.5, in)).verified);
+  EXPECT_FALSE(verdict(contact(0, 3, 0, 0.5, in)).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, 1.5, in)).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, std::nan(""), in)).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, "\5" + in)).verified);
@@ -224,11 +229,12 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, "\2" + place({0, 0, 0}, 1) + varint(0))).verified);
   EXPECT_FALSE(verdict(contact(0, 1, 0, 0.5, "\2" + place({0, 0, 0}) + varint(1))).verified);
   const World self = readWorld(kHead + sphere + "frame a 0 " + hex(M{}) + "\nbody link a 0 0 " + hex(M{}) +
-                               "\nbody link b 1 0 " + hex(M{}) + "\nunchecked allowed a b\n");
+                               "\nbody link b 1 0 " + hex(M{}) + "\nbody obstacle far 0 0 " +
+                               hex(M{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1000, 0, 0}}) + "\nunchecked allowed a b\n");
   MotionText m;
   m.pieces = {""};
-  EXPECT_TRUE(judge(self, m.write(self), "").verified);
-  EXPECT_FALSE(judge(self, m.write(self), contact(0, 1, 0, 0.5, in)).verified);
+  EXPECT_TRUE(judge(self, m.write(self), sep({1, 0, 0})).verified);
+  EXPECT_FALSE(judge(self, m.write(self), sep({1, 0, 0}) + contact(0, 1, 0, 0.5, in)).verified);
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../meshes.h"
 #include "../readers.h"
+#include "../report.h"
 #include "worlds.h"
 
 using namespace verify;
@@ -22,7 +24,7 @@ const std::string kWorld = kHead + "variable a\nframe link1 0 " + hex(M{}) + "\n
                              m.t = {2, 0, 0};
                              return m;
                            }()) +
-                           "\nbody link link1 1 0 " + hex(M{}) + "\nunchecked allowed a b\n";
+                           "\nbody link link1 1 0 " + hex(M{}) + "\n";
 
 std::string temporaryFile(const char* name, const std::string& content) {
   static const std::string folder = [] {

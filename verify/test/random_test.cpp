@@ -69,6 +69,11 @@ TEST(VerifyMotion, FunctionalsHoldTheExactKinematics) {
         }
       }
     }
+    text += "frame user 0 " + hex(M{}) + "\n";  // of all variables, so that every line of the motion counts
+    for (int v = 0; v < variables; ++v)
+      text += v + 2 < variables
+                  ? "rotate " + std::to_string(v) + "\n"
+                  : "turn " + hex(V{0, 0, 1}) + " " + std::to_string(v) + " " + hex(1) + " " + hex(0) + "\n";
     const World world = readWorld(text + "geometry sphere " + hex(1) + "\nbody link a 0 0 " + hex(M{}) + "\n");
     MotionText motion;
     std::vector<std::vector<double>> q(variables);
@@ -205,7 +210,7 @@ TEST(VerifySupport, ReachIsAboveEveryPointAndNear) {
   int near = 0, all = 0;
   for (int n = 0; n < 3000; ++n) {
     const int kind = n % 10;
-    const World world = readWorld(kHead + anyGeometry(rng, kind, 1));
+    const World world = readWorld(kHead + anyGeometry(rng, kind, 1) + "body link a 0 0 " + hex(M{}) + "\n");
     const Geometry& g = world.geometries[0];
     std::uint32_t i = static_cast<std::uint32_t>(rng() % g.pieces()),
                   j = i + 1 + static_cast<std::uint32_t>(rng() % (g.pieces() - i));
@@ -315,11 +320,18 @@ Case anyCase(Rng& rng) {
   s += bodies;
   c.motion.margin = rng() % 2 ? 0.001 : uniform(rng, 0.001, 0.05);
   const int pieces = rng() % 5 == 0 ? 2 : 1;
+  std::vector<double> at;  // where the variables are when a piece begins
+  for (int v = 0; v < variables; ++v) at.push_back(v < joints || v < joints + 3 ? uniform(rng, -1, 1) : 0);
   for (int p = 0; p < pieces; ++p) {
     std::string piece;
     for (int v = 0; v < variables; ++v) {
-      piece += "q " + std::to_string(v) + " " + hex(v < joints || v < joints + 3 ? uniform(rng, -1, 1) : 0);
-      for (int k = pieces > 1 ? 3 : 1; k > 0; --k) piece += " " + hex(uniform(rng, -0.6, 0.6));
+      double& x = at[static_cast<std::size_t>(v)];
+      piece += "q " + std::to_string(v) + " " + hex(x);
+      for (int k = pieces > 1 ? 3 : 1; k > 0; --k) {
+        const double c = uniform(rng, -0.6, 0.6);
+        piece += " " + hex(c);
+        x += c;
+      }
       piece += "\n";
     }
     c.motion.pieces.push_back(piece);
@@ -373,10 +385,10 @@ TEST(VerifyRandom, TrueClaimsAreProvenAndFalseOnesNever) {
     for (int k = 0; k < 4; ++k) {
       MotionText more = c.motion;
       if (k < 2) more.added = uniform(rng, 0, 0.4);
+      const std::string other_q =
+          hex(uniform(rng, -3, 3)) + " " + hex(more.pieces.size() > 1 ? 0 : uniform(rng, -3, 3));
       if (k >= 2)
-        for (std::string& piece : more.pieces)
-          piece.replace(piece.find("q 0 ") + 4, piece.find('\n') - 4,
-                        hex(uniform(rng, -3, 3)) + " " + hex(uniform(rng, -3, 3)));
+        for (std::string& piece : more.pieces) piece.replace(piece.find("q 0 ") + 4, piece.find('\n') - 4, other_q);
       const std::string other = more.write(world);
       const Motion changed = readMotion(other, world);
       const Verdict w = judge(world, record(other, nodes), options);

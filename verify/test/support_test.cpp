@@ -18,8 +18,8 @@ TEST(VerifySupport, NothingIsLostWhereADirectionComesToBeADiscsAxis) {
   double most_lost = 0;
   for (int n = 0; n < 2000; ++n) {
     const std::string shape = n % 2 ? "cylinder " : "cone ";
-    const World world =
-        readWorld(kHead + ("geometry " + shape) + hex(uniform(rng, 0.05, 1)) + " " + hex(uniform(rng, 0.05, 1)) + "\n");
+    const World world = readWorld(kHead + ("geometry " + shape) + hex(uniform(rng, 0.05, 1)) + " " +
+                                  hex(uniform(rng, 0.05, 1)) + "\nbody link a 0 0 " + hex(M{}) + "\n");
     const Geometry& g = world.geometries[0];
     const double size = std::ldexp(1, -static_cast<int>(rng() % 50)), end = n % 3 - 1.0;  // where it is the axis
     const double x = uniform(rng, -1, 1) * size, y = n % 5 ? uniform(rng, -1, 1) * size : 0;

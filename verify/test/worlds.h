@@ -91,15 +91,24 @@ inline std::string hex(const M& m) {
 inline std::string hex(const V& x) {
   return hex(x[0]) + " " + hex(x[1]) + " " + hex(x[2]);
 }
+/// Vertices that no triangle has are left out.
 inline std::string meshText(const std::vector<V>& vertices, const std::vector<std::array<int, 3>>& triangles,
                             bool solid) {
-  std::string s = std::string("geometry mesh ") + (solid ? "solid" : "surface") + "\nvertices " +
-                  std::to_string(vertices.size()) + "\n";
-  for (const V& v : vertices) s += hex(v) + "\n";
-  s += "triangles " + std::to_string(triangles.size()) + "\n";
+  std::vector<int> number(vertices.size(), -1);
   for (const auto& t : triangles)
-    s += std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
-  return s;
+    for (const int v : t) number[static_cast<std::size_t>(v)] = 0;
+  std::string points, s;
+  int count = 0;
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    if (number[v] < 0) continue;
+    number[v] = count++;
+    points += hex(vertices[v]) + "\n";
+  }
+  for (const auto& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      s += std::to_string(number[static_cast<std::size_t>(t[k])]) + (k < 2 ? " " : "\n");
+  return std::string("geometry mesh ") + (solid ? "solid" : "surface") + "\nvertices " + std::to_string(count) + "\n" +
+         points + "triangles " + std::to_string(triangles.size()) + "\n" + s;
 }
 /// A box's surface, its triangles counter-clockwise from outside. @param half  its half sizes.
 inline std::string boxMesh(const V& half, bool solid) {

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+
+#include <cstdio>
+#include <map>
+
+namespace verify {
+namespace {
+
+std::string decimal(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+/// "WHAT: ITEM, ITEM, ...", where there is an item.
+void addList(std::vector<std::string>& lines, const std::string& what, const std::vector<std::string>& items) {
+  if (items.empty()) return;
+  std::string line = what + ": ";
+  for (std::size_t k = 0; k < items.size(); ++k) line += (k > 0 ? ", " : "") + items[k];
+  lines.push_back(line);
+}
+
+/// The nearest frame above a body that moves; 0: it stands still.
+int carrierOf(const World& world, int frame) {
+  while (frame > 0 && world.frames[static_cast<std::size_t>(frame)].elements.empty())
+    frame = world.frames[static_cast<std::size_t>(frame)].parent;
+  return frame;
+}
+
+std::string startOrGoal(const World& world, const Piece& piece, const double* until) {
+  std::string line;
+  for (std::size_t v = 0; v < world.variables.size(); ++v) {
+    double value = 0;
+    for (const Polynomial& q : piece.polynomials) {
+      if (q.variable != static_cast<int>(v)) continue;
+      for (std::size_t k = until ? q.coefficients.size() : 1; k-- > 0;)
+        value = value * (until ? *until : 0) + q.coefficients[k];
+    }
+    line += (v > 0 ? ", " : " ") + inQuotes(world.variables[v]) + " " + decimal(value);
+  }
+  for (const Orientation& o : piece.orientations) {
+    line += ", " + inQuotes(world.variables[static_cast<std::size_t>(o.variable)]) + " turns what is turned by";
+    for (const double x : o.numbers) line += " " + decimal(x);
+  }
+  return line;
+}
+
+}  // namespace
+
+std::vector<std::string> linesOf(const World& world) {
+  std::vector<std::string> lines;
+  for (const Role role : {Role::link, Role::carried, Role::obstacle}) {
+    std::map<std::string, int> names;
+    int count = 0;
+    for (const Body& body : world.bodies)
+      if (body.role == role) ++names[body.name], ++count;
+    std::vector<std::string> items;
+    for (const auto& [name, n] : names)
+      items.push_back(inQuotes(name) + (n > 1 ? " (" + std::to_string(n) + " bodies)" : ""));
+    addList(lines, std::to_string(count) + (count == 1 ? " body" : " bodies") + " of role " + nameOf(role), items);
+  }
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+    const Body& body = world.bodies[b];
+    const int carrier = carrierOf(world, body.frame);
+    const std::string who = world.describe(static_cast<int>(b));
+    const std::string frame = inQuotes(world.frames[static_cast<std::size_t>(body.frame)].name);
+    if (body.role == Role::obstacle && carrier > 0)
+      lines.push_back(who + " moves with the frame " + inQuotes(world.frames[static_cast<std::size_t>(carrier)].name));
+    if (body.role == Role::carried) lines.push_back(who + " is carried by the frame " + frame);
+  }
+  for (const Reason reason : {Reason::neighbours, Reason::allowed, Reason::touch_link}) {
+    std::vector<std::string> pairs;
+    for (const auto& [pair, why] : world.unchecked)
+      if (why == reason)
+        pairs.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                        inQuotes(world.names[static_cast<std::size_t>(pair.second)]));
+    addList(lines, std::string("not checked, ") + nameOf(reason), pairs);
+  }
+  std::vector<std::string> margins;
+  for (const auto& [name, margin] : world.margins)
+    margins.push_back(inQuotes(world.names[static_cast<std::size_t>(name)]) + " " + decimal(margin) + " m");
+  for (const auto& [pair, margin] : world.pair_margins)
+    margins.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                      inQuotes(world.names[static_cast<std::size_t>(pair.second)]) + " " + decimal(margin) + " m");
+  addList(lines, "margins of their own", margins);
+  return lines;
+}
+
+std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict) {
+  std::vector<std::string> lines;
+  lines.push_back(std::string("checked: ") + (motion.self ? "links with links" : "") +
+                  (motion.self && motion.scene ? ", " : "") + (motion.scene ? "links with obstacles" : ""));
+  lines.push_back("margin: " + decimal(motion.margin) + " m" +
+                  (world.margins.empty() && world.pair_margins.empty() ? "" : ", of what has none of its own") +
+                  (motion.added == 0 ? "" : ", and " + decimal(motion.added) + " m added to every margin"));
+  const std::size_t last = motion.pieces.size() - 1;
+  const auto ofPiece = [&](std::size_t piece) { return last > 0 ? " of piece " + std::to_string(piece) : ""; };
+  lines.push_back("start, t = 0" + ofPiece(0) + ":" + startOrGoal(world, motion.pieces.front(), nullptr));
+  lines.push_back("goal, t = " + decimal(motion.until) + ofPiece(last) + ":" +
+                  startOrGoal(world, motion.pieces.back(), &motion.until));
+  if (motion.duration != 0) lines.push_back("duration: " + decimal(motion.duration) + " s, which no proof uses");
+  if (last > 0)
+    lines.push_back(std::to_string(last + 1) + " pieces: each begins where the one before ends, within " +
+                    decimal(verdict.jump) + " rad or m");
+  for (std::size_t k = 0; k <= last; ++k)
+    for (const Ignored& i : motion.pieces[k].ignored)
+      lines.push_back("ignored until t = " + decimal(i.until) + ofPiece(k) +
+                      (i.until >= (k == last ? motion.until : 1) ? ", the end of its claim: " : ": ") +
+                      world.describe(i.a) + " and " + world.describe(i.b));
+  return lines;
+}
+
+std::string lineOf(const Verdict& v) {
+  if (!v.verified) return "NOT VERIFIED: " + shown(v.reason);
+  std::string line = "VERIFIED " + std::to_string(v.checked) + " pairs";
+  if (v.late > 0) line += " (" + std::to_string(v.late) + " of them ignored up to a time)";
+  if (v.pieces > 1) line += ", " + std::to_string(v.pieces) + " pieces";
+  if (v.until < 1) line += ", until t = " + decimal(v.until);
+  const char* before = "; not checked: ";
+  for (int k = 0; k < kReasons; ++k) {
+    if (v.not_checked[k] == 0) continue;
+    line += before + std::to_string(v.not_checked[k]) + " " + nameOf(static_cast<Reason>(k));
+    before = ", ";
+  }
+  if (v.contact) line += (v.near ? "; WITHIN THEIR MARGIN " : "; CONTACT of ") + shown(v.contact_text);
+  return line;
+}
+
+std::string shown(std::string_view text) {
+  std::string safe;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    char escape[8];
+    const bool verdict = text.substr(k, 8) == "VERIFIED";
+    std::snprintf(escape, sizeof escape, byte < 32 || byte > 126 || verdict ? "\\x%02x" : "%c", byte);
+    safe += escape;
+  }
+  return safe;
+}
+
+std::string listAsJson(const std::vector<std::string>& lines) {
+  std::string s = "[";
+  for (std::size_t k = 0; k < lines.size(); ++k) s += (k > 0 ? ",\n  " : "\n  ") + quotedJson(lines[k]);
+  return s + "]";
+}
+
+std::string verdictAsJson(const Verdict& v) {
+  std::string s = std::string("{\"verified\": ") + (v.verified ? "true" : "false");
+  if (!v.verified) return s + ", \"reason\": " + quotedJson(v.reason) + "}";
+  s += ", \"pairs\": " + std::to_string(v.checked) + ", \"ignored_up_to_a_time\": " + std::to_string(v.late) +
+       ", \"pieces\": " + std::to_string(v.pieces) + ", \"until\": " + decimal(v.until) + ", \"not_checked\": {";
+  const char* before = "";
+  for (int k = 0; k < kReasons; ++k) {
+    s += before + quotedJson(nameOf(static_cast<Reason>(k))) + ": " + std::to_string(v.not_checked[k]);
+    before = ", ";
+  }
+  s += "}";
+  if (v.contact) s += (v.near ? ", \"within_margin\": " : ", \"contact\": ") + quotedJson(v.contact_text);
+  return s + "}";
+}
+
+}  // namespace verify

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is said to people: of a world, of a motion, of a verdict. Nothing is proven here.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "proof.h"
+
+namespace verify {
+
+/// What the world's text says beside its numbers: whose bodies, which of them move with a link, which pairs are not
+/// checked, margins. A line each.
+std::vector<std::string> linesOf(const World& world);
+/// What the motion says: what is checked, margin, start and goal, pairs that are ignored up to a time.
+std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict);
+/// "VERIFIED 3 pairs; ..." or "NOT VERIFIED: ...".
+std::string lineOf(const Verdict& verdict);
+
+/// Text that may hold names, made safe to print: what is no printing character as \xNN, and no "VERIFIED" in it, so
+/// that no name looks like a verdict.
+std::string shown(std::string_view text);
+
+/// The same as JSON. Numbers that JSON has not, "nan" and infinite ones, are strings.
+std::string quotedJson(std::string_view text);
+std::string listAsJson(const std::vector<std::string>& lines);
+std::string verdictAsJson(const Verdict& verdict);
+/// The motion's text and the proof. @throws BadInput where it has no form at all.
+std::string proofAsJson(const World& world, const Record& record);
+
+}  // namespace verify

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <utility>
+
+#include "readers.h"
+#include "xml.h"
+
+namespace verify {
+
+// MoveIt's rules: a pair is disabled by name, or where a link is disabled by default and the pair is not enabled.
+Comparison compareWithSrdf(const World& world, const std::string& path) {
+  const Xml xml(path);
+  std::set<std::pair<std::string, std::string>> disabled, enabled;
+  std::set<std::string> defaults;
+  for (const Xml::Element* e = xml.robot().FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+    const std::string kind = e->Name();
+    if (kind == "disable_default_collisions") {
+      xml.only(*e, {"link"});
+      defaults.insert(xml.attribute(*e, "link"));
+    } else if (kind == "disable_collisions" || kind == "enable_collisions") {
+      xml.only(*e, {"link1", "link2", "reason"});
+      const std::string a = xml.attribute(*e, "link1"), b = xml.attribute(*e, "link2");
+      (kind[0] == 'd' ? disabled : enabled).insert({std::min(a, b), std::max(a, b)});
+    } else if (kind.find("collision") != std::string::npos) {
+      xml.refuse(*e, "this element is not known");
+    }
+  }
+  Comparison result;
+  std::set<std::string> links, others;
+  for (const Body& body : world.bodies) (body.role == Role::link ? links : others).insert(body.name);
+  for (const std::string& name : others) links.erase(name);  // the SRDF's word is about links
+  std::size_t found = 0;
+  for (const auto& [pair, reason] : world.unchecked) {
+    if (reason != Reason::allowed) continue;
+    const std::string &x = world.names[static_cast<std::size_t>(pair.first)],
+                      &y = world.names[static_cast<std::size_t>(pair.second)];
+    const std::pair<std::string, std::string> key(std::min(x, y), std::max(x, y));
+    const bool by_default = (defaults.count(x) > 0 || defaults.count(y) > 0) && enabled.count(key) == 0;
+    if (links.count(x) > 0 && links.count(y) > 0 && (disabled.count(key) > 0 || by_default)) {
+      ++found;
+    } else {
+      result.differences.push_back("the world allows " + inQuotes(x) + " and " + inQuotes(y) +
+                                   " to touch, the SRDF does not");
+    }
+  }
+  result.notes.push_back(std::to_string(found) + " pairs of names that the world allows are in the SRDF");
+  return result;
+}
+
+}  // namespace verify
