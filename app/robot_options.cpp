@@ -108,6 +108,7 @@ void addAttachOption(CLI::App& verb, RobotOptions& o) {
           "--attach", o.attached,
           "Object that a link carries, a scene file at a pose in the link's frame; LINK+LINK2=FILE: it may touch "
           "LINK2 too; may be repeated")
+      ->allow_extra_args(false)
       ->group(kWorldGroup)
       ->type_name("LINK=FILE[@POSE]");
 }

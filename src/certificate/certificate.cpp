@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "certificate/certificate.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "certificate/emitter.h"
 #include "certificate/sha256.h"
 
@@ -54,6 +57,25 @@ std::string motionText(const World& world, const Claim& claim) {
   return text;
 }
 
+/// Whether the claim is about any pair: one that is checked, and that not every piece ignores to its end.
+bool claimsAnyPair(const World& world, const Claim& claim) {
+  const auto isObstacle = [&](std::size_t i) { return world.bodies[i].role == Body::Role::obstacle; };
+  for (const Motion& piece : claim.pieces) {
+    for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+      for (const int partner : world.bodies[i].partners) {
+        const bool with_scene = isObstacle(i) || isObstacle(static_cast<std::size_t>(partner));
+        if (!(with_scene ? piece.scene : piece.self)) continue;
+        const std::pair<int, int> pair = std::minmax(static_cast<int>(i), partner);
+        const bool ignored = std::any_of(piece.ignored.begin(), piece.ignored.end(), [&](const Motion::Ignored& p) {
+          return p.a == pair.first && p.b == pair.second && p.until >= piece.until;
+        });
+        if (!ignored) return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Motion motionOf(const World& world, const JointMotion& motion, const TimePart& time) {
@@ -85,6 +107,10 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
   if (!certificate.missing.empty()) return certificate;
   if (!(claim.pieces.back().until > 0)) {
     certificate.missing = "nothing is claimed: the bodies may touch from the beginning on";
+    return certificate;
+  }
+  if (!claimsAnyPair(world, claim)) {
+    certificate.missing = "nothing is claimed: no pair of bodies is checked";
     return certificate;
   }
   certificate.world = world.text;

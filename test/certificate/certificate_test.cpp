@@ -229,6 +229,14 @@ TEST_F(Machine, WhereNothingIsCheckedNothingIsClaimed) {
   ASSERT_TRUE(result.certificate);
   EXPECT_FALSE(*result.certificate);
   EXPECT_NE(result.certificate->missing.find("nothing is claimed"), std::string::npos) << result.certificate->missing;
+  // A scene that is asked for and has no obstacle is no claim either: fcl_artic_verify would refuse it.
+  manager_->unregisterObject(post_.get());
+  request.check_scene = true;
+  const CertifiedResult empty = ask({0, 0, 0}, {0, -1, 0.5}, request);
+  ASSERT_TRUE(empty.certificate);
+  EXPECT_FALSE(*empty.certificate);
+  EXPECT_NE(empty.certificate->missing.find("no pair of bodies is checked"), std::string::npos)
+      << empty.certificate->missing;
 }
 
 TEST(Certificates, OfJointsThatTurnSeveralTimes) {
