@@ -17,6 +17,8 @@ endfunction()
 
 string(REPLACE "|" ";" OBJECTS "${OBJECTS}")
 string(REPLACE "|" ";" CHOICES "${CHOICES}")
+list(FILTER OBJECTS EXCLUDE REGEX "\\.(gch|pch)$")  # CMake lists precompiled headers, too
+list(FILTER CHOICES EXCLUDE REGEX "\\.(gch|pch)$")
 set(faults "")
 list(LENGTH OBJECTS looked_at)
 foreach(object IN LISTS OBJECTS)
