@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "certificate_file.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "files/files.h"
@@ -18,12 +16,7 @@ std::string CertificateFile::add(const Certificate& certificate) {
 }
 
 void CertificateFile::write() const {
-  if (!world_) {
-    // Those of an earlier call would be taken for this one's.
-    std::filesystem::remove(path_);
-    std::filesystem::remove(worldPath());
-    return;
-  }
+  if (!world_) return;
   files::write(worldPath(), *world_);
   files::write(path_, records_);
 }

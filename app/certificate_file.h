@@ -21,8 +21,7 @@ class CertificateFile {
   /// Adds an answer's certificate, if it has a proof.
   /// @return one line for the user.
   std::string add(const Certificate& certificate);
-  /// Writes both files; if nothing was added, removes them: without a proof no file is left that could be taken for
-  /// one.
+  /// Writes both files, or none if nothing was added. (Those of an earlier run are gone: removeEarlierOutputs().)
   /// @throws std::runtime_error naming the file.
   void write() const;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "certify.h"
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "certification.h"
 #include "certify_report.h"
 #include "configuration.h"
+#include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
@@ -118,9 +118,9 @@ int runCertify(CertifyVerb& o) {
   o.certify.request.measure_times = all.size() == 1;  // the one that is shown in full
   CertificateFile certificates(o.certificate);
   o.certify.request.certificate = certificates.wanted();
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   certify(*manager, o.certify, all);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = secondsSince(begin);
   if (o.mend) {
     o.mending.request = o.certify.request;
     mendAll(manager, o.certify, o.mending, all);
@@ -159,10 +159,6 @@ void addCertify(CLI::App& program, int& exit_status) {
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");
-  // One value each, so that plans may stand after them.
-  for (const char* name : {"--scene", "--attach", "--package", "--solid"}) {
-    certify->get_option(name)->allow_extra_args(false);
-  }
 
   certify->add_option("--format", o.format, "What the files are, whatever their endings")
       ->check(CLI::IsMember({"csv", "json", "jsonl", "yaml", "ompl", "numpy"}))

@@ -2,7 +2,6 @@
 #include "mend.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -36,10 +35,6 @@ constexpr double kLeast = 0.05;  // s, for a stretch
 // tried. They cost some ms where none is found, and keep what they mend near the plan (bench certify).
 constexpr double kNudges[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr int kTries = 48, kShrinks = 5;
-
-double seconds(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 double lengthOf(const Points& points) {
   double length = 0;
@@ -137,7 +132,7 @@ class Mender {
       k = replace(k, begin);
     }
     Mended out = assemble(motion);
-    out.ms = 1e3 * seconds(begin);
+    out.ms = 1e3 * secondsSince(begin);
     return out;
   }
 
@@ -208,7 +203,7 @@ class Mender {
       std::size_t first = detours_.size();  // of those that this one holds
       while (first > 0 && a < detours_[first - 1].end) a = std::min(a, detours_[--first].begin);
       const bool whole = a == 0 && b == last;
-      const double left = options_.seconds - seconds(begin);
+      const double left = options_.seconds - secondsSince(begin);
       if (left < kLeast) break;
       std::optional<Points> points = wider == 0 ? nudge(k, a, b) : std::nullopt;
       if (!points) points = plan(way_.points[a], way_.points[b], whole ? left : left / 4);

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 bool areSame(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  return fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error);
+  const fs::path resolved_a = fs::weakly_canonical(a, error), resolved_b = fs::weakly_canonical(b, error);
+  return !resolved_a.empty() && resolved_a == resolved_b;  // empty: it can't be resolved
 }
 
 std::vector<std::string> filesIn(const std::string& path) {

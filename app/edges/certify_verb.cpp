@@ -84,10 +84,6 @@ void addCertifyEdges(CLI::App& program, int& exit_status) {
 
   addWorldOptions(*certify, o.world, "--robot,--urdf");
   certify->get_option("--robot")->required(false);  // --merge needs none
-  // One value each, as in `certify` of plans.
-  for (const char* name : {"--scene", "--attach", "--package", "--solid"}) {
-    certify->get_option(name)->allow_extra_args(false);
-  }
   addPlanVariables(*certify, o.variables);
   addQueryOptions(*certify, o.edges.request);
   certify->add_option("--threads", o.edges.threads, "Threads at most; 0: as many as the machine runs at once")

@@ -51,7 +51,7 @@ std::string without(const std::string& name, const std::vector<std::string>& end
   return {};
 }
 
-/// QuantityColumns of one quantity, by joint.
+/// Columns of one quantity, by joint.
 struct QuantityColumns {
   std::vector<std::string> joints;
   std::vector<std::size_t> at;

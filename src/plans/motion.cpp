@@ -32,7 +32,7 @@ std::string plural(std::size_t n, const std::string& what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
 
-/// PlanColumns of a plan as variables of the tree.
+/// Columns of a plan as variables of the tree.
 struct PlanColumns {
   std::vector<std::string> names;
   std::vector<int> variables;

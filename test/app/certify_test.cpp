@@ -192,7 +192,8 @@ TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
 
 /// A second scene after one --scene is no plan, and must not be left out of the scene.
 TEST_F(CertifyProgramTest, WhatIsNoPlanStopsTheRun) {
-  const std::string plan = write("way.csv", "hinge,rail\n0,0\n0.5,0\n"), second = write("wall.obj", "v 0 0 0\n");
+  const std::string plan = write("way.csv", "hinge,rail\n0,0\n0.5,0\n");
+  const std::string second = write("wall.obj", "v 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\n");
   const std::string out = path("safe.csv");
   const Outcome two =
       run("certify " + plan + " --robot " + arm() + " --scene " + ball() + " " + second + " --out " + out);
@@ -200,8 +201,11 @@ TEST_F(CertifyProgramTest, WhatIsNoPlanStopsTheRun) {
   EXPECT_NE(two.err.find("wall.obj' is no plan by its ending"), std::string::npos) << two.err;
   EXPECT_EQ(two.out, "");
   EXPECT_FALSE(std::filesystem::exists(out));
-  const Outcome check = run("check --robot " + arm() + " --scene " + ball() + " " + second + " --from 0,0 --to 0.5,0");
-  EXPECT_EQ(check.status, 2) << check.out;
+  // Neither verb takes two scenes after one --scene; both take two of them.
+  const std::string motion = " --from 0,0 --to 0.5,0", scenes = armAndBall() + " --scene " + second;
+  EXPECT_EQ(run("check " + armAndBall() + " " + second + motion).status, 2);
+  EXPECT_EQ(run("check " + scenes + motion).status, 0);
+  EXPECT_EQ(run("certify " + plan + " " + scenes).status, 0);
 }
 
 /// What this run did not write was written by no run: a plan that collides is not left under the name of a free one.

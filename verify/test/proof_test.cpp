@@ -9,12 +9,6 @@
 namespace verify::test {
 namespace {
 
-const M kHere;
-M at(double x, double y, double z) {
-  M m;
-  m.t = {x, y, z};
-  return m;
-}
 void expectRefused(const Verdict& v, const std::string& words) {
   EXPECT_FALSE(v.verified);
   EXPECT_NE(v.reason.find(words), std::string::npos) << v.reason;

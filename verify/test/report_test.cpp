@@ -11,12 +11,6 @@
 namespace verify::test {
 namespace {
 
-const M kHere;
-M at(double x, double y, double z) {
-  M m;
-  m.t = {x, y, z};
-  return m;
-}
 bool has(const std::vector<std::string>& lines, const std::string& text) {
   return std::any_of(lines.begin(), lines.end(),
                      [&](const std::string& line) { return line.find(text) != std::string::npos; });

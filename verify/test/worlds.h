@@ -41,6 +41,12 @@ struct M {
   std::array<double, 9> R{1, 0, 0, 0, 1, 0, 0, 0, 1};
   V t{0, 0, 0};
 };
+inline const M kHere;
+inline M at(double x, double y, double z) {
+  M m;
+  m.t = {x, y, z};
+  return m;
+}
 inline V turn(const M& m, const V& x) {
   return {m.R[0] * x[0] + m.R[1] * x[1] + m.R[2] * x[2], m.R[3] * x[0] + m.R[4] * x[1] + m.R[5] * x[2],
           m.R[6] * x[0] + m.R[7] * x[1] + m.R[8] * x[2]};
