@@ -159,6 +159,7 @@ void addCertify(CLI::App& program, int& exit_status) {
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");
+  takeOneValueEach(*certify);
 
   certify->add_option("--format", o.format, "What the files are, whatever their endings")
       ->check(CLI::IsMember({"csv", "json", "jsonl", "yaml", "ompl", "numpy"}))

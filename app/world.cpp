@@ -69,9 +69,8 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
                   "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot, points .pcd "
                   ".ply .xyz; may be repeated")
       ->check(requireInput)
-      ->allow_extra_args(false)
       ->group("Robot and scene")
-      ->type_name("FILE");
+      ->type_name("FILE...");
   verb.add_option("--scale", o.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
       ->check(requirePositive)
       ->group("Robot and scene")
@@ -90,10 +89,13 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
                 "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
   verb.add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
-      ->allow_extra_args(false)
       ->group("Robot and scene")
       ->type_name("NAME");
   addAttachOption(verb, o.robot);
+}
+
+void takeOneValueEach(CLI::App& verb) {
+  for (const char* name : {"--scene", "--solid"}) verb.get_option(name)->allow_extra_args(false);
 }
 
 std::string shellArguments(const WorldOptions& o) {

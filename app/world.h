@@ -28,6 +28,9 @@ struct WorldOptions {
 /// @param robot_names  of the robot's option.
 void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& robot_names = kRobotNames);
 
+/// Has --scene and --solid take one value each, so that a verb's own arguments may stand after them.
+void takeOneValueEach(CLI::App& verb);
+
 /// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no
 /// check found again (--auto-srdf /dev/null).
 std::string shellArguments(const WorldOptions& options);

@@ -84,6 +84,7 @@ void addCertifyEdges(CLI::App& program, int& exit_status) {
 
   addWorldOptions(*certify, o.world, "--robot,--urdf");
   certify->get_option("--robot")->required(false);  // --merge needs none
+  takeOneValueEach(*certify);
   addPlanVariables(*certify, o.variables);
   addQueryOptions(*certify, o.edges.request);
   certify->add_option("--threads", o.edges.threads, "Threads at most; 0: as many as the machine runs at once")

@@ -99,7 +99,7 @@ double leastClearance(const engine::TreeView& mesh, const Eigen::Vector3d& x, co
     if (at.clearance >= least) continue;
     const engine::Node& node = mesh.nodes[at.node];
     if (node.isLeaf()) {
-      Eigen::Vector3d point;
+      Eigen::Vector3d point = x;  // g++ does not see that an infinite clearance is never the least
       const double found = clearance(node.piece(), point);
       if (found >= least) continue;
       least = found;
