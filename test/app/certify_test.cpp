@@ -13,6 +13,8 @@
 #include "../plans/numpy_sample.h"
 #include "run_program.h"
 
+namespace certify_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -389,3 +391,5 @@ TEST_F(CertifyProgramTest, SaysWhyItCannotMend) {
 #endif
 
 }  // namespace
+
+}  // namespace certify_test

@@ -20,6 +20,8 @@
 #include "hdf5/hdf5.h"
 #include "run_program.h"
 
+namespace edges_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -618,3 +620,5 @@ TEST_F(EdgesTest, GeneratedFilesAreThoseOfTheirSeed) {
 }
 
 }  // namespace
+
+}  // namespace edges_test

@@ -4,6 +4,8 @@
 
 #include "run_program.h"
 
+namespace info_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -114,3 +116,5 @@ TEST_F(InfoTest, ErrorsAreTwo) {
 }
 
 }  // namespace
+
+}  // namespace info_test

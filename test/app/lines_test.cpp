@@ -7,6 +7,8 @@
 
 #include "run_program.h"
 
+namespace lines_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -121,3 +123,5 @@ TEST_F(LinesTest, NothingAskedIsAnError) {
 }
 
 }  // namespace
+
+}  // namespace lines_test

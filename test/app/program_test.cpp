@@ -7,6 +7,8 @@
 
 #include "run_program.h"
 
+namespace program_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -449,3 +451,5 @@ TEST_F(ProgramTest, PandaOfTheDataFolder) {
 }
 
 }  // namespace
+
+}  // namespace program_test

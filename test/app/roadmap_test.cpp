@@ -17,6 +17,8 @@
 #include "roadmap/nearest.h"
 #include "run_program.h"
 
+namespace roadmap_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -278,3 +280,5 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
 }
 
 }  // namespace
+
+}  // namespace roadmap_test

@@ -12,6 +12,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace body_motion_test {
 namespace {
 
 using bench::Random;
@@ -300,4 +301,5 @@ TEST(EnclosePathTest, UnboundedBodiesAndWildMotionsGiveUnboundedBoxes) {
 }
 
 }  // namespace
+}  // namespace body_motion_test
 }  // namespace fcl_artic

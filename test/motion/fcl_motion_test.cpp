@@ -20,6 +20,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace fcl_motion_test {
 namespace {
 
 using bench::Random;
@@ -534,4 +535,5 @@ TEST(ReadTransformTest, FloatsMayBeLessOrthonormal) {
 }
 
 }  // namespace
+}  // namespace fcl_motion_test
 }  // namespace fcl_artic

@@ -10,6 +10,8 @@
 
 #include "motion/frame_sweep.h"
 
+namespace variable_reach_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -162,3 +164,5 @@ TEST(VariableReach, IsAttained) {
     EXPECT_GE(way, bound * (1 - 1e-8)) << "chain " << i;
   }
 }
+
+}  // namespace variable_reach_test

@@ -13,6 +13,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace body_motion_test {
 namespace {
 
 using Kind = MotionElement::Kind;
@@ -115,5 +116,6 @@ TEST(BodyMotionBounds, RemaindersOfOneFactorAreAttained) {
 }
 
 }  // namespace
+}  // namespace body_motion_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

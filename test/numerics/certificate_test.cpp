@@ -9,6 +9,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace certificate_test {
 namespace {
 
 /// Quadratic with Bernstein coefficients G, exact.
@@ -290,5 +291,6 @@ TEST(Certificate, PrefixEndsBeforeTheFirstRoot) {
 }
 
 }  // namespace
+}  // namespace certificate_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

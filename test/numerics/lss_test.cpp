@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace lss_test {
 namespace {
 
 double tauOf(Random& random) {
@@ -197,5 +198,6 @@ TEST(LineSweptSphere, BoxesHoldIt) {
 }
 
 }  // namespace
+}  // namespace lss_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

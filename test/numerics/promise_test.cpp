@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace promise_test {
 namespace {
 
 /// A sphere of radius 0.1 that slides along x, or turns about z at a distance of 1, past or into others of its kind.
@@ -136,5 +137,6 @@ TEST(Promise, JointOriginsAreMadeOrthonormal) {
 }
 
 }  // namespace
+}  // namespace promise_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

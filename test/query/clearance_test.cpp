@@ -11,6 +11,8 @@
 
 #include "expect_time.h"
 
+namespace clearance_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -249,3 +251,5 @@ TEST(Clearance, BadInputIsRefused) {
   way.manager->setMargin("post", 0.1);
   EXPECT_THROW(static_cast<void>(way.manager->clearance(motion)), std::logic_error);
 }
+
+}  // namespace clearance_test

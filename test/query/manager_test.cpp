@@ -19,6 +19,8 @@
 #include "expect_time.h"
 #include "meshes.h"
 
+namespace manager_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -512,3 +514,5 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
   EXPECT_EQ(manager.size(), 1u);
   EXPECT_EQ(cart.run(0, 1).status, Status::contact);
 }
+
+}  // namespace manager_test

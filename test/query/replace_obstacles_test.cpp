@@ -13,6 +13,8 @@
 
 #include "expect_time.h"
 
+namespace replace_obstacles_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -270,3 +272,5 @@ TEST(ReplaceObstacles, WhatIsSharedIsTheRobot) {
 }
 
 }  // namespace
+
+}  // namespace replace_obstacles_test

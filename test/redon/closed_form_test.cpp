@@ -7,6 +7,8 @@
 #include "fcl_artic/fcl_artic.h"
 #include "meshes.h"
 
+namespace closed_form_test {
+
 namespace {
 
 using Eigen::Isometry3d;
@@ -232,3 +234,5 @@ TEST(ClosedForm, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace closed_form_test

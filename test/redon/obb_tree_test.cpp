@@ -14,6 +14,8 @@
 #include "geometry/shape_tree.h"
 #include "meshes.h"
 
+namespace obb_tree_test {
+
 namespace {
 
 using Eigen::Vector3d;
@@ -152,3 +154,5 @@ TEST(ObbTree, ZeroLengthEdgesAreLeftOut) {
 }
 
 }  // namespace
+
+}  // namespace obb_tree_test

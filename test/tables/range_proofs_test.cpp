@@ -12,6 +12,8 @@
 #include "fcl_artic/manager.h"
 #include "random_links.h"
 
+namespace range_proofs_test {
+
 using namespace fcl_artic;
 using Eigen::VectorXd;
 using tables::RandomLinks;
@@ -351,3 +353,5 @@ TEST(RangeProofs, OfStretchedArmsEndAtTheirReach) {
   std::cout << n << " pairs of arms, " << proven << " proven, " << wrong << " wrong\n";
   EXPECT_GT(proven, n / 2);
 }
+
+}  // namespace range_proofs_test

@@ -9,6 +9,7 @@
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace data_test {
 namespace {
 
 struct Expected {
@@ -79,4 +80,5 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.robot); });
 
 }  // namespace
+}  // namespace data_test
 }  // namespace fcl_artic

@@ -8,6 +8,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace kinematic_tree_test {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -324,4 +325,5 @@ TEST(JointMotion, ShortestRefusesMimicsThatWouldEndElsewhere) {
 }
 
 }  // namespace
+}  // namespace kinematic_tree_test
 }  // namespace fcl_artic

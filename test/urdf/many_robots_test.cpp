@@ -10,6 +10,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace many_robots_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -243,4 +244,5 @@ TEST_F(ManyRobotsTest, UnknownSpaceIsFewBoxes) {
 }
 
 }  // namespace
+}  // namespace many_robots_test
 }  // namespace fcl_artic

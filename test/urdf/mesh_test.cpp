@@ -9,6 +9,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace mesh_test {
 namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSSd>;
@@ -355,4 +356,5 @@ TEST_F(MeshTest, TruncatedBinaryStlIsAnError) {
 }
 
 }  // namespace
+}  // namespace mesh_test
 }  // namespace fcl_artic

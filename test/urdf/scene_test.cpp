@@ -15,6 +15,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace scene_test {
 namespace {
 
 class SceneTest : public TempFolderTest {
@@ -519,4 +520,5 @@ TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {
 }
 
 }  // namespace
+}  // namespace scene_test
 }  // namespace fcl_artic

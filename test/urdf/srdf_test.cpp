@@ -3,6 +3,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace srdf_test {
 namespace {
 
 class SrdfTest : public TempFolderTest {
@@ -241,4 +242,5 @@ TEST_F(SrdfTest, RefusesBadArguments) {
 }
 
 }  // namespace
+}  // namespace srdf_test
 }  // namespace fcl_artic

@@ -19,6 +19,7 @@ extern "C" const char* __lsan_default_suppressions() {  // NOLINT: its name
 }
 
 namespace fcl_artic {
+namespace urdf_test {
 namespace {
 
 const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -548,4 +549,5 @@ TEST_F(UrdfTest, FilesThatAreNoUrdf) {
 }
 
 }  // namespace
+}  // namespace urdf_test
 }  // namespace fcl_artic
