@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
@@ -23,6 +25,11 @@ struct ClearanceRequest : Scope {
   /// Called now and then, from the querying thread, with what is proven so far (Clearance). May be empty. If it returns
   /// false, the search ends with that, and Clearance::within_tolerance is false.
   std::function<bool(double lower, double upper)> progress;
+  /// Whether pairs that touch at the motion's begin (strictly: that are not proven apart then), or are within their
+  /// margin, are left out, over the whole motion: those that CertifiedRequest::ignore_initial_contact ignores.
+  bool ignore_initial_contact = false;
+  /// Margin of pairs that have none of their own, by which ignore_initial_contact goes; m, finite, at least 0.
+  double ignored_margin = 0;
 };
 
 /// The smallest distance of any checked pair over a whole motion: lower <= distance <= upper, both proven. It is found
@@ -43,6 +50,8 @@ struct Clearance {
   bool within_tolerance = false;
   /// Work of all queries together.
   QueryStatistics statistics;
+  /// Pairs that were left out (ClearanceRequest::ignore_initial_contact): nothing here is said of them.
+  std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
 };
 
 }  // namespace fcl_artic

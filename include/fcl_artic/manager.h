@@ -62,7 +62,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Adds obstacles that stand still, named "obstacle<N>": all of them or, if this throws, none. Needs setup().
   /// @throws std::invalid_argument as registerObject().
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
-  /// Removes an obstacle that stands still, also one that is attached to a link. Needs setup().
+  /// Removes an obstacle that stands still, also one that is attached to a link, with its allowed pairs and margins:
+  /// the next obstacle of its name has none. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::CollisionObjectd* object);
   /// Removes an obstacle that stands still, as the form with a pointer does. Needs setup().
@@ -71,8 +72,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
 
   /// Swaps the scene: takes these obstacles that stand still in place of all that there are, and makes that effective
   /// without setup(): all or, if this throws, nothing. What was made of the robot stays as it is, and is not looked at
-  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move, attached objects,
-  /// and allowed pairs and margins of names stay. (Changes that wait for setup() are made effective too.)
+  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move and attached objects
+  /// stay. Allowed pairs and margins are here meant for names: those of a name in `names` count for the object that has
+  /// it now; those of obstacles whose names are not given again go. (Changes that wait for setup() are made effective
+  /// too.)
   /// @param objects  kept alive as long as they are registered; one that was there before, the same in all that
   ///   setup() compares, is not read again.
   /// @param names  one for each object, unique among links and obstacles; none: "obstacle<N>", N counting from 0.
@@ -100,7 +103,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// geometry and motion, alive as long as it is registered. Needs setup().
   /// @throws std::invalid_argument as registerObject() of a pointer.
   void registerObject(std::shared_ptr<const fcl::ContinuousCollisionObjectd> object, const std::string& name = {});
-  /// Removes an obstacle that moves. Needs setup().
+  /// Removes an obstacle that moves, with its allowed pairs and margins. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
   void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
   /// Removes an obstacle that moves, as the form with a pointer does. Needs setup().
@@ -185,7 +188,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
   void detach(const std::shared_ptr<const fcl::CollisionObjectd>& object) { detach(object.get()); }
 
-  /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup().
+  /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup(). A pair
+  /// goes with its obstacle or attached object (unregisterObject()); one of two links stays.
   ///
   /// Neighbours may always touch: links with at most one moving joint between them and no other link with geometry.
   /// (But a link that a planar or floating joint moves freely in the world is no neighbour of what stands still. Links
@@ -219,8 +223,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Sets a margin of the body's own. It replaces CertifiedRequest::margin for all pairs of the body, also where it is
   /// the smaller one; CertifiedRequest::added_margin is added to it too. If both bodies of a pair have one, the larger
   /// counts. Needs setup().
-  /// @param body  name of a link (all of its geometry), an obstacle or an attached object. The margin belongs to the
-  ///   name: it is kept while an obstacle of that name is unregistered.
+  /// @param body  name of a link (all of its geometry), an obstacle or an attached object, which the margin goes with
+  ///   when it is unregistered.
   /// @param margin  m, finite, at least 0.
   /// @throws std::invalid_argument: no such name, margin negative or not finite.
   void setMargin(const std::string& body, double margin);
@@ -269,8 +273,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Reads one obstacle that moves again, as the form with a pointer does, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is not registered.
   void update(const std::shared_ptr<const fcl::ContinuousCollisionObjectd>& object) { update(object.get()); }
-  /// Removes all obstacles, bindings and attached objects. Allowed pairs and margins, which go by names, are kept.
-  /// Needs setup().
+  /// Removes all obstacles, bindings and attached objects. Allowed pairs and margins of links are kept. Needs setup().
   void clear();
 
   /// Lists the obstacles that stand still; attached objects are not among them.
@@ -397,7 +400,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const Aspects& aspects,
                      CertifiedResult& result) const;
-  void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request, bool own_margins,
+  void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request, const Aspects& aspects,
                          CertifiedResult& result) const;
   std::unique_ptr<Impl> impl_;
 };

@@ -461,6 +461,8 @@ class Clearance:
     @property
     def within_tolerance(self) -> bool: ...
     @property
+    def ignored_initial_contacts(self) -> list[_Pair]: ...
+    @property
     def statistics(self) -> dict[str, Any]: ...
 
 class LinkPairProofs: ...
@@ -946,6 +948,8 @@ class World:
         most: float = ...,
         check_scene: bool = ...,
         check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        ignored_margin: float = ...,
         work_budget: int = ...,
         progress: _Progress | None = ...,
     ) -> Clearance: ...
@@ -959,6 +963,8 @@ class World:
         most: float = ...,
         check_scene: bool = ...,
         check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        ignored_margin: float = ...,
         work_budget: int = ...,
         progress: _Progress | None = ...,
     ) -> Clearance: ...

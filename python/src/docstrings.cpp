@@ -102,6 +102,8 @@ constexpr struct {
     {"Clearance", "body1", "First body of the pair."},
     {"Clearance", "body2", "Second body of the pair."},
     {"Clearance", "within_tolerance", "Whether lower and upper are as near to each other as was asked for."},
+    {"Clearance", "ignored_initial_contacts",
+     "Names of pairs that were left out, as they touch at the motion's begin (ignore_initial_contact=True)."},
     {"Clearance", "statistics", "Work of all queries, a dict by name."},
     {"Answers", "status", "Status (N,) of each motion, as int8: see Status."},
     {"Answers", "t_lower", "Each is proven free before it (N,)."},

@@ -119,6 +119,8 @@ const std::vector<Option<Asked>>& clearanceOptions() {
                                               of("most", &C::most),
                                               of("check_scene", &C::check_scene),
                                               of("check_self", &C::check_self),
+                                              of("ignore_initial_contact", &C::ignore_initial_contact),
+                                              of("ignored_margin", &C::ignored_margin),
                                               of("work_budget", &C::work_budget),
                                               option<A>("progress", kItself, &A::progress)};
   return options;

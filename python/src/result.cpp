@@ -145,12 +145,33 @@ std::vector<Eigen::Isometry3d> posesOf(const py::handle value) {
   return poses;
 }
 
+using Pairs = std::vector<std::pair<BodyRef, BodyRef>>;
+
+py::list state(const Pairs& pairs) {
+  py::list all;
+  for (const auto& [a, b] : pairs) all.append(py::make_tuple(state(a), state(b)));
+  return all;
+}
+
+Pairs pairsOfState(const py::handle value) {
+  Pairs pairs;
+  for (const py::handle pair : py::list(py::reinterpret_borrow<py::object>(value))) {
+    const auto both = py::reinterpret_borrow<py::tuple>(pair);
+    pairs.emplace_back(bodyOfState(both[0]), bodyOfState(both[1]));
+  }
+  return pairs;
+}
+
+py::list namesOf(const Pairs& pairs) {
+  py::list names;
+  for (const auto& [a, b] : pairs) names.append(py::make_tuple(a.name, b.name));
+  return names;
+}
+
 py::tuple resultState(const CertifiedResult& r) {
-  py::list ignored;
-  for (const auto& [a, b] : r.ignored_initial_contacts) ignored.append(py::make_tuple(state(a), state(b)));
-  return py::make_tuple(state(static_cast<const Bracket&>(r)), state(r.contacts), arrayOf(r.M_0_at_lower), ignored,
-                        r.unproven_allowed_pairs, state(r.certificate), statisticsOf(r.statistics),
-                        r.never_apart_pairs);
+  return py::make_tuple(state(static_cast<const Bracket&>(r)), state(r.contacts), arrayOf(r.M_0_at_lower),
+                        state(r.ignored_initial_contacts), r.unproven_allowed_pairs, state(r.certificate),
+                        statisticsOf(r.statistics), r.never_apart_pairs);
 }
 
 CertifiedResult resultOfState(const py::tuple& s) {
@@ -158,10 +179,7 @@ CertifiedResult resultOfState(const py::tuple& s) {
   readBracket(s[0], r);
   r.contacts = contactsOfState(s[1]);
   r.M_0_at_lower = posesOf(s[2]);
-  for (const py::handle pair : py::list(s[3])) {
-    const auto both = py::reinterpret_borrow<py::tuple>(pair);
-    r.ignored_initial_contacts.emplace_back(bodyOfState(both[0]), bodyOfState(both[1]));
-  }
+  r.ignored_initial_contacts = pairsOfState(s[3]);
   r.unproven_allowed_pairs = py::cast<std::size_t>(s[4]);
   r.certificate = certificateOfState(s[5]);
   r.statistics = statisticsOfDict(s[6]);
@@ -304,13 +322,7 @@ void bindResults(py::module_& module) {
                              })
       .def_property_readonly("link_poses", [](const CertifiedResult& r) { return arrayOf(r.M_0_at_lower); })
       .def_property_readonly("ignored_initial_contacts",
-                             [](const CertifiedResult& r) {
-                               py::list pairs;
-                               for (const auto& [a, b] : r.ignored_initial_contacts) {
-                                 pairs.append(py::make_tuple(a.name, b.name));
-                               }
-                               return pairs;
-                             })
+                             [](const CertifiedResult& r) { return namesOf(r.ignored_initial_contacts); })
       .def_readonly("never_apart_pairs", &CertifiedResult::never_apart_pairs)
       .def_readonly("unproven_allowed_pairs", &CertifiedResult::unproven_allowed_pairs)
       .def_property_readonly("nothing_checked", &CertifiedResult::nothingChecked)
@@ -348,6 +360,8 @@ void bindResults(py::module_& module) {
       .def_readonly("body1", &Clearance::body1)
       .def_readonly("body2", &Clearance::body2)
       .def_readonly("within_tolerance", &Clearance::within_tolerance)
+      .def_property_readonly("ignored_initial_contacts",
+                             [](const Clearance& c) { return namesOf(c.ignored_initial_contacts); })
       .def_property_readonly("statistics", [](const Clearance& c) { return statisticsOf(c.statistics); })
       .def(
           "__repr__",
@@ -358,7 +372,7 @@ void bindResults(py::module_& module) {
       .def(py::pickle(
           [](const Clearance& c) {
             return py::make_tuple(c.lower, c.upper, c.time, state(c.body1), state(c.body2), c.within_tolerance,
-                                  statisticsOf(c.statistics));
+                                  statisticsOf(c.statistics), state(c.ignored_initial_contacts));
           },
           [](const py::tuple& s) {
             Clearance c;
@@ -369,6 +383,7 @@ void bindResults(py::module_& module) {
             c.body2 = bodyOfState(s[4]);
             c.within_tolerance = py::cast<bool>(s[5]);
             c.statistics = statisticsOfDict(s[6]);
+            c.ignored_initial_contacts = pairsOfState(s[7]);
             return c;
           }));
 }

@@ -319,8 +319,8 @@ void bindChanges(py::class_<World>& world) {
       .def(
           "replace_scene", [](World& w, py::handle scene) { w.replaceScene(sceneOf(scene)); },
           "Puts a scene in place of all obstacles that stand still, or changes nothing if one is refused. What links\n"
-          "carry and what moves by itself stays, and so do allowed pairs and margins, which go by names. What was\n"
-          "made of the robot is kept, so this takes microseconds where a new World takes milliseconds.",
+          "carry and what moves by itself stays, and so do allowed pairs and margins of names that the new scene has\n"
+          "too. What was made of the robot is kept, so this takes microseconds where a new World takes milliseconds.",
           py::arg("scene"))
       .def(
           "add_moving",
@@ -329,7 +329,11 @@ void bindChanges(py::class_<World>& world) {
           },
           "Adds an obstacle that moves while the robot does, over the same time.", py::arg("name"), py::arg("geometry"),
           py::arg("motion"), py::keep_alive<1, 4>())
-      .def("remove", &World::remove, "Removes an obstacle, also one that a link carries.", py::arg("name"))
+      .def("remove", &World::remove,
+           "Removes an obstacle, also one that a link carries, with its allowed pairs and margins: the next of its "
+           "name has\n"
+           "none.",
+           py::arg("name"))
       .def(
           "move", [](World& w, const std::string& name, py::handle pose) { w.move(name, poseOf(pose, "pose")); },
           "Puts an obstacle at another pose.", py::arg("name"), py::arg("pose"))
@@ -439,9 +443,12 @@ void bindQueries(py::class_<World>& world) {
       .def("collide", &collide,
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))
-      .def("clearance", &clearance,
-           "The smallest distance of any checked pair on the whole way, proven from below and from above.",
-           py::arg("q0"), py::arg("q1") = py::none())
+      .def(
+          "clearance", &clearance,
+          "The smallest distance of any checked pair on the whole way, proven from below and from above. With\n"
+          "ignore_initial_contact=True, pairs that touch at its begin, or are within their margin (ignored_margin, or\n"
+          "their own), are left out.",
+          py::arg("q0"), py::arg("q1") = py::none())
       .def(
           "checked_link_pairs",
           [](const World& w) { return w.manager().ask([](const auto& m) { return m.checkedLinkPairs(); }); },

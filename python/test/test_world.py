@@ -334,6 +334,19 @@ def test_margins_count_as_contact(world, miss):
         world.set_margin("pipes", -1)
 
 
+def test_what_is_said_of_an_obstacle_goes_with_it(world, miss):
+    at = world.tree.link_pose("wrist_roll", miss[0])
+    world.add("box", fcl_artic.box([0.1, 0.1, 0.1]), at)
+    world.set_margin("box", 0.3)
+    for link in world.tree.links:
+        world.allow("box", link)
+    assert world.check(*miss).free
+    world.remove("box")
+    assert not any("box" in pair for pair in world.allowed)
+    world.add("box", fcl_artic.box([0.1, 0.1, 0.1]), at)
+    assert "box" in world.check(*miss).pair
+
+
 def test_pairs_of_links_are_classified(world):
     seen = []
     report = world.classify_link_pairs(samples=100, progress=seen.append)

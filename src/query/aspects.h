@@ -18,6 +18,8 @@ struct ArticulatedCollisionManager::Aspects {
   bool own_margins = true;  ///< pairs may have margins of their own; false: all have the request's
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
+  /// Pairs of the problem as the request's scope leaves it that are not checked, as if they were allowed; null: none.
+  const std::vector<engine::PairId>* left_out = nullptr;
   std::vector<engine::PairId>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
   /// What a certificate says beyond the public answer.
   struct Details {

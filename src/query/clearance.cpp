@@ -9,6 +9,7 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/manager.h"
@@ -30,20 +31,31 @@ void require(bool good, const char* name, double value, const char* what) {
   if (!good) throw std::invalid_argument(std::string("request.") + name + " is " + shown(value) + ", not " + what);
 }
 
+std::vector<engine::PairId> pairsOf(const std::vector<engine::Ignored>& ignored) {
+  std::vector<engine::PairId> pairs;
+  for (const engine::Ignored& pair : ignored) pairs.push_back(pair.pair);
+  return pairs;
+}
+
 class Search {
  public:
   using Ask = std::function<void(const CertifiedRequest& request, CertifiedResult& result)>;
   /// @param duration  of the motion, in the unit that its times are in.
-  Search(const ClearanceRequest& request, double duration, Ask ask)
-      : request_(request), duration_(duration), ask_(std::move(ask)) {
+  /// @param ask  a query without the pairs' own margins; those of `askBegin` are left out of it.
+  /// @param askBegin  a query, with the pairs' own margins, in which initial contacts are ignored.
+  Search(const ClearanceRequest& request, double duration, Ask ask, Ask askBegin)
+      : request_(request), duration_(duration), ask_(std::move(ask)), ask_begin_(std::move(askBegin)) {
     require(request.tolerance_relative >= 0 && request.tolerance_relative < 1, "tolerance_relative",
             request.tolerance_relative, "a number from 0 to below 1");
     require(std::isfinite(request.tolerance_distance) && request.tolerance_distance > 0, "tolerance_distance",
             request.tolerance_distance, "a positive number");
     require(std::isfinite(request.most) && request.most > 0, "most", request.most, "a positive number");
+    require(std::isfinite(request.ignored_margin) && request.ignored_margin >= 0, "ignored_margin",
+            request.ignored_margin, "a number >= 0");
   }
 
   Clearance run() {
+    if (request_.ignore_initial_contact) ignoreInitialContacts();
     found_.within_tolerance = query(0) == Found::contact;
     double margin = request_.most;
     while (!found_.within_tolerance && decide(margin)) {
@@ -65,33 +77,50 @@ class Search {
     return query(margin) != Found::open || query(margin + kOpen * tolerance(margin)) != Found::open;
   }
 
+  /// Asks, with what is left of the budget. Sets spent_ where nothing is, and the answer is none.
+  void answer(const Ask& ask, CertifiedRequest& request) {
+    static_cast<Scope&>(request) = request_;
+    if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
+    if (request_.work_budget) {
+      const std::uint64_t used = countedWork(found_.statistics);
+      spent_ = used >= request_.work_budget;
+      if (spent_) return;
+      request.work_budget = request_.work_budget - used;
+    }
+    ask(request, result_);
+    found_.statistics.pairs = result_.statistics.pairs;
+    found_.statistics.pairs_after_culling += result_.statistics.pairs_after_culling;
+    addWork(result_.statistics, found_.statistics);
+    spent_ = result_.status == Status::undecided;
+  }
+
+  /// (Which pairs these are is known before the search begins, so that a contact does not end it too soon: with
+  /// ContactMode::first all pairs are looked at as they begin.)
+  void ignoreInitialContacts() {
+    CertifiedRequest request;
+    request.margin = request_.ignored_margin;
+    request.ignore_initial_contact = true;
+    request.max_contacts = 0;
+    answer(ask_begin_, request);
+    found_.ignored_initial_contacts = result_.ignored_initial_contacts;
+  }
+
   Found query(double margin) {
     if (spent_) return Found::open;
     CertifiedRequest request;
     request.margin = margin;
     request.tolerance_time *= duration_;
     request.mode = ContactMode::any;
-    static_cast<Scope&>(request) = request_;
-    if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
-    if (request_.work_budget) {
-      const std::uint64_t used = countedWork(found_.statistics);
-      spent_ = used >= request_.work_budget;
-      if (spent_) return Found::open;
-      request.work_budget = request_.work_budget - used;
-    }
-    ask_(request, result_);
-    found_.statistics.pairs = result_.statistics.pairs;
-    found_.statistics.pairs_after_culling += result_.statistics.pairs_after_culling;
-    addWork(result_.statistics, found_.statistics);
-    spent_ = result_.status == Status::undecided;
+    answer(ask_, request);
+    if (spent_) return Found::open;
     if (result_.isFree()) {
       found_.lower = std::max(found_.lower, margin);
       return Found::free;
     }
     const auto proven = std::find_if(result_.contacts.begin(), result_.contacts.end(),
                                      [](const CertifiedContact& contact) { return contact.certain; });
-    if (spent_ || proven == result_.contacts.end()) return Found::open;
+    if (proven == result_.contacts.end()) return Found::open;
     FCL_ARTIC_ASSERT(found_.lower <= margin);
     found_.upper = margin;
     found_.time = proven->t_upper;
@@ -102,7 +131,7 @@ class Search {
 
   ClearanceRequest request_;
   double duration_;
-  Ask ask_;
+  Ask ask_, ask_begin_;
   CertifiedResult result_;
   Clearance found_;
   bool spent_ = false;
@@ -111,21 +140,41 @@ class Search {
 }  // namespace
 
 Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, const ClearanceRequest& request) const {
+  std::vector<engine::PairId> ignored;
   Aspects aspects;
   aspects.own_margins = false;
+  aspects.left_out = &ignored;
   const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
     collideMotion(motion, asked, aspects, result);
   };
-  return Search(request, 1, ask).run();
+  const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
+    Aspects::Details details;
+    Aspects begin;
+    begin.details = &details;
+    collideMotion(motion, asked, begin, result);
+    ignored = pairsOf(details.ignored);
+  };
+  return Search(request, 1, ask, ask_begin).run();
 }
 
 Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajectory,
                                                  const ClearanceRequest& request) const {
-  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    collideTrajectory(trajectory, asked, false, result);
-  };
   trajectory.requireOf(tree());
-  return Search(request, trajectory.endTime() - trajectory.beginTime(), ask).run();
+  std::vector<engine::PairId> ignored;
+  Aspects aspects;
+  aspects.own_margins = false;
+  aspects.left_out = &ignored;
+  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
+    collideTrajectory(trajectory, asked, aspects, result);
+  };
+  const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
+    Aspects::Details details;
+    Aspects begin;
+    begin.details = &details;
+    collideMotion(trajectory.piece(0), asked, begin, result);
+    ignored = pairsOf(details.ignored);
+  };
+  return Search(request, trajectory.endTime() - trajectory.beginTime(), ask, ask_begin).run();
 }
 
 }  // namespace fcl_artic

@@ -30,6 +30,8 @@ class Workspace {
   std::vector<double> coefficients;            ///< of its variables
   std::vector<std::uint8_t> link_free;         ///< of a manager's query: link pairs that are proven apart
   std::vector<engine::LikelyContact> likely;   ///< the same
+  std::vector<std::uint8_t> scene_allowed;     ///< the same: with pairs that are left out
+  std::vector<std::uint8_t> link_allowed;      ///< the same
   std::vector<engine::BoundedSource> sources;  ///< of its bounded motions
 
  private:

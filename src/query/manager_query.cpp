@@ -101,6 +101,22 @@ void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::
   }
 }
 
+/// Allows pairs of a problem that is restricted already.
+void leaveOut(const std::vector<engine::PairId>& pairs, Workspace& workspace, engine::Problem& problem) {
+  FCL_ARTIC_ASSERT(!problem.link_allowed);
+  std::vector<std::uint8_t>&scene = workspace.scene_allowed, &links = workspace.link_allowed;
+  scene.assign(static_cast<std::size_t>(problem.num_scene_pairs), 0);
+  if (problem.scene_allowed) std::copy_n(problem.scene_allowed, scene.size(), scene.begin());
+  links.assign(static_cast<std::size_t>(problem.num_link_pairs), 0);
+  for (const engine::PairId pair : pairs) {
+    std::uint8_t& allowed = *problem.in(scene.data(), links.data(), pair);
+    if (problem.isScenePair(pair)) problem.num_scene_allowed += !allowed;
+    allowed = 1;
+  }
+  problem.scene_allowed = scene.data();
+  problem.link_allowed = links.data();
+}
+
 /// What a solver says, with its stage 2.
 struct Solved {
   engine::Answer answer;
@@ -238,6 +254,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const BoundedParts parts(aspects.time, problem);
   if (aspects.own_margins) setup.margins().putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
+  if (aspects.left_out && !aspects.left_out->empty()) leaveOut(*aspects.left_out, *workspace, problem);
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (aspects.may_ignore) {

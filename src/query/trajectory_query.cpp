@@ -60,7 +60,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
                                                     CertifiedResult& result) const {
   const bool none = trajectory.numPieces() == 0;  // moved from, refused below
   const double begin = none ? 0 : trajectory.beginTime(), end = none ? 1 : trajectory.endTime();
-  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, true, result); });
+  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, Aspects(), result); });
 }
 
 CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory,
@@ -71,7 +71,7 @@ CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajec
 }
 
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
-                                                    bool own_margins, CertifiedResult& result) const {
+                                                    const Aspects& common, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
   trajectory.requireOf(tree());
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
@@ -102,9 +102,8 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
     if (request.work_budget) own.work_budget = request.work_budget - used;
     std::vector<engine::PairId> still_in_contact;
-    Aspects aspects;
+    Aspects aspects = common;
     aspects.time = partOfTime(trajectory, k);
-    aspects.own_margins = own_margins;
     aspects.may_ignore = k == 0 ? nullptr : &in_contact;
     aspects.never_apart = &still_in_contact;
     Aspects::Details details;
@@ -137,7 +136,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   // A pair counts once, whichever of the pieces leaves its proof.
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
-  sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, own_margins);
+  sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, common.own_margins);
   if (request.certificate && !claim.pieces.empty()) {
     claim.duration = trajectory.endTime() - trajectory.beginTime();
     sum.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));

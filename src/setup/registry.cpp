@@ -105,7 +105,7 @@ void Registry::requireBody(const std::string& name, const std::string& what) con
                               text::didYouMean(name, names));
 }
 
-/// The name as given or chosen. (Allowed pairs and margins go by name: a link's would excuse the obstacle too.)
+/// The name as given or chosen. (Allowed pairs and margins are given by name: a link's would excuse the obstacle too.)
 std::string Registry::obstacleName(const std::string& name) const {
   std::string shown = name.empty() ? "obstacle" + std::to_string(named_) : name;
   if (obstacle_names_.count(shown)) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
@@ -135,8 +135,21 @@ void Registry::addObstacle(Bodies& bodies, ManagedBody body) {
 void Registry::forget(Bodies& bodies, Bodies::iterator body) {
   objects_.erase(body->object);
   objects_.erase(body->moving);
-  if (body->isObstacle()) obstacle_names_.erase(body->name);
+  const std::string name = body->isObstacle() ? body->name : std::string();
   bodies.erase(body);
+  if (obstacle_names_.erase(name) > 0) keepNames([&](const std::string& other) { return other != name; });
+}
+
+void Registry::keepNames(const std::function<bool(const std::string& body)>& isKept) {
+  margins_.keep(isKept);
+  const auto isGone = [&](const auto& pair) { return !isKept(pair.first) || !isKept(pair.second); };
+  const auto& pairs = allowed_.pairs();
+  if (std::none_of(pairs.begin(), pairs.end(), isGone)) return;
+  AllowedCollisionMatrix kept;
+  for (const auto& pair : pairs) {
+    if (!isGone(pair)) kept.allow(pair.first, pair.second);
+  }
+  allowed_ = std::move(kept);
 }
 
 void Registry::setAllowed(AllowedCollisionMatrix matrix) {
@@ -237,9 +250,17 @@ void Registry::replaceObstacles(const std::vector<Owner>& objects, const std::ve
     }
     fresh.push_back(std::move(body));
   }
+  // Numbers are given anew: "obstacle0" is another object.
+  const bool named_again = !names.empty();
+  obstacle_names_.swap(taken);  // those of before
+  keepNames([&](const std::string& name) {
+    if (taken.count(name) == 0) return true;  // a link's
+    if (named_again) return obstacle_names_.count(name) > 0;
+    const auto stays = [&](const ManagedBody& body) { return body.name == name; };
+    return std::any_of(links_.begin(), links_.end(), stays) || std::any_of(moving_.begin(), moving_.end(), stays);
+  });
   obstacles_ = std::move(fresh);
   objects_ = std::move(known);
-  obstacle_names_ = std::move(taken);
   named_ = objects.size() + moving_.size();
 }
 
@@ -249,11 +270,7 @@ Registry Registry::withoutObstacles() const {
     return tree_->hasLink(name) ||
            std::any_of(links_.begin(), links_.end(), [&](const ManagedBody& b) { return b.name == name; });
   };
-  robot.allowed_ = {};
-  for (const auto& [a, b] : allowed_.pairs()) {
-    if (isOfRobot(a) && isOfRobot(b)) robot.allowed_.allow(a, b);
-  }
-  robot.margins_.keep(isOfRobot);
+  robot.keepNames(isOfRobot);
   for (const Bodies* bodies : {&obstacles_, &moving_}) {
     for (const ManagedBody& body : *bodies) {
       robot.objects_.erase(body.object);
@@ -336,6 +353,7 @@ void Registry::detach(const fcl::CollisionObjectd* object) {
 }
 
 void Registry::clear() {
+  keepNames([&](const std::string& name) { return tree_->hasLink(name); });
   obstacles_.clear();
   links_.clear();
   moving_.clear();

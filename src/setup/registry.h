@@ -4,6 +4,7 @@
 // change is checked here, and one that throws changes nothing. What is made of it for queries is the Setup's.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -110,6 +111,9 @@ class Registry {
   ManagedBody newBody(const fcl::CollisionObjectd* object, const std::string& what) const;
   void addObstacle(Bodies& bodies, ManagedBody body);
   void forget(Bodies& bodies, Bodies::iterator body);
+  /// Forgets margins and allowed pairs of other names. (Those of an obstacle go with it: the next one of its name is
+  /// another object.)
+  void keepNames(const std::function<bool(const std::string& body)>& isKept);
   Changes readAgain(const std::vector<ManagedBody*>& bodies);
 
   std::shared_ptr<const KinematicTree> tree_;

@@ -105,7 +105,7 @@ TEST(AttachedObject, TouchesNeighboursButForTouchLinks) {
   manager.detach(held.get());
   manager.attach("hand", held.get(), pose({0, -0.5, 0}), {"cart"});
   EXPECT_TRUE(run(1, 0, 0, 0).isFree());
-  // Touch links end with the holding; what is allowed by name does not.
+  // Touch links end with the holding; what is allowed of the object does not.
   manager.detach(held.get());
   manager.attach("hand", held.get(), pose({0, -0.5, 0}));
   EXPECT_TRUE(touchesAt(run(1, 0, 0, 0), 0.35));

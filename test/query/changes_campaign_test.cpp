@@ -369,8 +369,19 @@ class Sequence {
     } else {
       manager_.unregisterObject(body.object.get());
     }
+    if (body.place != Body::bound) forget(body.name);
     body.place = Body::out;
     changed();
+  }
+  /// What was said of an obstacle goes with it.
+  void forget(const std::string& name) {
+    const auto isOfIt = [&](const Margin& margin) { return margin.a == name || margin.b == name; };
+    margins_.erase(std::remove_if(margins_.begin(), margins_.end(), isOfIt), margins_.end());
+    AllowedCollisionMatrix rest;
+    for (const auto& [a, b] : allowed_.pairs()) {
+      if (a != name && b != name) rest.allow(a, b);
+    }
+    allowed_ = rest;
   }
   void attachOrDetach(Body& body) {
     if (body.moving) return;
@@ -463,6 +474,7 @@ class Sequence {
       matrix.allow(a, known());
     }
     manager_.setAllowedCollisions(matrix);
+    allowed_ = matrix;
     changed();
   }
   /// A geometry that is none: nothing may change, whatever else was edited.
@@ -517,7 +529,10 @@ class Sequence {
       case 9:
         if (random_.oneIn(12)) {
           manager_.clear();
-          for (auto& body : bodies_) body->place = Body::out;
+          for (auto& body : bodies_) {
+            if (body->place == Body::obstacle || body->place == Body::attached) forget(body->name);
+            body->place = Body::out;
+          }
           moving_order_.clear();
           changed();
         } else {
@@ -615,18 +630,10 @@ class Sequence {
     manager_.getObjects(obstacles);
     for (const auto* object : obstacles)
       scratch->registerObject(copyOf(*known.at(object)).object.get(), known.at(object)->name);
-    const auto named = [&](const std::string& name) {
-      return tree_->hasLink(name) || std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) {
-               return body->name == name && (body->place == Body::obstacle || body->place == Body::attached);
-             });
-    };
     for (const auto& [a, b, margin] : margins_) {
-      if (!named(a) || (!b.empty() && !named(b))) continue;
       b.empty() ? scratch->setMargin(a, margin) : scratch->setMargin(a, b, margin);
     }
-    for (const auto& [a, b] : manager_.allowedCollisions().pairs()) {
-      if (named(a) && named(b)) scratch->allow(a, b);
-    }
+    scratch->setAllowedCollisions(allowed_);
     scratch->setup();
     return scratch;
   }
@@ -643,6 +650,7 @@ class Sequence {
   std::vector<Body*> moving_order_;
   ArticulatedCollisionManager manager_;
   std::vector<Margin> margins_;
+  AllowedCollisionMatrix allowed_;
   VectorXd ends_[3];
   CertifiedRequest request_;
   int last_motion_ = 0;

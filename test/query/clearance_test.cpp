@@ -102,6 +102,60 @@ TEST(Clearance, LooksAtNoMargins) {
   EXPECT_TRUE(holds(way.manager->clearance(drive(way, 0, 2)), 0.3));
 }
 
+// A base on its floor: the pair is said apart, and the answer is of the others.
+TEST(Clearance, LeavesOutWhatTouchesAtTheBegin) {
+  Way way;
+  const auto floor = object(std::make_shared<fcl::Boxd>(9, 9, 1), pose({0, 0, -0.59}));
+  way.manager->registerObject(floor.get(), "floor");
+  way.manager->setup();
+  ClearanceRequest request;
+  EXPECT_EQ(way.manager->clearance(drive(way, 0, 2), request).upper, 0);
+  request.ignore_initial_contact = true;
+  const auto expectIgnored = [&](const Clearance& c) {
+    EXPECT_TRUE(holds(c, 0.3));
+    EXPECT_EQ(c.body2.name, "post");
+    ASSERT_EQ(c.ignored_initial_contacts.size(), 1u);
+    EXPECT_EQ(c.ignored_initial_contacts[0].first.name, "floor");
+    EXPECT_EQ(c.ignored_initial_contacts[0].second.name, "cart");
+  };
+  expectIgnored(way.manager->clearance(drive(way, 0, 2), request));
+  const auto trajectory =
+      JointTrajectory::linear(*way.tree, {3, 4, 6}, {VectorXd::Zero(1), VectorXd::Ones(1), VectorXd::Constant(1, 2)});
+  expectIgnored(way.manager->clearance(trajectory, request));
+  // What is within its margin at the begin is ignored too, and what is not isn't.
+  floor->setTransform(pose({0, 0, -0.65}));
+  way.manager->update();
+  EXPECT_TRUE(holds(way.manager->clearance(drive(way, 0, 2), request), 0.05));
+  request.ignored_margin = 0.1;
+  expectIgnored(way.manager->clearance(drive(way, 0, 2), request));
+  way.manager->setMargin("cart", "floor", 0);
+  way.manager->setup();
+  EXPECT_TRUE(holds(way.manager->clearance(drive(way, 0, 2), request), 0.05));
+  // Nothing is proven where the budget ends before it is known which pairs these are.
+  request.work_budget = 1;
+  EXPECT_EQ(way.manager->clearance(drive(way, 0, 2), request).lower, 0);
+  request.ignored_margin = -1;
+  EXPECT_THROW((void)way.manager->clearance(drive(way, 0, 2), request), std::invalid_argument);
+}
+
+// Two links of one pair, of which the numbers begin after those of obstacles, with and without these.
+TEST(Clearance, LeavesOutLinksThatTouchAtTheBegin) {
+  const auto tree = sliderTree({"base", "between", "cart"});
+  ArticulatedCollisionManager manager(tree);
+  const auto still = ball(0.1), moving = ball(0.1), post = ball(0.1, {1, 0.5, 0});
+  manager.bind("base", still.get());
+  manager.bind("cart", moving.get(), pose({0.1, 0, 0}));
+  manager.registerObject(post.get(), "post");
+  manager.setup();
+  const JointMotion motion = JointMotion::linear(*tree, Eigen::Vector2d(0, 0), Eigen::Vector2d(2, 0));
+  ClearanceRequest request;
+  request.ignore_initial_contact = true;
+  EXPECT_TRUE(holds(manager.clearance(motion, request), 0.3));
+  request.check_scene = false;
+  EXPECT_EQ(manager.clearance(motion, request).lower, request.most);
+  EXPECT_EQ(manager.clearance(motion, request).ignored_initial_contacts.size(), 1u);
+}
+
 // Both move: the ball of 0.2 from x = 2 to 1, the cart from 0 to 0.4.
 TEST(Clearance, OfAMovingObstacle) {
   Cart cart;

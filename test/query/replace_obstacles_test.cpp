@@ -243,6 +243,30 @@ TEST(ReplaceObstacles, IsAllOrNothing) {
   EXPECT_TRUE(touchesAt(ask(manager, VectorXd::Zero(1), VectorXd::Constant(1, 4)), 0.8 / 4));
 }
 
+// A name that is given again is the same place in the scene; a number is not.
+TEST(ReplaceObstacles, MarginsAndAllowedPairsAreOfNamesThatAreGivenAgain) {
+  ArticulatedCollisionManager manager(sliderTree({"rail", "slide"}));
+  const auto slide = ball(0.1), wall = ball(0.4, {3, 0, 0}), other = ball(0.4, {3, 0, 0});
+  manager.bind("slide", slide);
+  const auto run = [&] { return ask(manager, VectorXd::Zero(1), VectorXd::Constant(1, 4)); };
+  manager.replaceObstacles({wall}, {"wall"});
+  manager.setMargin("wall", 0.2);
+  manager.replaceObstacles({other}, {"wall"});
+  EXPECT_TRUE(touchesAt(run(), 2.3 / 4));
+  manager.replaceObstacles({other}, {"post"});
+  manager.replaceObstacles({wall}, {"wall"});
+  EXPECT_TRUE(touchesAt(run(), 2.5 / 4));
+  manager.allow("wall", "slide");
+  manager.replaceObstacles({other}, {"wall"});
+  EXPECT_TRUE(run().isFree());
+  manager.replaceObstacles({other}, {"post"});
+  EXPECT_TRUE(manager.allowedCollisions().pairs().empty());
+  manager.replaceObstacles({wall});
+  manager.allow("obstacle0", "slide");
+  manager.replaceObstacles({other});
+  EXPECT_TRUE(touchesAt(run(), 2.5 / 4));
+}
+
 // Carried objects, margins and allowed pairs go with the robot, those of obstacles stay behind.
 TEST(ReplaceObstacles, WhatIsSharedIsTheRobot) {
   auto tree = sliderTree({"rail", "slide"});

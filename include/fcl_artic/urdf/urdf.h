@@ -171,7 +171,7 @@ struct SceneOptions {
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
 /// Combines several scenes into one, for a robot. An obstacle whose name another one or a link has becomes NAME#2 or
-/// so, with a note. (Allowed pairs and margins go by name.) Objects are shared with the scenes.
+/// so, with a note. (Allowed pairs and margins are given by name.) Objects are shared with the scenes.
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
 /// Compares the extents of a scene with the reach of a robot, and reports what suggests that one of them is in other

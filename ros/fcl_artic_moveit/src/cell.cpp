@@ -228,6 +228,8 @@ void Cell::registerBodies(const std::vector<Body>& bodies) {
       continue;
     }
     manager_->unregisterObject(old.object);
+    manager_->resetMargins();  // its own are gone: all are set again
+    body_margins_.clear();
     it = registered_.erase(it);
   }
   for (const auto& [name, body] : now) {
