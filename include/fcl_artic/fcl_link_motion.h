@@ -5,6 +5,7 @@
 
 #include <fcl/math/motion/motion_base.h>
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/joint_motion.h"
 
 namespace fcl_artic {
