@@ -113,7 +113,7 @@ int addFrames(const std::string& name, const BodyMotion& motion, World& world) {
                                                                 : Element::Kind::slide;
     for (int k = 0; k < rows; ++k) {
       element.variable = static_cast<int>(world.variables.size());
-      element.axis = vector ? Eigen::Vector3d::Unit(k) : step.axis;
+      element.axis = vector ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : step.axis.vector();
       if (k == 0 || element.kind == Element::Kind::slide) frame.elements.push_back(element);
       world.variables.push_back(frame.name + "/" + std::to_string(k));
       const Eigen::Index row = world.moving.rows();

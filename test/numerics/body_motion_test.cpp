@@ -94,7 +94,7 @@ TEST(BodyMotionBounds, RemaindersOfOneFactorAreAttained) {
     PairInput in;
     in.sweep = sweep.view();
     in.step_b = at.step;
-    in.placement_b = makePlacement(at, Eigen::Isometry3d::Identity());
+    in.placement_b = makePlacement(at, RigidTransform());
     in.extents = 1;
     in.query.coefficients = coefficients.data();
     in.query.num_variables = 3;

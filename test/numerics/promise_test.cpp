@@ -132,8 +132,8 @@ TEST(Promise, JointOriginsAreMadeOrthonormal) {
     }
     worst = std::max(worst, sqrt(distance).toDouble());
   }
-  std::printf("farthest from a rotation: %.2f of 2^-52 (pads allow for %g)\n", worst * 0x1p52, kStoredUlps);
-  EXPECT_LE(worst, kStoredUlps * 0x1p-52);
+  std::printf("farthest from a rotation: %.2f of 2^-52 (pads allow for %g)\n", worst * 0x1p52, Rotation::kUlps);
+  EXPECT_LE(worst, Rotation::kUlps * 0x1p-52);
 }
 
 }  // namespace

@@ -161,13 +161,19 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
   return out;
 }
 
+/// The direction of an axis, which is brought near 1 before it is squared: it may be of any length. 0 stays 0.
+Eigen::Vector3d directionOf(const Eigen::Vector3d& axis) {
+  const double largest = axis.cwiseAbs().maxCoeff();
+  return largest > 0 ? Eigen::Vector3d((axis / largest).normalized()) : axis;
+}
+
 /// A joint that follows one that stands still at `value` stands still too.
 void freeze(Joint& joint, double value) {
   const double q = joint.mimic.multiplier * value + joint.mimic.offset;
   if (joint.type == JointType::prismatic) {
-    joint.origin.translate(q * joint.axis.normalized());
+    joint.origin.translate(q * directionOf(joint.axis));
   } else {
-    joint.origin.rotate(Eigen::AngleAxisd(q, joint.axis.normalized()));
+    joint.origin.rotate(Eigen::AngleAxisd(q, directionOf(joint.axis)));
   }
   joint.type = JointType::fixed;
   joint.mimics = false;
@@ -230,7 +236,7 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
     std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
-      if (joint.type == JointType::planar && !joint.axis.normalized().isApprox(Eigen::Vector3d::UnitZ())) {
+      if (joint.type == JointType::planar && !directionOf(joint.axis).isApprox(Eigen::Vector3d::UnitZ())) {
         notes.push_back("joint '" + name + "' is planar across its axis, which is not z; some tools ignore the axis");
       }
       const bool limitable = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
