@@ -32,16 +32,19 @@ std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& obje
 }
 
 /// Makes the meshes of links or obstacles with these names solids.
-/// @param nameOf  of an item of `bodies`, each of which has an `object`.
+/// @param namesOf  of an item of `bodies`, each of which has an `object`: all that it goes by.
 /// @param[in,out] names  those that are found are taken out.
-template <class Bodies, class NameOf>
-void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& names) {
+template <class Bodies, class NamesOf>
+void makeSolids(Bodies& bodies, const NamesOf& namesOf, std::set<std::string>& names) {
   std::set<std::string> found;
   for (auto& body : bodies) {
-    const std::string name = nameOf(body);
-    if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
-    body.object = solidOf(*body.object, name);
-    found.insert(name);
+    bool asked = false;
+    for (const std::string& name : namesOf(body)) {
+      if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
+      if (!asked) body.object = solidOf(*body.object, name);
+      asked = true;
+      found.insert(name);
+    }
   }
   for (const std::string& name : found) names.erase(name);
 }
@@ -133,7 +136,7 @@ World::World(const WorldOptions& options) : options_(options), solids_(options.s
 void World::readRobot() {
   robot = app::readRobot(options_.robot);
   makeSolids(
-      robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids_);
+      robot.geometry, [&](const LinkGeometry& g) { return std::vector{robot.tree->linkName(g.link)}; }, solids_);
 }
 
 LinkPairReport World::provePairs() {
@@ -170,7 +173,11 @@ void World::readScene() {
   attachments = readAttachments(options_.robot, tree, carried_options, scenes);
   scene = combineScenes(scenes, tree);
   makeSolids(
-      scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids_);
+      scene.obstacles,
+      [](const Scene::Obstacle& o) {
+        return std::vector{o.name, o.shape_of};
+      },
+      solids_);
   if (solids_.empty()) return;
   std::vector<std::string> names;
   for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
@@ -188,8 +195,9 @@ ArticulatedCollisionManager World::makeManager() const {
   return manager;
 }
 
-std::vector<std::string> World::notes() const {
+std::vector<std::string> World::notes(const ArticulatedCollisionManager& manager) const {
   std::vector<std::string> notes = robot.notes;
+  for (const std::string& note : manager.notes()) notes.push_back(note);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   for (const std::string& note : unitNotes(robot, scene)) notes.push_back(note);
   return notes;

@@ -54,8 +54,9 @@ class World {
   /// A manager of all this, after setup().
   /// @throws std::invalid_argument as ArticulatedCollisionManager::attach().
   ArticulatedCollisionManager makeManager() const;
-  /// Notes of robot and scene and what suggests other units, one line each.
-  std::vector<std::string> notes() const;
+  /// Notes of robot, scene and manager, and what suggests other units, one line each.
+  /// @param manager  of this world.
+  std::vector<std::string> notes(const ArticulatedCollisionManager& manager) const;
 
   Robot robot;
   Scene scene;                          ///< The last obstacles are carried, one for each attachment.

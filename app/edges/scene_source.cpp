@@ -102,7 +102,7 @@ SceneSource::SceneSource(const std::vector<std::string>& paths, SceneOptions opt
 void SceneSource::addFile(const std::string& path, std::string& hashes) {
   if (isHdf5(path)) return addShapes(path, hashes);
   scenes_.push_back({fs::path(path).filename().string(), path, -1, 0});
-  hashes += sceneFileHash(path, options_.packages) + "\n";
+  hashes += sceneFileHash(path, options_) + "\n";
 }
 
 void SceneSource::addShapes(const std::string& path, std::string& hashes) {

@@ -41,7 +41,7 @@ void add(Scene& scene, const std::string& name, py::handle geometry, py::handle 
   if (std::any_of(scene.obstacles.begin(), scene.obstacles.end(), taken)) {
     valueError("the scene has an obstacle '" + name + "' already");
   }
-  scene.obstacles.push_back({name, objectOf(geometryOf(geometry, "geometry"), poseOf(pose, "pose"))});
+  scene.obstacles.push_back({name, objectOf(geometryOf(geometry, "geometry"), poseOf(pose, "pose")), {}});
 }
 
 Geometry geometryOfObstacle(const Scene::Obstacle& o) {
@@ -52,7 +52,7 @@ py::tuple sceneState(const Scene& scene) {
   py::list obstacles;
   for (const Scene::Obstacle& o : scene.obstacles) {
     obstacles.append(py::make_tuple(o.name, geometryState(geometryOfObstacle(o)),
-                                    arrayOf(Eigen::Isometry3d(o.object->getTransform()))));
+                                    arrayOf(Eigen::Isometry3d(o.object->getTransform())), o.shape_of));
   }
   return py::make_tuple(obstacles, scene.notes);
 }
@@ -61,7 +61,8 @@ Scene sceneOfState(const py::tuple& s) {
   Scene scene;
   for (const py::handle item : py::list(s[0])) {
     const auto o = py::reinterpret_borrow<py::tuple>(item);
-    scene.obstacles.push_back({py::cast<std::string>(o[0]), objectOf(geometryOfState(o[1]), poseOf(o[2], "pose"))});
+    scene.obstacles.push_back({py::cast<std::string>(o[0]), objectOf(geometryOfState(o[1]), poseOf(o[2], "pose")),
+                               py::cast<std::string>(o[3])});
   }
   scene.notes = py::cast<std::vector<std::string>>(s[1]);
   return scene;
@@ -72,6 +73,7 @@ Scene sceneOfState(const py::tuple& s) {
 void bindScene(py::module_& module) {
   py::class_<Scene::Obstacle>(module, "Obstacle", "One obstacle of a scene.")
       .def_readonly("name", &Scene::Obstacle::name)
+      .def_readonly("shape_of", &Scene::Obstacle::shape_of)
       .def_property_readonly("geometry", &geometryOfObstacle)
       .def_property_readonly(
           "pose", [](const Scene::Obstacle& o) { return arrayOf(Eigen::Isometry3d(o.object->getTransform())); })

@@ -156,6 +156,17 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     }
   }
 
+  if (!joint.mimics) {
+    for (const char* ending : variableEndings(joint.type)) {
+      const std::string name = joint.name + ending;
+      const auto other = std::find(variable_names_.begin(), variable_names_.end(), name);
+      if (other == variable_names_.end()) continue;
+      refuse("would have the variable '" + name + "', which joint '" +
+             joints_[variables_[static_cast<std::size_t>(other - variable_names_.begin())]].name +
+             "' has already; call it otherwise");
+    }
+  }
+
   const JointId id = numJoints();
   joints_.push_back(joint);
   joints_.back().mimic = followed;

@@ -17,6 +17,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "edges/inputs.h"
 #include "hdf5/hdf5.h"
 #include "run_program.h"
 
@@ -479,6 +480,28 @@ TEST_F(EdgesTest, RowsThatAreNoMotionAreRefusedNotFree) {
   const Outcome beyond = run(command("beyond", "--ignore-limits"));
   EXPECT_EQ(beyond.status, 2);
   EXPECT_EQ(column<std::int64_t>(File(path("beyond/table.h5")), "status")[2], 2);
+}
+
+// What an earlier library has proven may be wrong: its rows and roadmaps are not believed.
+TEST_F(EdgesTest, HashesKnowTheErrata) {
+  std::istringstream errata(read(std::string(FCL_ARTIC_SOURCE) + "/doc/ERRATA.md"));
+  int entries = 0;
+  for (std::string line; std::getline(errata, line);) entries += line.rfind("**", 0) == 0;
+  EXPECT_EQ(fcl_artic::app::kErrata, entries) << "a new entry raises the number";
+}
+
+TEST_F(EdgesTest, NotesOfScenesArePrinted) {
+  arm();
+  fs::create_directories(folder_ / "doors");
+  write("doors/door.urdf", R"(<robot name="d"><link name="d"/><link name="e"><collision><origin xyz="9 9 9"/>
+    <geometry><sphere radius="0.1"/></geometry></collision></link>
+    <joint name="j" type="continuous"><parent link="d"/><child link="e"/></joint></robot>)");
+  edges(5);
+  const Outcome run = this->run("certify --edges " + path("edges.h5") + " --robot " + path("arm.urdf") + " --scenes " +
+                                path("doors") + " --out " + path("doors_out") + " --threads 1");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("note: scene 0 ('door.urdf'): "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("its joints stand at 0"), std::string::npos) << run.err;
 }
 
 TEST_F(EdgesTest, ScenesOfShapesAreThoseOfFiles) {

@@ -247,6 +247,7 @@ TEST(Clearance, RandomArmsAgainstDenseSampling) {
       obstacles.push_back(object(std::make_shared<fcl::Boxd>(side), pose(vector(1.4), uniform(-3, 3), vector(1))));
       manager.registerObject(obstacles.back().get());
     }
+    manager.allow("upper", "lower");  // neighbours that touch at times
     manager.setup();
     const Eigen::Vector2d q0(uniform(-3, 3), uniform(-3, 3)), q1(uniform(-3, 3), uniform(-3, 3));
     const auto distance = [&](double t) {

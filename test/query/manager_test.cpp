@@ -182,7 +182,7 @@ TEST(Manager, NothingCheckedIsSaid) {
     out << r;
     return out.str();
   };
-  const std::string nothing = "free: nothing was checked, there is no pair of bodies";
+  const std::string nothing = "nothing was checked, there is no pair of bodies";
   CertifiedRequest request;
   for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
     for (const Method method : {Method::standard, Method::redon2004}) {

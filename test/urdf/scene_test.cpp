@@ -248,6 +248,12 @@ TEST_F(SceneTest, NamesAreGivenOnce) {
   EXPECT_EQ(namesOf(both), (std::vector<std::string>{"a#2", "a#3", "a#3#2", "a#4", "floor", "a#5"}));
   ASSERT_EQ(both.notes.size(), 3u);
   expectContains(both.notes[0], "obstacle 'a' is called 'a#3' here");
+  // An object's name stands for all of its shapes, and not for another object that is called as one of them.
+  EXPECT_EQ(scene.namesOf("a"), (std::vector<std::string>{"a", "a#3", "a#4"}));
+  EXPECT_EQ(scene.namesOf("a#2"), std::vector<std::string>{"a#2"});
+  EXPECT_EQ(scene.namesOf("a#4"), std::vector<std::string>{"a#4"});
+  EXPECT_EQ(both.namesOf("a#3"), (std::vector<std::string>{"a#3", "a#3#2", "a#4"}));
+  EXPECT_EQ(both.namesOf("a#5"), std::vector<std::string>{"a#5"});
 }
 
 TEST_F(SceneTest, IsAddedAsAWholeOrNotAtAll) {

@@ -28,7 +28,8 @@ struct Robot {
   std::shared_ptr<const KinematicTree> tree;  ///< Links and joint variables in the order of the file.
   std::vector<LinkGeometry> geometry;         ///< Collision geometry of the links; a link may have several.
   /// Pairs of links that may touch: empty after loadUrdf(), to be set from loadSrdf() or generateAllowedCollisions().
-  /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry.
+  /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry, unless the matrix is complete, as
+  /// that of an SRDF is.
   AllowedCollisionMatrix allowed;
   /// Proofs of pairs that never touch, from generateAllowedCollisions(); null: none.
   std::shared_ptr<const LinkPairProofs> proofs;
@@ -79,10 +80,11 @@ struct PlacedRobot {
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
 };
 
-/// Combines several robots into one forest, each on a link of its own, prefix + "mount". Their variables follow each
-/// other in the order of the parts. Allowed pairs are those of the parts, proofs are none; every link of one robot is
-/// checked against every link of the others, also for robots that touch where they stand. Geometries are shared with
-/// the parts.
+/// Combines several robots into one forest, each on a link of its own, prefix + "mount"; of a part that was combined
+/// before, each of its roots on prefix + "mount_of_" + the root's name. Their variables follow each other in the order
+/// of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none; every link of
+/// one robot is checked against every link of the others, also for robots that touch where they stand. Geometries are
+/// shared with the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
@@ -104,7 +106,8 @@ struct SrdfPair {
 };
 
 /// Reads the pairs of links that need no check from an SRDF file, as MoveIt does: `disable_collisions`, and
-/// `disable_default_collisions` with its exceptions, `enable_collisions`.
+/// `disable_default_collisions` with its exceptions, `enable_collisions`. As in MoveIt, all other pairs are checked,
+/// neighbours too: the matrix is complete (AllowedCollisionMatrix::setComplete()).
 ///
 /// Entries with a link that the robot lacks are passed over, which leaves no pair unchecked: the SRDFs of many makers
 /// name links that not all of their URDFs have.
@@ -128,8 +131,9 @@ FCL_ARTIC_EXPORT std::vector<SrdfPair> readSrdf(const std::string& path, const K
 /// @throws std::invalid_argument for a robot without a tree, and as ArticulatedCollisionManager::bind() and
 ///   classifyLinkPairs().
 FCL_ARTIC_EXPORT LinkPairReport generateAllowedCollisions(const Robot& robot, const LinkPairOptions& options = {});
-/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): neighbours
-/// ("Adjacent"), pairs that never touch, proven ("Never"), and that always do ("Always"). The file is written as a
+/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): pairs that
+/// never touch, proven ("Never"), that always do ("Always"), and neighbours that a manager leaves out by itself
+/// ("Adjacent"). The file is written as a
 /// whole or, if this throws, not at all.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report);
@@ -140,9 +144,14 @@ struct Scene {
   struct Obstacle {
     std::string name;                               ///< Unique in the scene.
     std::shared_ptr<fcl::CollisionObjectd> object;  ///< Geometry, at its pose in the world.
+    /// Of a shape of an object that has several: the name of the object, which is that of its first shape; else empty.
+    std::string shape_of;
   };
   std::vector<Obstacle> obstacles;  ///< The obstacles, in the order of the file.
   std::vector<std::string> notes;   ///< What was accepted though unusual, one line each.
+  /// Names of all obstacles that a name stands for: of a whole object, its shapes. (Margins, allowed pairs and attach()
+  /// go by the names of single obstacles: one call for each.)
+  FCL_ARTIC_EXPORT std::vector<std::string> namesOf(const std::string& object) const;
   /// Registers every obstacle by its name. Needs setup() afterwards. The manager keeps the obstacles alive; the Scene
   /// may go.
   /// @throws std::invalid_argument as ArticulatedCollisionManager::registerObject(); none stays registered then.
