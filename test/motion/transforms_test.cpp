@@ -176,4 +176,20 @@ TEST(RigidTransformTest, ProductsAndInversesAreAsNearAsTheySay) {
   EXPECT_GT(place, 0.001);
 }
 
+/// A product as bad as it says it may be: too large by its error, and too far away by it.
+TEST(RigidTransformTest, InversesOfTheWorstProductsAreAsNearAsTheySay) {
+  constexpr double kUlps = 1e6, kError = kUlps * 0x1p-52;
+  Random random(5);
+  for (int n = 0; n < 100; ++n) {
+    const Isometry3d exact = test::randomPose(random, 10);
+    Isometry3d M = exact;
+    M.linear() *= 1 + kError / std::sqrt(3);  // of three columns
+    M.translation() *= 1 + kError;
+    const RigidTransform inverse = RigidTransform::product(M, kUlps, exact.translation().norm()).inverse();
+    const double off = (Vector3d(inverse.translation()) - exact.inverse().translation()).norm();
+    EXPECT_LE(off, 0x1p-52 * inverse.ulps() * inverse.length() * (1 + 1e-6) + 1e-14);
+    EXPECT_LE((Matrix3d(inverse.linear()) - exact.linear().transpose()).norm(), 0x1p-52 * inverse.ulps() * (1 + 1e-6));
+  }
+}
+
 }  // namespace transforms_test
