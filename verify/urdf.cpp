@@ -447,12 +447,7 @@ class UrdfComparison {
       return false;
     }
     std::size_t missing = 0;
-    bool text_stl = false;
-    if (!meshes_.same(g, b.geometry, c.path, c.numbers, missing, text_stl)) {
-      if (text_stl)
-        why_ = " (numbers of a text STL are compared as the nearest floats; a binary one has none to round)";
-      return false;
-    }
+    if (!meshes_.same(g, b.geometry, c.path, c.numbers, missing)) return false;
     if (missing > 0 && noted_.insert(c.path).second)
       result_.notes.push_back("'" + c.path + "': " + std::to_string(missing) +
                               " triangles without area are not in the world, which lie on edges of others");

@@ -53,7 +53,12 @@ TEST_P(RealRobot, LoadsWithItsJointsAndTriangles) {
   EXPECT_EQ(boxes, GetParam().boxes);
   EXPECT_EQ(meshes + boxes, static_cast<int>(robot.geometry.size()));
   EXPECT_EQ(triangles, GetParam().triangles);
-  for (const std::string& note : robot.notes) ADD_FAILURE() << "unexpected note: " << note;
+  for (const std::string& note : robot.notes) {
+    // The Panda's link6.obj has edges of its own.
+    const bool edges = note.find("link6.obj': its lines, 19, have no surface") != note.npos ||
+                       note.find("link6.obj': 24 of 966 vertices belong to no triangle") != note.npos;
+    if (!edges) ADD_FAILURE() << "unexpected note: " << note;
+  }
 }
 
 TEST_P(RealRobot, SrdfPairsAreRead) {

@@ -134,7 +134,7 @@ std::map<std::string, std::string> filesOf(const Points& points) {
   for (const Eigen::Vector3d& p : points) {
     const std::string x = shortest(p[0]), y = shortest(p[1]), z = shortest(p[2]);
     ascii += "255 " + x + " " + y + " 0 0 1 " + z + "\n";
-    xyz += x + ", " + y + "\t" + z + " 17\r\n";
+    xyz += x + ", " + y + "," + z + " ,\t17\r\n";
     ply_ascii += x + " " + y + " 9 " + z + "\n";
     append(rows, std::uint32_t{255}), append(rows, static_cast<float>(p[0])), append(rows, p[1]);
     for (int k = 0; k < 3; ++k) append(rows, 1.0f);
@@ -236,6 +236,21 @@ TEST_F(SceneTest, APlyFileWithFacesIsAMesh) {
                                       "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
                                 options);
   EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(scene.obstacles[0]).num_tris, 1);
+}
+
+TEST_F(SceneTest, NothingFollowsTheEndOfAScene) {
+  const std::string scene = "s\n* a\n1\nsphere\n0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n";
+  EXPECT_EQ(load("one.scene", scene + " \n\n").obstacles.size(), 1u);
+  expectContains(errorOf("two.scene", scene + scene), "two.scene': goes on after the '.' that closes a scene: 's'");
+  // Two numbers without a blank between them would shift all that follows.
+  expectContains(errorOf("a.scene", "s\n* a\n1\nsphere\n0.5.3\n0 0\n0 0 0 1\n0 0 0 0\n.\n"), "not a number");
+}
+
+TEST_F(SceneTest, PointsThatAreTooNearAreNoted) {
+  std::vector<std::string> notes;
+  loadPointCloud(write("zed.xyz", "1 2 3\n-inf -inf -inf\nnan nan nan\n"), 0.1, &notes);
+  ASSERT_EQ(notes.size(), 2u);
+  expectContains(notes[1], "1 of these are -inf, by which some cameras mean that something is too near");
 }
 
 TEST_F(SceneTest, NamesAreGivenOnce) {

@@ -15,6 +15,8 @@
 #include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
+#include "meshes/readers.h"
+#include "meshes/text.h"
 
 namespace fcl_artic {
 namespace {
@@ -79,7 +81,10 @@ class MoveItSceneReader {
     for (;;) {
       std::string marker;
       if (!(in_ >> marker)) fail(where_, "ends before the '.' that closes a scene");
-      if (marker == ".") return;
+      if (marker == ".") {
+        if (in_ >> marker) fail(where_, "goes on after the '.' that closes a scene: " + meshes::shown(marker));
+        return;
+      }
       if (marker != "*") fail(where_, "has '" + marker + "' where an object ('* name') or the end ('.') belongs");
       readObject(has_poses);
     }
@@ -172,14 +177,16 @@ class MoveItSceneReader {
   }
 
   double number(const std::string& part, const std::string& what) {
-    double value;
-    if (!(in_ >> value)) fail(part, "its " + what + " is cut short or not a number");
+    std::string word;
+    double value = 0;
+    if (!(in_ >> word) || !meshes::toNumber(word, value)) fail(part, "its " + what + " is cut short or not a number");
     return value;
   }
   std::size_t count(const std::string& part, const std::string& what) {
-    long long value;
-    if (!(in_ >> value) || value < 0) fail(part, "its " + what + " is cut short or not a count");
-    return static_cast<std::size_t>(value);
+    std::string word;
+    std::uint64_t value = 0;
+    if (!(in_ >> word) || !meshes::toCount(word, value)) fail(part, "its " + what + " is cut short or not a count");
+    return value;
   }
 
   std::string where_;
@@ -368,11 +375,17 @@ void noteJoints(const std::string& path, const KinematicTree& tree, std::vector<
                   (beyond.empty() ? "" : ", which the limits of these exclude: " + beyond));
 }
 
+bool hasFaces(const std::string& path) {
+  const std::string content = files::read(path);
+  return meshes::plyHasFaces({path, content, "'" + path + "'", nullptr});
+}
+
 void readRobot(const std::string& path, SceneBuilder& builder) {
   UrdfOptions options;
   options.solid_meshes = builder.options.solid_meshes;
   options.collada_up_axis = builder.options.collada_up_axis;
   options.packages = builder.options.packages;
+  options.import_meshes = builder.options.import_meshes;
   const Robot robot = loadUrdf(path, options);
   std::vector<Eigen::Isometry3d> M_0;
   robot.tree->forwardKinematics(robot.tree->neutralConfiguration(), M_0);
@@ -436,8 +449,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
     MoveItSceneReader(path, builder).read();
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
-  } else if (ending == ".pcd" || ending == ".xyz" ||
-             (ending == ".ply" && detail::isPlyWithoutFaces(files::read(path)))) {
+  } else if (ending == ".pcd" || ending == ".xyz" || (ending == ".ply" && !hasFaces(path))) {
     if (!(options.point_radius > 0)) {
       fail("'" + path + "'",
            "is a point cloud: say how large its points are (--point-radius, SceneOptions::point_radius)");
@@ -445,10 +457,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
     builder.add(fs::path(path).stem().string(), loadPointCloud(path, options.point_radius, &builder.scene.notes),
                 Eigen::Isometry3d::Identity());
   } else {
-    builder.add(
-        fs::path(path).stem().string(),
-        loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes, options.collada_up_axis),
-        Eigen::Isometry3d::Identity());
+    builder.add(fs::path(path).stem().string(),
+                loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes,
+                         options.collada_up_axis, options.import_meshes),
+                Eigen::Isometry3d::Identity());
   }
   return std::move(builder.scene);
 }

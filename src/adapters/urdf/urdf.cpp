@@ -521,7 +521,8 @@ class GeometryFactory {
   void read(const Key& key, Mesh& mesh) const {
     const auto& [path, x, y, z] = key;
     try {
-      mesh.geometry = loadMesh(path, {x, y, z}, &mesh.notes, options_.solid_meshes, options_.collada_up_axis);
+      mesh.geometry = loadMesh(path, {x, y, z}, &mesh.notes, options_.solid_meshes, options_.collada_up_axis,
+                               options_.import_meshes);
     } catch (const std::runtime_error& error) {
       mesh.error = error.what();
     }
