@@ -42,8 +42,16 @@ Waypoints parseWaypoints(const KinematicTree& tree, std::string_view content, co
   const std::string file = fmt::format("'{}' ", path);
   const plans::Table table = plans::parseTable(content, file);
   std::vector<int> columns;
-  if (!table.columns.empty()) {
-    columns = readHeader(tree, table.columns, fmt::format("{}line {}", file, table.header_line));
+  if (table.header_line > 0) {
+    const std::string where = fmt::format("{}line {}", file, table.header_line);
+    if (table.columns.empty())
+      throw std::invalid_argument(where + " names no columns: fcl_artic certify reads such files");
+    columns = readHeader(tree, table.columns, where);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (!table.degrees[i] || (columns[i] != kTime && tree.isAngle(columns[i]))) continue;
+      throw std::invalid_argument(
+          fmt::format("{}: column '{}' is no angle, and a value of it ends with deg", where, table.columns[i]));
+    }
   }
   Waypoints out;
   out.open_end = table.open_end;

@@ -1131,6 +1131,11 @@ def load_plans(
     joints: Sequence[str] = ...,
     state: Mapping[str, float] = ...,
     format: str | None = ...,
+    columns: Sequence[str] = ...,
+    skip: Sequence[str] = ...,
+    time: str = ...,
+    degrees: bool = ...,
+    limit_tolerance: float = ...,
 ) -> list[Plan]: ...
 def load_points(path: _Path, radius: float) -> Geometry: ...
 def load_srdf(srdf: _Path, tree: _HasTree) -> frozenset[_Pair]: ...

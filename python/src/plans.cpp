@@ -36,7 +36,9 @@ plans::Turns turnsNamed(const std::string& name) {
 
 std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string& interpolation, double blend,
                              const std::string& turns, bool ignore_limits, const std::vector<std::string>& joints,
-                             const std::map<std::string, double>& state, const std::optional<std::string>& format) {
+                             const std::map<std::string, double>& state, const std::optional<std::string>& format,
+                             const std::vector<std::string>& columns, const std::vector<std::string>& skip,
+                             const std::string& time, bool degrees, double limit_tolerance) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
   const std::shared_ptr<const KinematicTree> of = finishedTreeOf(tree);
   plans::MotionOptions options;
@@ -49,11 +51,16 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
   options.ignore_limits = ignore_limits;
   options.joints = joints;
   options.state = state;
+  options.degrees = degrees;
+  if (!(limit_tolerance >= 0)) valueError("limit_tolerance is not a number of at least 0");
+  options.limit_tolerance = limit_tolerance;
+  if (!columns.empty() && !(skip.empty() && time.empty())) valueError("columns says it all: leave skip and time out");
+  const plans::ColumnOptions of_csv{columns, skip, time, plans::unnamedColumns(*of, options)};
   const plans::Format kind = format ? plans::formatNamed(*format) : plans::formatOf(file);
   return guardFiles(file, [&] {
     std::vector<LoadedPlan> out;
     try {
-      for (plans::Plan& plan : plans::parsePlans(*of, files::read(file), kind)) {
+      for (plans::Plan& plan : plans::parsePlans(*of, files::read(file), kind, of_csv)) {
         LoadedPlan& one = out.emplace_back();
         try {
           one.motion = plans::toMotion(*of, plan, options);
@@ -145,10 +152,16 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
   module.def(
       "load_plans", &load,
       "Reads the plans of a file (CSV, JSON, JSON lines, YAML and messages of ROS, OMPL's text, NumPy's arrays) for a\n"
-      "robot. A plan that is wrong by itself has an `error`. `state` has values of joints that plans do not name.",
+      "robot. A plan that is wrong by itself has an `error`. `state` has values of joints that plans do not name.\n"
+      "`columns`, `skip` and `time` say what columns of CSV files are, where their first line does not; `degrees`: "
+      "angles\n"
+      "are in degrees; `limit_tolerance`: by so much waypoints may be beyond limits, rad, and m for a tenth of it.",
       py::arg("path"), py::arg("robot"), py::kw_only(), py::arg("interpolation") = "auto", py::arg("blend") = 0.0,
       py::arg("turns") = "ask", py::arg("ignore_limits") = false, py::arg("joints") = std::vector<std::string>(),
-      py::arg("state") = std::map<std::string, double>(), py::arg("format") = py::none());
+      py::arg("state") = std::map<std::string, double>(), py::arg("format") = py::none(),
+      py::arg("columns") = std::vector<std::string>(), py::arg("skip") = std::vector<std::string>(),
+      py::arg("time") = "", py::arg("degrees") = false,
+      py::arg("limit_tolerance") = plans::MotionOptions().limit_tolerance);
   world.def(
       "certify", &certify,
       "Finds the first contact of a plan of load_plans(), or proves that there is none. Options are those of Request.",

@@ -2,8 +2,12 @@
 #include "plans/csv.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -19,26 +23,58 @@ std::string_view trimmed(std::string_view text) {
                                          : text.substr(begin, text.find_last_not_of(" \t\r\"") + 1 - begin);
 }
 
-std::vector<std::string_view> splitLine(std::string_view line) {
+constexpr char kBlanks = ' ';  ///< any number of blanks and tabs
+
+/// What separates the columns of a line.
+char separatorOf(std::string_view line) {
+  for (const char separator : {';', ',', '\t'}) {
+    if (line.find(separator) != std::string_view::npos) return separator;
+  }
+  return kBlanks;
+}
+
+std::vector<std::string_view> splitLine(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
+  if (separator == kBlanks) {
+    for (std::size_t at = 0; (at = line.find_first_not_of(" \t\r", at)) != std::string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(" \t\r", at), line.size());
+      fields.push_back(trimmed(line.substr(at, end - at)));
+      at = end;
+    }
+    return fields;
+  }
   for (std::size_t at = 0;;) {
-    const std::size_t end = line.find(',', at);
+    const std::size_t end = line.find(separator, at);
     fields.push_back(trimmed(line.substr(at, end == std::string_view::npos ? end : end - at)));
     if (end == std::string_view::npos) return fields;
     at = end + 1;
   }
 }
 
-double parseNumber(std::string_view text, const std::string& where, const std::string& column, std::size_t row) {
-  const std::string whole(text);
+/// @param[out] degrees  whether it ends with deg; the value is in rad then.
+std::optional<double> cellOf(std::string_view text, bool& degrees) {
+  degrees = text.size() > 3 && text.substr(text.size() - 3) == "deg";
+  if (degrees) text = trimmed(text.substr(0, text.size() - 3));
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars takes no plus
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return degrees ? value * kRadiansPerDegree : value;
+}
+
+double parseNumber(std::string_view text, const std::string& where, const std::string& column, std::size_t row,
+                   bool& degrees) {
+  const std::optional<double> value = cellOf(text, degrees);
+  if (!value || !std::isfinite(*value)) {
     throw std::invalid_argument(
-        fmt::format("{}, column '{}': '{}' is not a finite number (waypoint {})", where, column, whole, row));
+        fmt::format("{}, column '{}': '{}' is not a finite number (waypoint {})", where, column, text, row));
   }
-  return value;
+  return *value;
+}
+
+bool isRowOfNumbers(const std::vector<std::string_view>& fields) {
+  bool degrees = false;
+  return std::all_of(fields.begin(), fields.end(), [&](std::string_view field) { return cellOf(field, degrees); });
 }
 
 /// The name without one of the endings; empty where it has none of them.
@@ -88,6 +124,232 @@ Plan::Rows take(const Table& table, const QuantityColumns& columns, const std::v
   return rows;
 }
 
+const std::vector<std::string> kVelocityEndings{"/velocity", ".velocity", "_velocity", "_vel"},
+    kAccelerationEndings{"/acceleration", ".acceleration", "_acceleration", "_acc"};
+
+enum class Quantity { time, position, velocity, acceleration, none };
+
+/// What a column is taken for.
+struct Meaning {
+  Quantity quantity = Quantity::none;
+  std::string joint;
+
+  std::string text() const {
+    switch (quantity) {
+      case Quantity::time:
+        return "time";
+      case Quantity::velocity:
+        return joint + "/velocity";
+      case Quantity::acceleration:
+        return joint + "/acceleration";
+      case Quantity::position:
+      case Quantity::none:
+        break;
+    }
+    return joint;
+  }
+};
+
+std::string lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// A name in the robot's own words.
+std::optional<Meaning> exactMeaning(const KinematicTree& tree, const std::string& name) {
+  if (isVariable(tree, name)) return Meaning{Quantity::position, name};
+  if (name == "time" || name == "t" || name == "time_from_start") return Meaning{Quantity::time, {}};
+  const std::string v = without(name, kVelocityEndings), a = without(name, kAccelerationEndings);
+  if (!v.empty() && isVariable(tree, v)) return Meaning{Quantity::velocity, v};
+  if (!a.empty() && isVariable(tree, a)) return Meaning{Quantity::acceleration, a};
+  return std::nullopt;
+}
+
+/// Paths, as /joint_states/JOINT/position: the part before the last is a variable.
+std::optional<Meaning> pathMeaning(const KinematicTree& tree, const std::string& name) {
+  static const std::map<std::string, Quantity> kQuantities{{"position", Quantity::position},
+                                                           {"positions", Quantity::position},
+                                                           {"pos", Quantity::position},
+                                                           {"velocity", Quantity::velocity},
+                                                           {"velocities", Quantity::velocity},
+                                                           {"vel", Quantity::velocity},
+                                                           {"acceleration", Quantity::acceleration},
+                                                           {"accelerations", Quantity::acceleration},
+                                                           {"acc", Quantity::acceleration},
+                                                           {"effort", Quantity::none},
+                                                           {"torque", Quantity::none}};
+  const std::size_t last = name.find_last_of("/.");
+  if (last == std::string::npos) return std::nullopt;
+  const auto quantity = kQuantities.find(lowered(name.substr(last + 1)));
+  if (quantity == kQuantities.end()) return std::nullopt;
+  // Names of variables may hold these signs too: the longest end that is one.
+  const std::string path = name.substr(0, last);
+  for (std::size_t at = 0;;) {
+    if (isVariable(tree, path.substr(at))) return Meaning{quantity->second, path.substr(at)};
+    at = path.find_first_of("/.", at);
+    if (at == std::string::npos) return std::nullopt;
+    ++at;
+  }
+}
+
+bool isUsualTime(const std::string& name) {
+  static const std::set<std::string> kNames{"time",     "t",       "timestamp", "__time", "time_s",
+                                            "time [s]", "time(s)", "time (s)",  "secs",   "seconds"};
+  return kNames.count(lowered(name)) > 0;
+}
+
+/// "actual_q_0" is {"actual_q", 0}; nothing without a number at the end.
+std::optional<std::pair<std::string, int>> numberedName(const std::string& name) {
+  std::string text = lowered(name);
+  if (!text.empty() && (text.back() == ']' || text.back() == ')')) text.pop_back();
+  std::size_t digits = 0;
+  while (digits < text.size() && std::isdigit(static_cast<unsigned char>(text[text.size() - 1 - digits]))) ++digits;
+  if (digits == 0 || digits == text.size() || digits > 3) return std::nullopt;
+  const int number = std::stoi(text.substr(text.size() - digits));
+  text.resize(text.size() - digits);
+  while (!text.empty() && std::string("_-. [(").find(text.back()) != std::string::npos) text.pop_back();
+  return std::make_pair(text, number);
+}
+
+/// Numbered columns, by what they are numbers of: as many as there are joints, from 0 or 1 on.
+void addNumbered(const std::vector<std::string>& columns, const std::vector<std::string>& joints,
+                 std::vector<std::optional<Meaning>>& meanings) {
+  static const std::vector<std::pair<Quantity, std::vector<std::string>>> kFamilies{
+      {Quantity::position, {"q", "j", "a", "axis", "joint", "theta", "pos", "position", "actual_q", "joint_position"}},
+      {Quantity::velocity, {"qd", "dq", "vel", "velocity", "actual_qd", "joint_velocity"}},
+      {Quantity::acceleration, {"qdd", "ddq", "acc", "acceleration", "actual_qdd", "joint_acceleration"}}};
+  for (const auto& [quantity, names] : kFamilies) {
+    for (const std::string& family : names) {
+      std::map<int, std::size_t> found;
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        const auto number = numberedName(columns[i]);
+        if (!meanings[i] && number && number->first == family) found.emplace(number->second, i);
+      }
+      if (found.empty() || found.size() != joints.size()) continue;
+      const int first = found.begin()->first;
+      if (first > 1 || found.rbegin()->first != first + static_cast<int>(joints.size()) - 1) continue;
+      for (const auto& [number, column] : found) {
+        meanings[column] = Meaning{quantity, joints[static_cast<std::size_t>(number - first)]};
+      }
+      break;
+    }
+  }
+}
+
+std::vector<std::string> jointsOf(const KinematicTree& tree, const ColumnOptions& options) {
+  if (!options.joints.empty()) return options.joints;
+  std::vector<std::string> all;
+  for (int v = 0; v < tree.dof(); ++v) all.push_back(tree.variableName(v));
+  return all;
+}
+
+bool rises(const Table& table, std::size_t column) {
+  for (std::size_t k = 1; k < table.rows.size(); ++k) {
+    if (!(table.rows[k][column] > table.rows[k - 1][column])) return false;
+  }
+  return true;
+}
+
+/// As the caller says it.
+std::vector<std::optional<Meaning>> givenMeanings(const KinematicTree& tree, const Table& table,
+                                                  const ColumnOptions& options) {
+  const std::size_t width = table.degrees.size();
+  if (options.columns.size() != width) {
+    throw std::invalid_argument(
+        fmt::format("line {} has {} columns, --columns names {}", table.header_line, width, options.columns.size()));
+  }
+  std::vector<std::optional<Meaning>> meanings;
+  for (const std::string& name : options.columns) {
+    std::optional<Meaning> meaning = exactMeaning(tree, name);
+    if (!meaning && name != "-") variableOf(tree, name, "--columns");
+    meanings.push_back(meaning ? *meaning : Meaning());
+  }
+  return meanings;
+}
+
+/// Of columns without names.
+std::vector<std::optional<Meaning>> meaningsByPlace(const KinematicTree& tree, const Table& table,
+                                                    const ColumnOptions& options) {
+  const std::vector<std::string> joints = jointsOf(tree, options);
+  const std::size_t width = table.degrees.size();
+  const bool timed = width == joints.size() + 1 && rises(table, 0);
+  if (!timed && width != joints.size()) {
+    throw std::invalid_argument(fmt::format(
+        "line {0} names no columns, and its {1} numbers are neither the {2} joints {3} nor these after a time that "
+        "rises: --columns says what each is, --state gives joints that stay",
+        table.header_line, width, joints.size(), fmt::join(joints, ", ")));
+  }
+  std::vector<std::optional<Meaning>> meanings;
+  if (timed) meanings.emplace_back(Meaning{Quantity::time, {}});
+  for (const std::string& joint : joints) meanings.emplace_back(Meaning{Quantity::position, joint});
+  return meanings;
+}
+
+std::vector<std::optional<Meaning>> meaningsByName(const KinematicTree& tree, const Table& table,
+                                                   const ColumnOptions& options) {
+  const std::vector<std::string>& columns = table.columns;
+  const auto isNamed = [&](const std::string& name) {
+    return std::find(columns.begin(), columns.end(), name) != columns.end();
+  };
+  for (const std::string& name : options.skip) {
+    if (!isNamed(name))
+      throw std::invalid_argument(fmt::format("--skip: line {} has no column '{}'", table.header_line, name));
+  }
+  if (!options.time.empty() && !isNamed(options.time)) {
+    throw std::invalid_argument(fmt::format("--time: line {} has no column '{}'", table.header_line, options.time));
+  }
+  std::vector<std::optional<Meaning>> meanings(columns.size());
+  bool timed = !options.time.empty();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (std::find(options.skip.begin(), options.skip.end(), columns[i]) != options.skip.end()) {
+      meanings[i] = Meaning();
+    } else if (!options.time.empty() && columns[i] == options.time) {
+      meanings[i] = Meaning{Quantity::time, {}};
+    } else if ((meanings[i] = exactMeaning(tree, columns[i]))) {
+      if (meanings[i]->quantity == Quantity::time && !options.time.empty()) meanings[i] = Meaning();
+      timed = timed || meanings[i]->quantity == Quantity::time;
+    } else {
+      meanings[i] = pathMeaning(tree, columns[i]);
+    }
+  }
+  for (std::size_t i = 0; i < columns.size() && !timed; ++i) {
+    if (meanings[i] || !isUsualTime(columns[i])) continue;
+    meanings[i] = Meaning{Quantity::time, {}};
+    timed = true;
+  }
+  addNumbered(columns, jointsOf(tree, options), meanings);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (meanings[i]) continue;
+    try {
+      variableOf(tree, columns[i], fmt::format("line {}", table.header_line));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(
+          fmt::format("{}; --skip leaves a column out, --columns says what all of them are", error.what()));
+    }
+  }
+  return meanings;
+}
+
+/// "time = Time, hinge = q1; left out: gripper": what is not in the robot's own words.
+std::string takenText(const KinematicTree& tree, const Table& table,
+                      const std::vector<std::optional<Meaning>>& meanings) {
+  std::string taken, left;
+  bool other = table.columns.empty();
+  for (std::size_t i = 0; i < meanings.size(); ++i) {
+    const std::string name = table.columns.empty() ? fmt::format("column {}", i) : table.columns[i];
+    if (meanings[i]->quantity == Quantity::none) {
+      left += (left.empty() ? "" : ", ") + name;
+      continue;
+    }
+    const auto exact = table.columns.empty() ? std::nullopt : exactMeaning(tree, name);
+    other = other || !exact || exact->text() != meanings[i]->text();
+    taken += fmt::format("{}{} = {}", taken.empty() ? "" : ", ", meanings[i]->text(), name);
+  }
+  std::string text = other ? "its columns are taken so: " + taken : "";
+  if (!left.empty()) text += (text.empty() ? "left out of its columns: " : "; left out: ") + left;
+  return text;
+}
+
 }  // namespace
 
 std::string Table::where(std::size_t row) const {
@@ -96,6 +358,8 @@ std::string Table::where(std::size_t row) const {
 
 Table parseTable(std::string_view content, const std::string& file) {
   Table out;
+  char separator = ',';
+  std::size_t width = 0;
   out.open_end = !content.empty() && content.back() != '\n';
   for (int number = 1; !content.empty(); ++number) {
     const std::size_t end = std::min(content.find('\n'), content.size());
@@ -104,56 +368,88 @@ Table parseTable(std::string_view content, const std::string& file) {
     if (number == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
     if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
     const std::string where = fmt::format("{}line {}", file, number);
-    const std::vector<std::string_view> fields = splitLine(line);
-    if (out.columns.empty()) {
-      for (const std::string_view field : fields) {
-        if (std::find(out.columns.begin(), out.columns.end(), field) != out.columns.end()) {
-          throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, field));
-        }
-        out.columns.emplace_back(field);
-      }
+    if (out.header_line == 0) separator = separatorOf(line);
+    const std::vector<std::string_view> fields = splitLine(line, separator);
+    if (out.header_line == 0) {
       out.header_line = number;
-      continue;
+      width = fields.size();
+      out.degrees.assign(width, false);
+      if (!isRowOfNumbers(fields)) {
+        for (const std::string_view field : fields) {
+          if (std::find(out.columns.begin(), out.columns.end(), field) != out.columns.end()) {
+            throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, field));
+          }
+          out.columns.emplace_back(field);
+        }
+        continue;
+      }
     }
-    if (fields.size() != out.columns.size()) {
-      throw std::invalid_argument(fmt::format("{} has {} columns, the first line names {} (waypoint {})", where,
-                                              fields.size(), out.columns.size(), out.rows.size()));
+    if (fields.size() != width) {
+      throw std::invalid_argument(fmt::format("{} has {} columns, the first line {} {} (waypoint {})", where,
+                                              fields.size(), out.columns.empty() ? "has" : "names", width,
+                                              out.rows.size()));
     }
     const std::size_t number_of_row = out.rows.size();
     std::vector<double>& row = out.rows.emplace_back();
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      row.push_back(parseNumber(fields[i], where, out.columns[i], number_of_row));
+      bool degrees = false;
+      row.push_back(parseNumber(fields[i], where, out.columns.empty() ? std::to_string(i) : out.columns[i],
+                                number_of_row, degrees));
+      if (degrees) out.degrees[i] = true;
     }
     out.lines.push_back(number);
   }
   return out;
 }
 
-Plan parseCsv(const KinematicTree& tree, std::string_view content) {
+Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnOptions& options) {
   const Table table = parseTable(content, "");
-  if (table.columns.empty()) throw std::invalid_argument("it is empty: no line names the columns");
+  if (table.header_line == 0) throw std::invalid_argument("it is empty: no line names the columns");
+  const std::vector<std::optional<Meaning>> meanings = !options.columns.empty() ? givenMeanings(tree, table, options)
+                                                       : table.columns.empty()  ? meaningsByPlace(tree, table, options)
+                                                                                : meaningsByName(tree, table, options);
   Plan plan;
   QuantityColumns positions, velocities, accelerations;
   std::vector<std::size_t> times;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    const std::string& column = table.columns[i];
-    const std::string v = without(column, {"/velocity", ".velocity", "_velocity", "_vel"}),
-                      a = without(column, {"/acceleration", ".acceleration", "_acceleration", "_acc"});
-    if (isVariable(tree, column)) {
-      positions.add(column, i);
-    } else if (column == "time" || column == "t" || column == "time_from_start") {
-      times.push_back(i);
-    } else if (!v.empty() && isVariable(tree, v)) {
-      velocities.add(v, i);
-    } else if (!a.empty() && isVariable(tree, a)) {
-      accelerations.add(a, i);
-    } else {
-      variableOf(tree, column, fmt::format("line {}", table.header_line));
+  for (std::size_t i = 0; i < meanings.size(); ++i) {
+    const Meaning& meaning = *meanings[i];
+    if (table.degrees[i] && meaning.quantity != Quantity::none) {
+      const bool angle =
+          meaning.quantity != Quantity::time && tree.isAngle(variableOf(tree, meaning.joint, "the plan"));
+      if (!angle)
+        throw std::invalid_argument(
+            fmt::format("column {} ('{}') is no angle, and a value of it ends with deg", i, meaning.text()));
+      plan.has_degrees = true;
+    }
+    switch (meaning.quantity) {
+      case Quantity::time:
+        times.push_back(i);
+        break;
+      case Quantity::position:
+        positions.add(meaning.joint, i);
+        break;
+      case Quantity::velocity:
+        velocities.add(meaning.joint, i);
+        break;
+      case Quantity::acceleration:
+        accelerations.add(meaning.joint, i);
+        break;
+      case Quantity::none:
+        break;
     }
   }
   if (times.size() > 1) {
-    throw std::invalid_argument(fmt::format("line {}: two columns of times, '{}' and '{}'", table.header_line,
-                                            table.columns[times[0]], table.columns[times[1]]));
+    const auto name = [&](std::size_t i) { return table.columns.empty() ? std::to_string(i) : table.columns[i]; };
+    throw std::invalid_argument(
+        fmt::format("line {}: two columns of times, '{}' and '{}'", table.header_line, name(times[0]), name(times[1])));
+  }
+  for (std::size_t j = 0; j < positions.joints.size(); ++j) {
+    for (std::size_t k = 0; k < j; ++k) {
+      if (positions.joints[j] == positions.joints[k]) {
+        throw std::invalid_argument(fmt::format("line {}: two columns are joint '{}', {} and {}", table.header_line,
+                                                positions.joints[j], positions.at[k], positions.at[j]));
+      }
+    }
   }
   plan.joints = positions.joints;
   plan.positions = take(table, positions, plan.joints, "position");
@@ -162,6 +458,7 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content) {
   if (!times.empty()) {
     for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]]);
   }
+  if (const std::string taken = takenText(tree, table, meanings); !taken.empty()) plan.notes.push_back(taken);
   if (table.open_end) plan.notes.emplace_back("the last line has no line end: the file may be cut short");
   return plan;
 }

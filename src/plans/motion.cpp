@@ -44,6 +44,10 @@ PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionO
   if (out.names.empty()) {
     for (int v = 0; v < tree.dof(); ++v) out.names.push_back(tree.variableName(v));
     const std::size_t values = plan.positions[0].size();
+    if (values != out.names.size()) {  // those that the caller gives stay
+      std::vector<std::string> others = unnamedColumns(tree, options);
+      if (values == others.size()) out.names = std::move(others);
+    }
     if (values != out.names.size()) {
       refuse(fmt::format("waypoint 0 has {} and no names; robot '{}' has {}: {}; name those of the plan by --joints",
                          plural(values, "value"), tree.name(), plural(out.names.size(), "joint"), variableNames(tree)));
@@ -118,18 +122,58 @@ void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
   }
 }
 
-void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns, bool ignore,
-                 std::vector<std::string>& notes) {
-  for (std::size_t k = 0; k < plan.positions.size(); ++k) {
-    for (std::size_t j = 0; j < columns.names.size(); ++j) {
-      const Joint& joint = tree.joint(tree.variableJoint(columns.variables[j]));
-      const double value = plan.positions[k][j];
-      if (!hasLimits(joint) || (value >= joint.lower && value <= joint.upper)) continue;
-      const std::string what = fmt::format("waypoint {}: joint '{}' at {} is beyond its limits [{}, {}]", k, joint.name,
-                                           value, joint.lower, joint.upper);
-      if (!ignore) refuse(what + "; --ignore-limits has it certified all the same");
-      notes.push_back(what);
+constexpr double kLengthTolerance = 0.1;  // m for a rad, of MotionOptions::limit_tolerance
+
+/// By how much a value is beyond a joint's limits; 0 within.
+double beyondLimits(const Joint& joint, double value) {
+  return hasLimits(joint) ? std::max({joint.lower - value, value - joint.upper, 0.0}) : 0;
+}
+
+/// Whether all would be within their limits if angles were in degrees.
+bool areDegrees(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns) {
+  for (const std::vector<double>& row : plan.positions) {
+    for (std::size_t j = 0; j < row.size(); ++j) {
+      const int v = columns.variables[j];
+      const double value = tree.isAngle(v) ? row[j] * kRadiansPerDegree : row[j];
+      if (beyondLimits(tree.joint(tree.variableJoint(v)), value) > 0) return false;
     }
+  }
+  return true;
+}
+
+/// One note for each joint: by how much, and from which waypoint to which.
+void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns, const MotionOptions& options,
+                 std::vector<std::string>& notes) {
+  for (std::size_t j = 0; j < columns.names.size(); ++j) {
+    const int v = columns.variables[j];
+    const Joint& joint = tree.joint(tree.variableJoint(v));
+    const bool angle = tree.isAngle(v);
+    const double tolerance = options.limit_tolerance * (angle ? 1 : kLengthTolerance);
+    std::size_t first = 0, last = 0, count = 0;
+    double most = 0;
+    for (std::size_t k = 0; k < plan.positions.size(); ++k) {
+      const double value = plan.positions[k][j], beyond = beyondLimits(joint, value);
+      if (beyond == 0) continue;
+      if (beyond > tolerance && !options.ignore_limits) {
+        // More than a turn is seldom an angle in rad.
+        const bool degrees =
+            angle && !options.degrees && std::abs(value) > 2 * kHalfTurn && areDegrees(tree, plan, columns);
+        refuse(fmt::format(
+            "waypoint {}: joint '{}' at {} is beyond its limits [{}, {}]; {}--ignore-limits has it "
+            "certified all the same",
+            k, joint.name, value, joint.lower, joint.upper, degrees ? "are these degrees? --degrees says so; " : ""));
+      }
+      if (count++ == 0) first = k;
+      last = k;
+      most = std::max(most, beyond);
+    }
+    if (count == 0) continue;
+    const std::string where = count == 1 ? fmt::format("waypoint {} is", first)
+                              : count == last - first + 1
+                                  ? fmt::format("waypoints {} to {} are", first, last)
+                                  : fmt::format("{} waypoints from {} to {} are", count, first, last);
+    notes.push_back(fmt::format("joint '{}': {} beyond its limits [{}, {}], by at most {:.2g} {}", joint.name, where,
+                                joint.lower, joint.upper, most, angle ? "rad" : "m"));
   }
 }
 
@@ -229,16 +273,49 @@ const char* toString(Interpolation interpolation) {
   return "";
 }
 
+Plan inRadians(const KinematicTree& tree, const Plan& plan) {
+  if (plan.has_degrees) refuse("values end with deg, and --degrees says that all angles are in degrees: leave one out");
+  Plan out = plan;
+  std::vector<bool> angles;
+  for (const std::string& joint : plan.joints) angles.push_back(tree.isAngle(variableOf(tree, joint, "the plan")));
+  for (Plan::Rows* rows : {&out.positions, &out.velocities, &out.accelerations}) {
+    for (std::vector<double>& row : *rows) {
+      for (std::size_t j = 0; j < std::min(row.size(), angles.size()); ++j) {
+        if (angles[j]) row[j] *= kRadiansPerDegree;
+      }
+    }
+  }
+  for (auto& [name, value] : out.state) {
+    if (tree.isAngle(variableOf(tree, name, "the state of the other joints"))) value *= kRadiansPerDegree;
+  }
+  return out;
+}
+
+std::vector<std::string> unnamedColumns(const KinematicTree& tree, const MotionOptions& options) {
+  if (!options.joints.empty()) return options.joints;
+  std::vector<std::string> names;
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (options.state.count(tree.variableName(v)) == 0) names.push_back(tree.variableName(v));
+  }
+  return names;
+}
+
 std::size_t PlanMotion::waypointBefore(double t) const {
   const auto after = std::upper_bound(times.begin(), times.end(), t);
   return after == times.begin() ? 0 : static_cast<std::size_t>(after - times.begin()) - 1;
 }
 
-PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
-  if (!plan.error.empty()) refuse(plan.error);
-  const std::size_t waypoints = plan.positions.size();
+PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOptions& options) {
+  if (!given.error.empty()) refuse(given.error);
+  const std::size_t waypoints = given.positions.size();
   if (waypoints < 2) refuse(fmt::format("it has {}, a plan needs two", plural(waypoints, "waypoint")));
-  const PlanColumns columns = columnsOf(tree, plan, options);
+  const PlanColumns columns = columnsOf(tree, given, options);
+  Plan plan = given;
+  if (options.degrees) {
+    plan.joints = columns.names;
+    plan = inRadians(tree, plan);
+    plan.joints = given.joints;
+  }
   std::vector<std::string> notes = plan.notes;
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   requireRows(plan.positions, "positions", waypoints, columns);
@@ -248,7 +325,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOpt
   std::vector<double> times = plan.times;
   for (std::size_t k = 0; !timed && k < waypoints; ++k) times.push_back(static_cast<double>(k));
   requireTimes(times, waypoints);
-  judgeLimits(tree, plan, columns, options.ignore_limits, notes);
+  judgeLimits(tree, plan, columns, options, notes);
   const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, options.turns);
   const Interpolation kind = chosen(plan, options);
   if (timed && times.front() > 0) {

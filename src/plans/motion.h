@@ -55,7 +55,11 @@ struct MotionOptions {
   Interpolation interpolation = Interpolation::automatic;
   double blend = 0;  ///< s; half the duration of a blend
   Turns turns = Turns::ask;
-  bool ignore_limits = false;           ///< waypoints beyond the joints' limits are noted, not refused
+  bool ignore_limits = false;  ///< waypoints beyond the joints' limits are noted, not refused
+  /// By so much a waypoint may be beyond a limit, as a sensor's may, and is noted; rad, and for lengths a tenth of it
+  /// in m. At least 0.
+  double limit_tolerance = 1e-3;
+  bool degrees = false;                 ///< angles of the plan, and their rates, are in degrees
   std::vector<std::string> joints;      ///< names for plans without names, in their order; empty: all variables
   std::map<std::string, double> state;  ///< values of joints that plans do not name; before those of the plan itself
 };
@@ -76,11 +80,20 @@ struct PlanMotion {
   std::size_t waypointBefore(double t) const;
 };
 
+/// A plan whose angles, and their rates, are in degrees, in rad.
+/// @param plan  names its joints.
+/// @throws std::invalid_argument: some of its values are in rad already (Plan::has_degrees).
+Plan inRadians(const KinematicTree& tree, const Plan& plan);
+
+/// The variables that columns without names are: MotionOptions::joints, else all that MotionOptions::state does not
+/// give.
+std::vector<std::string> unnamedColumns(const KinematicTree& tree, const MotionOptions& options);
+
 /// @throws std::invalid_argument naming waypoint and joint: the plan's own error; fewer than two waypoints, rows of
 ///   another length than joints; a joint that is unknown, named twice, or without a value; values that are not finite,
-///   or beyond the joint's limits; times that do not increase; an interpolation for which velocities or accelerations
-///   are missing, or that has no times; a turn that has to be asked for; a quaternion that turns by half a turn from
-///   one waypoint to the next, which says not which way round.
+///   or beyond the joint's limits by more than the tolerance; times that do not increase; an interpolation for which
+///   velocities or accelerations are missing, or that has no times; a turn that has to be asked for; a quaternion that
+///   turns by half a turn from one waypoint to the next, which says not which way round.
 PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options);
 
 }  // namespace fcl_artic::plans

@@ -82,11 +82,12 @@ Format formatNamed(const std::string& name) {
   throw std::invalid_argument(fmt::format("'{}' is no format of plans", name));
 }
 
-std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format) {
+std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format,
+                             const ColumnOptions& columns) {
   std::vector<Plan> out;
   switch (format) {
     case Format::csv:
-      out.push_back(parseCsv(tree, content));
+      out.push_back(parseCsv(tree, content, columns));
       break;
     case Format::json:
       readDocument(tree, parseJson(content), "", out);

@@ -30,6 +30,7 @@ struct Plan {
   Rows velocities, accelerations;   ///< rad/s, m/s, and per s²; empty: none are given
   std::map<std::string, double> state;  ///< values of other joints all the time, as a message's start state has them
   std::vector<Carried> carried;         ///< what requireCarried() holds against what is attached
+  bool has_degrees = false;             ///< values of the file end with deg; they are in rad here
   std::vector<std::string> notes;       ///< what was accepted though unusual, one line each
   std::string error;                    ///< what is wrong with this plan; empty: nothing was found
 };
@@ -43,6 +44,16 @@ enum class Format {
   numpy   ///< .npy, .npz
 };
 
+/// What the columns of a CSV file are, where its first line does not say it in the robot's own names.
+struct ColumnOptions {
+  /// Of each column, in their order: a variable, VARIABLE/velocity or /acceleration, `time`, or - for one that is left
+  /// out. Empty: the file's first line, or what is usual, says it.
+  std::vector<std::string> columns;
+  std::vector<std::string> skip;    ///< columns that are left out, by the names of the first line
+  std::string time;                 ///< the column of times, by the first line; empty: what is usual
+  std::vector<std::string> joints;  ///< what numbered columns, or columns without names, are; empty: all variables
+};
+
 /// The format that a file's ending names. @throws std::invalid_argument naming the file and the endings that are known.
 Format formatOf(const std::string& path);
 /// Of an option's value: "csv", "json", "jsonl", "yaml", "ompl" or "numpy". @throws std::invalid_argument.
@@ -53,9 +64,11 @@ bool hasPlanEnding(const std::string& path);
 /// Reads the plans of one file's content.
 /// @param tree     the robot that they are for: it says what a pose in a message means (planar, floating joints).
 /// @param content  the file's bytes.
+/// @param columns  for CSV.
 /// @return at least one plan; one that is wrong by itself says so (`error`), and the others are read all the same.
 /// @throws std::invalid_argument, without the file's name: the content is not of the format, or holds no plan; a format
 ///   that this build does not read (YAML without yaml-cpp, NumPy's archives without zlib).
-std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format);
+std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format,
+                             const ColumnOptions& columns = {});
 
 }  // namespace fcl_artic::plans

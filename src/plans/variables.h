@@ -7,6 +7,8 @@
 
 namespace fcl_artic::plans {
 
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+
 /// Names of all variables, separated by commas.
 std::string variableNames(const KinematicTree& tree);
 

@@ -180,7 +180,7 @@ TEST(PlanMotionTest, OtherJointsKeepTheirState) {
   plan.positions[1][0] = 2.5;
   options.ignore_limits = true;
   plan.state.clear();
-  expectContains(toMotion(tree, plan, options).notes[1], "waypoint 1: joint 'hinge' at 2.5 is beyond");
+  expectContains(toMotion(tree, plan, options).notes[1], "joint 'hinge': waypoint 1 is beyond its limits [-1, 2], by at most 0.5 rad");
 }
 
 }  // namespace
