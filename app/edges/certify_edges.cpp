@@ -297,6 +297,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   if (speaks) {
     for (const std::string& note : world.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
   }
 
   Stage stage(world, scenes);

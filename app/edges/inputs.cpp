@@ -49,8 +49,8 @@ std::string robotHash(const WorldOptions& world, const World& read) {
     for (Eigen::Index k = 0; k < 16; ++k) text += fmt::format(" {:a}", one.pose.matrix().data()[k]);
   }
   if (!world.robot.attached.empty()) text += fmt::format("\n{:a} {}", world.point_radius, world.unknown_cells);
-  text += fmt::format("\n{} {} {} {}", world.robot.base, world.robot.floating_base, world.robot.solid_meshes,
-                      world.robot.collada_up_axis);
+  text += fmt::format("\n{} {} {} {} {}", world.robot.base, world.robot.floating_base, world.robot.solid_meshes,
+                      world.robot.collada_up_axis, world.robot.import_meshes);
   for (const std::string& solid : world.solids) text += " " + solid;
   for (const auto& [a, b] : read.robot.allowed.pairs()) text += "\n" + a + " " + b;
   return certificate::sha256Text(text);
