@@ -80,7 +80,7 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
       ->type_name("FACTOR")
       ->capture_default_str();
   verb.add_flag("--collada-up-axis", o.robot.collada_up_axis,
-                "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
+                "COLLADA and glTF meshes: turn what is up by the file to z; else, as in RViz, it stays as it stands")
       ->group("Robot and scene");
   verb.add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
@@ -123,6 +123,7 @@ std::string shellArguments(const WorldOptions& o) {
   addAll("--scene", o.scenes);
   if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
   addFlag("--collada-up-axis", o.robot.collada_up_axis);
+  addFlag("--import", o.robot.import_meshes);
   addFlag("--unknown-cells", o.unknown_cells);
   if (o.point_radius > 0) add("--point-radius", fmt::format("{}", o.point_radius));
   addFlag("--solid-meshes", o.robot.solid_meshes);

@@ -316,6 +316,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   Stage stage(world, scenes, !o.quiet);
   if (speaks) {
     for (const std::string& note : world.notes(stage.manager())) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
   }
   const int threads = o.threads == 0 && ranks.size() > 1 ? 1 : o.threads;
   Answerer answerer(stage, edges, o, *folder, threads);

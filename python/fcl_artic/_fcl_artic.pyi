@@ -1106,6 +1106,7 @@ def load_urdf(
     floating_base: bool = ...,
     solid_meshes: bool = ...,
     collada_up_axis: bool = ...,
+    import_meshes: bool = ...,
 ) -> Robot: ...
 def load_scene(
     path: _Path,
@@ -1116,9 +1117,15 @@ def load_scene(
     scale: float = ...,
     point_radius: float = ...,
     packages: Mapping[str, _Path] | None = ...,
+    import_meshes: bool = ...,
 ) -> Scene: ...
 def load_mesh(
-    path: _Path, *, scale: npt.ArrayLike | None = ..., solid: bool = ..., collada_up_axis: bool = ...
+    path: _Path,
+    *,
+    scale: npt.ArrayLike | None = ...,
+    solid: bool = ...,
+    collada_up_axis: bool = ...,
+    import_meshes: bool = ...,
 ) -> Geometry: ...
 def load_plans(
     path: _Path,

@@ -14,12 +14,13 @@ namespace fcl_artic::python {
 namespace {
 
 Robot loadRobot(py::handle urdf, py::handle srdf, py::handle packages, py::handle base, bool floating_base,
-                bool solid_meshes, bool collada_up_axis) {
+                bool solid_meshes, bool collada_up_axis, bool import_meshes) {
   const Input file(urdf, "urdf");
   UrdfOptions options;
   options.packages = packagesOf(packages);
   options.solid_meshes = solid_meshes;
   options.collada_up_axis = collada_up_axis;
+  options.import_meshes = import_meshes;
   options.base = poseOf(base, "base");
   options.floating_base = floating_base;
   Robot robot = file.read([&] { return loadUrdf(file.path(), options); });
@@ -230,7 +231,7 @@ void bindRobot(py::module_& module) {
              "Reads a robot from a URDF file, or from text that begins with '<'; with an SRDF, its allowed pairs too.",
              py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("packages") = py::none(),
              py::arg("base") = py::none(), py::arg("floating_base") = false, py::arg("solid_meshes") = false,
-             py::arg("collada_up_axis") = false);
+             py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
   module.def("combine_robots", &combine,
              "Combines several robots into one, each a tuple (robot, prefix) or (robot, prefix, base).",
              py::arg("parts"), py::arg("name") = "robots");

@@ -13,16 +13,24 @@ namespace fcl_artic::python {
 namespace {
 
 Scene load(py::handle path, bool unknown_cells, bool solid_meshes, bool collada_up_axis, double scale,
-           double point_radius, py::handle packages) {
+           double point_radius, py::handle packages, bool import_meshes) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
   SceneOptions options;
   options.unknown_cells = unknown_cells;
   options.solid_meshes = solid_meshes;
   options.collada_up_axis = collada_up_axis;
+  options.import_meshes = import_meshes;
   options.scale = scale;
   options.point_radius = point_radius;
   options.packages = packagesOf(packages);
   return guardFiles(file, [&] { return loadScene(file, options); });
+}
+
+/// A UserWarning of each note, where no object keeps them.
+void warn(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+  }
 }
 
 /// @throws py::value_error naming what is not there.
@@ -107,28 +115,40 @@ void bindScene(py::module_& module) {
 
   module.def(
       "load_scene", &load,
-      "Reads a scene: a mesh in any format that assimp reads, URDF, MoveIt's .scene, OctoMap's .bt and .ot, points\n"
-      "(.pcd, .xyz, .ply without faces), each a ball of `point_radius`.",
+      "Reads a scene: a mesh (.stl, .obj, .ply, .off, .dae, .gltf, .glb; with `import_meshes` others, by assimp), "
+      "URDF,\n"
+      "MoveIt's .scene, OctoMap's .bt and .ot, points (.pcd, .xyz, .ply without faces), each a ball of `point_radius`.",
       py::arg("path"), py::kw_only(), py::arg("unknown_cells") = false, py::arg("solid_meshes") = false,
       py::arg("collada_up_axis") = false, py::arg("scale") = 1.0, py::arg("point_radius") = 0.0,
-      py::arg("packages") = py::none());
+      py::arg("packages") = py::none(), py::arg("import_meshes") = false);
   module.def(
       "load_mesh",
-      [](py::handle path, py::handle scale, bool solid, bool collada_up_axis) {
+      [](py::handle path, py::handle scale, bool solid, bool collada_up_axis, bool import_meshes) {
         const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
         const Eigen::Vector3d factors =
             scale.is_none() ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : vector3Of(scale, "scale");
-        return Geometry{guardFiles(file, [&] { return loadMesh(file, factors, nullptr, solid, collada_up_axis); })};
+        std::vector<std::string> notes;
+        const Geometry mesh{
+            guardFiles(file, [&] { return loadMesh(file, factors, &notes, solid, collada_up_axis, import_meshes); })};
+        warn(notes);
+        return mesh;
       },
-      "Reads a mesh in any format that assimp reads; `scale` has a factor for each axis.", py::arg("path"),
-      py::kw_only(), py::arg("scale") = py::none(), py::arg("solid") = false, py::arg("collada_up_axis") = false);
+      "Reads a mesh (.stl, .obj, .ply, .off, .dae, .gltf, .glb; with `import_meshes` others, by assimp); `scale` has "
+      "a\n"
+      "factor for each axis. What is unusual, as what was left out, is a UserWarning.",
+      py::arg("path"), py::kw_only(), py::arg("scale") = py::none(), py::arg("solid") = false,
+      py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
   module.def(
       "load_points",
       [](py::handle path, double radius) {
         const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-        return Geometry{guardFiles(file, [&] { return loadPointCloud(file, radius); })};
+        std::vector<std::string> notes;
+        const Geometry cloud{guardFiles(file, [&] { return loadPointCloud(file, radius, &notes); })};
+        warn(notes);
+        return cloud;
       },
-      "Reads a point cloud (.pcd, .ply, .xyz): each point a ball of this radius.", py::arg("path"), py::arg("radius"));
+      "Reads a point cloud (.pcd, .ply, .xyz): each point a ball of this radius. What was left out is a UserWarning.",
+      py::arg("path"), py::arg("radius"));
   module.def(
       "combine_scenes",
       [](const std::vector<Scene>& scenes, py::handle tree) { return combineScenes(scenes, *treeOf(tree)); },
