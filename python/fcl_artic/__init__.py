@@ -89,6 +89,22 @@ from ._picture import Picture
 from ._poses import pose
 from ._report import Report
 
+
+def _pickle_by_protocol_2() -> None:
+    """Protocols 0 and 1 know nothing of state that a class sets itself: they would leave objects without insides."""
+    from . import _fcl_artic
+
+    def reduce(self, protocol):
+        return object.__reduce_ex__(self, max(protocol, 2))
+
+    for kind in vars(_fcl_artic).values():
+        if isinstance(kind, type) and "__setstate__" in vars(kind):
+            kind.__reduce_ex__ = reduce
+
+
+_pickle_by_protocol_2()
+del _pickle_by_protocol_2
+
 __all__ = [
     "Answers",
     "Bodies",

@@ -187,3 +187,19 @@ def test_a_pool_of_processes_asks(robot, scene, hit, miss):
         answers = pool.map(ask, [(robot, scene, *hit), (robot, scene, *miss)])
     assert [a.contact for _, a in answers] == [True, False]
     assert answers[0][0] != os.getpid()
+
+
+@pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
+def test_every_protocol_pickles(protocol, robot):
+    for value in (fcl_artic.box(1, 2, 3), robot, fcl_artic.Request(margin=0.25)):
+        copy = pickle.loads(pickle.dumps(value, protocol))
+        assert type(copy) is type(value)
+    assert repr(pickle.loads(pickle.dumps(robot, protocol))) == repr(robot)
+
+
+def test_what_a_robot_says_of_neighbours_is_pickled(robot):
+    robot = copied(robot)
+    robot.allowed_complete = True
+    robot.allowed = [robot.tree.links[:2]]
+    again = copied(robot)
+    assert again.allowed_complete and again.allowed == robot.allowed

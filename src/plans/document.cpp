@@ -458,6 +458,16 @@ class Reader {
     }
   }
 
+  /// Keys that say the same: whoever gives two of them means one.
+  static void refuseTwo(const Json& value, std::initializer_list<const char*> keys) {
+    const char* first = nullptr;
+    for (const char* key : keys) {
+      if (!value.contains(key)) continue;
+      if (first) refuse(fmt::format("has both '{}' and '{}'", first, key));
+      first = key;
+    }
+  }
+
   static void readPlan(const Json& value, Plan& plan) {
     static const std::set<std::string> known{"name",      "id",    "joints",     "joint_names",   "times",
                                              "waypoints", "state", "velocities", "accelerations", "from",
@@ -467,6 +477,8 @@ class Reader {
     }
     readName(value, plan);
     if (const Json* joints = find(value, {"joints", "joint_names"})) plan.joints = textsOf(*joints, "joints");
+    refuseTwo(value, {"waypoints", "from", "start"});
+    refuseTwo(value, {"waypoints", "to", "goal"});
     if (const Json* waypoints = find(value, {"waypoints"})) {
       addWaypoints(*waypoints, "", plan.positions, plan.joints);
     } else {

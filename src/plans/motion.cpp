@@ -69,11 +69,18 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   VectorXd q = tree.neutralConfiguration();
   std::vector<bool> known(static_cast<std::size_t>(tree.dof()), false);
   for (const int v : columns.variables) known[static_cast<std::size_t>(v)] = true;
+  const std::vector<bool> in_plan = known;  // by its own waypoints
   for (const auto* state : {&options.state, &plan.state}) {
     for (const auto& [name, value] : *state) {
       const auto v = static_cast<std::size_t>(variableOf(tree, name, "the state of the other joints"));
-      if (known[v]) continue;  // by the plan's own waypoints, or by what the caller says
+      if (in_plan[v]) continue;
       if (!std::isfinite(value)) refuse(fmt::format("the state of joint '{}' is {}", name, value));
+      const auto asked = options.state.find(name);
+      if (asked != options.state.end() && std::abs(asked->second - value) > kSameStart) {
+        notes.push_back(fmt::format("joint '{}' is at {:g}, as asked for; the plan's own start state has it at {:g}",
+                                    name, asked->second, value));
+      }
+      if (known[v]) continue;  // by what the caller says
       q[static_cast<Eigen::Index>(v)] = value;
       known[v] = true;
     }

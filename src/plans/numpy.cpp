@@ -74,6 +74,7 @@ Array parseOne(std::string_view content, const std::string& name) {
   const std::string& d = array.descr;
   const bool digits =
       d.size() > 2 && d.size() < 8 && std::all_of(d.begin() + 2, d.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (digits && array.itemSize() == 0) refuse(fmt::format("'{}' is of type '{}', whose items have no size", name, d));
   if (!digits || std::string("<>|=").find(d[0]) == std::string::npos ||
       std::string("fiuUS").find(d[1]) == std::string::npos) {
     refuse(fmt::format("'{}' is of type '{}': real numbers are read, and texts for names", name, d));

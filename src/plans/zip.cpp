@@ -17,6 +17,9 @@ constexpr std::uint32_t kEnd = 0x06054b50, kDirectory = 0x02014b50, kLocal = 0x0
 constexpr std::size_t kEndSize = 22, kDirectorySize = 46, kLocalSize = 30;
 constexpr std::uint32_t kElsewhere = 0xffffffff;  // zip64: the number stands in another record
 constexpr std::size_t kMostPerByte = 1032;        // deflate makes at most this much of a byte
+// Of all files of an archive together, unpacked: plans are some thousand numbers each, and a small archive may be made
+// to take all memory.
+constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
 
 [[noreturn]] void refuseArchive(const std::string& what) {
   throw std::invalid_argument("the archive: " + what);
@@ -71,6 +74,7 @@ std::vector<ZipEntry> unzip(std::string_view content) {
   std::size_t at = number(content, end + 16, 4);
   if (at == kElsewhere || entries == 0xffff) refuseArchive("archives of over 4 GB or 65534 files are not read");
   std::vector<ZipEntry> out;
+  std::size_t unpacked = 0;
   for (std::uint32_t i = 0; i < entries; ++i) {
     if (number(content, at, 4) != kDirectory) refuseArchive("its directory is damaged");
     const std::uint32_t flags = number(content, at + 8, 2), method = number(content, at + 10, 2),
@@ -86,6 +90,9 @@ std::vector<ZipEntry> unzip(std::string_view content) {
     const std::size_t begin = std::size_t{local} + kLocalSize + number(content, std::size_t{local} + 26, 2) +
                               number(content, std::size_t{local} + 28, 2);
     const std::string_view bytes = part(content, begin, packed);
+    unpacked += size;
+    if (unpacked > kMostUnpacked)
+      refuseArchive(fmt::format("unpacked it takes over {} bytes; save the arrays one by one (.npy)", kMostUnpacked));
     if (method != 0 && method != 8)
       refuseArchive(fmt::format("'{}' is packed by method {}, which is not read", name, method));
     if (method == 0 && packed != size) refuseArchive(fmt::format("'{}' is stored in another size than its own", name));

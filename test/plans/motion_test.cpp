@@ -172,9 +172,10 @@ TEST(PlanMotionTest, OtherJointsKeepTheirState) {
   options.state = {{"rail", 1.5}};
   const PlanMotion motion = toMotion(tree, plan, options);
   EXPECT_EQ(motion.waypoints[1], Eigen::Vector2d(1, 1.5));
-  ASSERT_EQ(motion.notes.size(), 2u);
-  expectContains(motion.notes[0], "joint 'rail' stays at 1.5, beyond its limits");
-  expectContains(motion.notes[1], "joint 'hinge' begins at 0, the start state has it at 0.5");
+  ASSERT_EQ(motion.notes.size(), 3u);
+  expectContains(motion.notes[0], "joint 'rail' is at 1.5, as asked for; the plan's own start state has it at 0.25");
+  expectContains(motion.notes[1], "joint 'rail' stays at 1.5, beyond its limits");
+  expectContains(motion.notes[2], "joint 'hinge' begins at 0, the start state has it at 0.5");
   plan.state = {{"elbow", 1}};
   expectContains(refusal([&] { (void)toMotion(tree, plan, {}); }), "no joint 'elbow'");
   plan.positions[1][0] = 2.5;

@@ -147,7 +147,13 @@ TEST(PlanReadersTest, YamlAsRosPrintsIt) {
   cut.replace(cut.find("[0.25]"), 6, "[0.25, '...']");
   expectContains(refusalOf(tree, cut, Format::yaml), "--full-length");
   expectContains(refusalOf(tree, "a: 1\na: 2\n", Format::yaml), "line 2, column 1: the key 'a' is there twice");
+  expectContains(refusalOf(tree, R"({"waypoints": [[0, 0]], "from": [0, 0], "to": [1, 1]})", Format::json),
+                 "has both 'waypoints' and 'from'");
+  expectContains(refusalOf(tree, R"({"from": [0, 0], "start": [0, 0], "to": [1, 1]})", Format::json),
+                 "has both 'from' and 'start'");
+  expectContains(refusalOf(tree, std::string(200000, '['), Format::json), "nested more than 100 deep");
   expectContains(refusalOf(tree, "a: &x [1]\nb: *x\n", Format::yaml), "alias");
+  expectContains(refusalOf(tree, npy("<f0", false, "(1000000000000, 1)", ""), Format::numpy), "items have no size");
   expectContains(refusalOf(tree, "a: [1\n", Format::yaml), "no YAML");
   std::string deep;
   for (int i = 0; i < 5000; ++i) deep += "- ";
