@@ -11,6 +11,7 @@
 #include "certification.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
@@ -223,7 +224,8 @@ class CertifyBench {
 
 }  // namespace
 
-int benchCertify(const CertifyBenchOptions& options) {
+int benchCertify(CertifyBenchOptions& options) {
+  removeEarlierOutputs({{"--csv", &options.csv}}, {options.plans});
   CertifyBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());

@@ -53,6 +53,7 @@ std::string robotHash(const WorldOptions& world, const World& read) {
                       world.robot.collada_up_axis);
   for (const std::string& solid : world.solids) text += " " + solid;
   for (const auto& [a, b] : read.robot.allowed.pairs()) text += "\n" + a + " " + b;
+  text += "\n" + read.pairs().text();
   return certificate::sha256Text(text);
 }
 
