@@ -28,13 +28,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> filesOf(const std::string& path) {
+/// @param[out] notes  gets a line about what of a folder is no plan.
+std::vector<std::string> filesOf(const std::string& path, std::vector<std::string>& notes) {
   std::error_code none;
   if (!fs::is_directory(path, none)) return {path};
-  std::vector<std::string> files;
+  std::vector<std::string> files, others;
   for (const auto& entry : fs::directory_iterator(path)) {
-    if (!entry.is_directory() && plans::hasPlanEnding(entry.path().string())) files.push_back(entry.path().string());
+    const bool plan = !entry.is_directory() && plans::hasPlanEnding(entry.path().string());
+    const std::string name = entry.path().filename().string();
+    plan ? files.push_back(entry.path().string()) : others.push_back(entry.is_directory() ? name + "/" : name);
   }
+  std::sort(others.begin(), others.end());
+  constexpr std::size_t kShown = 5;
+  std::string shown;
+  for (std::size_t i = 0; i < std::min(kShown, others.size()); ++i) shown += (i ? ", " : "") + others[i];
+  if (others.size() > kShown) shown += fmt::format(" and {} more", others.size() - kShown);
+  if (!others.empty())
+    notes.push_back(fmt::format("'{}': passed over, as folders or without a plan's ending: {}", path, shown));
   if (files.empty()) throw std::invalid_argument(fmt::format("'{}': no file of this folder has a plan's ending", path));
   std::sort(files.begin(), files.end());
   return files;
@@ -89,11 +99,12 @@ std::string CertifiedPlan::title() const {
 
 int CertifiedPlan::exitStatus() const {
   if (as_mended) return as_mended->exitStatus();
-  return error.empty() ? app::exitStatus(result.status) : kExitError;
+  return error.empty() ? app::exitStatus(result) : kExitError;
 }
 
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
-                                     const std::optional<plans::Format>& format, const plans::ColumnOptions& columns) {
+                                     const std::optional<plans::Format>& format, const plans::ColumnOptions& columns,
+                                     std::vector<std::string>& notes) {
   std::error_code none;
   for (const std::string& path : paths) {
     if (format || fs::is_directory(path, none) || plans::hasPlanEnding(path)) continue;
@@ -103,7 +114,7 @@ std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vecto
   }
   std::vector<CertifiedPlan> out;
   for (const std::string& path : paths) {
-    for (const std::string& file : filesOf(path)) readFile(tree, file, format, columns, out);
+    for (const std::string& file : filesOf(path, notes)) readFile(tree, file, format, columns, out);
   }
   return out;
 }

@@ -51,11 +51,12 @@ struct CertifyOptions {
 /// The plans of files and folders (those of its files whose ending names a format, by name), in their order.
 /// @param format  of all files; none: each by its ending.
 /// @param columns  of CSV files.
+/// @param[out] notes  gets a line for each folder that holds more than plans.
 /// @return one for each plan; a file that can't be read is one with an error.
 /// @throws std::invalid_argument for a folder without plans, and for a file whose ending names no format.
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
-                                     const std::optional<plans::Format>& format,
-                                     const plans::ColumnOptions& columns = {});
+                                     const std::optional<plans::Format>& format, const plans::ColumnOptions& columns,
+                                     std::vector<std::string>& notes);
 
 /// Makes the plan's motion and asks the manager.
 void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan);

@@ -225,7 +225,8 @@ int runCertify(CertifyVerb& o) {
   if (o.clearance) o.certify.clearance = o.clearance_request;
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
-  std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns);
+  std::vector<std::string> plan_notes;
+  std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns, plan_notes);
   world.readScene();
   o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
@@ -248,7 +249,8 @@ int runCertify(CertifyVerb& o) {
   }
   if (!o.out.empty()) writeOut(o, *manager, all);
 
-  std::vector<std::string> notes = world.notes();
+  std::vector<std::string> notes = world.notes(*manager);
+  notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
   if (certificates.wanted()) notes.push_back(writeCertificates(certificates, all));
   if (o.views.wanted()) notes.push_back(writePlanViews(o, of_mended, world, *manager, all));
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};

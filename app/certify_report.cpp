@@ -9,6 +9,7 @@
 
 #include "exit_status.h"
 #include "report/report.h"
+#include "text/one_line.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -31,9 +32,8 @@ Sum sumOf(const std::vector<CertifiedPlan>& plans) {
       continue;
     }
     us.push_back(plan.us);
-    ++(plan.result.status == Status::free      ? sum.free
-       : plan.result.status == Status::contact ? sum.contact
-                                               : sum.undecided);
+    const int status = exitStatus(plan.result);  // of a motion without a pair to check nothing is known
+    ++(status == kExitFree ? sum.free : status == kExitContact ? sum.contact : sum.undecided);
     sum.mended += plan.as_mended && plan.as_mended->exitStatus() == kExitFree;
   }
   if (us.empty()) return sum;
@@ -80,7 +80,7 @@ std::string columnsText(const CertifyReport& r) {
                               ? "the plan names no joints: its"
                               : fmt::format("{} of {} plans name{} no joints: {}", unnamed, r.plans.size(),
                                             unnamed == 1 ? "s" : "", unnamed == 1 ? "its" : "their");
-  return fmt::format("note: {} columns are taken for {}\n", who, names);
+  return text::oneLine(fmt::format("note: {} columns are taken for {}", who, names)) + "\n";
 }
 
 std::string mendedText(const CertifiedPlan& plan) {
@@ -154,6 +154,11 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   return out;
 }
 
+/// A line of a report: names in it cannot begin another.
+std::string line(const char* begin, const std::string& text) {
+  return begin + text::oneLine(text) + "\n";
+}
+
 /// A field of CSV.
 std::string field(const std::string& text) {
   std::string out = "\"";
@@ -181,26 +186,27 @@ std::string textReport(const CertifyReport& r) {
   std::string text;
   if (r.plans.size() == 1 && r.plans[0].error.empty()) {
     const CertifiedPlan& plan = r.plans[0];
-    text = fmt::format("{}: {}\n", plan.title(), motionText(plan));
+    text = line("", plan.title() + ": " + motionText(plan));
     if (plan.result.status != Status::free) {
       text += fmt::format("after waypoint {}\n", plan.motion->waypointBefore(plan.result.t_lower));
     }
     text += textReport(reportOf(r.tree, r.request, plan));
-    if (const std::string mended = mendedText(plan); !mended.empty()) text += mended + "\n";
-    for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
+    if (const std::string mended = mendedText(plan); !mended.empty()) text += line("", mended);
+    for (const std::string& note : r.notes) text += line("note: ", note);
     return text + columnsText(r);
   }
   for (const CertifiedPlan& plan : r.plans) {
     if (r.failed_only && plan.exitStatus() == kExitFree) continue;
-    text += fmt::format("{}: {}", plan.title(), verdictText(plan));
-    if (plan.error.empty()) text += fmt::format(" ({})", motionText(plan));
-    text += '\n';
-    if (const std::string mended = mendedText(plan); !mended.empty()) text += fmt::format("  {}\n", mended);
+    std::string of_plan = plan.title() + ": " + verdictText(plan);
+    if (plan.error.empty()) of_plan += fmt::format(" ({})", motionText(plan));
+    text += line("", of_plan);
+    if (const std::string mended = mendedText(plan); !mended.empty()) text += line("  ", mended);
     if (plan.motion) {
-      for (const std::string& note : plan.motion->notes) text += fmt::format("  note: {}\n", note);
+      for (const std::string& note : plan.motion->notes) text += line("  note: ", note);
     }
   }
-  for (const std::string& note : r.notes) text += fmt::format("note: {}\n", note);
+  for (const std::string& note : r.notes) text += line("note: ", note);
+  if (const std::string scope = scopeText(r.request); !scope.empty()) text += line("note: ", scope);
   return text + columnsText(r) + sumText(r);
 }
 

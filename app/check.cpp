@@ -106,6 +106,7 @@ int runCheck(CheckVerb& options) {
   CertificateFile certificates(options.certificate);
   request.certificate = certificates.wanted();
   if (!options.lines.empty()) {
+    for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
     return checkLines(manager, request, {options.lines, interpolation, options.shortest}, certificates);
   }
   CertifiedResult result;
@@ -133,7 +134,7 @@ int runCheck(CheckVerb& options) {
     clearance = trajectory ? manager.clearance(*trajectory, asked) : manager.clearance(*motion, asked);
   }
 
-  std::vector<std::string> notes = world.notes();
+  std::vector<std::string> notes = world.notes(manager);
   notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
   const auto configuration = [&](double t) {
     return trajectory ? trajectory->configuration(t) : motion->configuration(t);
@@ -153,7 +154,7 @@ int runCheck(CheckVerb& options) {
   } else {
     fmt::print("{}", textReport(report));
   }
-  return exitStatus(result.status);
+  return exitStatus(result);
 }
 
 }  // namespace
@@ -173,8 +174,9 @@ void addCheck(CLI::App& program, int& exit_status) {
       "A line of --lines has from and to (or start and goal), each a list of all joint values or an object by name,\n"
       "or waypoints (a list of these) and, where they are not 0, 1, 2 ..., times; and an id, which its answer "
       "repeats.\n"
-      "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget); with --lines the worst of all answers:\n"
-      "2 before 1 before 3.");
+      "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget) or nothing checked; with --lines the "
+      "worst\n"
+      "of all answers: 2 before 1 before 3.");
 
   addWorldOptions(*check, o.world);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "fcl_artic/bracket.h"
+#include "fcl_artic/result.h"
 
 namespace fcl_artic::app {
 
@@ -9,12 +9,12 @@ namespace fcl_artic::app {
 constexpr int kExitFree = 0;       ///< proven free; also success of the other verbs
 constexpr int kExitContact = 1;    ///< a contact, proven or not
 constexpr int kExitError = 2;      ///< wrong input or usage
-constexpr int kExitUndecided = 3;  ///< the work budget ran out
+constexpr int kExitUndecided = 3;  ///< the work budget ran out, or there was nothing to check
 
-inline int exitStatus(Status status) {
-  switch (status) {
+inline int exitStatus(const CertifiedResult& result) {
+  switch (result.status) {
     case Status::free:
-      return kExitFree;
+      return result.nothingChecked() ? kExitUndecided : kExitFree;
     case Status::contact:
       return kExitContact;
     case Status::undecided:

@@ -136,6 +136,7 @@ Info collect(const RobotOptions& options) {
   robot = loadUrdf(options.robot, urdfOptions(options));
   std::map<std::pair<std::string, std::string>, std::string> reasons;
   if (!options.srdf.empty()) {
+    robot.allowed.setComplete();
     for (const SrdfPair& pair : readSrdf(options.srdf, *robot.tree, &robot.notes)) {
       robot.allowed.allow(pair.link1, pair.link2);
       reasons[std::minmax(pair.link1, pair.link2)] = pair.reason;
@@ -158,12 +159,17 @@ Info collect(const RobotOptions& options) {
   robot.addTo(manager);
   manager.setup();
   info.checked = manager.checkedLinkPairs();
+  std::set<std::pair<std::string, std::string>> undecided;
+  for (const LinkPairFinding& pair : manager.neighbours()) {
+    if (pair.undecided()) undecided.insert(std::minmax(pair.link1, pair.link2));
+  }
   const std::set<std::pair<std::string, std::string>> checked(info.checked.begin(), info.checked.end());
   for (auto a = with_geometry.begin(); a != with_geometry.end(); ++a) {
     for (auto b = std::next(a); b != with_geometry.end(); ++b) {
       if (checked.count({*a, *b})) continue;
       const auto reason = reasons.find({*a, *b});
-      std::string why = "neighbours";
+      std::string why = "neighbours that touch";
+      if (undecided.count({*a, *b})) why = "neighbours, undecided";
       if (reason != reasons.end()) why = "SRDF" + (reason->second.empty() ? "" : ": " + reason->second);
       info.unchecked.push_back({*a, *b, why});
     }

@@ -15,6 +15,7 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "plans/document.h"
 #include "report/report.h"
 
 namespace fcl_artic::app {
@@ -80,7 +81,7 @@ void requireKeys(const Json& line) {
   if (line.contains("times") && !line.contains("waypoints")) throw std::invalid_argument("has times, but no waypoints");
 }
 
-JointTrajectory toTrajectory(const KinematicTree& tree, const Json& line, const LinesOptions& options) {
+Waypoints toWaypoints(const KinematicTree& tree, const Json& line) {
   Waypoints waypoints;
   const Json& given = line.at("waypoints");
   if (!given.is_array() || given.size() < 2) throw std::invalid_argument("waypoints: a list of two or more is needed");
@@ -97,17 +98,12 @@ JointTrajectory toTrajectory(const KinematicTree& tree, const Json& line, const 
     }
     waypoints.times = times.get<std::vector<double>>();
   }
-  return interpolate(tree, waypoints, options.interpolation, options.shortest);
+  return waypoints;
 }
 
 /// @param[out] out  its id is there even if this throws, where the line has one.
 void read(const KinematicTree& tree, const std::string& text, const LinesOptions& options, Question& out) {
-  Json line;
-  try {
-    line = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw std::invalid_argument(fmt::format("is no JSON: {}", error.what()));
-  }
+  const Json line = plans::parseJson(text);
   if (!line.is_object()) throw std::invalid_argument("is no JSON object, as {\"from\": [...], \"to\": [...]}");
   if (line.contains("id")) out.id = line.at("id");
   requireKeys(line);
@@ -115,7 +111,10 @@ void read(const KinematicTree& tree, const std::string& text, const LinesOptions
     for (const std::string& note : tree.limitNotes(q)) out.notes.push_back(where + ": " + note);
   };
   if (line.contains("waypoints")) {
-    out.trajectory = toTrajectory(tree, line, options);
+    const Waypoints waypoints = toWaypoints(tree, line);
+    out.trajectory = interpolate(tree, waypoints, options.interpolation, options.shortest);
+    for (std::size_t k = 0; k < waypoints.configurations.size(); ++k)
+      noteLimits(waypoints.configurations[k], fmt::format("waypoint {}", k + 1));
     return;
   }
   const Eigen::VectorXd q0 = toConfiguration(tree, oneOf(line, "from", "start"), "from"),
@@ -160,7 +159,7 @@ class Answers {
     } else {
       manager_.continuousCollide(*question.motion, request_, result_);
     }
-    exit_ = worseExit(exit_, app::exitStatus(result_.status));
+    exit_ = worseExit(exit_, app::exitStatus(result_));
     const double begin = question.trajectory ? question.trajectory->beginTime() : 0,
                  end = question.trajectory ? question.trajectory->endTime() : 1;
     const auto configuration = [&](double t) {
@@ -169,7 +168,8 @@ class Answers {
     const Json all =
         jsonReport({manager_.tree(), request_, result_, question.notes, configuration, begin, end, nullptr});
     Json out;
-    for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts"}) out[key] = all.at(key);
+    for (const char* key : {"status", "t_lower", "t_upper", "certain", "contacts", "nothing_checked"})
+      out[key] = all.at(key);
     for (const char* key : kExceptions) out[key] = all.at(key);
     if (result_.status != Status::free) out["q_at_t_lower"] = all.at("q_at_t_lower");
     if (all.contains("certificate")) out["certificate"] = all.at("certificate");

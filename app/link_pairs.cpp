@@ -23,8 +23,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr LinkPairKind kKinds[] = {LinkPairKind::neighbours, LinkPairKind::never, LinkPairKind::always,
-                                   LinkPairKind::sometimes, LinkPairKind::unproven};
+constexpr LinkPairKind kKinds[] = {LinkPairKind::never, LinkPairKind::always, LinkPairKind::sometimes,
+                                   LinkPairKind::unproven};
 
 struct SrdfVerb {
   RobotOptions robot;
@@ -35,8 +35,6 @@ struct SrdfVerb {
 
 const char* meaningOf(LinkPairKind kind) {
   switch (kind) {
-    case LinkPairKind::neighbours:
-      return "at most one moving joint between them: never checked, no entry needed";
     case LinkPairKind::never:
       return "never touch within the joints' limits: proven";
     case LinkPairKind::always:
@@ -62,9 +60,8 @@ std::string configurationText(const KinematicTree& tree, const Eigen::VectorXd& 
 }
 
 std::string lineOf(const KinematicTree& tree, const LinkPairFinding& pair) {
-  std::string text = fmt::format("{} and {}", pair.link1, pair.link2);
+  std::string text = fmt::format("{} and {}{}", pair.link1, pair.link2, pair.neighbours ? " (neighbours)" : "");
   switch (pair.kind) {
-    case LinkPairKind::neighbours:
     case LinkPairKind::never:
       break;
     case LinkPairKind::always:
@@ -88,9 +85,11 @@ Json jsonOf(const KinematicTree& tree, const LinkPairFinding& pair) {
   Json out = {{"link1", pair.link1},
               {"link2", pair.link2},
               {"kind", toString(pair.kind)},
+              {"neighbours", pair.neighbours},
               {"proven", pair.proven},
               {"tried", pair.tried},
               {"touching", pair.touching},
+              {"apart", pair.apart},
               {"nearest", std::isfinite(pair.nearest) ? Json(pair.nearest) : Json()},
               {"configuration", Json()}};
   if (pair.configuration.size() == 0) return out;
@@ -147,7 +146,7 @@ void printPairs(const KinematicTree& tree, const LinkPairReport& report, bool al
     const std::size_t count = report.count(kind);
     if (count == 0) continue;
     fmt::print("  {:4} {}: {}\n", count, toString(kind), meaningOf(kind));
-    if (!all && (kind == LinkPairKind::neighbours || kind == LinkPairKind::never)) continue;
+    if (!all && kind == LinkPairKind::never) continue;
     for (const LinkPairFinding& pair : report.pairs) {
       if (pair.kind == kind) fmt::print("         {}\n", lineOf(tree, pair));
     }
@@ -214,9 +213,11 @@ LinkPairReport classify(const Robot& robot, LinkPairOptions options) {
 }
 
 std::string summaryOf(const LinkPairReport& report) {
-  return fmt::format("{} pairs of links that need no check ({} neighbours, {} proven apart, {} always in contact)",
-                     report.needNoCheck().pairs().size(), report.count(LinkPairKind::neighbours),
-                     report.count(LinkPairKind::never), report.count(LinkPairKind::always));
+  const std::size_t all = report.needNoCheck().pairs().size(), apart = report.count(LinkPairKind::never);
+  const std::size_t always = report.alwaysTouching().pairs().size();
+  return fmt::format(
+      "{} pairs of links that need no check ({} proven apart, {} neighbours that touch, {} others always in contact)",
+      all, apart, all - apart - always, always);
 }
 
 std::vector<std::string> doubtsOf(const LinkPairReport& disabled, double margin) {

@@ -118,20 +118,29 @@ PairSettings readPairSettings(const PairOptions& o) {
   return out;
 }
 
-void PairSettings::apply(ArticulatedCollisionManager& manager) const {
-  const auto set = [](const Said& said, const auto& change) {
+void PairSettings::apply(const Scene& scene, ArticulatedCollisionManager& manager) const {
+  const auto bodiesOf = [&](const std::string& name) {
+    std::vector<std::string> names = scene.namesOf(name);
+    if (names.empty()) names.push_back(name);  // a link's, or nothing's
+    return names;
+  };
+  const auto set = [&](const Said& said, const auto& change) {
     try {
-      change(said);
+      for (const std::string& a : bodiesOf(said.a)) {
+        for (const std::string& b : said.b.empty() ? std::vector<std::string>{""} : bodiesOf(said.b)) change(a, b);
+      }
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fmt::format("{}: {}", said.where, error.what()));
     }
   };
-  for (const Said& one : margins) {
-    set(one, [&](const Said& said) {
-      said.b.empty() ? manager.setMargin(said.a, said.margin) : manager.setMargin(said.a, said.b, said.margin);
+  for (const Said& said : margins) {
+    set(said, [&](const std::string& a, const std::string& b) {
+      b.empty() ? manager.setMargin(a, said.margin) : manager.setMargin(a, b, said.margin);
     });
   }
-  for (const Said& one : allowed) set(one, [&](const Said& said) { manager.allow(said.a, said.b); });
+  for (const Said& said : allowed) {
+    set(said, [&](const std::string& a, const std::string& b) { manager.allow(a, b); });
+  }
 }
 
 std::string PairSettings::text() const {

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "fcl_artic/manager.h"
+#include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic::app {
 
@@ -33,8 +34,10 @@ struct PairSettings {
   };
   std::vector<Said> margins, allowed;
 
-  /// Sets them. @throws std::invalid_argument naming option and body: no such link or obstacle.
-  void apply(ArticulatedCollisionManager& manager) const;
+  /// Sets them. The name of an object of several shapes stands for all of them.
+  /// @param scene  that the manager has.
+  /// @throws std::invalid_argument naming option and body: no such link or obstacle.
+  void apply(const Scene& scene, ArticulatedCollisionManager& manager) const;
   /// The same text for the same settings: for hashes of what a run is about.
   std::string text() const;
 };

@@ -85,6 +85,9 @@ void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
       ->allow_extra_args(false)
       ->group(kWorldGroup)
       ->type_name("NAME=DIR");
+  verb.add_flag("--import", o.import_meshes,
+                "Read meshes of other formats than .stl .obj .ply .off .dae .gltf .glb by assimp, with a note")
+      ->group(kWorldGroup);
 }
 
 CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string& names) {
@@ -117,6 +120,7 @@ UrdfOptions urdfOptions(const RobotOptions& options) {
   UrdfOptions out;
   out.solid_meshes = options.solid_meshes;
   out.collada_up_axis = options.collada_up_axis;
+  out.import_meshes = options.import_meshes;
   out.packages = packagesOf(options);
   if (!options.base.empty()) out.base = parsePose(options.base, "--base");
   out.floating_base = options.floating_base;
@@ -127,6 +131,7 @@ SceneOptions sceneOptions(const RobotOptions& options) {
   SceneOptions out;
   out.solid_meshes = options.solid_meshes;
   out.collada_up_axis = options.collada_up_axis;
+  out.import_meshes = options.import_meshes;
   out.packages = packagesOf(options);
   return out;
 }

@@ -19,12 +19,12 @@ struct RobotOptions {
   std::vector<std::string> packages;  ///< NAME=DIR
   std::string base;                   ///< a pose, as parsePose() reads it; empty: the identity
   std::vector<std::string> attached;  ///< as parseAttachment() reads them
-  bool floating_base = false, solid_meshes = false, collada_up_axis = false;
+  bool floating_base = false, solid_meshes = false, collada_up_axis = false, import_meshes = false;
 };
 
 /// Names of the robot's option: the file may stand by itself.
 constexpr const char* kRobotNames = "ROBOT,--robot";
-/// Adds ROBOT (or --robot) and --package, in the group "Robot and scene".
+/// Adds ROBOT (or --robot), --package and --import, in the group "Robot and scene".
 /// @param names  of the robot's option.
 void addRobotFile(CLI::App& verb, RobotOptions& options, const std::string& names = kRobotNames);
 /// Adds these, --srdf, --base and --floating-base.

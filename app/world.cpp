@@ -29,16 +29,19 @@ std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& obje
 }
 
 /// Makes the meshes of links or obstacles with these names solids.
-/// @param nameOf  of an item of `bodies`, each of which has an `object`.
+/// @param namesOf  of an item of `bodies`, each of which has an `object`: all that it goes by.
 /// @param[in,out] names  those that are found are taken out.
-template <class Bodies, class NameOf>
-void makeSolids(Bodies& bodies, const NameOf& nameOf, std::set<std::string>& names) {
+template <class Bodies, class NamesOf>
+void makeSolids(Bodies& bodies, const NamesOf& namesOf, std::set<std::string>& names) {
   std::set<std::string> found;
   for (auto& body : bodies) {
-    const std::string name = nameOf(body);
-    if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
-    body.object = solidOf(*body.object, name);
-    found.insert(name);
+    bool asked = false;
+    for (const std::string& name : namesOf(body)) {
+      if (!names.count(name) || body.object->getObjectType() != fcl::OT_BVH) continue;
+      if (!asked) body.object = solidOf(*body.object, name);
+      asked = true;
+      found.insert(name);
+    }
   }
   for (const std::string& name : found) names.erase(name);
 }
@@ -75,7 +78,7 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
       ->type_name("FACTOR")
       ->capture_default_str();
   verb.add_flag("--collada-up-axis", o.robot.collada_up_axis,
-                "COLLADA meshes: turn what the file says is up to z; else, as in RViz, it stays as it stands")
+                "COLLADA and glTF meshes: turn what is up by the file to z; else, as in RViz, it stays as it stands")
       ->group("Robot and scene");
   verb.add_flag("--unknown-cells", o.unknown_cells, "OctoMap: unknown cells are obstacles too")
       ->group("Robot and scene");
@@ -120,6 +123,7 @@ std::string shellArguments(const WorldOptions& o) {
   addAll("--scene", o.scenes);
   if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
   addFlag("--collada-up-axis", o.robot.collada_up_axis);
+  addFlag("--import", o.robot.import_meshes);
   addFlag("--unknown-cells", o.unknown_cells);
   if (o.point_radius > 0) add("--point-radius", fmt::format("{}", o.point_radius));
   addFlag("--solid-meshes", o.robot.solid_meshes);
@@ -142,7 +146,7 @@ void World::readRobot() {
   robot = app::readRobot(options_.robot);
   allowLinks();
   makeSolids(
-      robot.geometry, [&](const LinkGeometry& g) { return robot.tree->linkName(g.link); }, solids_);
+      robot.geometry, [&](const LinkGeometry& g) { return std::vector{robot.tree->linkName(g.link)}; }, solids_);
 }
 
 /// Allowed pairs of two links are part of the robot: their proofs are made with the others.
@@ -201,7 +205,11 @@ void World::readScene() {
   attachments = readAttachments(options_.robot, tree, carried_options, scenes);
   scene = combineScenes(scenes, tree);
   makeSolids(
-      scene.obstacles, [](const Scene::Obstacle& o) { return o.name; }, solids_);
+      scene.obstacles,
+      [](const Scene::Obstacle& o) {
+        return std::vector{o.name, o.shape_of};
+      },
+      solids_);
   if (solids_.empty()) return;
   std::vector<std::string> names;
   for (const LinkGeometry& g : robot.geometry) names.push_back(tree.linkName(g.link));
@@ -215,14 +223,15 @@ ArticulatedCollisionManager World::makeManager(const std::function<void(Articula
   robot.addTo(manager);
   scene.addTo(manager);
   attachLast(attachments, scene, manager);
-  pairs_.apply(manager);
+  pairs_.apply(scene, manager);
   if (change) change(manager);
   manager.setup();
   return manager;
 }
 
-std::vector<std::string> World::notes() const {
+std::vector<std::string> World::notes(const ArticulatedCollisionManager& manager) const {
   std::vector<std::string> notes = robot.notes;
+  for (const std::string& note : manager.notes()) notes.push_back(note);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   for (const std::string& note : unitNotes(robot, scene)) notes.push_back(note);
   return notes;

@@ -63,8 +63,9 @@ class World {
   /// @throws std::invalid_argument as ArticulatedCollisionManager::attach(), and as PairSettings::apply().
   /// @param change  called before setup().
   ArticulatedCollisionManager makeManager(const std::function<void(ArticulatedCollisionManager&)>& change = {}) const;
-  /// Notes of robot and scene and what suggests other units, one line each.
-  std::vector<std::string> notes() const;
+  /// Notes of robot, scene and manager, and what suggests other units, one line each.
+  /// @param manager  of this world.
+  std::vector<std::string> notes(const ArticulatedCollisionManager& manager) const;
   const PairSettings& pairs() const { return pairs_; }
 
   Robot robot;

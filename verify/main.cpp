@@ -22,7 +22,7 @@ is claimed, and how it is proven.
   --package N=DIR  the folder of "package://N/" in the URDF
   --solid-meshes   meshes of the URDF are meant as solids; without, as surfaces or solids
   --solid LINK     those of this link are
-  --srdf FILE      compare pairs that the world allows to touch with an SRDF
+  --srdf FILE      compare pairs that the world does not check with an SRDF
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
   --quiet          print no line for what is verified, and none about the world

@@ -63,9 +63,21 @@ class Words {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return word;
   }
-  void passLine() { at_ = std::min(text_.find('\n', at_), text_.size()); }
+  /// The rest of a line, the name of a solid. @throws BadInput where facets or solids may stand in it.
+  void passName() {
+    const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+    for (std::string last, word = keywordBefore(end); !word.empty(); last = word, word = keywordBefore(end))
+      if (word == "solid" || word == "endsolid" || (last == "facet" && word == "normal"))
+        throw BadInput("an STL file has '" + word + "' within the name of a solid");
+  }
 
  private:
+  std::string keywordBefore(std::size_t end) {
+    const bool more = text_.find_first_not_of(kBlanks, at_) < end;
+    if (!more) at_ = end;
+    return more ? keyword() : std::string();
+  }
+
   static constexpr const char* kBlanks = " \t\r\n\v\f";
   const std::string& text_;
   std::size_t at_ = 0;
@@ -76,31 +88,31 @@ MeshFile readTextStl(const std::string& text) {
   MeshFile mesh;
   Words words(text);
   if (words.keyword() != "solid") throw BadInput("an STL file is neither binary nor text, or is cut short");
-  words.passLine();
-  bool closed = false;
+  words.passName();
+  bool open = true;
   const auto expect = [&](const char* what) {
     if (words.keyword() != what) throw BadInput(std::string("an STL file has no '") + what + "' where it must");
   };
   for (std::string word = words.keyword(); !word.empty(); word = words.keyword()) {
-    closed = word == "endsolid";
-    if (closed || word == "solid") {
-      words.passLine();
+    if (word == (open ? "endsolid" : "solid")) {
+      open = !open;
+      words.passName();
       continue;
     }
-    if (word != "facet") throw BadInput("an STL file has something between its facets");
+    if (word != "facet" || !open) throw BadInput("an STL file has something between its facets or solids");
     expect("normal");
     for (int k = 0; k < 3; ++k) words.next();
     expect("outer");
     expect("loop");
     for (int corner = 0; corner < 3; ++corner) {
       expect("vertex");
-      for (int k = 0; k < 3; ++k) mesh.points.push_back(decimalFloat(words.next()));
+      for (int k = 0; k < 3; ++k) mesh.points.push_back(decimal(words.next()));
     }
     expect("endloop");
     expect("endfacet");
     addTriangle(mesh);
   }
-  if (!closed) throw BadInput("an STL file has no 'endsolid'");
+  if (open) throw BadInput("an STL file has no 'endsolid'");
   return mesh;
 }
 
@@ -121,7 +133,7 @@ MeshFile readStl(const std::string& bytes) {
 /// Lines cut into words. One that ends in a backslash goes on in the next one, unless it has a comment.
 class ObjLines {
  public:
-  explicit ObjLines(const std::string& text) : text_(text), end_(text.find('\n') == text.npos ? '\r' : '\n') {}
+  explicit ObjLines(const std::string& text) : text_(text) {}
   bool next(std::vector<std::string>& words) {
     words.clear();
     if (at_ >= text_.size()) return false;
@@ -141,9 +153,9 @@ class ObjLines {
 
  private:
   std::string take() {
-    const std::size_t to = std::min(text_.find(end_, at_), text_.size());
+    const std::size_t to = std::min(text_.find_first_of("\r\n", at_), text_.size());
     std::string line = text_.substr(at_, to - at_);
-    at_ = to + 1;
+    at_ = to + (text_.compare(to, 2, "\r\n") == 0 ? 2 : 1);
     ++number_;
     return line;
   }
@@ -152,7 +164,6 @@ class ObjLines {
     return last != line.npos && line[last] == '\\' && at_ < text_.size() && line.find('#') == line.npos;
   }
   const std::string& text_;
-  const char end_;  // old files end lines in a carriage return alone
   std::size_t at_ = 0, number_ = 0;
 };
 
@@ -180,11 +191,12 @@ MeshFile readObj(const std::string& text) {
   for (ObjLines lines(text); lines.next(words);) {  // a face may name a vertex that comes after it
     if (words.empty() || words[0] == "f" || kPassedOver.count(words[0]) > 0) continue;
     if (words[0] != "v") throw BadInput(lines.where() + "'" + words[0].substr(0, 40) + "' is not compared");
-    if (words.size() < 4) throw BadInput(lines.where() + "a vertex has three numbers");
-    // x y z, x y z and a weight, or x y z and a colour
-    const double weight = words.size() == 5 ? decimal(words[4]) : 1;
-    if (weight == 0) throw BadInput(lines.where() + "a vertex has the weight 0");
-    for (std::size_t k = 1; k < 4; ++k) mesh.points.push_back(decimal(words[k]) / weight);
+    // x y z, x y z and the weight 1, or x y z and a colour, of which readers differ where its first entry may be a
+    // weight
+    if (words.size() < 4 || words.size() == 6 || words.size() > 8)
+      throw BadInput(lines.where() + "a vertex has three numbers");
+    if (words.size() % 3 == 2 && decimal(words[4]) != 1) throw BadInput(lines.where() + "a vertex has a weight");
+    for (std::size_t k = 1; k < 4; ++k) mesh.points.push_back(decimal(words[k]));
     for (std::size_t k = 1; k < 4; ++k)
       if (!std::isfinite(mesh.points[mesh.points.size() - k])) throw BadInput(lines.where() + "a vertex is not finite");
   }
@@ -318,7 +330,6 @@ MeshFile readMesh(const std::string& path) {
   try {
     MeshFile mesh = ending == ".stl" ? readStl(readFile(path)) : readObj(readFile(path));
     if (mesh.ends.empty()) throw BadInput("it has no faces");
-    mesh.text_stl = ending == ".stl" && !isBinaryStl(readFile(path));
     return mesh;
   } catch (const BadInput& error) {
     throw BadInput("'" + path + "' is not compared: " + error.what());
@@ -422,7 +433,7 @@ bool MeshComparison::cut(const File& file, const Sorted& mesh, bool solid, std::
 }
 
 bool MeshComparison::same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,
-                          std::size_t& missing, bool& text_stl) {
+                          std::size_t& missing) {
   const auto [entry, is_new] = meshes_.try_emplace(number);
   if (is_new) {
     std::vector<Triangle> triangles;
@@ -435,7 +446,6 @@ bool MeshComparison::same(const Geometry& mesh, int number, const std::string& p
   const auto [answer, unknown] = known_.try_emplace({number, &file});
   if (unknown) answer->second.first = compare(mesh, entry->second, file, answer->second.second);
   missing = answer->second.second;
-  text_stl = file.faces.text_stl;
   return answer->second.first;
 }
 

@@ -17,9 +17,8 @@ struct MeshFile {
   std::vector<double> points;          // three each
   std::vector<std::uint32_t> corners;  // of all faces, one after the other
   std::vector<std::size_t> ends;       // of each face, in `corners`
-  bool text_stl = false;
 };
-/// STL (binary or text; each number as the nearest float) or OBJ (as the nearest double). @throws BadInput
+/// STL, binary or text, or OBJ; decimals as the nearest doubles. @throws BadInput
 MeshFile readMesh(const std::string& path);
 
 /// Corners of a triangle, from the one with which the nine numbers are least: so orientation counts, and the corner
@@ -35,7 +34,7 @@ class MeshComparison {
   /// a surface, triangles without area may be missing that lie on edges of the mesh.
   /// @param missing  set to how many are.
   bool same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,
-            std::size_t& missing, bool& text_stl);
+            std::size_t& missing);
 
  private:
   struct Sorted {

@@ -27,7 +27,7 @@ struct Solids {
 /// @throws BadInput: unreadable, or with something in it that is not compared.
 Comparison compareWithUrdf(const World& world, const std::string& path,
                            const std::map<std::string, std::string>& packages, const Solids& solids = {});
-/// Every pair that the world calls `allowed` is one that the SRDF disables.
+/// Every pair that the world calls `allowed` or `neighbours` is one that the SRDF disables.
 Comparison compareWithSrdf(const World& world, const std::string& path);
 
 std::string readFile(const std::string& path);

@@ -6,7 +6,8 @@
 
 namespace verify {
 
-// MoveIt's rules: a pair is disabled by name, or where a link is disabled by default and the pair is not enabled.
+// MoveIt's rules: a pair is disabled by name, or where a link is disabled by default and the pair is not enabled. All
+// other pairs of links are to be checked, neighbours too.
 Comparison compareWithSrdf(const World& world, const std::string& path) {
   const Xml xml(path);
   std::set<std::pair<std::string, std::string>> disabled, enabled;
@@ -30,7 +31,7 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
   for (const std::string& name : others) links.erase(name);  // the SRDF's word is about links
   std::size_t found = 0;
   for (const auto& [pair, reason] : world.unchecked) {
-    if (reason != Reason::allowed) continue;
+    if (reason == Reason::touch_link) continue;
     const std::string &x = world.names[static_cast<std::size_t>(pair.first)],
                       &y = world.names[static_cast<std::size_t>(pair.second)];
     const std::pair<std::string, std::string> key(std::min(x, y), std::max(x, y));
@@ -38,11 +39,13 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
     if (links.count(x) > 0 && links.count(y) > 0 && (disabled.count(key) > 0 || by_default)) {
       ++found;
     } else {
-      result.differences.push_back("the world allows " + inQuotes(x) + " and " + inQuotes(y) +
-                                   " to touch, the SRDF does not");
+      result.differences.push_back(
+          std::string("the world ") + (reason == Reason::allowed ? "allows " : "does not check the neighbours ") +
+          inQuotes(x) + " and " + inQuotes(y) +
+          (reason == Reason::allowed ? " to touch, the SRDF does not" : ", which the SRDF does not disable"));
     }
   }
-  result.notes.push_back(std::to_string(found) + " pairs of names that the world allows are in the SRDF");
+  result.notes.push_back(std::to_string(found) + " pairs of names that the world does not check are in the SRDF");
   return result;
 }
 

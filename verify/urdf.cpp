@@ -68,8 +68,9 @@ class Robot {
   Robot(const std::string& path, const std::map<std::string, std::string>& packages)
       : xml_(path), folder_(std::filesystem::absolute(path).parent_path()), packages_(packages) {
     const Xml::Element& robot = xml_.robot();
-    xml_.only(robot, {"name", "version", "xmlns"}, {"link", "joint"},
-              {"material", "gazebo", "transmission", "ros2_control", "sensor"});
+    xml_.only(robot, {"name", "version", "xmlns", "xsi:schemaLocation"}, {"link", "joint"},
+              {"material", "gazebo", "transmission", "ros2_control", "sensor", "force_element", "frame", "bullet",
+               "drake:collision_filter_group"});
     for (const Xml::Element* e = robot.FirstChildElement("link"); e; e = e->NextSiblingElement("link")) readLink(*e);
     for (const Xml::Element* e = robot.FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) readJoint(*e);
     std::set<std::string> children;
@@ -135,12 +136,15 @@ class Robot {
   }
 
   void readLink(const Xml::Element& e) {
-    xml_.only(e, {"name", "type"}, {"collision"}, {"visual", "inertial", "contact"});
+    xml_.only(e, {"name", "type", "concave"}, {"collision"},
+              {"visual", "inertial", "contact", "surface", "gravity", "kinematic", "sensor", "audio_source", "bullet",
+               "self_filter"});
     Link link;
     link.name = xml_.attribute(e, "name");
     if (!link_of_.emplace(link.name, links.size()).second) twice(e);
     for (const Xml::Element* c = e.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
-      xml_.only(*c, {"name"}, {"origin", "geometry"}, {"material", "verbose", "drake:proximity_properties"});
+      xml_.only(*c, {"name", "concave", "group", "mask"}, {"origin", "geometry"},
+                {"material", "verbose", "contact_coefficients", "drake:proximity_properties"});
       Collision collision = readShape(*c);
       collision.place = readPlace(*c);
       link.collisions.push_back(std::move(collision));
@@ -178,8 +182,9 @@ class Robot {
   }
 
   void readJoint(const Xml::Element& e) {
-    xml_.only(e, {"name", "type"}, {"parent", "child", "origin", "axis", "mimic"},
-              {"limit", "dynamics", "safety_controller", "calibration"});
+    xml_.only(e, {"name", "type", "dont_collapse"}, {"parent", "child", "origin", "axis", "mimic"},
+              {"limit", "dynamics", "safety_controller", "calibration", "controller_gains", "joint_properties",
+               "traits", "hardwareInterface"});
     static const std::set<std::string> kTypes{"fixed", "revolute", "continuous", "prismatic", "planar", "floating"};
     Joint joint;
     joint.name = xml_.attribute(e, "name");
@@ -210,9 +215,29 @@ class Robot {
     joints.push_back(std::move(joint));
   }
 
+  /// file:///PATH or file://localhost/PATH, with %20 and the like decoded.
+  static std::string fileOfUrl(const std::string& url) {
+    std::string path = url.substr(7), decoded;
+    if (path.rfind("localhost/", 0) == 0) path.erase(0, 9);
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      if (path[k] != '%') {
+        decoded += path[k];
+        continue;
+      }
+      const std::string digits = path.substr(k + 1, 2);
+      if (digits.size() != 2 || digits.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos ||
+          digits == "00")
+        throw BadInput("'" + url + "': a % stands before two hexadecimal digits");
+      decoded += static_cast<char>(std::stoi(digits, nullptr, 16));
+      k += 2;
+    }
+    if (decoded.empty() || decoded[0] != '/') throw BadInput("'" + url + "' has no absolute path");
+    return decoded;
+  }
+
   std::string find(std::string name) const {
     namespace fs = std::filesystem;
-    if (name.rfind("file://", 0) == 0) return name.substr(7);
+    if (name.rfind("file://", 0) == 0) return fileOfUrl(name);
     if (name.rfind("package://", 0) != 0) {
       if (name.find("://") != std::string::npos) throw BadInput("'" + name + "' is neither file:// nor package://");
       return (folder_ / name).string();
@@ -422,12 +447,7 @@ class UrdfComparison {
       return false;
     }
     std::size_t missing = 0;
-    bool text_stl = false;
-    if (!meshes_.same(g, b.geometry, c.path, c.numbers, missing, text_stl)) {
-      if (text_stl)
-        why_ = " (numbers of a text STL are compared as the nearest floats; a binary one has none to round)";
-      return false;
-    }
+    if (!meshes_.same(g, b.geometry, c.path, c.numbers, missing)) return false;
     if (missing > 0 && noted_.insert(c.path).second)
       result_.notes.push_back("'" + c.path + "': " + std::to_string(missing) +
                               " triangles without area are not in the world, which lie on edges of others");

@@ -37,22 +37,14 @@ bool isDecimal(const std::string& word) {
   return at == word.size();
 }
 
-template <class T>
-T finite(T x, const std::string& word) {
-  if (!std::isfinite(x)) throw BadInput("'" + word.substr(0, 60) + "' is beyond all doubles");
-  return x;
-}
-
 }  // namespace
 
 // (The program runs in C's own locale.)
 double decimal(const std::string& word) {
   if (!isDecimal(word)) throw BadInput("'" + word.substr(0, 60) + "' is no decimal number");
-  return finite(std::strtod(word.c_str(), nullptr), word);
-}
-float decimalFloat(const std::string& word) {
-  if (!isDecimal(word)) throw BadInput("'" + word.substr(0, 60) + "' is no decimal number");
-  return finite(std::strtof(word.c_str(), nullptr), word);
+  const double x = std::strtod(word.c_str(), nullptr);
+  if (!std::isfinite(x)) throw BadInput("'" + word.substr(0, 60) + "' is beyond all doubles");
+  return x;
 }
 std::vector<double> decimals(const std::string& text) {
   static const char* const kBlanks = " \t\r\n";

@@ -15,9 +15,8 @@ namespace verify {
 
 /// Numbers of a text, separated by blanks: each a decimal one, in whole, as the nearest double. @throws BadInput
 std::vector<double> decimals(const std::string& text);
-/// One word of a text as such a number; `f` as the nearest float. @throws BadInput
+/// One word of a text as such a number. @throws BadInput
 double decimal(const std::string& word);
-float decimalFloat(const std::string& word);
 
 class Xml {
  public:

@@ -43,7 +43,8 @@ class CertifyBench {
 
   void run() {
     std::vector<CertifiedPlan> given;
-    if (!options_.plans.empty()) given = readPlans(*robot_.tree, {options_.plans}, std::nullopt);
+    std::vector<std::string> notes;  // what else a folder holds is of no concern here
+    if (!options_.plans.empty()) given = readPlans(*robot_.tree, {options_.plans}, std::nullopt, {}, notes);
     std::vector<std::string> names = options_.environments;
     if (names.empty()) names = environmentsOf(options_.data, options_.robot);
     std::size_t taken = 0;

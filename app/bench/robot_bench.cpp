@@ -107,6 +107,7 @@ class Asked {
   /// What stage 2 did in all of the manager's queries for first or any contacts.
   const QueryStatistics& stage2() const { return stage2_; }
   const World& world() const { return world_; }
+  std::vector<std::string> notes() const { return world_.notes(*manager_); }
   const KinematicTree& tree() const { return *world_.robot.tree; }
 
   Questions questions(bool with_fcl) {
@@ -146,8 +147,11 @@ class Asked {
     for (const Scene::Obstacle& o : world_.scene.obstacles) setup_.scene_triangles += numTriangles(*o.object);
     setup_.pairs_apart = report.count(LinkPairKind::never);
     setup_.checked_pairs = manager_->checkedLinkPairs().size() - (with_srdf ? 0 : setup_.pairs_apart);
-    setup_.pairs_allowed = with_srdf ? report.pairs.size() - setup_.pairs_apart - report.count(LinkPairKind::neighbours)
-                                     : report.count(LinkPairKind::always);
+    const auto isNeighbour = [](const LinkPairFinding& pair) { return pair.neighbours && pair.touchThroughout(); };
+    const auto neighbours =
+        static_cast<std::size_t>(std::count_if(report.pairs.begin(), report.pairs.end(), isNeighbour));
+    setup_.pairs_allowed =
+        with_srdf ? report.pairs.size() - setup_.pairs_apart - neighbours : report.alwaysTouching().pairs().size();
   }
 
   /// FCL leaves out the pairs that we need not look at either.
@@ -289,7 +293,7 @@ std::string textOf(const Outcome& o) {
   if (o.asked.visibility() != VisibilityMode::off) {
     out += fmt::format("stage 2, {}: {}\n", nameOf(o.asked.visibility()), visibilityText(o.asked.stage2()));
   }
-  for (const std::string& note : o.asked.world().notes()) out += fmt::format("note: {}\n", note);
+  for (const std::string& note : o.asked.notes()) out += fmt::format("note: {}\n", note);
   return out;
 }
 
@@ -353,7 +357,7 @@ Json jsonOf(const Outcome& o) {
                                      {"command", o.commandOf(c.motion)}});
   }
   out["visibility"] = visibilityJson(o.asked.visibility(), o.asked.stage2());
-  out["notes"] = world.notes();
+  out["notes"] = o.asked.notes();
   return out;
 }
 

@@ -27,6 +27,7 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
+#include "text/one_line.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic::app {
@@ -97,9 +98,7 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
   std::vector<std::string> links;
   for (LinkId link = 0; link < read.robot.tree->numLinks(); ++link) links.push_back(read.robot.tree->linkName(link));
 
-  std::string common;
-  if (!world.scenes.empty()) common = SceneSource(world.scenes, sceneOptions(world.robot)).hash();
-  for (const std::string& solid : world.solids) common += " " + solid;
+  const std::string common = obstaclesHash(read.scene, read.scene.obstacles.size() - read.attachments.size());
   const CertifiedRequest& r = o.request;
   Json scene_names = Json::object();
   scene_names["count"] = scenes.size();
@@ -110,7 +109,7 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
     for (std::size_t s = 0; s < scenes.size(); ++s) names.push_back(scenes.name(s));
   }
   return {{"version", FCL_ARTIC_VERSION},
-          {"robot", {{"name", read.robot.tree->name()}, {"sha256", robotHash(world, read)}, {"links", links}}},
+          {"robot", {{"name", read.robot.tree->name()}, {"sha256", robotHash(read)}, {"links", links}}},
           {"edges", {{"count", edges.size()}, {"trajectories", edges.areTrajectories()}, {"sha256", edges.hash()}}},
           {"scenes", scene_names},
           {"request",
@@ -144,8 +143,13 @@ class SceneError : public std::runtime_error {
 /// The robot's manager, and the obstacles of one scene after the other in it.
 class Stage {
  public:
-  Stage(const World& world, const SceneSource& scenes)
-      : world_(world), scenes_(scenes), manager_(world.makeManager()) {}
+  /// @param speaks  whether notes of the scenes are printed.
+  Stage(const World& world, const SceneSource& scenes, bool speaks)
+      : world_(world),
+        scenes_(scenes),
+        manager_(world.makeManager()),
+        told_(world.scene.notes.begin(), world.scene.notes.end()),
+        speaks_(speaks) {}
 
   /// Has the obstacles of this scene stand there, and no others but the world's own.
   /// @throws naming the scene.
@@ -155,6 +159,7 @@ class Stage {
     try {
       // (Names of obstacles that others have are made unique.)
       const Scene all = combineScenes({world_.scene, scenes_.load(scene)}, *world_.robot.tree);
+      tellNotes(scene, all.notes);
       std::vector<std::shared_ptr<const fcl::CollisionObjectd>> objects;
       std::vector<std::string> names;
       for (std::size_t i = 0; i < all.obstacles.size(); ++i) {
@@ -176,9 +181,22 @@ class Stage {
   std::int32_t numberOf(const BodyRef& body) const { return number_of_.at(body.object); }
 
  private:
+  /// Each note once, of so many scenes that nobody would read all of them the first ones.
+  void tellNotes(std::size_t scene, const std::vector<std::string>& notes) {
+    constexpr std::size_t kMostTold = 50;
+    for (const std::string& note : notes) {
+      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMostTold) continue;
+      fmt::print(stderr, "fcl_artic: note: scene {} ('{}'): {}\n", scene, scenes_.name(scene), text::oneLine(note));
+      if (num_told_ == kMostTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
+    }
+  }
+
   const World& world_;
   const SceneSource& scenes_;
   ArticulatedCollisionManager manager_;
+  std::set<std::string> told_;
+  std::size_t num_told_ = 0;
+  const bool speaks_;
   std::ptrdiff_t scene_ = -1;
   std::unordered_map<const fcl::CollisionObjectd*, std::int32_t> number_of_;
 };
@@ -294,11 +312,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, scene_options);
   folder.emplace(o.out, describe(world_options, world, o, edges, scenes));
   const bool speaks = ranks.rank() == 0 && !o.quiet;
+  Stage stage(world, scenes, !o.quiet);
   if (speaks) {
-    for (const std::string& note : world.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    for (const std::string& note : world.notes(stage.manager())) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
   }
-
-  Stage stage(world, scenes);
   const int threads = o.threads == 0 && ranks.size() > 1 ? 1 : o.threads;
   Answerer answerer(stage, edges, o, *folder, threads);
   const Cut cut = folder->cut();

@@ -33,7 +33,7 @@ std::string endingOf(const std::string& path) {
 bool hasSceneEnding(const std::string& path) {
   const std::string ending = endingOf(path);
   for (const char* known : {".urdf", ".scene", ".bt", ".ot", ".pcd", ".xyz", ".ply", ".obj", ".stl", ".dae", ".off",
-                            ".glb", ".3mf", ".h5", ".hdf5"}) {
+                            ".gltf", ".glb", ".h5", ".hdf5"}) {
     if (ending == known) return true;
   }
   return false;
@@ -87,8 +87,15 @@ SceneSource::SceneSource(const std::vector<std::string>& paths, SceneOptions opt
       continue;
     }
     std::vector<std::string> files;
+    std::vector<std::string> passed_over;
     for (const auto& entry : fs::directory_iterator(path)) {
-      if (entry.is_regular_file() && hasSceneEnding(entry.path().string())) files.push_back(entry.path().string());
+      const bool is_scene = entry.is_regular_file() && hasSceneEnding(entry.path().string());
+      (is_scene ? files : passed_over).push_back(is_scene ? entry.path().string() : entry.path().filename().string());
+    }
+    std::sort(passed_over.begin(), passed_over.end());
+    if (!passed_over.empty()) {
+      notes_.push_back(fmt::format("--scenes '{}': passed over, as a scene's ending is none of theirs: {}", path,
+                                   fmt::join(passed_over, ", ")));
     }
     if (files.empty())
       throw std::invalid_argument(fmt::format("--scenes '{}': no file of this folder has a scene's ending", path));
@@ -102,7 +109,7 @@ SceneSource::SceneSource(const std::vector<std::string>& paths, SceneOptions opt
 void SceneSource::addFile(const std::string& path, std::string& hashes) {
   if (isHdf5(path)) return addShapes(path, hashes);
   scenes_.push_back({fs::path(path).filename().string(), path, -1, 0});
-  hashes += sceneFileHash(path, options_.packages) + "\n";
+  hashes += sceneFileHash(path, options_) + "\n";
 }
 
 void SceneSource::addShapes(const std::string& path, std::string& hashes) {

@@ -36,6 +36,8 @@ class SceneSource {
   const std::string& name(std::size_t scene) const { return scenes_[scene].name; }
   /// SHA-256 of all files that scenes are made of.
   const std::string& hash() const { return hash_; }
+  /// Of each folder, what in it was passed over, one line.
+  const std::vector<std::string>& notes() const { return notes_; }
   /// @throws as loadScene(), naming the file, and of an HDF5 file the scene and its obstacle.
   Scene load(std::size_t scene) const;
 
@@ -52,6 +54,7 @@ class SceneSource {
   SceneOptions options_;
   std::vector<Entry> scenes_;
   std::vector<hdf5::File> files_;
+  std::vector<std::string> notes_;
   std::string hash_;
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "stage2.h"
+#include "text/one_line.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -51,7 +52,8 @@ std::string jointsText(const KinematicTree& tree, const Eigen::VectorXd& q) {
 }
 
 /// A labelled entry of the report, its text broken at blanks so that lines stay within 100 columns.
-std::string entry(const std::string& label, const std::string& text) {
+std::string entry(const std::string& label, const std::string& given) {
+  const std::string text = text::oneLine(given);
   constexpr std::size_t kLabel = 10, kColumns = 100;
   std::string out = fmt::format("  {:<{}}", label, kLabel);
   std::size_t column = 2 + kLabel, at = 0;
@@ -191,6 +193,13 @@ Json requestJson(const CertifiedRequest& request) {
           {"ignore_initial_contact", request.ignore_initial_contact}};
 }
 
+Json neighboursJson(const CertifiedResult& result) {
+  Json out = Json::array();
+  if (!result.unproven_neighbours) return out;
+  for (const auto& [a, b] : *result.unproven_neighbours) out.push_back({a, b});
+  return out;
+}
+
 Json posesJson(const Report& r) {
   Json out = Json::object();
   std::vector<Eigen::Isometry3d> at_lower;
@@ -206,13 +215,20 @@ Json posesJson(const Report& r) {
 
 }  // namespace
 
+std::string scopeText(const CertifiedRequest& request) {
+  std::string text;
+  if (!request.check_self) text = "links with links are not checked (--no-self)";
+  if (!request.check_scene) text += (text.empty() ? "" : "; ") + std::string("obstacles are not checked (--no-scene)");
+  return text;
+}
+
 std::string headline(const Report& r) {
   const CertifiedResult& result = r.result;
   switch (result.status) {
     case Status::free: {
       const std::string exceptions = exceptionsOf(result), unproven = exceptions.empty() ? "" : " " + exceptions;
       if (result.nothingChecked()) {
-        return fmt::format("FREE{}: nothing was checked, there is no pair of bodies that may touch.", unproven);
+        return fmt::format("NOTHING CHECKED{}: there is no pair of bodies that must not touch.", unproven);
       }
       if (!r.request_known) {
         return fmt::format("FREE{}: proven, no checked pair touches, or comes within the margin that was asked for.",
@@ -253,7 +269,8 @@ std::string headline(const Report& r) {
 
 std::string textReport(const Report& r) {
   const CertifiedResult& result = r.result;
-  std::string text = headline(r) + "\n";
+  std::string text = text::oneLine(headline(r)) + "\n";
+  if (const std::string scope = scopeText(r.request); r.request_known && !scope.empty()) text += entry("scope", scope);
   const bool several = result.contacts.size() > 1;
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
     if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
@@ -296,6 +313,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"ignored_initial_contacts", ignored},
           {"never_apart_pairs", result.never_apart_pairs},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
+          {"unproven_neighbours", neighboursJson(result)},
           {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},
           {"request", r.request_known ? requestJson(r.request) : Json()},
           {"visibility", visibilityJson(r.request.visibility, result.statistics)},

@@ -32,12 +32,16 @@ struct Report {
 /// The verdict in one sentence.
 std::string headline(const Report& report);
 
+/// What of all pairs a request does not ask about; empty: nothing.
+std::string scopeText(const CertifiedRequest& request);
+
 /// The answer for a reader.
 std::string textReport(const Report& report);
 
 /// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
 nlohmann::ordered_json jsonReport(const Report& report);
 /// The keys that say what `free` does not speak of: no short form of the answer leaves them out.
-constexpr const char* kExceptions[] = {"ignored_initial_contacts", "never_apart_pairs", "unproven_allowed_pairs"};
+constexpr const char* kExceptions[] = {"ignored_initial_contacts", "never_apart_pairs", "unproven_allowed_pairs",
+                                       "unproven_neighbours"};
 
 }  // namespace fcl_artic::app

@@ -10,7 +10,7 @@ namespace fcl_artic::app {
 
 /// The answer in one line, the title of pages and pictures: the two sides and the time, or what is proven.
 inline std::string titleLine(const CertifiedResult& result) {
-  if (result.nothingChecked()) return "free: nothing was checked";
+  if (result.nothingChecked()) return "nothing was checked";
   if (result.status == Status::free) {
     const std::string exceptions = exceptionsOf(result);
     return "free: proven for the whole motion" + (exceptions.empty() ? "" : ", " + exceptions);

@@ -962,6 +962,7 @@ function writeFacts() {
   const rows = [['status', answer.status], ['certain', answer.certain ? 'yes' : 'no'],
     ['t_lower', shown(answer.t_lower, 12), String(answer.t_lower)], ['t_upper', shown(answer.t_upper, 12), String(answer.t_upper)],
     ['allowed pairs not proven apart', answer.unproven_allowed_pairs]];
+  for (const [a, b] of answer.unproven_neighbours ?? []) rows.push(['neighbours not proven apart', `${a}, ${b}`]);
   for (const [a, b] of answer.ignored_initial_contacts) rows.push(['ignored at the start', `${a}, ${b}`]);
   if (answer.clearance) rows.push(['clearance, at least', `${shown(answer.clearance.lower, 6)} m`]);
   if (answer.certificate) rows.push(['certificate', answer.certificate.missing || `${answer.certificate.proof_bytes} bytes`]);

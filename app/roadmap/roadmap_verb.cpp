@@ -40,8 +40,8 @@ void readRobot(World& world, const RoadmapVerb& o) {
   world.provePairsFor(o.request);
 }
 
-void tellNotes(const World& world) {
-  for (const std::string& note : world.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
+  for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
 }
 
 /// The waypoints of a file's plans; joints without a column stay at 0.
@@ -88,12 +88,12 @@ int make(RoadmapVerb& o) {
   readRobot(world, o);
   if (!o.given.empty()) o.make.given = readConfigurations(*world.robot.tree, o.given);
   world.readScene();
-  tellNotes(world);
   const ArticulatedCollisionManager manager = world.makeManager();
+  tellNotes(world, manager);
   const auto begin = Clock::now();
   std::size_t tried = 0;
   Roadmap roadmap = makeRoadmap(manager, o.request, o.make, tried);
-  roadmap.robot = robotHash(o.world, world);
+  roadmap.robot = robotHash(world);
   writeRoadmap(roadmap, o.out, false);
   fmt::print("{} vertices, {} of {} edges proven free, in {:.1f} s: {}\n", roadmap.numVertices(), roadmap.numEdges(),
              tried, secondsSince(begin), o.out);
@@ -106,10 +106,11 @@ int certify(RoadmapVerb& o) {
   readRobot(world, o);
   Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
   world.readScene();
-  tellNotes(world);
+  const ArticulatedCollisionManager manager = world.makeManager();
+  tellNotes(world, manager);
   if (o.request.check_self) {
     // What was proven when the roadmap was made holds for every scene: of this robot, and no larger a margin.
-    const bool same = roadmap.robot == robotHash(o.world, world);
+    const bool same = roadmap.robot == robotHash(world);
     const bool holds = roadmap.self_proven && same && o.request.margin <= roadmap.self_margin;
     if (!holds) {
       fmt::print(stderr, "fcl_artic: note: links are checked against links again: {}\n",
@@ -121,7 +122,6 @@ int certify(RoadmapVerb& o) {
     o.request.check_self = !holds;
   }
   if (o.any) o.request.mode = ContactMode::any;
-  const ArticulatedCollisionManager manager = world.makeManager();
   const auto begin = Clock::now();
   certifyRoadmap(manager, o.request, o.make.threads, roadmap);
   const double seconds = secondsSince(begin);

@@ -20,7 +20,7 @@ release = re.search(r"project\(fcl_artic VERSION ([0-9.]+)", (ROOT / "CMakeLists
 
 root_doc = "doc/manual/index"
 include_patterns = ["doc/**.md", "bench/README.md", "data/README.md", "CHANGELOG.md"]
-exclude_patterns = ["build*", "install*", "out", "doc/DESIGN_NOTES.md"]
+exclude_patterns = ["build*", "install*", "out"]
 extensions = ["myst_parser", "breathe", "sphinx.ext.autodoc", "sphinx_copybutton"]
 
 myst_heading_anchors = 3

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/export.h"
 
 namespace fcl_artic {

@@ -8,6 +8,7 @@
 // arguments.
 #pragma once
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/export.h"
 #include "fcl_artic/fcl_names.h"
 #include "fcl_artic/pair_result.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include <fcl/math/motion/motion_base.h>
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/joint_motion.h"
 
 namespace fcl_artic {
@@ -23,12 +24,16 @@ class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
  public:
   /// Copies what it needs of tree and motion; starts at t = 0.
   /// @param motion  of degree 1: joints at constant speed, as JointMotion::linear() makes it.
-  /// @param offset  pose of the geometry's frame in the link's frame, rigid to 1e-9.
+  /// @param offset  pose of the geometry's frame in the link's frame, rigid to 1e-9; its rotation is made orthonormal.
   /// @throws std::out_of_range for an unknown link.
   /// @throws std::invalid_argument if the motion is not one of this tree or of a higher degree, or for an offset that
-  ///   is not rigid.
+  ///   is not rigid or farther than 1e9 m away.
   FclLinkMotion(const KinematicTree& tree, const JointMotion& motion, LinkId link,
                 const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
+  /// Copies a motion with its state; there is no move that would leave one without.
+  FclLinkMotion(const FclLinkMotion&) = default;
+  /// Copies a motion with its state.
+  FclLinkMotion& operator=(const FclLinkMotion&) = default;
 
   /// Returns the pose of the geometry in the world at t in [0, 1].
   Eigen::Isometry3d pose(double t) const;
@@ -62,13 +67,6 @@ class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
   void getTaylorModel(fcl::TMatrix3<double>& R, fcl::TVector3<double>& T) const override;
 
  private:
-  /// A moving joint of the link's chain, with the fixed ones before it merged into its origin.
-  struct Step {
-    Eigen::Isometry3d origin;
-    Eigen::Vector3d axis;
-    bool prismatic;
-    double q0, rate;  ///< q(t) = q0 + t * rate
-  };
   /// Pose and velocity field at one time: the point x of the world moves with velocity + angular x x.
   struct State {
     double t = 0;
@@ -77,15 +75,15 @@ class FCL_ARTIC_EXPORT FclLinkMotion : public fcl::MotionBased {
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   };
 
-  friend BodyMotion bodyMotion(const FclLinkMotion& motion);  ///< as the library's own queries see it
+  friend const BodyMotion& bodyMotion(const FclLinkMotion& motion);  ///< as the library's own queries see it
 
   State stateAt(double t) const;
   double directedBound(const Eigen::Vector3d* points_g, int count, double radius, const Eigen::Vector3d& n) const;
 
-  std::vector<Step> chain_;
-  Eigen::Isometry3d tail_;  ///< geometry frame in the last moving joint's frame
-  double angle_ = 0;        ///< bound on the angular speed, rad per unit of t
-  double speed_ = 0;        ///< bounds for the geometry frame's origin
+  /// The moving joints of the link's chain, each with the fixed ones before it; copies share it.
+  std::shared_ptr<const BodyMotion> chain_;
+  double angle_ = 0;  ///< bound on the angular speed, rad per unit of t
+  double speed_ = 0;  ///< bounds for the geometry frame's origin
   double acceleration_ = 0;
   mutable State state_;
 };

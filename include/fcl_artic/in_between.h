@@ -20,7 +20,7 @@ FCL_ARTIC_EXPORT std::shared_ptr<const KinematicTree> inBetweenTree(const Kinema
 /// of Section 3, every joint at constant speed, is JointMotion::linear().)
 /// @param tree  made by inBetweenTree().
 /// @param M_0_begin, M_0_end  poses of all links at t = 0 and t = 1, link to world, in the order of the links; without
-///   the further link, which rests at the origin.
+///   the further link, which rests at the origin. Their rotations are made orthonormal.
 /// @throws std::invalid_argument for another number of poses, one that is not rigid to 1e-6, a tree that was not made
 ///   by inBetweenTree(), and as JointMotion::linear(): coordinates of a link's origin in its parent's frame are at most
 ///   1e5 m.

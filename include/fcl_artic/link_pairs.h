@@ -17,34 +17,56 @@
 
 namespace fcl_artic {
 
-/// Pairs of names (of links, obstacles, attached objects) that may touch and are therefore not checked. The order of
-/// two names does not matter. Names are taken as they are; ArticulatedCollisionManager::setAllowedCollisions() checks
-/// them.
+/// Pairs of names (of links, obstacles, attached objects) that may touch and are therefore not checked; and what is
+/// said of neighbours, of which a manager decides by a rule where nothing is said of them
+/// (ArticulatedCollisionManager::setAllowedCollisions()). The order of two names does not matter. Names are taken as
+/// they are; ArticulatedCollisionManager::setAllowedCollisions() checks them.
 class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
  public:
+  /// Pairs of names, the alphabetically smaller one first in each.
+  using Pairs = std::set<std::pair<std::string, std::string>>;
+
   /// Adds the pair.
-  void allow(const std::string& a, const std::string& b) { pairs_.insert(key(a, b)); }
-  /// Removes the pair, if it is there.
-  void disallow(const std::string& a, const std::string& b) { pairs_.erase(key(a, b)); }
-  /// Whether the pair is in the matrix.
+  void allow(const std::string& a, const std::string& b) {
+    pairs_.insert(key(a, b));
+    disallowed_.erase(key(a, b));
+  }
+  /// Removes the pair, if it is there, and has it checked even if the two are neighbours.
+  void disallow(const std::string& a, const std::string& b) {
+    pairs_.erase(key(a, b));
+    disallowed_.insert(key(a, b));
+  }
+  /// Whether the pair may touch.
   bool allowed(const std::string& a, const std::string& b) const { return pairs_.count(key(a, b)) != 0; }
-  /// All pairs, the alphabetically smaller name first in each.
-  const std::set<std::pair<std::string, std::string>>& pairs() const { return pairs_; }
+  /// Whether the pair is to be checked even if the two are neighbours: it was disallowed, or the matrix is complete.
+  bool mustBeChecked(const std::string& a, const std::string& b) const {
+    return disallowed_.count(key(a, b)) != 0 || (complete_ && !allowed(a, b));
+  }
+  /// All pairs that may touch.
+  const Pairs& pairs() const { return pairs_; }
+  /// The pairs that were disallowed.
+  const Pairs& disallowedPairs() const { return disallowed_; }
+
+  /// Says whether the pairs are all that may touch, neighbours included: then the manager's rule for neighbours decides
+  /// nothing. (At first it is not so; of what loadSrdf() reads it is.)
+  void setComplete(bool complete = true) { complete_ = complete; }
+  /// Whether the pairs are all that may touch.
+  bool complete() const { return complete_; }
 
  private:
   static std::pair<std::string, std::string> key(const std::string& a, const std::string& b) {
     return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
   }
-  std::set<std::pair<std::string, std::string>> pairs_;
+  Pairs pairs_, disallowed_;
+  bool complete_ = false;
 };
 
 /// What two links do over all values of their joints, as ArticulatedCollisionManager::classifyLinkPairs() finds it.
 enum class LinkPairKind {
-  neighbours,  ///< Never checked: ArticulatedCollisionManager::setAllowedCollisions() says which links these are.
-  never,       ///< Proven apart for all values within the joints' limits.
-  always,      ///< In contact in every configuration that was tried.
-  sometimes,   ///< In contact in some configurations and not in others.
-  unproven     ///< In contact in no configuration that was tried, and yet not proven apart.
+  never,      ///< Proven apart for all values within the joints' limits.
+  always,     ///< In contact in every configuration that was tried.
+  sometimes,  ///< In contact in some configurations and not in others.
+  unproven    ///< In contact in no configuration that was tried, and yet not proven apart.
 };
 
 /// What was found of one pair of links.
@@ -53,18 +75,30 @@ struct LinkPairFinding {
   std::string link1, link2;
   /// What the two do.
   LinkPairKind kind = LinkPairKind::unproven;
-  /// Whether the kind is proven for all configurations within the joints' limits: so for `never`, `sometimes` and
-  /// `neighbours`, and for `always` if no joint moves the two links apart.
+  /// Whether the two are neighbours: ArticulatedCollisionManager::setAllowedCollisions() says which links these are.
+  bool neighbours = false;
+  /// Whether the kind is proven for all configurations within the joints' limits: so for `never` and `sometimes`, and
+  /// for `always` if no joint moves the two links apart.
   bool proven = false;
   /// `tried`: number of configurations tried, which are all joints at 0 and others spread evenly over the joints'
   /// limits; 0 where there is a proof. If none of them is in contact and a search then finds one that is, it counts as
-  /// well. `touching`: number of those in which the links are in contact for certain.
-  std::size_t tried = 0, touching = 0;
+  /// well. `touching`: number of those in which the links are in contact for certain; `apart`: in which they certainly
+  /// are not. In the others they are too near to decide.
+  std::size_t tried = 0, touching = 0, apart = 0;
   /// Joint values, rad or m: `always` and `sometimes`: a configuration in contact for certain; `unproven`: where the
   /// links come near each other, if that is known; else empty.
   Eigen::VectorXd configuration;
   /// Upper bound of the smallest distance over the joints' limits, m, if known; else infinite.
   double nearest = 0;
+
+  /// Whether the links touch, or are too near to decide, in every configuration that was tried: as housings that
+  /// overlap in the joint between them.
+  bool touchThroughout() const { return kind != LinkPairKind::never && tried > 0 && apart == 0; }
+  /// Whether no configuration is known in which they touch, and some in which that can't be decided, or none that could
+  /// be tried.
+  bool undecided() const {
+    return kind == LinkPairKind::unproven && !touchThroughout() && (tried == 0 || apart < tried);
+  }
 };
 
 /// How classifyLinkPairs() works.
@@ -96,16 +130,17 @@ struct FCL_ARTIC_EXPORT LinkPairReport {
   std::vector<LinkPairFinding> pairs;            ///< By the links' order in the tree.
   std::shared_ptr<const LinkPairProofs> proofs;  ///< Of the pairs that never touch.
 
-  /// The pairs that always touch, which must be allowed for any motion to be free.
+  /// The pairs that always touch, which must be allowed for any motion to be free. Neighbours are not among them, of
+  /// which a manager finds that out by itself (ArticulatedCollisionManager::setAllowedCollisions()).
   AllowedCollisionMatrix alwaysTouching() const;
-  /// All pairs that need no check within the joints' limits: neighbours and those that never or always touch. For
-  /// programs that know pairs only and no proofs.
+  /// All pairs that need no check within the joints' limits: those that never or always touch, and neighbours that a
+  /// manager would leave out by itself. For programs that know pairs only and no proofs.
   AllowedCollisionMatrix needNoCheck() const;
   /// Number of pairs of a kind.
   std::size_t count(LinkPairKind kind) const;
 };
 
-/// Returns "neighbours", "never", "always", "sometimes" or "unproven".
+/// Returns "never", "always", "sometimes" or "unproven".
 FCL_ARTIC_EXPORT const char* toString(LinkPairKind kind);
 /// Prints toString(kind).
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, LinkPairKind kind);

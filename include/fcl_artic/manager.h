@@ -191,20 +191,37 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup(). A pair
   /// goes with its obstacle or attached object (unregisterObject()); one of two links stays.
   ///
-  /// Neighbours may always touch: links with at most one moving joint between them and no other link with geometry.
-  /// (But a link that a planar or floating joint moves freely in the world is no neighbour of what stands still. Links
-  /// that are rigidly connected through another link with geometry are checked: allow them if they touch by
-  /// construction.)
+  /// Neighbours are links with at most one moving joint between them and no other link with geometry. (But a link that
+  /// a planar or floating joint moves freely in the world is no neighbour of what stands still. Links that are rigidly
+  /// connected through another link with geometry are checked: allow them if they touch by construction.) Of neighbours
+  /// that the matrix neither allows nor has checked (AllowedCollisionMatrix::mustBeChecked()), setup() finds out what
+  /// they do over all values of the joint between them, as classifyLinkPairs() does of all pairs, once and with less
+  /// work:
+  /// - Those that touch whatever the joint does, as housings that overlap in it, are not checked; notes() names them.
+  /// - Those that touch nowhere, proven, or somewhere are checked, for touching: a request's margin and those of the
+  /// two
+  ///   bodies do not count, but only the pair's own (setMargin()) and what a request adds (added_margin).
+  /// - Those of which it can't be decided are not checked, and counted in each answer
+  ///   (CertifiedResult::unproven_neighbours).
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
   /// Lets one more pair touch. Needs setup().
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object.
   void allow(const std::string& a, const std::string& b);
-  /// Has a pair checked again. Neighbours (setAllowedCollisions()) are still not checked. Needs setup().
+  /// Has a pair checked again, also if the two are neighbours. Needs setup().
   /// @throws std::invalid_argument as allow().
   void disallow(const std::string& a, const std::string& b);
-  /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); neighbours are not listed.
+  /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); what the rule for neighbours
+  /// leaves out is not listed.
   const AllowedCollisionMatrix& allowedCollisions() const;
+  /// What setup() found of neighbours that the matrix neither allows nor has checked (setAllowedCollisions()), by the
+  /// links' order in the tree.
+  /// @throws std::logic_error if setup() or update() was not called after the last change.
+  std::vector<LinkPairFinding> neighbours() const;
+  /// What is unusual about the robot as it was set up, one line each: neighbours that are not checked because they
+  /// touch whatever the joint between them does, and those of which that can't be decided.
+  /// @throws std::logic_error if setup() or update() was not called after the last change.
+  std::vector<std::string> notes() const;
 
   /// Finds out what pairs of links do over all values within their joints' limits: which never touch, proven; which
   /// always do; which do sometimes, with a configuration that shows it. All pairs of links with geometry are looked at,
@@ -286,7 +303,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> boundObjects() const;
   /// Returns the pairs of what links carry that queries check against each other (CertifiedRequest::check_self): names
   /// of two links, of a link and an attached object or of two attached objects, each pair once. All others are
-  /// neighbours, allowed, or stand on the same link.
+  /// allowed, neighbours that touch (setAllowedCollisions()), or stand on the same link.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<std::pair<std::string, std::string>> checkedLinkPairs() const;
   /// Returns the pose of a bound or attached geometry's frame in its link's frame.
@@ -321,7 +338,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                                                   const CertifiedRequest& request = {}) const;
   /// Whether the straight way from q0 to q1 in joint space is proven free: the fastest question. False also if contact
   /// can't be excluded within the tolerances, and if the work budget ran out. True says nothing of pairs that are not
-  /// checked: allowed ones, and with ignore_initial_contact those that part nowhere (exceptionsOf() a full answer).
+  /// checked: allowed ones and neighbours without a proof, and with ignore_initial_contact those that part nowhere
+  /// (exceptionsOf() a full answer).
   /// @param q0, q1  tree().dof() joint values each, rad or m.
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
   /// @throws std::invalid_argument, std::logic_error as continuousCollide().

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/result.h"
 
 namespace fcl_artic {

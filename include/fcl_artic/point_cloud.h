@@ -7,6 +7,7 @@
 
 #include <fcl/geometry/collision_geometry.h>
 
+#include "fcl_artic/abi.h"
 #include "fcl_artic/export.h"
 
 namespace fcl_artic {

@@ -126,10 +126,15 @@ struct CertifiedResult : Bracket {
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
   /// Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them.
   std::size_t never_apart_pairs = 0;
-  /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links)
-  /// and that nothing proves apart for this motion and margin, of those the request asks about. `free` says nothing of
-  /// them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours do not count.
+  /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links),
+  /// or neighbours of which it can't be decided whether they touch (unproven_neighbours), and that nothing proves apart
+  /// for this motion and margin, of those the request asks about. `free` says nothing of them;
+  /// ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours that touch whatever the joint
+  /// between them does, as housings that overlap in it, do not count: ArticulatedCollisionManager::notes() names them.
   std::size_t unproven_allowed_pairs = 0;
+  /// Names of the links of those of these pairs that are neighbours which nobody allowed; null: none. (Shared by all
+  /// answers of one set-up.)
+  std::shared_ptr<const std::vector<std::pair<std::string, std::string>>> unproven_neighbours;
   /// The proof that the motion is free, or free until shortly before t_lower; null if the request did not ask for it
   /// (CertifiedPairRequest::certificate).
   std::shared_ptr<const Certificate> certificate;
@@ -150,8 +155,9 @@ struct CertifiedResult : Bracket {
 FCL_ARTIC_EXPORT const char* toString(Status status);
 /// Returns the features with a hyphen, body 1's first, such as "vertex-face"; or "volume".
 FCL_ARTIC_EXPORT const char* toString(FeatureKind kind);
-/// What a free motion's answer says nothing of: allowed pairs without a proof, pairs that touched at the start and were
-/// ignored. Such as "but for 2 allowed pairs not proven apart"; empty if the motion is not free, or there is nothing.
+/// What a free motion's answer says nothing of: allowed pairs and neighbours without a proof, pairs that touched at the
+/// start and were ignored. Such as "but for 2 allowed pairs not proven apart, and for 1 pair of neighbours not proven
+/// apart: base, arm"; empty if the motion is not free, or there is nothing.
 FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedResult& result);
 /// Prints the body's name, or "body" if it has none.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body);
@@ -162,7 +168,7 @@ FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, FeatureKind kind);
 /// Prints verdict and bracket on one line, without a line end: "contact within [0.25, 0.2500001], proven".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const Bracket& bracket);
 /// Prints verdict and bracket on one line, without a line end, and what a verdict of `free` leaves out: "free: proven,
-/// but for 3 allowed pairs not proven apart", "free: nothing was checked, there is no pair of bodies".
+/// but for 3 allowed pairs not proven apart", "nothing was checked, there is no pair of bodies".
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedResult& result);
 /// Prints on one line, without a line end, which bodies touch, with which features, when and where.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedContact& contact);

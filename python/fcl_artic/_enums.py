@@ -99,8 +99,6 @@ class JointType(enum.Enum):
 class LinkPairKind(enum.Enum):
     """What two links do over all values of their joints."""
 
-    NEIGHBOURS = "neighbours"
-    """Never checked: links with at most one moving joint between them."""
     NEVER = "never"
     """Proven apart for all values within the joints' limits."""
     ALWAYS = "always"

@@ -47,9 +47,11 @@ void bindLinkPairs(py::module_& module) {
       .def_readonly("link1", &LinkPairFinding::link1)
       .def_readonly("link2", &LinkPairFinding::link2)
       .def_property_readonly("kind", [](const LinkPairFinding& f) { return memberOf(f.kind); })
+      .def_readonly("neighbours", &LinkPairFinding::neighbours)
       .def_readonly("proven", &LinkPairFinding::proven)
       .def_readonly("tried", &LinkPairFinding::tried)
       .def_readonly("touching", &LinkPairFinding::touching)
+      .def_readonly("apart", &LinkPairFinding::apart)
       .def_property_readonly("configuration", [](const LinkPairFinding& f) { return arrayOf(f.configuration); })
       .def_readonly("nearest", &LinkPairFinding::nearest)
       .def("__repr__", [](const LinkPairFinding& f) {
@@ -87,8 +89,8 @@ void bindLinkPairs(py::module_& module) {
       .def("__len__", [](const LinkPairReport& r) { return r.pairs.size(); })
       .def("__repr__", [](const LinkPairReport& r) {
         std::string text = "<LinkPairReport: " + std::to_string(r.pairs.size()) + " pairs";
-        for (const auto kind : {LinkPairKind::neighbours, LinkPairKind::never, LinkPairKind::always,
-                                LinkPairKind::sometimes, LinkPairKind::unproven}) {
+        for (const auto kind :
+             {LinkPairKind::never, LinkPairKind::always, LinkPairKind::sometimes, LinkPairKind::unproven}) {
           text += ", " + std::to_string(r.count(kind)) + " " + toString(kind);
         }
         return text + ">";

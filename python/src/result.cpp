@@ -168,10 +168,14 @@ py::list namesOf(const Pairs& pairs) {
   return names;
 }
 
+std::vector<std::pair<std::string, std::string>> neighboursOf(const CertifiedResult& r) {
+  return r.unproven_neighbours ? *r.unproven_neighbours : std::vector<std::pair<std::string, std::string>>();
+}
+
 py::tuple resultState(const CertifiedResult& r) {
   return py::make_tuple(state(static_cast<const Bracket&>(r)), state(r.contacts), arrayOf(r.M_0_at_lower),
                         state(r.ignored_initial_contacts), r.unproven_allowed_pairs, state(r.certificate),
-                        statisticsOf(r.statistics), r.never_apart_pairs);
+                        statisticsOf(r.statistics), r.never_apart_pairs, neighboursOf(r));
 }
 
 CertifiedResult resultOfState(const py::tuple& s) {
@@ -184,6 +188,8 @@ CertifiedResult resultOfState(const py::tuple& s) {
   r.certificate = certificateOfState(s[5]);
   r.statistics = statisticsOfDict(s[6]);
   r.never_apart_pairs = py::cast<std::size_t>(s[7]);
+  auto neighbours = py::cast<std::vector<std::pair<std::string, std::string>>>(s[8]);
+  if (!neighbours.empty()) r.unproven_neighbours = std::make_shared<const decltype(neighbours)>(std::move(neighbours));
   return r;
 }
 
@@ -325,6 +331,7 @@ void bindResults(py::module_& module) {
                              [](const CertifiedResult& r) { return namesOf(r.ignored_initial_contacts); })
       .def_readonly("never_apart_pairs", &CertifiedResult::never_apart_pairs)
       .def_readonly("unproven_allowed_pairs", &CertifiedResult::unproven_allowed_pairs)
+      .def_property_readonly("unproven_neighbours", &neighboursOf)
       .def_property_readonly("nothing_checked", &CertifiedResult::nothingChecked)
       .def("__str__", [](const CertifiedResult& r) { return printed(r); })
       .def("__repr__",

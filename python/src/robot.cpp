@@ -14,12 +14,13 @@ namespace fcl_artic::python {
 namespace {
 
 Robot loadRobot(py::handle urdf, py::handle srdf, py::handle packages, py::handle base, bool floating_base,
-                bool solid_meshes, bool collada_up_axis) {
+                bool solid_meshes, bool collada_up_axis, bool import_meshes) {
   const Input file(urdf, "urdf");
   UrdfOptions options;
   options.packages = packagesOf(packages);
   options.solid_meshes = solid_meshes;
   options.collada_up_axis = collada_up_axis;
+  options.import_meshes = import_meshes;
   options.base = poseOf(base, "base");
   options.floating_base = floating_base;
   Robot robot = file.read([&] { return loadUrdf(file.path(), options); });
@@ -44,6 +45,12 @@ std::shared_ptr<fcl::CollisionGeometryd> shapeOf(const fcl::CollisionObjectd& ob
   return std::const_pointer_cast<fcl::CollisionGeometryd>(object.collisionGeometry());
 }
 
+py::frozenset frozensetOf(const AllowedCollisionMatrix::Pairs& names) {
+  py::set pairs;
+  for (const auto& [a, b] : names) pairs.add(py::make_tuple(a, b));
+  return py::frozenset(pairs);
+}
+
 /// Links, joints, shapes, allowed pairs: all that the files said. Meshes that links share are written once. Proofs of
 /// pairs are left out: without them more pairs are checked.
 py::tuple robotState(const Robot& robot) {
@@ -57,7 +64,8 @@ py::tuple robotState(const Robot& robot) {
     if (at == seen.end()) seen.push_back(shape);
     parts.append(py::make_tuple(g.link, arrayOf(g.offset), index, g.source));
   }
-  return py::make_tuple(treeOfRobot(robot.tree), shapes, parts, pairsOf(robot.allowed), robot.notes);
+  return py::make_tuple(treeOfRobot(robot.tree), shapes, parts, pairsOf(robot.allowed), robot.notes,
+                        robot.allowed.complete(), frozensetOf(robot.allowed.disallowedPairs()));
 }
 
 Robot robotOfState(const py::tuple& s) {
@@ -77,6 +85,8 @@ Robot robotOfState(const py::tuple& s) {
     robot.geometry.push_back(std::move(g));
   }
   robot.allowed = matrixOfPairs(s[3], "allowed");
+  robot.allowed.setComplete(py::cast<bool>(s[5]));
+  for (const auto& [a, b] : matrixOfPairs(s[6], "disallowed").pairs()) robot.allowed.disallow(a, b);
   robot.notes = py::cast<std::vector<std::string>>(s[4]);
   return robot;
 }
@@ -101,9 +111,16 @@ Robot combine(const py::sequence& parts, const std::string& name) {
 }  // namespace
 
 py::frozenset pairsOf(const AllowedCollisionMatrix& matrix) {
-  py::set pairs;
-  for (const auto& [a, b] : matrix.pairs()) pairs.add(py::make_tuple(a, b));
-  return py::frozenset(pairs);
+  return frozensetOf(matrix.pairs());
+}
+
+AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what, const AllowedCollisionMatrix& before) {
+  AllowedCollisionMatrix matrix = matrixOfPairs(value, what);
+  matrix.setComplete(before.complete());
+  for (const auto& [a, b] : before.disallowedPairs()) {
+    if (!matrix.allowed(a, b)) matrix.disallow(a, b);
+  }
+  return matrix;
 }
 
 AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what) {
@@ -181,7 +198,10 @@ void bindRobot(py::module_& module) {
       .def_property_readonly("geometry", [](const Robot& r) { return py::cast(r.geometry); })
       .def_property(
           "allowed", [](const Robot& r) { return pairsOf(r.allowed); },
-          [](Robot& r, py::handle pairs) { r.allowed = matrixOfPairs(pairs, "allowed"); })
+          [](Robot& r, py::handle pairs) { r.allowed = matrixOfPairs(pairs, "allowed", r.allowed); })
+      .def_property(
+          "allowed_complete", [](const Robot& r) { return r.allowed.complete(); },
+          [](Robot& r, bool complete) { r.allowed.setComplete(complete); })
       .def_property(
           "proofs", [](const Robot& r) { return Proofs{r.proofs}; },
           [](Robot& r, const Proofs* proofs) { r.proofs = proofs ? proofs->proofs : nullptr; })
@@ -211,7 +231,7 @@ void bindRobot(py::module_& module) {
              "Reads a robot from a URDF file, or from text that begins with '<'; with an SRDF, its allowed pairs too.",
              py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("packages") = py::none(),
              py::arg("base") = py::none(), py::arg("floating_base") = false, py::arg("solid_meshes") = false,
-             py::arg("collada_up_axis") = false);
+             py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
   module.def("combine_robots", &combine,
              "Combines several robots into one, each a tuple (robot, prefix) or (robot, prefix, base).",
              py::arg("parts"), py::arg("name") = "robots");
@@ -222,8 +242,9 @@ void bindRobot(py::module_& module) {
         const auto of = finishedTreeOf(tree);
         return pairsOf(file.read([&] { return loadSrdf(file.path(), *of); }));
       },
-      "Reads the pairs of links that need no check from an SRDF file, as MoveIt does.", py::arg("srdf"),
-      py::arg("tree"));
+      "Reads the pairs of links that need no check from an SRDF file, as MoveIt does: for Robot.allowed. They are all\n"
+      "that may touch: Robot.allowed_complete says so.",
+      py::arg("srdf"), py::arg("tree"));
   module.def(
       "read_srdf",
       [](py::handle srdf, py::handle tree) {

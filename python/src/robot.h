@@ -13,6 +13,8 @@ namespace fcl_artic::python {
 py::frozenset pairsOf(const AllowedCollisionMatrix& matrix);
 /// @param value  pairs of names in any collection. @throws py::type_error naming `what`.
 AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what);
+/// The same with what another matrix says beyond its pairs: whether they are all, and what was disallowed.
+AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what, const AllowedCollisionMatrix& before);
 
 /// Folders of ROS packages, from None or a dict. @throws py::type_error.
 std::map<std::string, std::string> packagesOf(py::handle value);

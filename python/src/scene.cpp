@@ -13,16 +13,24 @@ namespace fcl_artic::python {
 namespace {
 
 Scene load(py::handle path, bool unknown_cells, bool solid_meshes, bool collada_up_axis, double scale,
-           double point_radius, py::handle packages) {
+           double point_radius, py::handle packages, bool import_meshes) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
   SceneOptions options;
   options.unknown_cells = unknown_cells;
   options.solid_meshes = solid_meshes;
   options.collada_up_axis = collada_up_axis;
+  options.import_meshes = import_meshes;
   options.scale = scale;
   options.point_radius = point_radius;
   options.packages = packagesOf(packages);
   return guardFiles(file, [&] { return loadScene(file, options); });
+}
+
+/// A UserWarning of each note, where no object keeps them.
+void warn(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+  }
 }
 
 /// @throws py::value_error naming what is not there.
@@ -41,7 +49,7 @@ void add(Scene& scene, const std::string& name, py::handle geometry, py::handle 
   if (std::any_of(scene.obstacles.begin(), scene.obstacles.end(), taken)) {
     valueError("the scene has an obstacle '" + name + "' already");
   }
-  scene.obstacles.push_back({name, objectOf(geometryOf(geometry, "geometry"), poseOf(pose, "pose"))});
+  scene.obstacles.push_back({name, objectOf(geometryOf(geometry, "geometry"), poseOf(pose, "pose")), {}});
 }
 
 Geometry geometryOfObstacle(const Scene::Obstacle& o) {
@@ -52,7 +60,7 @@ py::tuple sceneState(const Scene& scene) {
   py::list obstacles;
   for (const Scene::Obstacle& o : scene.obstacles) {
     obstacles.append(py::make_tuple(o.name, geometryState(geometryOfObstacle(o)),
-                                    arrayOf(Eigen::Isometry3d(o.object->getTransform()))));
+                                    arrayOf(Eigen::Isometry3d(o.object->getTransform())), o.shape_of));
   }
   return py::make_tuple(obstacles, scene.notes);
 }
@@ -61,7 +69,8 @@ Scene sceneOfState(const py::tuple& s) {
   Scene scene;
   for (const py::handle item : py::list(s[0])) {
     const auto o = py::reinterpret_borrow<py::tuple>(item);
-    scene.obstacles.push_back({py::cast<std::string>(o[0]), objectOf(geometryOfState(o[1]), poseOf(o[2], "pose"))});
+    scene.obstacles.push_back({py::cast<std::string>(o[0]), objectOf(geometryOfState(o[1]), poseOf(o[2], "pose")),
+                               py::cast<std::string>(o[3])});
   }
   scene.notes = py::cast<std::vector<std::string>>(s[1]);
   return scene;
@@ -72,6 +81,7 @@ Scene sceneOfState(const py::tuple& s) {
 void bindScene(py::module_& module) {
   py::class_<Scene::Obstacle>(module, "Obstacle", "One obstacle of a scene.")
       .def_readonly("name", &Scene::Obstacle::name)
+      .def_readonly("shape_of", &Scene::Obstacle::shape_of)
       .def_property_readonly("geometry", &geometryOfObstacle)
       .def_property_readonly(
           "pose", [](const Scene::Obstacle& o) { return arrayOf(Eigen::Isometry3d(o.object->getTransform())); })
@@ -105,28 +115,40 @@ void bindScene(py::module_& module) {
 
   module.def(
       "load_scene", &load,
-      "Reads a scene: a mesh in any format that assimp reads, URDF, MoveIt's .scene, OctoMap's .bt and .ot, points\n"
-      "(.pcd, .xyz, .ply without faces), each a ball of `point_radius`.",
+      "Reads a scene: a mesh (.stl, .obj, .ply, .off, .dae, .gltf, .glb; with `import_meshes` others, by assimp), "
+      "URDF,\n"
+      "MoveIt's .scene, OctoMap's .bt and .ot, points (.pcd, .xyz, .ply without faces), each a ball of `point_radius`.",
       py::arg("path"), py::kw_only(), py::arg("unknown_cells") = false, py::arg("solid_meshes") = false,
       py::arg("collada_up_axis") = false, py::arg("scale") = 1.0, py::arg("point_radius") = 0.0,
-      py::arg("packages") = py::none());
+      py::arg("packages") = py::none(), py::arg("import_meshes") = false);
   module.def(
       "load_mesh",
-      [](py::handle path, py::handle scale, bool solid, bool collada_up_axis) {
+      [](py::handle path, py::handle scale, bool solid, bool collada_up_axis, bool import_meshes) {
         const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
         const Eigen::Vector3d factors =
             scale.is_none() ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : vector3Of(scale, "scale");
-        return Geometry{guardFiles(file, [&] { return loadMesh(file, factors, nullptr, solid, collada_up_axis); })};
+        std::vector<std::string> notes;
+        const Geometry mesh{
+            guardFiles(file, [&] { return loadMesh(file, factors, &notes, solid, collada_up_axis, import_meshes); })};
+        warn(notes);
+        return mesh;
       },
-      "Reads a mesh in any format that assimp reads; `scale` has a factor for each axis.", py::arg("path"),
-      py::kw_only(), py::arg("scale") = py::none(), py::arg("solid") = false, py::arg("collada_up_axis") = false);
+      "Reads a mesh (.stl, .obj, .ply, .off, .dae, .gltf, .glb; with `import_meshes` others, by assimp); `scale` has "
+      "a\n"
+      "factor for each axis. What is unusual, as what was left out, is a UserWarning.",
+      py::arg("path"), py::kw_only(), py::arg("scale") = py::none(), py::arg("solid") = false,
+      py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
   module.def(
       "load_points",
       [](py::handle path, double radius) {
         const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-        return Geometry{guardFiles(file, [&] { return loadPointCloud(file, radius); })};
+        std::vector<std::string> notes;
+        const Geometry cloud{guardFiles(file, [&] { return loadPointCloud(file, radius, &notes); })};
+        warn(notes);
+        return cloud;
       },
-      "Reads a point cloud (.pcd, .ply, .xyz): each point a ball of this radius.", py::arg("path"), py::arg("radius"));
+      "Reads a point cloud (.pcd, .ply, .xyz): each point a ball of this radius. What was left out is a UserWarning.",
+      py::arg("path"), py::arg("radius"));
   module.def(
       "combine_scenes",
       [](const std::vector<Scene>& scenes, py::handle tree) { return combineScenes(scenes, *treeOf(tree)); },

@@ -38,7 +38,7 @@ static std::vector<World::Body> bodiesOf(const Scene& scene) {
   for (const Scene::Obstacle& o : scene.obstacles) {
     const Geometry geometry{std::const_pointer_cast<fcl::CollisionGeometryd>(o.object->collisionGeometry())};
     const Eigen::Isometry3d pose(o.object->getTransform());
-    bodies.push_back({o.name, objectOf(geometry, pose), pose});
+    bodies.push_back({o.name, objectOf(geometry, pose), pose, -1, Eigen::Isometry3d::Identity(), o.shape_of, {}});
   }
   return bodies;
 }
@@ -103,66 +103,132 @@ void World::remove(const std::string& name) {
                     });
     return;
   }
-  const auto object = find(name).object;
+  const std::vector<Body> all = find(name);
   manager_.change(
-      [&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object); },
+      [&](ArticulatedCollisionManager& manager) {
+        for (const Body& body : all) manager.unregisterObject(body.object);
+      },
       [&] {
-        bodies_.erase(std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == object; }));
+        for (const Body& body : all) {
+          bodies_.erase(
+              std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == body.object; }));
+        }
       });
 }
 
+/// Does something for all shapes of an object, or for none.
+/// @param undo  for one for which it was done.
+template <class Do, class Undo>
+static void forAll(const std::vector<World::Body>& all, const Do& act, const Undo& undo) {
+  std::size_t done = 0;
+  try {
+    for (; done < all.size(); ++done) act(all[done]);
+  } catch (...) {
+    while (done > 0) undo(all[--done]);
+    throw;
+  }
+}
+
+/// Where a shape of an object goes, when the object's first one goes to `pose`.
+static Eigen::Isometry3d poseWith(const World::Body& first, const World::Body& shape, const Eigen::Isometry3d& pose) {
+  return &first == &shape ? pose : pose * first.pose.inverse() * shape.pose;
+}
+
 void World::move(const std::string& name, const Eigen::Isometry3d& pose) {
-  const Body body = find(name);
-  if (body.carrier >= 0) valueError("'" + name + "' is carried by a link; detach it at a pose");
+  const std::vector<Body> all = find(name);
+  for (const Body& body : all) {
+    if (body.carrier >= 0) valueError("'" + body.name + "' is carried by a link; detach it at a pose");
+  }
   manager_.change(
       [&](ArticulatedCollisionManager& manager) {
-        const Eigen::Isometry3d before(body.object->getTransform());
-        body.object->setTransform(pose);
-        try {
+        const auto place = [&](const Body& body, const Eigen::Isometry3d& at) {
+          body.object->setTransform(at);
           manager.update(body.object);
-        } catch (...) {
-          body.object->setTransform(before);
-          throw;
-        }
+        };
+        forAll(
+            all,
+            [&](const Body& body) {
+              try {
+                place(body, poseWith(all[0], body, pose));
+              } catch (...) {
+                body.object->setTransform(body.pose);
+                throw;
+              }
+            },
+            [&](const Body& body) { place(body, body.pose); });
       },
-      [&] { ofObject(body.object).pose = pose; });
+      [&] {
+        for (const Body& body : all) ofObject(body.object).pose = poseWith(all[0], body, pose);
+      });
 }
 
 void World::attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
                    const std::vector<std::string>& touch_links) {
-  const auto object = find(name).object;
-  manager_.change([&](ArticulatedCollisionManager& manager) { manager.attach(link, object, offset, touch_links); },
-                  [&] {
-                    Body& body = ofObject(object);
-                    body.carrier = link;
-                    body.offset = offset;
-                  });
-}
-
-void World::detach(const std::string& name, const std::optional<Eigen::Isometry3d>& pose) {
-  const auto object = find(name).object;
+  const std::vector<Body> all = find(name);
   manager_.change(
       [&](ArticulatedCollisionManager& manager) {
-        const Eigen::Isometry3d before(object->getTransform());
-        if (pose) object->setTransform(*pose);
-        try {
-          manager.detach(object);
-        } catch (...) {
-          object->setTransform(before);
-          throw;
-        }
+        forAll(
+            all,
+            [&](const Body& body) { manager.attach(link, body.object, poseWith(all[0], body, offset), touch_links); },
+            [&](const Body& body) { manager.detach(body.object); });
       },
       [&] {
-        Body& body = ofObject(object);
-        body.carrier = -1;
-        if (pose) body.pose = *pose;
+        for (const Body& carried : all) {
+          Body& body = ofObject(carried.object);
+          body.carrier = link;
+          body.offset = poseWith(all[0], carried, offset);
+          body.touch_links = touch_links;
+        }
       });
 }
 
-const World::Body& World::find(const std::string& name) const {
-  const auto at = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.name == name; });
-  if (at == bodies_.end()) refuseName(name);
-  return *at;
+void World::detach(const std::string& name, const std::optional<Eigen::Isometry3d>& pose) {
+  const std::vector<Body> all = find(name);
+  const auto poseOf = [&](const Body& body) { return pose ? poseWith(all[0], body, *pose) : body.pose; };
+  manager_.change(
+      [&](ArticulatedCollisionManager& manager) {
+        forAll(
+            all,
+            [&](const Body& body) {
+              const Eigen::Isometry3d before(body.object->getTransform());
+              body.object->setTransform(poseOf(body));
+              try {
+                manager.detach(body.object);
+              } catch (...) {
+                body.object->setTransform(before);
+                throw;
+              }
+            },
+            [&](const Body& body) {
+              body.object->setTransform(body.pose);
+              manager.attach(body.carrier, body.object, body.offset, body.touch_links);
+            });
+      },
+      [&] {
+        for (const Body& carried : all) {
+          Body& body = ofObject(carried.object);
+          body.carrier = -1;
+          body.pose = poseOf(carried);
+        }
+      });
+}
+
+std::vector<World::Body> World::find(const std::string& name) const {
+  std::vector<Body> all;
+  for (const Body& body : bodies_) {
+    if (body.name == name || body.shape_of == name) all.push_back(body);
+  }
+  if (all.empty()) refuseName(name);
+  return all;
+}
+
+std::vector<std::string> World::namesOf(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Body& body : bodies_) {
+    if (body.name == name || body.shape_of == name) names.push_back(body.name);
+  }
+  if (names.empty()) names.push_back(name);
+  return names;
 }
 
 World::Body& World::ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object) {
@@ -286,6 +352,17 @@ std::shared_ptr<const VisibilityCuller> cullerOf(VisibilityExecutor executor, co
 #endif
 }
 
+/// Changes a pair of names, each shape of an object with each.
+template <class Change>
+void forEachPair(World& world, const std::string& a, const std::string& b, const Change& change) {
+  const std::vector<std::string> of_a = world.namesOf(a), of_b = world.namesOf(b);
+  world.manager().change([&](ArticulatedCollisionManager& manager) {
+    for (const std::string& x : of_a) {
+      for (const std::string& y : of_b) change(manager, x, y);
+    }
+  });
+}
+
 template <class Kind>
 py::list namesOf(const std::vector<Kind>& all, const std::function<bool(const Kind&)>& take) {
   py::list names;
@@ -357,35 +434,37 @@ void bindChanges(py::class_<World>& world) {
       .def(
           "allow",
           [](World& w, const std::string& a, const std::string& b) {
-            w.manager().change([&](ArticulatedCollisionManager& m) { m.allow(a, b); });
+            forEachPair(w, a, b, [](auto& m, const auto& x, const auto& y) { m.allow(x, y); });
           },
           "Lets a pair touch: it is not checked any more.", py::arg("a"), py::arg("b"))
       .def(
           "disallow",
           [](World& w, const std::string& a, const std::string& b) {
-            w.manager().change([&](ArticulatedCollisionManager& m) { m.disallow(a, b); });
+            forEachPair(w, a, b, [](auto& m, const auto& x, const auto& y) { m.disallow(x, y); });
           },
-          "Has a pair checked again.", py::arg("a"), py::arg("b"))
+          "Has a pair checked again, also if the two are neighbours.", py::arg("a"), py::arg("b"))
       .def_property(
           "allowed", [](const World& w) { return pairsOf(w.allowed()); },
           [](World& w, py::handle pairs) {
-            const AllowedCollisionMatrix matrix = matrixOfPairs(pairs, "allowed");
+            const AllowedCollisionMatrix matrix = matrixOfPairs(pairs, "allowed", w.allowed());
             w.manager().change([&](ArticulatedCollisionManager& m) { m.setAllowedCollisions(matrix); });
           },
-          "The pairs that may touch, but for neighbours.")
+          "The pairs that may touch; neighbours that World leaves out (notes) are not among them.")
       .def(
           "set_margin",
           [](World& w, const std::string& body, py::handle second, py::handle margin) {
             const bool pair = !margin.is_none();
             const double m = numberOf(pair ? margin : second, "margin");
             const std::string other = pair ? py::cast<std::string>(second) : std::string();
-            w.manager().change([&](ArticulatedCollisionManager& manager) {
-              if (pair) {
-                manager.setMargin(body, other, m);
-              } else {
-                manager.setMargin(body, m);
-              }
-            });
+            if (pair) {
+              forEachPair(w, body, other,
+                          [m](auto& manager, const auto& x, const auto& y) { manager.setMargin(x, y, m); });
+            } else {
+              const std::vector<std::string> names = w.namesOf(body);
+              w.manager().change([&](ArticulatedCollisionManager& manager) {
+                for (const std::string& name : names) manager.setMargin(name, m);
+              });
+            }
           },
           "set_margin(body, margin) sets a body's own margin, set_margin(a, b, margin) a pair's, in m.",
           py::arg("body"), py::arg("other_or_margin"), py::arg("margin") = py::none())
@@ -491,6 +570,18 @@ void bindWorld(py::module_& module) {
                                }
                                return attached;
                              })
+      .def_property_readonly(
+          "notes",
+          [](const World& w) {
+            return w.manager().look([](const ArticulatedCollisionManager& manager) { return manager.notes(); });
+          },
+          "What is unusual about robot and pairs, a list of texts: neighbours that are not checked, and why.")
+      .def_property_readonly(
+          "neighbours",
+          [](const World& w) {
+            return w.manager().look([](const ArticulatedCollisionManager& manager) { return manager.neighbours(); });
+          },
+          "What was found of neighbours that nobody allowed or disallowed, a list of LinkPairFinding.")
       .def_property_readonly("names", &World::names)
       .def(
           "pose",

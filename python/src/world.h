@@ -29,6 +29,8 @@ class World {
     Eigen::Isometry3d pose;  ///< the object's, which queries read without the GIL; not while a link carries it
     LinkId carrier = -1;     ///< -1: an obstacle
     Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();
+    std::string shape_of = {};  ///< as Scene::Obstacle::shape_of
+    std::vector<std::string> touch_links = {};
   };
   /// What moves by itself.
   struct Mover {
@@ -53,6 +55,7 @@ class World {
   void replaceScene(const Scene& scene);
   void add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose);
   void addMoving(const std::string& name, const Geometry& geometry, const Motion& motion);
+  /// Members that take a name of an object with several shapes do for all of them what they do for one.
   void remove(const std::string& name);
   void move(const std::string& name, const Eigen::Isometry3d& pose);
   void attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
@@ -63,8 +66,12 @@ class World {
   Guarded<ArticulatedCollisionManager>& manager() { return manager_; }
   const Guarded<ArticulatedCollisionManager>& manager() const { return manager_; }
 
+  /// Names of all bodies that a name stands for: of a whole object, its shapes; of other names themselves.
+  std::vector<std::string> namesOf(const std::string& name) const;
+
  private:
-  const Body& find(const std::string& name) const;
+  /// The bodies that a name stands for, the object's first shape first.
+  std::vector<Body> find(const std::string& name) const;
   /// What has the object, which the manager has.
   Body& ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object);
   [[noreturn]] void refuseName(const std::string& name) const;

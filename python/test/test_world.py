@@ -259,6 +259,21 @@ def test_a_scene_that_is_refused_replaces_nothing(world, scene, hit):
     assert world.obstacles == scene.names and world.check(*hit).t_lower == before.t_lower
 
 
+def test_what_is_left_out_of_points_and_meshes_is_a_warning(tmp_path):
+    points = tmp_path / "scan.xyz"
+    points.write_text("1 2 3\nnan nan nan\n")
+    with pytest.warns(UserWarning, match="1 of 2 points are not finite"):
+        fcl_artic.load_points(points, 0.01)
+    mesh = tmp_path / "wire.obj"
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n")
+    with pytest.warns(UserWarning, match="its lines, 1, have no surface"):
+        fcl_artic.load_mesh(mesh)
+    other = tmp_path / "part.ac"
+    other.write_text("AC3Db\n")
+    with pytest.raises(ValueError, match="import_meshes"):
+        fcl_artic.load_mesh(other)
+
+
 def test_the_instruction_set_has_a_name():
     assert fcl_artic.instruction_set() in ("avx512", "avx2", "sse2", "neon", "portable")
 

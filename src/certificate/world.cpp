@@ -10,7 +10,6 @@
 #include "certificate/sha256.h"
 #include "kinematics/joint_factors.h"
 #include "numerics/assertion.h"
-#include "setup/neighbours.h"
 
 #include "numerics/baseline_isa.h"
 
@@ -113,7 +112,7 @@ int addFrames(const std::string& name, const BodyMotion& motion, World& world) {
                                                                 : Element::Kind::slide;
     for (int k = 0; k < rows; ++k) {
       element.variable = static_cast<int>(world.variables.size());
-      element.axis = vector ? Eigen::Vector3d::Unit(k) : step.axis;
+      element.axis = vector ? Eigen::Vector3d(Eigen::Vector3d::Unit(k)) : step.axis.vector();
       if (k == 0 || element.kind == Element::Kind::slide) frame.elements.push_back(element);
       world.variables.push_back(frame.name + "/" + std::to_string(k));
       const Eigen::Index row = world.moving.rows();
@@ -404,15 +403,21 @@ class ManagedWorld {
   const char* excuse(const ManagedBody& a, const ManagedBody& b) const {
     if (a.link < 0 && b.link < 0) return "";
     if (a.link == b.link) return "";
-    if (!registry_.mayTouch(a, b)) return "allowed";
-    if (a.link < 0 || b.link < 0) return nullptr;
-    if (a.mayTouchLink(b) || b.mayTouchLink(a)) return "touch-link";
-    if (!a.attached && !b.attached && areNeighbours(tree_, with_geometry_, a.link, b.link)) return "neighbours";
+    if (a.link < 0 || b.link < 0) return registry_.mayTouch(a, b) ? nullptr : "allowed";
+    switch (registry_.excuseOf(a, b)) {
+      case Excuse::allowed:
+        return "allowed";
+      case Excuse::touch_link:
+        return "touch-link";
+      case Excuse::neighbours:
+        return "neighbours";
+      case Excuse::none:
+        return nullptr;
+    }
     return nullptr;
   }
 
   void addPairs() {
-    with_geometry_ = registry_.linksWithGeometry();
     for (std::size_t i = 0; i < managed_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         const char* reason = excuse(*managed_[i], *managed_[j]);
@@ -431,7 +436,6 @@ class ManagedWorld {
   World& world_ = builder_.world;
   std::vector<int> frame_of_link_;
   std::vector<const ManagedBody*> managed_;  ///< of each body
-  std::set<LinkId> with_geometry_;
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 // (fcl/fcl_geometry.cpp) are all that queries of a new kind need. Certificates need three things more: its text in
 // certificate/world.cpp, its inside in certificate/witness.cpp, and in verify/, which shares no code with the library,
 // a Geometry::Kind (support.h) with its own reader (statement.cpp), support bound (support.cpp) and inside
-// (contact.cpp). doc/DESIGN_NOTES.md, "Six changes", also lists what pictures, Python and adapters need.
+// (contact.cpp). doc/ARCHITECTURE.md, "Where to extend", also lists what pictures, Python and adapters need.
 //
 // A new kind: its value in PieceKind (model/piece.h), a struct here, a case in withKind(). A case or an answer that is
 // missing does not compile; where a kind has no simple answer `Unknown` has one that is always right.

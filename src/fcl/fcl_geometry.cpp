@@ -127,7 +127,7 @@ std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<type
   if (std::abs(n.squaredNorm() - 1) > 4e-16) {  // else it is as good as it gets
     n /= largest;
     d = d / largest / n.norm();
-    n.normalize();
+    n = UnitVector::within3Ulps(n).value();
   }
   if (!(std::abs(d) <= 1e9)) throw std::invalid_argument("its offset is not finite or beyond 1e9 m");
   Piece piece;
@@ -368,21 +368,9 @@ std::shared_ptr<const ShapeTree> readNamed(const fcl::CollisionGeometry<S>& geom
   }
 }
 
-Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, double most, const std::string& what) {
-  if (!M.matrix().allFinite()) throw std::invalid_argument(what + " has a transform that is not finite");
-  const Eigen::Matrix3d R = M.linear();
-  const double defect = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (defect <= most && R.determinant() < 0) {
-    throw std::invalid_argument(what + " has a transform that is a reflection (its determinant is -1)");
-  }
-  if (defect > most) {
-    throw std::invalid_argument(what + " has a transform whose rotation is not orthonormal (defect " + shown(defect) +
-                                ")");
-  }
-  if (M.translation().cwiseAbs().maxCoeff() > 1e9) throw std::invalid_argument(what + " is more than 1e9 m away");
-  Eigen::Isometry3d rigid = M;
-  rigid.linear() = orthonormal(R);
-  return rigid;
+RigidTransform requireRigid(const Eigen::Isometry3d& M, double most, const std::string& what) {
+  if (const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(M, most)) return *rigid;
+  throw std::invalid_argument(what + " " + whyNotRigid(M, most));
 }
 
 }  // namespace
@@ -543,11 +531,11 @@ std::intptr_t ocTreeCellId(const fcl::OcTree<S>& tree, const Eigen::Vector3d& po
 }
 #endif
 
-Eigen::Isometry3d requireRigid(const Eigen::Isometry3d& M, const std::string& what) {
+RigidTransform requireRigid(const Eigen::Isometry3d& M, const std::string& what) {
   return requireRigid(M, 1e-6, what);
 }
 
-Eigen::Isometry3d requireRigid(const Eigen::Isometry3f& M, const std::string& what) {
+RigidTransform requireRigid(const Eigen::Isometry3f& M, const std::string& what) {
   return requireRigid(M.cast<double>(), 1e-5, what);
 }
 

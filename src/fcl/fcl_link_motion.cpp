@@ -78,24 +78,28 @@ std::array<Vector3d, 4> corners(const fcl::RSSd& rss) {
   return {rss.To, rss.To + u, rss.To + v, rss.To + u + v};
 }
 
-bool isRigid(const Isometry3d& M) {
-  const Eigen::Matrix3d R = M.linear();
-  return M.matrix().allFinite() && (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-9 &&
-         R.determinant() > 0;
+/// How far R^T R of an offset may be from the identity, in each entry; it is made orthonormal then.
+constexpr double kOffsetDefect = 1e-9;
+
+double startOf(const MotionElement& step) {
+  return step.coefficients(0, 0);
+}
+double rateOf(const MotionElement& step) {
+  return step.coefficients(0, 1);
 }
 
 }  // namespace
 
 FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motion, LinkId link,
-                             const Isometry3d& offset)
-    : tail_(offset) {
+                             const Isometry3d& offset) {
   if (link < 0 || link >= tree.numLinks()) {
     throw std::out_of_range("FclLinkMotion: robot '" + tree.name() + "' has no link number " + std::to_string(link));
   }
   motion.requireOf(tree, "FclLinkMotion: the motion");
-  if (!isRigid(offset)) {
+  const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(offset, kOffsetDefect);
+  if (!rigid) {
     throw std::invalid_argument("FclLinkMotion: offset of the geometry on link '" + tree.linkName(link) +
-                                "' is not rigid");
+                                "' is not rigid: it " + whyNotRigid(offset, kOffsetDefect));
   }
 
   motion.requirePolynomial("FclLinkMotion");
@@ -106,13 +110,19 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
 
   std::vector<JointId> path;  // from the link up to its root
   for (LinkId l = link; tree.parentJoint(l) >= 0; l = tree.parentLink(l)) path.push_back(tree.parentJoint(l));
-  Isometry3d fixed = Isometry3d::Identity();
+  const auto chain = std::make_shared<BodyMotion>();
+  RigidTransform fixed;
   for (auto j = path.rbegin(); j != path.rend(); ++j) {
     const Joint& joint = tree.joint(*j);
-    fixed = fixed * joint.origin;
-    const auto addStep = [&](const Vector3d& axis, bool prismatic, double value, double rate) {
-      chain_.push_back({fixed, axis, prismatic, value, rate});
-      fixed.setIdentity();
+    fixed = fixed * originOf(joint);
+    const auto addStep = [&](const UnitVector& axis, bool prismatic, double value, double rate) {
+      MotionElement& step = chain->elements.emplace_back();
+      step.kind = prismatic ? MotionElement::Kind::prismatic : MotionElement::Kind::revolute;
+      step.before = fixed;
+      step.axis = axis;
+      step.coefficients(0, 0) = value;
+      step.coefficients(0, 1) = rate;
+      fixed = RigidTransform();
     };
     for (const JointFactor& factor : factorsOf(joint)) {
       const int v = tree.jointVariable(*j) + factor.variable;
@@ -126,73 +136,65 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
         }
         case JointFactor::Kind::slide:
           for (int k = 0; k < 3; ++k) {
-            addStep(Vector3d::Unit(k), true, motion.variables()(v + k, 0), motion.variables()(v + k, 1));
+            addStep(UnitVector::along(k), true, motion.variables()(v + k, 0), motion.variables()(v + k, 1));
           }
           break;
         case JointFactor::Kind::turn: {  // about one axis, applied to the orientation at the start
           const Vector3d w = motion.variables().block<3, 1>(v, 1);
-          if (const double angle = w.norm(); angle > 0) addStep(w / angle, false, 0, angle);
+          const std::optional<UnitVector> axis = UnitVector::within3Ulps(w);
+          if (axis) addStep(*axis, false, 0, lengthAlong(*axis, w));
           using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-          fixed.linear() = fixed.linear() * RowMajor::Map(&motion.orientations()[9 * quaternionNumber(tree, *j)]);
+          const Eigen::Matrix3d R0 = RowMajor::Map(&motion.orientations()[9 * quaternionNumber(tree, *j)]);
+          fixed = fixed * RigidTransform(Rotation::within12Ulps(R0, 1e-12).value(), Vector3d::Zero());
           break;
         }
       }
     }
   }
-  tail_ = fixed * offset;
+  chain->after = fixed * *rigid;
+  chain_ = chain;
 
   const auto addSegment = [this](double length, double rate) {
     speed_ += angle_ * length + rate;
     acceleration_ += angle_ * (angle_ * length + 2 * rate);
   };
-  for (const Step& step : chain_) {
-    const Vector3d s = step.origin.translation();
-    if (step.prismatic) {
-      const Vector3d a = step.origin.linear() * step.axis;
-      const double length = std::max((s + a * step.q0).norm(), (s + a * (step.q0 + step.rate)).norm());
-      addSegment(length, std::abs(step.rate));
+  for (const MotionElement& step : chain_->elements) {
+    const Vector3d s = step.before.translation();
+    const double q0 = startOf(step), rate = rateOf(step);
+    if (step.kind == MotionElement::Kind::prismatic) {
+      const Vector3d a = step.before.linear() * step.axis.vector();
+      addSegment(std::max((s + a * q0).norm(), (s + a * (q0 + rate)).norm()), std::abs(rate));
     } else {
       addSegment(s.norm(), 0);
-      angle_ += std::abs(step.rate);
+      angle_ += std::abs(rate);
     }
   }
-  addSegment(tail_.translation().norm(), 0);
+  addSegment(chain_->after.translation().norm(), 0);
   state_ = stateAt(0);
 }
 
-BodyMotion bodyMotion(const FclLinkMotion& motion) {
-  BodyMotion body;
-  for (const FclLinkMotion::Step& step : motion.chain_) {
-    MotionElement element;
-    element.kind = step.prismatic ? MotionElement::Kind::prismatic : MotionElement::Kind::revolute;
-    element.before = step.origin;
-    element.axis = step.axis;
-    element.coefficients(0, 0) = step.q0;
-    element.coefficients(0, 1) = step.rate;
-    body.elements.push_back(element);
-  }
-  body.after = motion.tail_;
-  return body;
+const BodyMotion& bodyMotion(const FclLinkMotion& motion) {
+  return *motion.chain_;
 }
 
 FclLinkMotion::State FclLinkMotion::stateAt(double t) const {
   State state;
   state.t = t;
   Isometry3d& M = state.M_0g;
-  for (const Step& step : chain_) {
-    M = M * step.origin;
-    const Vector3d v = M.linear() * step.axis * step.rate;
-    const double q = step.q0 + t * step.rate;
-    if (step.prismatic) {
+  for (const MotionElement& step : chain_->elements) {
+    M = M * step.before;
+    const Vector3d v = M.linear() * step.axis.vector() * rateOf(step);
+    const double q = startOf(step) + t * rateOf(step);
+    if (step.kind == MotionElement::Kind::prismatic) {
       state.velocity += v;
-      M.translate(step.axis * q);
+      M.translate(step.axis.vector() * q);
     } else {
       state.angular += v;
       state.velocity += M.translation().cross(v);
-      M.rotate(Eigen::AngleAxisd(q, step.axis));
+      M.rotate(Eigen::AngleAxisd(q, step.axis.vector()));
     }
   }
-  M = M * tail_;
+  M = M * chain_->after;
   return state;
 }
 

@@ -82,24 +82,11 @@ void requireLength(const Vector3d& v, const N& name, const char* what) {
 
 /// What readTransform() does.
 template <class S, class N>
-Isometry3d readRigid(const fcl::Transform3<S>& M, const N& name) {
-  const bool finite = (M.matrix().array() * S(0)).sum() == 0;
-  require(finite, name, "has a transform that is not finite");
-  const Matrix3d R = M.linear().template cast<double>();
-  const Matrix3d defect = orthonormalityDefect(R);
-  const double largest = defect.cwiseAbs().maxCoeff();
-  const bool orthonormal_enough = largest <= (std::is_same<S, float>::value ? 1e-4 : 1e-6);
-  require(!orthonormal_enough || R.determinant() > 0, name, "has a transform that is a reflection");
-  if (!orthonormal_enough) {
-    throw std::invalid_argument(spelled(name) + " has a transform whose rotation is not orthonormal (defect " +
-                                shown(largest) + ")");
-  }
-  Isometry3d rigid;
-  rigid.linear() = orthonormal(R, defect);
-  rigid.translation() = M.translation().template cast<double>();
-  rigid.makeAffine();
-  require(rigid.translation().cwiseAbs().maxCoeff() <= kFarthest, name, "is more than 1e9 m away");
-  return rigid;
+RigidTransform readRigid(const fcl::Transform3<S>& M, const N& name) {
+  constexpr double kMost = std::is_same<S, float>::value ? 1e-4 : 1e-6;
+  const Isometry3d stored(M.template cast<double>());
+  if (const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(stored, kMost)) return *rigid;
+  throw std::invalid_argument(spelled(name) + " " + whyNotRigid(stored, kMost));
 }
 
 MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d& velocity) {
@@ -110,7 +97,7 @@ MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d
   return element;
 }
 
-void addTurn(BodyMotion& motion, const Vector3d& axis, double angle) {
+void addTurn(BodyMotion& motion, const UnitVector& axis, double angle) {
   MotionElement& element = motion.elements.emplace_back();
   element.kind = MotionElement::Kind::revolute;
   element.axis = axis;
@@ -118,19 +105,22 @@ void addTurn(BodyMotion& motion, const Vector3d& axis, double angle) {
 }
 
 /// The frame turns about `axis`, while its point o goes along a straight line from where it is at first.
-BodyMotion lineWithTurn(const Isometry3d& begin, const Vector3d& o, const Vector3d& velocity, const Vector3d& axis,
-                        double angle) {
+BodyMotion lineWithTurn(const RigidTransform& begin, const Vector3d& o, const Vector3d& velocity,
+                        const UnitVector& axis, double angle) {
   BodyMotion motion;
-  motion.after = begin;
   if (angle == 0) {
     addSlide(motion, begin.translation(), velocity);
-    motion.after.translation().setZero();
+    motion.after = begin.at(Vector3d::Zero());
   } else {
     addSlide(motion, begin * o, velocity);
     addTurn(motion, axis, angle);
-    motion.after.translation() = begin.linear() * -o;
+    motion.after = begin.at(begin.linear() * -o);
   }
   return motion;
+}
+/// The frame's origin goes along a straight line, nothing turns.
+BodyMotion line(const RigidTransform& begin, const Vector3d& velocity) {
+  return lineWithTurn(begin, Vector3d::Zero(), velocity, UnitVector(), 0);
 }
 
 /// A turn by `angle` in (0, pi] about `axis`, with a slide along it, that takes the frame's origin by the vector o.
@@ -145,13 +135,14 @@ BodyMotion lineWithTurn(const Isometry3d& begin, const Vector3d& o, const Vector
 ///
 /// which in powers of t needs only angle w and angle b, both of the size of o. Cut off after t^5 it is in error by at
 /// most (angle^7 / 5040) |b| + (angle^6 / 720) |w| < angle^5 |o_| / 700, which for angle <= 1e-3 is 1.5e-18 |o_|.
-BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axis, double angle) {
+BodyMotion screw(const RigidTransform& begin, const Vector3d& o, const UnitVector& direction, double angle) {
   constexpr double kSmallAngle = 1e-3;
+  constexpr double kNoAngle = 1e-150;  // half of it may vanish, and its square is nothing
+  const Vector3d& axis = direction;
   const Vector3d along = axis.dot(o) * axis, across = o - along, normal = axis.cross(o);
-  const double half_cot = angle / 2 / std::tan(angle / 2);  // times angle / 2
+  const double half_cot = angle > kNoAngle ? angle / 2 / std::tan(angle / 2) : 1;  // times angle / 2
   const Vector3d angle_w = -(0.5 * angle * across + half_cot * normal);
   BodyMotion motion;
-  motion.after = begin;
   if (angle <= kSmallAngle) {
     const Vector3d angle_b = half_cot * across - 0.5 * angle * normal;
     MotionElement& path = addSlide(motion, begin.translation(), along + angle_b);
@@ -159,13 +150,13 @@ BodyMotion screw(const Isometry3d& begin, const Vector3d& o, const Vector3d& axi
     path.coefficients.col(3) = -angle * angle / 6 * angle_b;
     path.coefficients.col(4) = angle * angle * angle / 24 * angle_w;
     path.coefficients.col(5) = angle * angle * angle * angle / 120 * angle_b;
-    addTurn(motion, axis, angle);
-    motion.after.translation().setZero();
+    addTurn(motion, direction, angle);
+    motion.after = begin.at(Vector3d::Zero());
   } else {
     const Vector3d w = angle_w / angle;
     addSlide(motion, begin.translation() - w, along);
-    addTurn(motion, axis, angle);
-    motion.after.translation() = w;
+    addTurn(motion, direction, angle);
+    motion.after = begin.at(w);
   }
   return motion;
 }
@@ -177,26 +168,26 @@ BodyMotion readTranslation(const fcl::TranslationMotion<S>& motion, const Name& 
   copy.integrate(0);
   fcl::Transform3<S> M;
   copy.getCurrentTransform(M);
-  const Isometry3d begin = readRigid<S>(M, name);
+  const RigidTransform begin = readRigid<S>(M, name);
   const Vector3d velocity = copy.getVelocity().template cast<double>();
   requireLength(velocity, name, "displacement");
-  return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
+  return line(begin, velocity);
 }
 
 /// The axis of a rotation by an angle in [0, pi], as FCL has it.
 template <class S>
-Vector3d requireRotation(const fcl::Vector3<S>& axis, S angle, const Name& name) {
+UnitVector requireRotation(const fcl::Vector3<S>& axis, S angle, const Name& name) {
   const Vector3d a = axis.template cast<double>();
   require(std::isfinite(angle) && a.allFinite(), name, "has a rotation that is not finite");
   require(angle >= 0 && angle < 3.1416 && (angle == 0 || std::abs(a.norm() - 1) < 1e-5), name,
           "has a rotation that FCL's constructors don't make; was it built without one?");
-  return angle == 0 ? Vector3d::UnitZ() : Vector3d(a.normalized());
+  return angle == 0 ? UnitVector() : UnitVector::within3Ulps(a.normalized()).value();
 }
 
 template <class S>
 BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
-  const Isometry3d begin = readRigid<S>(PeekInterp<S>::begin(motion), Name{name.type, " (begin)"});
-  const Isometry3d end = readRigid<S>(PeekInterp<S>::end(motion), Name{name.type, " (end)"});
+  const RigidTransform begin = readRigid<S>(PeekInterp<S>::begin(motion), Name{name.type, " (begin)"});
+  const RigidTransform end = readRigid<S>(PeekInterp<S>::end(motion), Name{name.type, " (end)"});
   const Vector3d o = motion.getReferencePoint().template cast<double>();
   if (!(o.allFinite() && o.cwiseAbs().maxCoeff() <= kFarthest)) {
     throw std::invalid_argument(spelled(name) +
@@ -205,7 +196,7 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
   }
   const Vector3d velocity = motion.getLinearVelocity().template cast<double>();
   const double angle = motion.getAngularVelocity();
-  const Vector3d axis = requireRotation<S>(motion.getAngularAxis(), motion.getAngularVelocity(), name);
+  const UnitVector axis = requireRotation<S>(motion.getAngularAxis(), motion.getAngularVelocity(), name);
   requireLength(velocity, name, "velocity");
   BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
 
@@ -224,16 +215,16 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
 
 template <class S>
 BodyMotion readScrew(const fcl::ScrewMotion<S>& motion, const Name& name) {
-  const Isometry3d begin = readRigid<S>(PeekScrew<S>::begin(motion), Name{name.type, " (begin)"});
+  const RigidTransform begin = readRigid<S>(PeekScrew<S>::begin(motion), Name{name.type, " (begin)"});
   const double angle = motion.getAngularVelocity();
   if (angle == 0) {  // not unit: the displacement between the end poses
     const Vector3d velocity =
         motion.getAxis().template cast<double>() * static_cast<double>(motion.getLinearVelocity());
     requireLength(velocity, name, "displacement");
-    return lineWithTurn(begin, Vector3d::Zero(), velocity, Vector3d::UnitZ(), 0);
+    return line(begin, velocity);
   }
-  const Vector3d axis = requireRotation<S>(motion.getAxis(), motion.getAngularVelocity(), name);
-  const Isometry3d end = readRigid<S>(PeekScrew<S>::end(motion), Name{name.type, " (end)"});
+  const UnitVector axis = requireRotation<S>(motion.getAxis(), motion.getAngularVelocity(), name);
+  const RigidTransform end = readRigid<S>(PeekScrew<S>::end(motion), Name{name.type, " (end)"});
   return screw(begin, end.translation() - begin.translation(), axis, angle);
 }
 
@@ -349,7 +340,7 @@ BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
 template BodyMotion readMotion(const fcl::MotionBase<float>& motion);
 template BodyMotion readMotion(const fcl::MotionBase<double>& motion);
 
-BodyMotion motionBetween(const Isometry3d& begin_pose, const Isometry3d& end_pose, fcl::CCDMotionType type) {
+BodyMotion motionBetween(const RigidTransform& begin, const RigidTransform& end, fcl::CCDMotionType type) {
   if (type == fcl::CCDM_SPLINE) {
     throw std::invalid_argument(
         "CCDM_SPLINE: two poses don't make a spline (FCL's SplineMotion(tf1, tf2) is empty); use "
@@ -358,23 +349,29 @@ BodyMotion motionBetween(const Isometry3d& begin_pose, const Isometry3d& end_pos
   if (type != fcl::CCDM_TRANS && type != fcl::CCDM_LINEAR && type != fcl::CCDM_SCREW) {
     throw std::invalid_argument("motion type " + std::to_string(static_cast<int>(type)) + " is none of FCL's");
   }
-  const Isometry3d begin = readTransform<double>(begin_pose, "begin of the motion");
-  const Isometry3d end = readTransform<double>(end_pose, "end of the motion");
   const Vector3d o = end.translation() - begin.translation();
-  // AngleAxis goes by way of the quaternion, which is as accurate at half a turn as anywhere.
-  Eigen::AngleAxisd turn(Matrix3d(end.linear() * begin.linear().transpose()));
-  if (type == fcl::CCDM_TRANS || begin.linear() == end.linear()) turn.angle() = 0;
-  if (turn.angle() == 0) return lineWithTurn(begin, Vector3d::Zero(), o, Vector3d::UnitZ(), 0);
-  if (type == fcl::CCDM_LINEAR) return lineWithTurn(begin, Vector3d::Zero(), o, turn.axis(), turn.angle());
-  return screw(begin, o, turn.axis(), turn.angle());
+  if (type == fcl::CCDM_TRANS || begin.linear() == end.linear()) return line(begin, o);
+  // By way of the quaternion, which is as accurate at half a turn as anywhere, and takes the shorter way.
+  const Eigen::Quaterniond turn(Matrix3d(end.linear() * begin.linear().transpose()));
+  const Vector3d sine = turn.w() < 0 ? Vector3d(-turn.vec()) : Vector3d(turn.vec());
+  const std::optional<UnitVector> axis = UnitVector::within3Ulps(sine);
+  if (!axis) return line(begin, o);
+  const double angle = 2 * std::atan2(lengthAlong(*axis, sine), std::abs(turn.w()));
+  if (type == fcl::CCDM_LINEAR) return lineWithTurn(begin, Vector3d::Zero(), o, *axis, angle);
+  return screw(begin, o, *axis, angle);
+}
+
+BodyMotion motionBetween(const Isometry3d& begin, const Isometry3d& end, fcl::CCDMotionType type) {
+  return motionBetween(readTransform<double>(begin, "begin of the motion"),
+                       readTransform<double>(end, "end of the motion"), type);
 }
 
 template <class S>
-Isometry3d readTransform(const fcl::Transform3<S>& M, const char* what) {
+RigidTransform readTransform(const fcl::Transform3<S>& M, const char* what) {
   return readRigid<S>(M, what);
 }
 
-template Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const char* what);
-template Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const char* what);
+template RigidTransform readTransform<float>(const fcl::Transform3<float>& M, const char* what);
+template RigidTransform readTransform<double>(const fcl::Transform3<double>& M, const char* what);
 
 }  // namespace fcl_artic

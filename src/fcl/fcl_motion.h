@@ -43,16 +43,17 @@ extern template BodyMotion readMotion(const fcl::MotionBase<double>& motion);
 /// - CCDM_SCREW: a turn about an axis with a slide along it, both at constant rates; without a turn, a straight line.
 /// @throws std::invalid_argument for CCDM_SPLINE, as two poses don't make a spline, and for poses that are not rigid.
 BodyMotion motionBetween(const Eigen::Isometry3d& begin, const Eigen::Isometry3d& end, fcl::CCDMotionType type);
+BodyMotion motionBetween(const RigidTransform& begin, const RigidTransform& end, fcl::CCDMotionType type);
 
 /// The rigid transform in doubles, its rotation made orthonormal.
 /// @throws std::invalid_argument naming `what` when a value is not finite or beyond 1e9 m, or the rotation is off by
 ///   more than 1e-6 (float: 1e-4).
 template <class S>
-Eigen::Isometry3d readTransform(const fcl::Transform3<S>& M, const char* what);
-extern template Eigen::Isometry3d readTransform<float>(const fcl::Transform3<float>& M, const char* what);
-extern template Eigen::Isometry3d readTransform<double>(const fcl::Transform3<double>& M, const char* what);
+RigidTransform readTransform(const fcl::Transform3<S>& M, const char* what);
+extern template RigidTransform readTransform<float>(const fcl::Transform3<float>& M, const char* what);
+extern template RigidTransform readTransform<double>(const fcl::Transform3<double>& M, const char* what);
 
 /// The chain of the link's joints.
-BodyMotion bodyMotion(const FclLinkMotion& motion);
+const BodyMotion& bodyMotion(const FclLinkMotion& motion);
 
 }  // namespace fcl_artic

@@ -7,9 +7,12 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <unordered_map>
 
 #include <Eigen/Eigenvalues>
+
+#include "numerics/unit_vector.h"
 
 namespace fcl_artic {
 namespace {
@@ -66,8 +69,31 @@ PointKey keyOf(const double* p) {
 constexpr int kSides[12][3] = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
                                {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
 
+/// The axes of a box as it stores them, in single precision: e_j . e_k is within 2^-21 of 0 or 1.
+class BoxAxes {
+ public:
+  /// The coordinate axes.
+  BoxAxes() : BoxAxes(Matrix3d::Identity()) {}
+  /// @param axes  its columns, of unit length.
+  /// @return none where they are not orthonormal to single precision, or not finite.
+  static std::optional<BoxAxes> within21Bits(const Matrix3d& axes) {
+    const BoxAxes stored(axes);
+    // Products of floats are exact, and their sums to 2^-51.
+    const Matrix3d defect = stored.rows_ * stored.rows_.transpose() - Matrix3d::Identity();
+    if (!(defect.array().abs() <= 0x1p-21).all()) return std::nullopt;
+    return stored;
+  }
+
+  float operator()(int axis, int i) const { return static_cast<float>(rows_(axis, i)); }
+  const Matrix3d& rows() const { return rows_; }
+
+ private:
+  explicit BoxAxes(const Matrix3d& columns) : rows_(columns.transpose().cast<float>().cast<double>()) {}
+  Matrix3d rows_;
+};
+
 /// Principal axes of the area of triangles (Gottschalk 2000, Section 3.3), largest extent first.
-Matrix3d principalAxes(const Vector3d* first, const std::uint32_t* order, std::size_t count) {
+BoxAxes principalAxes(const Vector3d* first, const std::uint32_t* order, std::size_t count) {
   Vector3d mean = Vector3d::Zero();
   Matrix3d second = Matrix3d::Zero();
   double area = 0;
@@ -82,34 +108,38 @@ Matrix3d principalAxes(const Vector3d* first, const std::uint32_t* order, std::s
   }
   mean /= area;
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(second / area - mean * mean.transpose());
-  return solver.info() == Eigen::Success ? Matrix3d(solver.eigenvectors().rowwise().reverse()) : Matrix3d::Identity();
+  if (solver.info() != Eigen::Success) return {};
+  return BoxAxes::within21Bits(solver.eigenvectors().rowwise().reverse()).value_or(BoxAxes());
 }
 
-/// Of one triangle: its longest edge, and its normal.
-Matrix3d axesOf(const Vector3d* v) {
-  Vector3d longest = v[1] - v[0];
+/// Of one triangle: its longest edge, and its normal. Where the corners are in a line, what is computed for a normal is
+/// the residue of rounding, which may lie along the edge: then any direction across it will do.
+BoxAxes axesOf(const Vector3d* v) {
+  Vector3d edge = v[1] - v[0];
   for (const Vector3d& e : {Vector3d(v[2] - v[1]), Vector3d(v[0] - v[2])}) {
-    if (e.squaredNorm() > longest.squaredNorm()) longest = e;
+    if (e.squaredNorm() > edge.squaredNorm()) edge = e;
   }
-  if (!(longest.squaredNorm() > 1e-200)) return Matrix3d::Identity();
-  longest.normalize();
-  Vector3d normal = (v[1] - v[0]).cross(v[2] - v[1]);
-  const double size = normal.norm();
-  normal = size > 1e-100 ? Vector3d(normal / size) : longest.unitOrthogonal();
-  normal = (normal - normal.dot(longest) * longest).normalized();
-  Matrix3d axes;
-  axes << longest, normal.cross(longest), normal;
-  return axes;
+  const std::optional<UnitVector> longest = UnitVector::within3Ulps(edge);
+  if (!longest) return {};
+  const Vector3d& x = *longest;
+  const auto axesWith = [&](const Vector3d& z) {
+    Matrix3d axes;
+    axes << x, z.cross(x), z;
+    return BoxAxes::within21Bits(axes);
+  };
+  if (const std::optional<UnitVector> normal = UnitVector::within3Ulps((v[1] - v[0]).cross(v[2] - v[1]))) {
+    const Vector3d& n = *normal;
+    const std::optional<UnitVector> across = UnitVector::within3Ulps(n - n.dot(x) * x);
+    if (const std::optional<BoxAxes> axes = across ? axesWith(*across) : std::nullopt) return *axes;
+  }
+  return axesWith(x.unitOrthogonal()).value_or(BoxAxes());
 }
 
 /// The box along these axes round the triangles.
-void fitBox(const Matrix3d& axes, const Vector3d* first, const std::uint32_t* order, std::size_t count, ObbNode& node) {
-  Matrix3d e;  // rows: the axes as stored
+void fitBox(const BoxAxes& axes, const Vector3d* first, const std::uint32_t* order, std::size_t count, ObbNode& node) {
+  const Matrix3d& e = axes.rows();
   for (int k = 0; k < 3; ++k) {
-    for (int i = 0; i < 3; ++i) {
-      node.axis[k][i] = static_cast<float>(axes(i, k));
-      e(k, i) = node.axis[k][i];
-    }
+    for (int i = 0; i < 3; ++i) node.axis[k][i] = axes(k, i);
   }
   Vector3d lo = Vector3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   for (std::size_t i = 0; i < count; ++i) {
@@ -211,7 +241,7 @@ void ObbTree::buildNodes() {
     tasks.pop_back();
     const std::size_t count = task.end - task.begin;
     std::uint32_t* own = order.data() + task.begin;
-    const Matrix3d axes = count == 1 ? axesOf(&corners[3 * own[0]]) : principalAxes(corners.data(), own, count);
+    const BoxAxes axes = count == 1 ? axesOf(&corners[3 * own[0]]) : principalAxes(corners.data(), own, count);
     ObbNode node;
     fitBox(axes, corners.data(), own, count, node);
     if (count == 1) {
@@ -223,7 +253,7 @@ void ObbTree::buildNodes() {
     for (int k = 1; k < 3; ++k) {
       if (node.half[k] > node.half[longest]) longest = k;
     }
-    const Vector3d along = axes.col(longest);
+    const Vector3d along = axes.rows().row(longest);
     double mean = 0;
     for (std::size_t i = 0; i < count; ++i) mean += along.dot(middles[own[i]]);
     mean /= static_cast<double>(count);

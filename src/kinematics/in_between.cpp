@@ -4,22 +4,31 @@
 #include <stdexcept>
 #include <string>
 
+#include "numerics/rotation.h"
+
 namespace fcl_artic {
 namespace {
 
+/// How far R^T R of a pose may be from the identity, in each entry; it is made orthonormal then.
 constexpr double kNotRigid = 1e-6;
 
-void requirePoses(const std::vector<Eigen::Isometry3d>& M_0, int links, const std::string& what) {
+/// @return the poses, made orthonormal.
+std::vector<RigidTransform> requirePoses(const std::vector<Eigen::Isometry3d>& M_0, int links,
+                                         const std::string& what) {
   if (M_0.size() != static_cast<std::size_t>(links)) {
     throw std::invalid_argument(what + " has " + std::to_string(M_0.size()) + " poses, the tree has " +
                                 std::to_string(links) + " links");
   }
+  std::vector<RigidTransform> poses;
   for (std::size_t i = 0; i < M_0.size(); ++i) {
-    const Eigen::Matrix3d R = M_0[i].linear();
-    const double off = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm();
-    if (M_0[i].matrix().allFinite() && off <= kNotRigid && R.determinant() > 0) continue;
-    throw std::invalid_argument(what + ": pose " + std::to_string(i) + " is not rigid");
+    const std::optional<RigidTransform> pose = RigidTransform::within12Ulps(M_0[i], kNotRigid);
+    if (!pose) {
+      throw std::invalid_argument(what + ": pose " + std::to_string(i) + " is not rigid: it " +
+                                  whyNotRigid(M_0[i], kNotRigid));
+    }
+    poses.push_back(*pose);
   }
+  return poses;
 }
 
 }  // namespace
@@ -49,21 +58,21 @@ JointMotion inBetweenMotion(const KinematicTree& tree, const std::vector<Eigen::
   for (JointId j = 0; ours && j < links; ++j) ours = tree.joint(j).type == JointType::floating;
   if (!ours)
     throw std::invalid_argument("inBetweenMotion: the tree '" + tree.name() + "' was not made by inBetweenTree()");
-  requirePoses(M_0_begin, links, "M_0_begin");
-  requirePoses(M_0_end, links, "M_0_end");
-  const auto configuration = [&](const std::vector<Eigen::Isometry3d>& M_0) {
+  const std::vector<RigidTransform> begin = requirePoses(M_0_begin, links, "M_0_begin");
+  const std::vector<RigidTransform> end = requirePoses(M_0_end, links, "M_0_end");
+  const auto configuration = [&](const std::vector<RigidTransform>& M_0) {
     Eigen::VectorXd q(tree.dof());
     for (LinkId link = 0; link < links; ++link) {
       const LinkId parent = tree.parentLink(link);
-      const Eigen::Isometry3d& M_0i = M_0[static_cast<std::size_t>(link)];
-      const Eigen::Isometry3d M_pi = parent == links ? M_0i : M_0[static_cast<std::size_t>(parent)].inverse() * M_0i;
+      const RigidTransform& M_0i = M_0[static_cast<std::size_t>(link)];
+      const RigidTransform M_pi = parent == links ? M_0i : M_0[static_cast<std::size_t>(parent)].inverse() * M_0i;
       const int v = tree.jointVariable(tree.parentJoint(link));
       q.segment<3>(v) = M_pi.translation();
-      q.segment<4>(v + 3) = Eigen::Quaterniond(M_pi.linear()).normalized().coeffs();
+      q.segment<4>(v + 3) = Eigen::Quaterniond(Eigen::Matrix3d(M_pi.linear())).normalized().coeffs();
     }
     return q;
   };
-  return JointMotion::linear(tree, configuration(M_0_begin), configuration(M_0_end));
+  return JointMotion::linear(tree, configuration(begin), configuration(end));
 }
 
 }  // namespace fcl_artic

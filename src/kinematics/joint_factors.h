@@ -12,15 +12,29 @@
 namespace fcl_artic {
 
 /// Axes x, y, z of a planar joint in its frame: z is the unit normal, x and y are turned there the shortest way. That
-/// is c I + [v]x + v v^T / (1 + c) with v = e_z x normal and c = normal_z; next to -z, where 1 + c cancels, it is |v|^2
-/// / (1 - c).
-inline Eigen::Matrix3d planeFrame(const Eigen::Vector3d& normal) {
-  const double x = -normal.y(), y = normal.x(), c = normal.z(), square = x * x + y * y;
-  if (square == 0) return Eigen::Vector3d(1, c < 0 ? -1 : 1, c < 0 ? -1 : 1).asDiagonal();
-  const double k = c < 0 ? (1 - c) / square : 1 / (1 + c);
+/// is c I + [v]x + v v^T / (1 + c) with v = e_z x normal and c = normal_z; below, where 1 + c cancels, v v^T / (1 + c)
+/// is (1 - c) w w^T with w the unit vector along v, however short v is. About -z itself it turns over x.
+inline Rotation planeFrame(const UnitVector& normal) {
+  const double c = normal[2];
+  Eigen::Vector3d v(-normal[1], normal[0], 0), w = v;  // [v]x + k w w^T
+  double k = 1 / (1 + c);
+  if (c < 0) {
+    const std::optional<UnitVector> across = UnitVector::within3Ulps(v);
+    w = across ? across->vector() : Eigen::Vector3d(Eigen::Vector3d::UnitX());
+    k = 1 - c;
+  }
+  const double x = w[0], y = w[1];
   Eigen::Matrix3d frame;
-  frame << c + k * x * x, k * x * y, y, k * x * y, c + k * y * y, -x, -y, x, c;
-  return orthonormal(frame);
+  frame << c + k * x * x, k * x * y, v[1], k * x * y, c + k * y * y, -v[0], -v[1], v[0], c;
+  return Rotation::within12Ulps(frame, 1e-13).value();
+}
+
+/// How far R^T R of a joint's origin may be from the identity, in each entry; it is made orthonormal then.
+constexpr double kOriginDefect = 1e-9;
+
+/// The origin of a tree's joint.
+inline RigidTransform originOf(const Joint& joint) {
+  return RigidTransform::within12Ulps(joint.origin, kOriginDefect).value();
 }
 
 struct JointFactor {
@@ -31,11 +45,16 @@ struct JointFactor {
     turn,       ///< the three variables' rotation vector, after the orientation at t = 0: exp([w]) R0
   };
   Kind kind;
-  int variable;                                     ///< offset of its first variable from the joint's
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint's frame
+  int variable;     ///< offset of its first variable from the joint's
+  UnitVector axis;  ///< in the joint's frame
 };
 
-/// Factors in the order from parent to child.
+/// The axis of a tree's joint.
+inline UnitVector axisOf(const Joint& joint) {
+  return UnitVector::within3Ulps(joint.axis).value();
+}
+
+/// Factors in the order from parent to child, of a tree's joint.
 inline std::vector<JointFactor> factorsOf(const Joint& joint) {
   using Kind = JointFactor::Kind;
   switch (joint.type) {
@@ -43,17 +62,20 @@ inline std::vector<JointFactor> factorsOf(const Joint& joint) {
       return {};
     case JointType::revolute:
     case JointType::continuous:
-      return {{Kind::revolute, 0, joint.axis}};
+      return {{Kind::revolute, 0, axisOf(joint)}};
     case JointType::prismatic:
-      return {{Kind::prismatic, 0, joint.axis}};
+      return {{Kind::prismatic, 0, axisOf(joint)}};
     case JointType::planar: {
-      const Eigen::Matrix3d frame = planeFrame(joint.axis);
-      return {{Kind::prismatic, 0, frame.col(0)}, {Kind::prismatic, 1, frame.col(1)}, {Kind::revolute, 2, joint.axis}};
+      const UnitVector normal = axisOf(joint);
+      const Eigen::Matrix3d frame = planeFrame(normal);
+      return {{Kind::prismatic, 0, UnitVector::within3Ulps(frame.col(0)).value()},
+              {Kind::prismatic, 1, UnitVector::within3Ulps(frame.col(1)).value()},
+              {Kind::revolute, 2, normal}};
     }
     case JointType::spherical:
-      return {{Kind::turn, 0}};
+      return {{Kind::turn, 0, {}}};
     case JointType::floating:
-      return {{Kind::slide, 0}, {Kind::turn, 3}};
+      return {{Kind::slide, 0, {}}, {Kind::turn, 3, {}}};
   }
   return {};
 }

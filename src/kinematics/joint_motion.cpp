@@ -89,7 +89,7 @@ JointMotion::JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients
   for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
     const Eigen::Quaterniond start = quaternionAt(variables_.col(0), v);
-    const Eigen::Matrix3d R = orthonormal(start.toRotationMatrix());
+    const Eigen::Matrix3d R = Rotation::within12Ulps(start.toRotationMatrix(), 1e-12).value();
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) orientations_.push_back(R(i, k));
     }

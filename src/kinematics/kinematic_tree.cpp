@@ -16,14 +16,6 @@
 namespace fcl_artic {
 namespace {
 
-/// How far R^T R of a joint's origin may be from the identity, in each entry; it is made orthonormal then.
-constexpr double kOrthonormal = 1e-9;
-
-bool isRotation(const Eigen::Matrix3d& R) {
-  const double error = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  return error <= kOrthonormal && R.determinant() > 0;  // false for NaN
-}
-
 /// How far from 1 the length of a quaternion may be: numbers typed or printed with three digits.
 constexpr double kQuaternionLength = 1e-3;
 
@@ -131,13 +123,13 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   for (LinkId link = parent; link >= 0; link = parentLink(link)) {
     if (link == child) refuse("closes a loop at link '" + joint.child + "'");
   }
-  if (!joint.origin.translation().allFinite() || !isRotation(joint.origin.linear())) {
-    refuse("has an origin that is no rigid transform");
-  }
+  const std::optional<Rotation> turn = Rotation::within12Ulps(joint.origin.linear(), kOriginDefect);
+  if (!joint.origin.translation().allFinite() || !turn) refuse("has an origin that is no rigid transform");
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kFarthest) refuse("has an origin more than 1e9 m away");
   const bool moves = joint.type != JointType::fixed;
   const bool has_axis = moves && joint.type != JointType::spherical && joint.type != JointType::floating;
-  if (has_axis && (!joint.axis.allFinite() || joint.axis.isZero(0))) refuse("has an axis that is zero or not finite");
+  const std::optional<UnitVector> axis = UnitVector::within3Ulps(joint.axis);
+  if (has_axis && !axis) refuse("has an axis that is zero or not finite");
   if (std::isnan(joint.lower) || std::isnan(joint.upper)) refuse("has a limit that is not a number");
 
   int variable = moves ? dof() : -1;
@@ -164,11 +156,22 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     }
   }
 
+  if (!joint.mimics) {
+    for (const char* ending : variableEndings(joint.type)) {
+      const std::string name = joint.name + ending;
+      const auto other = std::find(variable_names_.begin(), variable_names_.end(), name);
+      if (other == variable_names_.end()) continue;
+      refuse("would have the variable '" + name + "', which joint '" +
+             joints_[variables_[static_cast<std::size_t>(other - variable_names_.begin())]].name +
+             "' has already; call it otherwise");
+    }
+  }
+
   const JointId id = numJoints();
   joints_.push_back(joint);
   joints_.back().mimic = followed;
-  joints_.back().origin.linear() = orthonormal(joint.origin.linear());
-  if (has_axis) joints_.back().axis.stableNormalize();
+  joints_.back().origin = RigidTransform(*turn, joint.origin.translation());
+  if (has_axis) joints_.back().axis = *axis;
   turns_.emplace_back(joints_.back());
   joint_parent_.push_back(parent);
   joint_child_.push_back(child);
@@ -357,7 +360,7 @@ void KinematicTree::moveBy(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q
       M.rotate(Eigen::AngleAxisd(jointValue(j, q), joint.axis));
       break;
     case JointType::planar:
-      M.translate(planeFrame(joint.axis).leftCols<2>() * q.segment<2>(v));
+      M.translate(planeFrame(axisOf(joint)).matrix().leftCols<2>() * q.segment<2>(v));
       M.rotate(Eigen::AngleAxisd(q[v + 2], joint.axis));
       break;
     case JointType::floating:

@@ -112,7 +112,7 @@ std::vector<VectorXd> unwrapped(const KinematicTree& tree, std::vector<VectorXd>
     double turns = 0, previous = waypoints[0][v];
     for (std::size_t k = 1; k < waypoints.size(); ++k) {
       const double value = waypoints[k][v];
-      turns -= std::nearbyint((value - previous) / kTwoPi);
+      turns -= nearestInteger((value - previous) / kTwoPi);
       previous = value;
       if (turns == 0) continue;
       waypoints[k][v] = value + turns * kTwoPi;

@@ -46,8 +46,9 @@ SineCosine sineCosineOf(double a, double b) {
   return {pairLow(sine), pairLow(cosine), pairHigh(sine), pairHigh(cosine)};
 }
 
-/// c + (1 - c) z z^T + s [z], for a unit vector z.
-Matrix3d rotationAbout(const Vector3d& z, double angle) {
+/// c + (1 - c) z z^T + s [z].
+Matrix3d rotationAbout(const UnitVector& axis, double angle) {
+  const Vector3d& z = axis;
   const SineCosine of = sineCosineOf(angle, 0);
   const double s = of.sine_a, c = of.cosine_a;
   Matrix3d R = (1 - c) * z * z.transpose();
@@ -93,14 +94,17 @@ VariableBounds boundVariable(const MotionElement& element) {
   VariableBounds bounds = {0, 0, 0, 0};
   for (int k = 0; k <= kMaxDegree; ++k) {
     Vector3d a = Vector3d::Zero();
-    double factor = std::ldexp(1, -k);  // binomial(j, k) / 2^j
+    double factor = std::ldexp(1, -k), terms = 0;  // binomial(j, k) / 2^j
     for (int j = k; j <= kMaxDegree; ++j) {
       a += factor * c.col(j);
+      terms += factor * c.col(j).norm();
       factor *= 0.5 * (j + 1) / (j + 1 - k);
     }
-    bounds.size += a.norm();
-    bounds.first += 2 * k * a.norm();
-    bounds.second += 4 * k * (k - 1) * a.norm();
+    // A term passes through at most six factors' roundings, its product and six sums; terms may cancel.
+    const double most = a.norm() + 0x1p-47 * terms;
+    bounds.size += most;
+    bounds.first += 2 * k * most;
+    bounds.second += 4 * k * (k - 1) * most;
     bounds.terms += c.col(k).norm();
   }
   return bounds;
@@ -114,11 +118,11 @@ struct PathBounds {
   double extent = 0;                   ///< no path is much longer across (only for the choice of K)
 };
 
-// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product costs less than 24
-// (doc/NUMERICS.md, "Pads"). A rotation about an axis or by a vector: sine and cosine, the products that make its
-// entries, and the axis's own rounding are below 40, its product with the rotations before it 9, its angle is off by
-// less than 3 * degree + 3 = 18 times the sum of its terms (Horner's scheme, and the norm of the vector).
-constexpr double kConstantUlps = 24, kRotationUlps = 64, kAngleUlps = 18;
+// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product says what it costs. A rotation
+// about an axis or by a vector: sine and cosine, the products that make its entries, and the axis's own rounding are
+// below 40, its product with the rotations before it 9, its angle is off by less than 3 * degree + 3 = 18 times the sum
+// of its terms (Horner's scheme, and the norm of the vector).
+constexpr double kRotationUlps = 64, kAngleUlps = 18;
 // An author's rotations and positions are off by at most 1.5e-12 (Frobenius) and 5e-13 of their length.
 constexpr double kBoundedUlps = 8192;
 // Of the box at a pose: the products and sums that lead to its ends, and those of D1 and D2, twice what they come to.
@@ -135,12 +139,12 @@ PathBounds boundPath(const BodyMotion& motion, double reach) {
     path.acceleration += (a * a + b) * size + 2 * a * first + second;
     path.extent += a > 0 ? 2 * size : first;
   };
-  path.ulps = kConstantUlps + kBoxUlps;
+  path.ulps = motion.after.ulps() + kBoxUlps;
   for (const MotionElement& element : motion.elements) {
-    const double offset = element.before.translation().norm();
-    addSegment(offset, 0, 0);
-    path.terms += offset;
-    path.ulps += kConstantUlps;
+    const RigidTransform& before = element.before;
+    addSegment(before.translation().norm() + 0x1p-52 * before.ulps() * before.length(), 0, 0);
+    path.terms += before.length();
+    path.ulps += before.ulps();
     if (element.kind == Kind::bounded) {
       const BoundedMotion::Bounds bounds = element.bounded->bounds(0, 1);
       const double size = element.bounded->state(0).pose.translation().norm() + bounds.speed;
@@ -205,7 +209,7 @@ Isometry3d BodyMotion::pose(double t) const {
         turnBy(rotationAbout(element.axis, q[0]));
         break;
       case MotionElement::Kind::prismatic:
-        slideBy(q[0] * element.axis);
+        slideBy(q[0] * element.axis.vector());
         break;
       case MotionElement::Kind::slide:
         slideBy(q);
@@ -226,14 +230,19 @@ Isometry3d BodyMotion::pose(double t) const {
   return M;
 }
 
+RigidTransform BodyMotion::poseWithError(double t) const {
+  const PathBounds path = boundPath(*this, after.length());
+  return RigidTransform::product(pose(t), path.ulps, path.terms);
+}
+
 /// From the body out to the world. A turn by a rotation vector q takes a unit vector v no farther than |q x v|: it is
 /// exp([q]) v - v = integral of exp(s [q]) (q x v) over s in [0, 1]. So with v where it stands at t = 0, c_k the
 /// coefficients of q and t <= 1, a turn about an axis takes it from there by the sum of |c_k x v|, k >= 1, at most:
 /// what the axis turns it by at t = 0 commutes with the rest. A turn by a vector may have another axis at t = 0, and
 /// takes it there and back: by 2 |c_0 x v| more, unless it stands still. Rotations farther out change no length.
-Heading headingOf(const BodyMotion& motion, const Vector3d& own) {
+Heading headingOf(const BodyMotion& motion, const UnitVector& own) {
   using Kind = MotionElement::Kind;
-  Heading heading{motion.after.linear() * own, 0};
+  Heading heading{motion.after.linear() * own.vector(), 0};
   Vector3d& v = heading.direction;
   for (auto it = motion.elements.rbegin(); it != motion.elements.rend(); ++it) {
     const MotionElement& element = *it;
@@ -247,7 +256,7 @@ Heading headingOf(const BodyMotion& motion, const Vector3d& own) {
       const Coefficients& c = element.coefficients;
       double turned = 0;
       for (int k = 1; k <= kMaxDegree; ++k) {
-        turned += about_axis ? std::abs(c(0, k)) * element.axis.cross(v).norm() : c.col(k).cross(v).norm();
+        turned += about_axis ? std::abs(c(0, k)) * element.axis.vector().cross(v).norm() : c.col(k).cross(v).norm();
       }
       if (!about_axis && element.degree() > 0) turned += 2 * c.col(0).cross(v).norm();
       heading.deviation += turned;
@@ -270,7 +279,7 @@ void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d
                      corner & 4 ? upper[2] : lower[2]);
     reach = std::max(reach, (motion.after * x).norm());
   }
-  reach += 0x1p-46 * (motion.after.translation().norm() + lower.norm() + upper.norm());
+  reach += 0x1p-52 * (motion.after.ulps() + 40) * (motion.after.length() + lower.norm() + upper.norm());
   const PathBounds path = boundPath(motion, reach);
 
   // The number of pieces with which the boxes grow by 1/500 of the path's size, 256 at most. Infinity and NaN choose
@@ -282,7 +291,7 @@ void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d
   const int pieces = wanted < kMostPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMostPieces;
   const double h = (1 + 0x1p-40) / pieces;  // the times are rounded
   const double remainder = std::min(path.acceleration * h * h / 8, path.speed * h / 2);
-  const double numbers = path.terms + motion.after.translation().norm() + lower.norm() + upper.norm();
+  const double numbers = path.terms + motion.after.length() + lower.norm() + upper.norm();
   const double slack = remainder + 0x1p-52 * path.ulps * (numbers + remainder);
 
   const Vector3d center = 0.5 * lower + 0.5 * upper, half = 0.5 * upper - 0.5 * lower;

@@ -7,6 +7,7 @@
 
 #include "fcl_artic/bounded_motion.h"
 #include "motion/element_list.h"
+#include "numerics/rotation.h"
 
 namespace fcl_artic {
 
@@ -23,8 +24,8 @@ struct MotionElement {
     bounded,    ///< what its author says (BoundedMotion); the only element of its motion
   };
   Kind kind = Kind::slide;
-  Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
+  RigidTransform before;
+  UnitVector axis;
   /// Column k belongs to t^k; revolute and prismatic: row 0 only.
   Eigen::Matrix<double, 3, kMaxDegree + 1> coefficients = Eigen::Matrix<double, 3, kMaxDegree + 1>::Zero();
   const BoundedMotion* bounded = nullptr;  ///< of the caller's
@@ -35,10 +36,12 @@ struct MotionElement {
 /// M_0g(t) = before_1 E_1(t) before_2 E_2(t) ... E_m(t) after: from the geometry's frame to the world.
 struct BodyMotion {
   ElementList<MotionElement, 2> elements;  ///< from the world on; empty: stands still
-  Eigen::Isometry3d after = Eigen::Isometry3d::Identity();
+  RigidTransform after;
 
   /// Pose of the geometry's frame in the world at t in [0, 1], in doubles.
   Eigen::Isometry3d pose(double t) const;
+  /// The same with its error.
+  RigidTransform poseWithError(double t) const;
 };
 
 /// A direction fixed in a body, as its motion has it in the world.
@@ -48,8 +51,8 @@ struct Heading {
   double author = 0;          ///< what the poses of bounded motions on the way may be off by, as their authors may be
   bool analytic = true;       ///< no bounded motion is on the way: what moves at all does not stand still for a while
 };
-/// @param own  unit vector in the geometry's frame.
-Heading headingOf(const BodyMotion& motion, const Eigen::Vector3d& own);
+/// @param own  in the geometry's frame.
+Heading headingOf(const BodyMotion& motion, const UnitVector& own);
 
 /// Box in the world that certainly holds a body over all of the motion, rounding included.
 /// @param lower, upper  box of the body in its own frame; infinite where it is unbounded.

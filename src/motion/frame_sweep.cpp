@@ -10,17 +10,6 @@
 namespace fcl_artic {
 namespace {
 
-/// A rotation whose z axis is the unit vector `axis`.
-Eigen::Matrix3d frameWithZ(const Eigen::Vector3d& axis) {
-  if (axis == Eigen::Vector3d::UnitZ()) return Eigen::Matrix3d::Identity();
-  Eigen::Vector3d x = axis.unitOrthogonal();
-  Eigen::Matrix3d R;
-  R.col(0) = x;
-  R.col(1) = axis.cross(x);
-  R.col(2) = axis;
-  return R;
-}
-
 engine::StepKind stepKind(JointFactor::Kind kind) {
   switch (kind) {
     case JointFactor::Kind::revolute:
@@ -36,40 +25,44 @@ engine::StepKind stepKind(JointFactor::Kind kind) {
 }
 
 /// Goes to a step's frame, whose z is an axis that Q turns there.
-void standBehind(Carrier& carrier, int step, const Eigen::Matrix3d& Q) {
+void standBehind(Carrier& carrier, int step, const Rotation& Q) {
   carrier.step = step;
-  carrier.offset.linear() = Q.transpose();
+  carrier.offset.linear() = Q.matrix().transpose();
   carrier.offset.translation().setZero();
   carrier.length = 0;
-  carrier.ulps = kStoredUlps;
+  carrier.ulps = Rotation::kUlps;
 }
 
 }  // namespace
 
-engine::Placement makePlacement(const Eigen::Isometry3d& M) {
+namespace {
+
+engine::Placement placementOf(const Eigen::Isometry3d& M, double length, double ulps) {
   engine::Placement p;
-  p.ulps = kTransformUlps;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) p.R[3 * i + j] = M.linear()(i, j);
     p.t[i] = M.translation()[i];
   }
-  p.length = M.translation().norm() * (1 + 1e-15);
+  p.length = length;
+  p.ulps = ulps;
   p.identity = isIdentity(M);
   return p;
 }
 
-engine::Placement makePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset) {
-  engine::Placement p = makePlacement(carrier.offset * offset);
-  p.length = carrier.length + offset.translation().norm() * (1 + 1e-15);
-  p.ulps += carrier.ulps;
-  return p;
+}  // namespace
+
+engine::Placement makePlacement(const RigidTransform& M) {
+  return placementOf(M, M.length(), M.ulps());
 }
 
-engine::Placement makeInversePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset) {
-  engine::Placement p = makePlacement((carrier.offset * offset).inverse());
-  p.length = carrier.length + offset.translation().norm() * (1 + 1e-15);
-  p.ulps += carrier.ulps + kTransformUlps;
-  return p;
+engine::Placement makePlacement(const Carrier& carrier, const RigidTransform& offset) {
+  return placementOf(carrier.offset * offset, carrier.length + offset.length(), carrier.ulps + offset.ulps());
+}
+
+engine::Placement makeInversePlacement(const Carrier& carrier, const RigidTransform& offset) {
+  // Twice the error, as in RigidTransform::inverse().
+  return placementOf((carrier.offset * offset).inverse(), carrier.length + offset.length(),
+                     2 * (carrier.ulps + offset.ulps()));
 }
 
 FrameSweep FrameSweep::fromWorld(const KinematicTree& tree) {
@@ -112,22 +105,26 @@ Carrier FrameSweep::carrier(LinkId link) {
 namespace {
 
 /// Multiplies a constant transform in; translations are summed: where they cancel, their rounding does not.
-void moveBy(Carrier& carrier, const Eigen::Isometry3d& stored, bool down) {
-  carrier.ulps += kTransformUlps;
-  if (isIdentity(stored)) return;
-  carrier.offset = carrier.offset * (down ? stored : stored.inverse());
-  carrier.length += stored.translation().norm() * (1 + 1e-15);
+void moveBy(Carrier& carrier, const RigidTransform& constant, bool down) {
+  if (isIdentity(constant)) {
+    carrier.ulps += constant.ulps();
+    return;
+  }
+  const RigidTransform factor = down ? constant : constant.inverse();
+  carrier.offset = carrier.offset * factor;
+  carrier.ulps += factor.ulps();
+  carrier.length += constant.length();
 }
 
 }  // namespace
 
-engine::SweepStep& FrameSweep::append(Carrier& at, const Eigen::Vector3d& axis) {
+engine::SweepStep& FrameSweep::append(Carrier& at, const UnitVector& axis) {
   const bool split = at.step >= 0 && steps_[static_cast<std::size_t>(at.step)].kind == engine::StepKind::revolute;
   steps_.emplace_back();
   engine::SweepStep& step = steps_.back();
-  const Eigen::Matrix3d Q = frameWithZ(axis);
+  const Rotation Q = Rotation::withZ(axis);
   using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  Eigen::Map<RowMajor>(step.C, 3, 3) = at.offset.linear() * Q;
+  Eigen::Map<RowMajor>(step.C, 3, 3) = at.offset.linear() * Q.matrix();
   Eigen::Vector3d::Map(step.p) = at.offset.translation();
   step.parent = at.step;
   step.length = at.length;
@@ -142,7 +139,7 @@ engine::SweepStep& FrameSweep::append(Carrier& at, const Eigen::Vector3d& axis) 
 Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
   const Joint& joint = tree_->joint(id);
   Carrier to = from;
-  if (down) moveBy(to, joint.origin, down);
+  if (down) moveBy(to, originOf(joint), down);
   const std::vector<JointFactor> factors = factorsOf(joint);
   for (std::size_t i = 0; i < factors.size(); ++i) {
     const std::size_t f = down ? i : factors.size() - 1 - i;
@@ -152,7 +149,7 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
       return o.parent == parent && o.joint == id && o.factor == f && o.down == down;
     });
     if (known != origin_.end()) {
-      standBehind(to, static_cast<int>(known - origin_.begin()), frameWithZ(factor.axis));
+      standBehind(to, static_cast<int>(known - origin_.begin()), Rotation::withZ(factor.axis));
     } else {
       const double sign = down ? 1 : -1;
       engine::SweepStep& step = append(to, factor.axis);
@@ -165,7 +162,7 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
       origin_.push_back({parent, id, f, down});
     }
   }
-  if (!down) moveBy(to, joint.origin, down);
+  if (!down) moveBy(to, originOf(joint), down);
   return to;
 }
 
@@ -175,7 +172,7 @@ Carrier FrameSweep::cross(const Carrier& from, const MotionElement& element, int
   Carrier to = from;
   if (down) moveBy(to, element.before, down);
   const bool has_axis = element.kind == Kind::revolute || element.kind == Kind::prismatic;
-  engine::SweepStep& step = append(to, has_axis ? element.axis : Eigen::Vector3d(Eigen::Vector3d::UnitZ()));
+  engine::SweepStep& step = append(to, has_axis ? element.axis : UnitVector());
   step.kind = element.kind == Kind::revolute    ? engine::StepKind::revolute
               : element.kind == Kind::prismatic ? engine::StepKind::prismatic
               : element.kind == Kind::slide     ? engine::StepKind::slide

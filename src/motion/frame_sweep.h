@@ -22,10 +22,6 @@ struct Carrier {
   double length = 0, ulps = 0;  ///< of the offset, as in engine::Placement
 };
 
-/// How far a stored rotation may be from a proper one, and the error of one more factor in a product (that and 9 for
-/// the product), in 2^-52 and in any rounding mode (doc/NUMERICS.md, "Pads").
-constexpr double kStoredUlps = 12, kTransformUlps = 24;
-
 class FrameSweep {
  public:
   /// The world's sweep: all links, seen from the world (roots stand at identity).
@@ -62,7 +58,7 @@ class FrameSweep {
   Carrier cross(const Carrier& from, JointId joint, bool down);
   /// Adds a step after `at` and goes there: its frame is turned so that the axis is z. The caller still has to set what
   /// moves it.
-  engine::SweepStep& append(Carrier& at, const Eigen::Vector3d& axis);
+  engine::SweepStep& append(Carrier& at, const UnitVector& axis);
 
   const KinematicTree* tree_ = nullptr;
   LinkId base_ = -1;  ///< -1: the world
@@ -78,11 +74,10 @@ class FrameSweep {
 };
 
 /// The transform as the engine wants it.
-/// @param M  as stored, or the inverse of a stored transform.
-engine::Placement makePlacement(const Eigen::Isometry3d& M);
+engine::Placement makePlacement(const RigidTransform& M);
 /// Where a geometry with this offset from the carried link stands in the frame of the carrier's step.
-engine::Placement makePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset);
+engine::Placement makePlacement(const Carrier& carrier, const RigidTransform& offset);
 /// The base frame as seen from that geometry, where the carrier stands still.
-engine::Placement makeInversePlacement(const Carrier& carrier, const Eigen::Isometry3d& offset);
+engine::Placement makeInversePlacement(const Carrier& carrier, const RigidTransform& offset);
 
 }  // namespace fcl_artic

@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// Rotations and rigid transforms whose error is known: what the lemmas take for granted of them is what these types'
+// constructors establish (doc/NUMERICS.md, "Constant transforms").
 #pragma once
 
+#include <algorithm>
+#include <optional>
+#include <string>
+
 #include <Eigen/Geometry>
+
+#include "numerics/constants.h"
+#include "numerics/unit_vector.h"
 
 namespace fcl_artic {
 
@@ -22,18 +32,129 @@ inline Eigen::Matrix3d orthonormalityDefect(const Eigen::Matrix3d& R) {
   return Eigen::Matrix3d::Identity() - R.transpose() * R;
 }
 
-/// The rotation next to R, whose columns may be off by up to 1e-6, with an error that the pads allow for
-/// (doc/NUMERICS.md, "Pads"). R itself where it is orthonormal to rounding already.
-/// @param defect  orthonormalityDefect(R).
-inline Eigen::Matrix3d orthonormal(Eigen::Matrix3d R, Eigen::Matrix3d defect) {
-  for (int round = 0; round < 3 && !(defect.cwiseAbs().maxCoeff() <= 4e-16); ++round) {
-    R += 0.5 * R * defect;  // Newton's iteration: squares the defect
-    defect = orthonormalityDefect(R);
+/// A matrix within kUlps 2^-52 (Frobenius) of a proper rotation, in any rounding mode.
+class Rotation {
+ public:
+  static constexpr double kUlps = 12;
+
+  /// The identity.
+  Rotation() = default;
+  /// The proper rotation next to R; R itself where it is orthonormal to rounding already.
+  /// @param most  what each entry of 1 - R^T R may be off 0 by, 1e-4 at most.
+  /// @return none where one is off by more, or is not a number, or R is a reflection.
+  static std::optional<Rotation> within12Ulps(Eigen::Matrix3d R, double most) {
+    Eigen::Matrix3d defect = orthonormalityDefect(R);
+    if (!((defect.array().abs() <= most).all() && R.determinant() > 0)) return std::nullopt;
+    for (int round = 0; round < 3 && !(defect.cwiseAbs().maxCoeff() <= 4e-16); ++round) {
+      R += 0.5 * R * defect;  // Newton's iteration: squares the defect
+      defect = orthonormalityDefect(R);
+    }
+    return Rotation(R);
   }
-  return R;
-}
-inline Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& R) {
-  return orthonormal(R, orthonormalityDefect(R));
-}
+  /// A rotation whose z axis is `axis`; the identity where that is z.
+  static Rotation withZ(const UnitVector& axis) {
+    if (axis.vector() == Eigen::Vector3d::UnitZ()) return Rotation();
+    const Eigen::Vector3d x = axis.vector().unitOrthogonal();
+    Eigen::Matrix3d R;
+    R.col(0) = x;
+    R.col(1) = axis.vector().cross(x);
+    R.col(2) = axis.vector();
+    return Rotation(R);
+  }
+
+  const Eigen::Matrix3d& matrix() const { return R_; }
+  operator const Eigen::Matrix3d&() const { return R_; }
+
+ private:
+  explicit Rotation(const Eigen::Matrix3d& R) : R_(R) {}
+
+  Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
+};
+
+/// The error of one more factor in a product of rigid transforms: that of the stored rotation, and 9 for the product,
+/// in 2^-52 and in any rounding mode.
+constexpr double kTransformUlps = 24;
+
+/// A stored rigid transform or a product of such, with the error that it has: no matrix of unknown error gets into a
+/// chain of motions.
+class RigidTransform {
+ public:
+  /// The identity.
+  RigidTransform() = default;
+  /// A stored transform.
+  RigidTransform(const Rotation& R, const Eigen::Vector3d& t) : M_(Eigen::Isometry3d::Identity()) {
+    M_.linear() = R.matrix();
+    place(t);
+  }
+  /// A stored transform.
+  /// @param most  as Rotation::within12Ulps() has it.
+  /// @return none where the rotation is refused, or the translation is not finite or has an entry beyond 1e9 m:
+  ///   whyNotRigid() says what it is.
+  static std::optional<RigidTransform> within12Ulps(const Eigen::Isometry3d& M, double most) {
+    if (!((M.translation().array().abs() <= kFarthest).all())) return std::nullopt;
+    const std::optional<Rotation> R = Rotation::within12Ulps(M.linear(), most);
+    if (!R) return std::nullopt;
+    return RigidTransform(*R, M.translation());
+  }
+  /// What somebody has multiplied himself.
+  /// @param ulps, length  as ulps() and length() return them.
+  static RigidTransform product(const Eigen::Isometry3d& M, double ulps, double length) {
+    RigidTransform product;
+    product.M_ = M;
+    product.length_ = length;
+    product.ulps_ = std::max(ulps, kTransformUlps);
+    return product;
+  }
+
+  /// The product, with the errors of both.
+  RigidTransform operator*(const RigidTransform& other) const {
+    if (isIdentity(M_)) return other;
+    if (isIdentity(other.M_)) return *this;
+    return product(M_ * other.M_, ulps_ + other.ulps_, length_ + other.length_);
+  }
+  /// The inverse. -R^T t is off by the errors of both R and t: twice as much, for a product; a stored t is exact.
+  RigidTransform inverse() const {
+    RigidTransform inverse = *this;
+    inverse.M_ = M_.inverse();
+    if (ulps_ == kTransformUlps) {
+      inverse.place(inverse.M_.translation());
+    } else {
+      inverse.ulps_ *= 2;
+    }
+    return inverse;
+  }
+  /// The same rotation elsewhere.
+  RigidTransform at(const Eigen::Vector3d& t) const {
+    RigidTransform moved = *this;
+    moved.place(t);
+    return moved;
+  }
+
+  /// How much it adds to the error of a product's rotation, in 2^-52; the place is off by as much, times length().
+  double ulps() const { return ulps_; }
+  /// Upper bound of the sum of all translations in it, m.
+  double length() const { return length_; }
+
+  operator const Eigen::Isometry3d&() const { return M_; }
+  const Eigen::Isometry3d& isometry() const { return M_; }
+  auto linear() const { return M_.linear(); }
+  auto translation() const { return M_.translation(); }
+  const Eigen::Matrix4d& matrix() const { return M_.matrix(); }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return M_ * x; }
+  friend Eigen::Isometry3d operator*(const Eigen::Isometry3d& a, const RigidTransform& b) { return a * b.M_; }
+
+ private:
+  void place(const Eigen::Vector3d& t) {
+    M_.translation() = t;
+    length_ = t.norm() * (1 + 1e-15);
+  }
+
+  Eigen::Isometry3d M_ = Eigen::Isometry3d::Identity();
+  double length_ = 0, ulps_ = kTransformUlps;
+};
+
+/// Why RigidTransform::within12Ulps() takes no M, as the end of a sentence: "has a transform that is not finite", "is
+/// more than 1e9 m away" and so on.
+std::string whyNotRigid(const Eigen::Isometry3d& M, double most);
 
 }  // namespace fcl_artic

@@ -15,7 +15,7 @@ namespace fcl_artic {
 /// What queries of other kinds ask of one motion, beyond the request.
 struct ArticulatedCollisionManager::Aspects {
   TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
-  bool own_margins = true;  ///< pairs may have margins of their own; false: all have the request's
+  bool own_margins = true;  ///< pairs may have margins of their own; false: none has, but neighbours (clearance())
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
   /// Pairs of the problem as the request's scope leaves it that are not checked, as if they were allowed; null: none.

@@ -19,6 +19,7 @@ inline void withdrawClaims(CertifiedResult& result, double begin, double end) {
   result.ignored_initial_contacts.clear();
   result.never_apart_pairs = 0;
   result.unproven_allowed_pairs = 0;
+  result.unproven_neighbours.reset();
   result.certificate.reset();
 }
 

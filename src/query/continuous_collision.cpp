@@ -51,7 +51,7 @@ template <class S>
 Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
              fcl::CCDMotionType type) {
   return {geometry, readShape(geometry),
-          motionBetween(readTransform(begin, "its start"), readTransform(end, "its end"), type)};
+          motionBetween(readTransform<S>(begin, "its start"), readTransform<S>(end, "its end"), type)};
 }
 
 template <class S>
@@ -100,15 +100,13 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
   upper.setConstant(INFINITY);
   const bool bounded = other.shape && other.shape->view().nodes[0].radius < engine::kUnbounded;
   if (standsStill(tree.motion) && bounded && !all) {
-    const Eigen::Isometry3d M_0t = tree.motion.pose(0);
     BodyMotion seen = other.motion;  // from the tree's frame
-    Eigen::Isometry3d& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
-    const double lengths = M_0t.translation().norm() + first.translation().norm();
-    first = M_0t.inverse() * first;
+    RigidTransform& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
+    first = tree.motion.poseWithError(0).inverse() * first;
     enclosePath(seen, other.shape->lower(), other.shape->upper(), lower, upper);
-    // What the path's own pads do not know of: the pose and the product above, and these sums.
+    // What the path's own pads do not know of: these sums.
     const double size = (upper - lower).norm() + lower.norm();
-    const double pad = margin + 0x1p-40 * (lengths + size + margin);
+    const double pad = margin + 0x1p-40 * (first.length() + size + margin);
     lower.array() -= pad;
     upper.array() += pad;
   }

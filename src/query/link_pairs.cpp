@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What pairs of links do over all values within their joints' limits. A pair is "never" by proof alone; everything else
-// here only saves that proof its work, or shows what hinders it.
+// here only saves that proof its work, or shows what hinders it. Neighbours are looked at so before each set-up of the
+// robot, with less work.
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -29,6 +30,11 @@ constexpr std::size_t kSearches = 2, kMoreSearches = 8;
 /// All proofs of one pair with balls may take as much work as the one without, each of them half of that. Measured on
 /// TALOS: an eighth each leaves 9 of 335 pairs unproven, all of the work for each proves no more in 1.1 times as long.
 constexpr std::uint64_t kPartPerCut = 2;
+
+/// Configurations tried of neighbours, and work per pair of geometries: a millisecond or two where the links touch
+/// throughout, some ten where a proof fails (test/data/robots_test.cpp measures the set-up of public robots).
+constexpr std::size_t kSamplesOfNeighbours = 32;
+constexpr std::uint64_t kWorkOfNeighbours = 50000;
 
 /// Two links' geometries, each with each.
 struct Pair {
@@ -82,30 +88,40 @@ class Classifier {
   /// at the one link or at the other.)
   const std::vector<int>& variables() const { return variables_; }
 
+  /// Finds no more than whether the links touch nowhere, somewhere, or throughout: with touching configurations looked
+  /// for first, as of neighbours that is what is mostly so.
+  /// @param[out] finding  all but the names.
+  void runShort(LinkPairFinding& finding) {
+    finding.nearest = std::numeric_limits<double>::infinity();
+    if (!bounded()) return;
+    const bool rigid = variables().empty();
+    for (std::size_t samples = 1; samples <= (rigid ? 1 : options_.samples); samples *= 2) {
+      tryConfigurations(samples, finding);
+      if (finding.touching > 0 && finding.apart > 0) return set(finding, LinkPairKind::sometimes, true);
+    }
+    if (finding.touching > 0) return set(finding, LinkPairKind::always, rigid);
+    if (finding.apart == finding.tried && prove(options_.work, false)) return setNever(finding);
+    if (!rigid) search(0, kSearches, finding);
+    set(finding, finding.touching > 0 ? LinkPairKind::sometimes : LinkPairKind::unproven, finding.touching > 0);
+  }
+
   /// @param[out] finding  all but the names.
   void run(LinkPairFinding& finding) {
     finding.nearest = std::numeric_limits<double>::infinity();
-    for (const RangeProof& proof : proofs_) {
-      if (!proof.bounded()) return;
-    }
+    if (!bounded()) return;
     if (prove(std::min(kFirstWork, options_.work), false)) return set(finding, LinkPairKind::never, true);
     // Contacts are looked for first: they are found in less time than proofs fail.
     const bool rigid = variables().empty();
     tryConfigurations(rigid ? 1 : options_.samples, finding);
     if (finding.touching == 0 && !rigid) {
       search(0, kSearches, finding);
-      if (finding.touching == 0 && prove(options_.work, true)) {
-        finding.tried = 0;
-        finding.configuration.resize(0);
-        finding.nearest = std::numeric_limits<double>::infinity();
-        return set(finding, LinkPairKind::never, true);
-      }
+      if (finding.touching == 0 && prove(options_.work, true)) return setNever(finding);
       if (finding.touching == 0) search(kSearches, kSearches + kMoreSearches, finding);
     }
     if (finding.touching == 0 && finding.configuration.size() == 0) return;
     if (finding.touching == 0) return set(finding, LinkPairKind::unproven, false);
     finding.nearest = options_.margin;
-    const bool always = apart_ == 0;
+    const bool always = finding.apart == 0;
     set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || rigid);
   }
 
@@ -115,9 +131,20 @@ class Classifier {
                                     variables_.begin());
   }
 
+  bool bounded() const {
+    return std::all_of(proofs_.begin(), proofs_.end(), [](const RangeProof& proof) { return proof.bounded(); });
+  }
+
   static void set(LinkPairFinding& finding, LinkPairKind kind, bool proven) {
     finding.kind = kind;
     finding.proven = proven;
+  }
+  /// Proven: what was tried before is of no interest.
+  static void setNever(LinkPairFinding& finding) {
+    finding.tried = finding.apart = 0;
+    finding.configuration.resize(0);
+    finding.nearest = std::numeric_limits<double>::infinity();
+    set(finding, LinkPairKind::never, true);
   }
 
   /// @param balls  whether to try them first.
@@ -195,7 +222,7 @@ class Classifier {
     return values;
   }
 
-  /// Tries configurations.
+  /// Tries configurations, until so many are tried.
   void tryConfigurations(std::size_t samples, LinkPairFinding& finding) {
     const EvenlySpread spread(variables().size());
     std::vector<double> values(variables().size());
@@ -208,7 +235,7 @@ class Classifier {
         values[i] = std::clamp(value, range.lower, range.upper);
       }
       const RangeProof::Contact contact = at(values, options_.margin);
-      apart_ += contact == RangeProof::Contact::none;
+      finding.apart += contact == RangeProof::Contact::none;
       if (contact != RangeProof::Contact::touch) continue;
       if (finding.touching++ == 0) finding.configuration = configuration(values);
     }
@@ -256,32 +283,139 @@ class Classifier {
   std::vector<int> variables_;
   std::vector<ValueRange> ranges_;  ///< to try
   std::vector<double> failed_at_;   ///< where the last proof that failed did
-  std::size_t apart_ = 0;           ///< configurations tried in which they certainly are
 };
 
-/// Pairs of links with geometry, neighbours without numbers.
+/// The problem's pairs, by links.
 std::vector<Pair> pairsOf(const Registry& registry, const engine::Problem& problem) {
-  std::set<LinkId> links;
-  for (const ManagedBody& body : registry.links()) {
-    if (!body.attached && !body.empty()) links.insert(body.link);
-  }
   std::map<std::pair<LinkId, LinkId>, Pair> pairs;
-  for (const LinkId a : links) {
-    for (const LinkId b : links) {
-      if (a < b) pairs[{a, b}] = {a, b, {}};
-    }
-  }
   for (std::int32_t i = 0; i < problem.num_link_pairs; ++i) {
     const engine::LinkPair& pair = problem.link_pairs[i];
     const LinkId a = registry.body(pair.a).link, b = registry.body(pair.b).link;
-    pairs.at(std::minmax(a, b)).numbers.push_back(static_cast<std::size_t>(i));
+    const auto [first, second] = std::minmax(a, b);
+    Pair& of_links = pairs.try_emplace({first, second}, Pair{first, second, {}}).first->second;
+    of_links.numbers.push_back(static_cast<std::size_t>(i));
   }
   std::vector<Pair> all;
   for (auto& [links_of_pair, pair] : pairs) all.push_back(std::move(pair));
   return all;
 }
 
+/// What proofs and findings of a pair of geometries are good for: the one of the link with the lower number first.
+PairMaking makingOf(const Registry& registry, const engine::LinkPair& pair) {
+  const ManagedBody *a = &registry.body(pair.a), *b = &registry.body(pair.b);
+  if (a->link > b->link) std::swap(a, b);
+  return {*registry.tree(), *a, *b};
+}
+
+/// Classifies pairs over threads.
+/// @param seek  f(classifier, finding) for each; the names are there already.
+/// @param[out] findings  of each pair.
+/// @param[out] proofs  of those that never touch.
+/// @param done  called after each, by one thread at a time.
+template <class Seek, class Done>
+void classifyPairs(const Registry& registry, const engine::Problem& problem, const std::vector<Pair>& pairs,
+                   const LinkPairOptions& options, const Seek& seek, const Done& done,
+                   std::vector<LinkPairFinding>& findings, LinkPairProofs& proofs) {
+  const KinematicTree& tree = *registry.tree();
+  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
+  findings.assign(pairs.size(), LinkPairFinding());
+  std::vector<std::vector<int>> variables(pairs.size());
+  std::mutex mutex;
+  parallelFor(pairs.size(), options.threads, [&](std::size_t i) {
+    LinkPairFinding& finding = findings[i];
+    finding.link1 = tree.linkName(pairs[i].link1);
+    finding.link2 = tree.linkName(pairs[i].link2);
+    finding.neighbours = areNeighbours(tree, with_geometry, pairs[i].link1, pairs[i].link2);
+    const WorkspaceLoan workspace;
+    Classifier classifier(tree, problem, pairs[i], options, *workspace);
+    seek(classifier, finding);
+    variables[i] = classifier.variables();
+    const std::lock_guard<std::mutex> lock(mutex);
+    done();
+  });
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (findings[i].kind != LinkPairKind::never) continue;
+    for (const std::size_t number : pairs[i].numbers)
+      proofs.add({makingOf(registry, problem.link_pairs[number]), options.margin, variables[i]});
+  }
+}
+
 }  // namespace
+
+std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& registry) {
+  const KinematicTree& tree = *registry.tree();
+  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
+  const auto asked = [&](const ManagedBody& a, const ManagedBody& b) {
+    return registry.areOpenNeighbours(with_geometry, a.link, b.link);
+  };
+  Setup setup;
+  setup.buildPairs(registry, asked);
+  const engine::Problem problem = setup.problem();
+  const NeighbourFindings* const before = registry.neighbours();
+  auto found = std::make_shared<NeighbourFindings>();
+  std::vector<Pair> open;
+  std::vector<std::vector<PairMaking>> made_of_open;
+  for (Pair& pair : pairsOf(registry, problem)) {
+    const NeighbourFindings::Links links(pair.link1, pair.link2);
+    std::vector<PairMaking> made;
+    for (const std::size_t number : pair.numbers) made.push_back(makingOf(registry, problem.link_pairs[number]));
+    const auto old = before ? before->pairs.find(links) : decltype(before->pairs.end()){};
+    const bool known = before && old != before->pairs.end() &&
+                       std::equal(made.begin(), made.end(), old->second.made.begin(), old->second.made.end(),
+                                  [](const PairMaking& x, const PairMaking& y) { return x.sameAs(y); });
+    if (!known) {
+      open.push_back(std::move(pair));
+      made_of_open.push_back(std::move(made));
+      continue;
+    }
+    found->pairs.emplace(*old);
+    for (const PairMaking& of : old->second.made) {
+      if (const LinkPairProofs::Proof* proof = before->proofs.find(of, 0)) found->proofs.add(*proof);
+    }
+  }
+  LinkPairOptions options;
+  options.samples = kSamplesOfNeighbours;
+  options.work = kWorkOfNeighbours;
+  std::vector<LinkPairFinding> findings;
+  classifyPairs(
+      registry, problem, open, options,
+      [](Classifier& classifier, LinkPairFinding& finding) { classifier.runShort(finding); }, [] {}, findings,
+      found->proofs);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const NeighbourFindings::Links links(open[i].link1, open[i].link2);
+    found->pairs.emplace(links, NeighbourFindings::Pair{std::move(findings[i]), std::move(made_of_open[i])});
+  }
+  return found;
+}
+
+std::vector<LinkPairFinding> ArticulatedCollisionManager::neighbours() const {
+  impl_->requireReady();
+  std::vector<LinkPairFinding> open;
+  for (const auto& [links, pair] : impl_->registry.neighbours()->pairs) {
+    if (!impl_->registry.allowed().allowed(pair.finding.link1, pair.finding.link2)) open.push_back(pair.finding);
+  }
+  return open;
+}
+
+std::vector<std::string> ArticulatedCollisionManager::notes() const {
+  std::string throughout, undecided;
+  for (const LinkPairFinding& pair : neighbours()) {
+    const std::string names = "'" + pair.link1 + "' and '" + pair.link2 + "'";
+    if (pair.touchThroughout()) throughout += (throughout.empty() ? "" : ", ") + names;
+    if (pair.undecided()) undecided += (undecided.empty() ? "" : ", ") + names;
+  }
+  std::vector<std::string> notes;
+  if (!throughout.empty())
+    notes.push_back(
+        "neighbours that touch at all tried values of the joint between them, as housings that overlap in " +
+        ("it, are not checked: " + throughout));
+  if (!undecided.empty())
+    notes.push_back(
+        "neighbours of which it can't be decided whether they touch are not checked, and each answer counts "
+        "them: " +
+        undecided);
+  return notes;
+}
 
 LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOptions& options) const {
   const Registry& registry = impl_->registry;
@@ -295,7 +429,7 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
     throw std::invalid_argument("classifyLinkPairs: the number of threads is " + std::to_string(options.threads));
   }
   Setup setup;
-  setup.buildEveryPair(registry);
+  setup.buildPairs(registry, [](const ManagedBody&, const ManagedBody&) { return true; });
   const engine::Problem problem = setup.problem();
   std::vector<Pair> pairs = pairsOf(registry, problem);
   if (options.only) {
@@ -307,38 +441,15 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
   }
 
   LinkPairReport report;
-  report.pairs.resize(pairs.size());
-  std::vector<std::vector<int>> variables(pairs.size());
-  std::mutex mutex;
-  std::size_t done = 0;
-  parallelFor(pairs.size(), options.threads, [&](std::size_t i) {
-    LinkPairFinding& finding = report.pairs[i];
-    finding.link1 = tree.linkName(pairs[i].link1);
-    finding.link2 = tree.linkName(pairs[i].link2);
-    if (pairs[i].numbers.empty()) {
-      finding.kind = LinkPairKind::neighbours;
-      finding.proven = true;
-    } else {
-      const WorkspaceLoan workspace;
-      Classifier classifier(tree, problem, pairs[i], options, *workspace);
-      classifier.run(finding);
-      variables[i] = classifier.variables();
-    }
-    if (!options.progress) return;
-    const std::lock_guard<std::mutex> lock(mutex);
-    options.progress(++done, pairs.size());
-  });
-
   const auto proofs = std::make_shared<LinkPairProofs>();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (report.pairs[i].kind != LinkPairKind::never) continue;
-    for (const std::size_t number : pairs[i].numbers) {
-      const engine::LinkPair& pair = problem.link_pairs[number];
-      const ManagedBody *a = &registry.body(pair.a), *b = &registry.body(pair.b);
-      if (a->link > b->link) std::swap(a, b);
-      proofs->add({PairMaking(tree, *a, *b), options.margin, variables[i]});
-    }
-  }
+  std::size_t done = 0;
+  classifyPairs(
+      registry, problem, pairs, options,
+      [](Classifier& classifier, LinkPairFinding& finding) { classifier.run(finding); },
+      [&] {
+        if (options.progress) options.progress(++done, pairs.size());
+      },
+      report.pairs, *proofs);
   report.proofs = proofs;
   return report;
 }
@@ -346,7 +457,7 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
 AllowedCollisionMatrix LinkPairReport::alwaysTouching() const {
   AllowedCollisionMatrix matrix;
   for (const LinkPairFinding& pair : pairs) {
-    if (pair.kind == LinkPairKind::always) matrix.allow(pair.link1, pair.link2);
+    if (pair.kind == LinkPairKind::always && !pair.neighbours) matrix.allow(pair.link1, pair.link2);
   }
   return matrix;
 }
@@ -354,7 +465,8 @@ AllowedCollisionMatrix LinkPairReport::alwaysTouching() const {
 AllowedCollisionMatrix LinkPairReport::needNoCheck() const {
   AllowedCollisionMatrix matrix = alwaysTouching();
   for (const LinkPairFinding& pair : pairs) {
-    if (pair.kind == LinkPairKind::never || pair.kind == LinkPairKind::neighbours) matrix.allow(pair.link1, pair.link2);
+    const bool left_out = pair.neighbours && (pair.touchThroughout() || pair.undecided());
+    if (pair.kind == LinkPairKind::never || left_out) matrix.allow(pair.link1, pair.link2);
   }
   return matrix;
 }

@@ -13,6 +13,7 @@
 #include "fcl_artic/manager.h"
 #include "query/aspects.h"
 #include "query/engine_query.h"
+#include "setup/neighbour_findings.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
 #include "visibility/choice.h"
@@ -31,6 +32,11 @@ struct Stage2 {
   visibility::Choice standard, redon, together;  ///< together: batches, by Method::standard
 };
 
+/// Finds out what neighbours do over all values of the joint between them (setup/neighbour_findings.h): of those that
+/// the matrix neither allows nor has checked, for the rule; and of those that it allows, for what answers say of them.
+/// What was found before of the same geometry stays.
+std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& registry);
+
 struct ArticulatedCollisionManager::Impl {
   explicit Impl(std::shared_ptr<const KinematicTree> tree) : registry(std::move(tree)) {}
 
@@ -39,6 +45,7 @@ struct ArticulatedCollisionManager::Impl {
     if (changes.links) setup.robotChanged();
     if (changes.obstacles) setup.obstaclesChanged();
     if (setup.ready() && setup.isOf(*registry.tree())) return;
+    if (!setup.robotReady(*registry.tree())) registry.setNeighbours(lookAtNeighbours(registry));
     setup.build(registry);
     world_.reset();
   }
@@ -66,12 +73,16 @@ struct ArticulatedCollisionManager::Impl {
         "ArticulatedCollisionManager: call setup() after changing objects, links, margins, allowed pairs or the tree");
   }
 
-  /// Allowed pairs that nothing proves apart for all of these motions (CertifiedResult::unproven_allowed_pairs).
-  std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
-                              const CertifiedRequest& request, bool own_margins = true) const {
+  /// Says of pairs that are not checked which ones nothing proves apart for all of these motions
+  /// (CertifiedResult::unproven_allowed_pairs and unproven_neighbours).
+  void countUnchecked(const JointMotion* const* motions, std::size_t num_motions, const CertifiedRequest& request,
+                      bool own_margins, CertifiedResult& result) const {
     engine::Margins margins = marginsOf(request);
-    if (own_margins) setup.margins().putInto(margins);
-    return setup.proven().unprovenAllowed(motions, num_motions, margins, request.check_self, request.check_scene);
+    (own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(margins);
+    const ProvenPairs& proven = setup.proven();
+    result.unproven_allowed_pairs =
+        proven.unprovenAllowed(motions, num_motions, margins, request.check_self, request.check_scene);
+    result.unproven_neighbours = request.check_self ? proven.undecidedNeighbours() : nullptr;
   }
 
   Registry registry;

@@ -209,7 +209,7 @@ void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const Tim
 void ArticulatedCollisionManager::Impl::complete(const JointMotion& motion, const CertifiedRequest& request,
                                                  const Aspects::Details& details, CertifiedResult& result) const {
   const JointMotion* const motions[] = {&motion};
-  result.unproven_allowed_pairs = unprovenAllowed(motions, 1, request);
+  countUnchecked(motions, 1, request, true, result);
   result.certificate.reset();
   if (request.certificate) {
     certificate::Claim claim;
@@ -252,7 +252,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   setVariables(motion, setup.movingCoefficients(), aspects.time, workspace->coefficients, query);
   engine::Problem problem = setup.problem();
   const BoundedParts parts(aspects.time, problem);
-  if (aspects.own_margins) setup.margins().putInto(query.margins);
+  (aspects.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
   if (aspects.left_out && !aspects.left_out->empty()) leaveOut(*aspects.left_out, *workspace, problem);
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};

@@ -91,8 +91,9 @@ void solveBounded(const MovingShape& body1, const MovingShape& body2, const Cert
 void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
                     const CertifiedPairRequest& request, CertifiedPairResult& result) {
   constexpr double kParallel = 64 * 0x1p-52;
-  const Heading heading1 = headingOf(body1.motion, Eigen::Vector3d::Map(piece1.size));
-  const Heading heading2 = headingOf(body2.motion, Eigen::Vector3d::Map(piece2.size));
+  const auto normalOf = [](const Piece& piece) { return UnitVector::within3Ulps(Eigen::Vector3d::Map(piece.size)); };
+  const Heading heading1 = headingOf(body1.motion, normalOf(piece1).value());
+  const Heading heading2 = headingOf(body2.motion, normalOf(piece2).value());
   const Eigen::Vector3d &n1 = heading1.direction, &n2 = heading2.direction;
   const double askew = n1.cross(n2).norm(), least = kParallel + heading1.author + heading2.author;
   const bool parallel = askew <= least;

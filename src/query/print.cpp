@@ -77,14 +77,20 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
 namespace {
 
 /// What a free answer does not speak of. @param ignored  number of pairs, those that part nowhere included.
-std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::size_t ignored, std::size_t never) {
+std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::size_t ignored, std::size_t never,
+                           const std::vector<std::pair<std::string, std::string>>* neighbours = nullptr) {
   std::string text;
   if (!answer.isFree()) return text;
   const auto pairs = [](std::size_t n, const char* kind) {
     return std::to_string(n) + kind + (n == 1 ? " pair" : " pairs");
   };
   const auto add = [&](const std::string& more) { text += (text.empty() ? "but for " : ", and for ") + more; };
-  if (unproven > 0) add(pairs(unproven, " allowed") + " not proven apart");
+  const std::size_t num_neighbours = neighbours ? neighbours->size() : 0;
+  if (unproven > num_neighbours) add(pairs(unproven - num_neighbours, " allowed") + " not proven apart");
+  if (num_neighbours > 0) {
+    add(pairs(num_neighbours, "") + " of neighbours not proven apart: ");
+    for (const auto& [a, b] : *neighbours) text += (&a == &neighbours->front().first ? "" : "; ") + a + ", " + b;
+  }
   if (ignored > never) add("the initial contact of " + pairs(ignored - never, ""));
   if (never > 0) add(pairs(never, "") + (never == 1 ? " that parts nowhere" : " that part nowhere"));
   return text;
@@ -100,7 +106,7 @@ std::ostream& printExceptions(std::ostream& out, const Result& result) {
 
 std::ostream& operator<<(std::ostream& out, const CertifiedResult& result) {
   if (result.nothingChecked()) {
-    out << "free: nothing was checked, there is no pair of bodies";
+    out << "nothing was checked, there is no pair of bodies";
   } else {
     out << static_cast<const Bracket&>(result);
   }
@@ -117,7 +123,7 @@ std::ostream& operator<<(std::ostream& out, const CertifiedPairsResult& result) 
 
 std::string exceptionsOf(const CertifiedResult& result) {
   return exceptionsText(result, result.unproven_allowed_pairs, result.ignored_initial_contacts.size(),
-                        result.never_apart_pairs);
+                        result.never_apart_pairs, result.unproven_neighbours.get());
 }
 
 std::string exceptionsOf(const CertifiedPairResult& result) {
@@ -130,8 +136,6 @@ std::string exceptionsOf(const CertifiedPairsResult& result) {
 
 const char* toString(LinkPairKind kind) {
   switch (kind) {
-    case LinkPairKind::neighbours:
-      return "neighbours";
     case LinkPairKind::never:
       return "never";
     case LinkPairKind::always:
@@ -152,6 +156,7 @@ std::ostream& operator<<(std::ostream& out, const LinkPairFinding& finding) {
   out << finding.link1 << " and " << finding.link2 << ": " << finding.kind;
   if (finding.tried > 0) out << ", " << finding.touching << " of " << finding.tried << " configurations tried touch";
   if (finding.proven) out << ", proven";
+  if (finding.neighbours) out << ", neighbours";
   return out;
 }
 

@@ -136,7 +136,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
   // A pair counts once, whichever of the pieces leaves its proof.
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
-  sum.unproven_allowed_pairs = impl_->unprovenAllowed(pieces.data(), pieces.size(), request, common.own_margins);
+  impl_->countUnchecked(pieces.data(), pieces.size(), request, common.own_margins, sum);
   if (request.certificate && !claim.pieces.empty()) {
     claim.duration = trajectory.endTime() - trajectory.beginTime();
     sum.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*impl_->world(), claim));

@@ -349,7 +349,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
         IntervalMat3 R0;
         if (step.orientation >= 0) {
           R0 = IntervalMat3(query.orientations + 9 * step.orientation);
-          addError(R0, ulps(kStoredUlps));
+          addError(R0, ulps(Rotation::kUlps));
           if (step.inverse) X = X * transpose(R0);
           cutToUnit(X);
         }

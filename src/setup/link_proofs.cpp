@@ -5,10 +5,11 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "motion/half_angles.h"
 #include "numerics/arc_tangent.h"
-#include "setup/neighbours.h"
+#include "setup/neighbour_findings.h"
 
 namespace fcl_artic {
 namespace {
@@ -55,14 +56,20 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   allowed_self_ = 0;
   const KinematicTree& tree = *registry.tree();
   for (int v = 0; v < tree.dof(); ++v) ranges_.push_back(wholeRange(tree, v));
-  const LinkPairProofs* proofs = registry.proofs().get();
+  const NeighbourFindings* const neighbours = registry.neighbours();
+  const LinkPairProofs* const all_proofs[] = {registry.proofs().get(), neighbours ? &neighbours->proofs : nullptr};
   // A proof is of two links, the one with the lower number first.
   const auto find = [&](const ManagedBody& a, const ManagedBody& b, double margin) {
-    if (!proofs || a.attached || b.attached) return static_cast<const LinkPairProofs::Proof*>(nullptr);
-    return a.link < b.link ? proofs->find(PairMaking(tree, a, b), margin)
-                           : proofs->find(PairMaking(tree, b, a), margin);
+    const LinkPairProofs::Proof* proof = nullptr;
+    if (a.attached || b.attached) return proof;
+    const auto& [first, second] = a.link < b.link ? std::tie(a, b) : std::tie(b, a);
+    for (const LinkPairProofs* proofs : all_proofs) {
+      if (!proof && proofs && proofs->has(first.link, second.link))
+        proof = proofs->find(PairMaking(tree, first, second), margin);
+    }
+    return proof;
   };
-  for (std::size_t i = 0; proofs && i < num_self_pairs; ++i) {
+  for (std::size_t i = 0; i < num_self_pairs; ++i) {
     const engine::LinkPair& pair = problem.link_pairs[i];
     if (const auto* proof = find(registry.body(pair.a), registry.body(pair.b), margins.ofLinkPair(i))) {
       checked_.push_back({i, proof->margin, proof->variables});
@@ -71,20 +78,29 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   }
 
   // Allowed pairs count by their names: a link may have several geometries.
-  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
+  const NamedMargins named_margins = registry.margins();
+  std::set<std::pair<std::string, std::string>> undecided;
   std::map<std::pair<std::string, std::string>, std::vector<const LinkPairProofs::Proof*>> excused;
   const std::vector<ManagedBody>& links = registry.links();
   registry.forEachTwoLinks([&](std::size_t i, std::size_t j) {
     const ManagedBody &a = links[i], &b = links[j];
     if (a.empty() || b.empty()) return;
-    if (registry.mayTouch(a, b) && !a.mayTouchLink(b) && !b.mayTouchLink(a)) return;
-    if (!a.attached && !b.attached && areNeighbours(tree, with_geometry, a.link, b.link)) return;
+    const Excuse excuse = registry.excuseOf(a, b);
+    if (excuse == Excuse::none) return;
+    if (excuse != Excuse::touch_link && !a.attached && !b.attached && neighbours) {
+      const LinkPairFinding* const found = neighbours->find(a.link, b.link);
+      if (found && found->touchThroughout()) return;  // notes() names it
+      if (excuse == Excuse::neighbours) {
+        undecided.emplace(found->link1, found->link2);
+        return;
+      }
+    }
     excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
   });
   for (const auto& [names, found] : excused) {
     for (const LinkPairProofs::Proof* proof : found) {
       if (proof) {
-        const double own = registry.margins().of(names.first, names.second);
+        const double own = named_margins.of(names.first, names.second);
         allowed_.push_back({allowed_self_, proof->margin, proof->variables, own});
       }
     }
@@ -94,6 +110,7 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     }
     ++allowed_self_;
   }
+  undecided_ = undecided.empty() ? nullptr : std::make_shared<const Names>(undecided.begin(), undecided.end());
   std::set<int> used;
   for (const auto* pairs : {&checked_, &allowed_}) {
     for (const Pair& pair : *pairs) used.insert(pair.variables.begin(), pair.variables.end());
@@ -142,8 +159,8 @@ void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion
 std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
                                          const engine::Margins& margins, bool self, bool scene) const {
   std::size_t unproven = scene ? allowed_scene_ : 0;
-  if (!self || allowed_self_ == 0) return unproven;
-  unproven += allowed_self_;
+  if (!self) return unproven;
+  unproven += allowed_self_ + (undecided_ ? undecided_->size() : 0);
   const auto allWithin = [&](const std::vector<int>& variables) {
     return std::all_of(motions, motions + num_motions,
                        [&](const JointMotion* motion) { return within(variables, *motion); });

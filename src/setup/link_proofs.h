@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,7 @@ class LinkPairProofs {
   void add(Proof proof);
   /// Null where there is none for just these two bodies and this margin.
   const Proof* find(const PairMaking& made, double margin) const;
+  bool has(LinkId a, LinkId b) const { return proofs_.count({a, b}) > 0; }
   std::size_t size() const { return proofs_.size(); }
 
  private:
@@ -56,9 +58,13 @@ class ProvenPairs {
                     std::vector<std::uint8_t>& parts) const;
 
   /// Number of allowed pairs of names, of two links or of link and obstacle, which nothing proves apart for all of
-  /// these motions.
+  /// these motions; undecidedNeighbours() included.
   std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
                               const engine::Margins& margins, bool self, bool scene) const;
+
+  /// Neighbours that the rule leaves out as it can't be decided whether they touch; null: none.
+  using Names = std::vector<std::pair<std::string, std::string>>;
+  const std::shared_ptr<const Names>& undecidedNeighbours() const { return undecided_; }
 
  private:
   struct Pair {
@@ -70,6 +76,7 @@ class ProvenPairs {
   bool within(const std::vector<int>& variables, const JointMotion& motion) const;
 
   std::vector<Pair> checked_, allowed_;
+  std::shared_ptr<const Names> undecided_;
   std::vector<bool> is_proven_;
   std::vector<int> used_;                             ///< variables of all of these proofs
   std::vector<ValueRange> ranges_;                    ///< by variable

@@ -59,7 +59,7 @@ void ManagedBody::requireBounded(const std::string& what) const {
 void ManagedBody::readObstacle() {
   const std::string what = "obstacle '" + name + "'";
   if (object) {
-    const Eigen::Isometry3d M = requireRigid(object->getTransform(), what);
+    const RigidTransform M = requireRigid(object->getTransform(), what);
     readShape(what);
     transform = object->getTransform();
     offset = M;

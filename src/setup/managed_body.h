@@ -27,7 +27,7 @@ struct ManagedBody {
   std::shared_ptr<const void> owner;                        ///< of the one or the other; null: the caller is
   std::string name;
   LinkId link = -1;                                             ///< -1: obstacle
-  Eigen::Isometry3d offset = Eigen::Isometry3d::Identity();     ///< in the link's frame; of an obstacle: in the world
+  RigidTransform offset;                                        ///< in the link's frame; of an obstacle: in the world
   Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();  ///< of an obstacle: the object's own, as read
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;
   std::shared_ptr<const ShapeTree> shape;
@@ -61,7 +61,7 @@ struct ManagedBody {
   double size() const { return shape->view().nodes[0].radius; }  ///< half its box's diagonal
   bool isObstacle() const { return link < 0 || attached; }  ///< registered as one, whether or not a link carries it now
   bool mayTouchLink(const ManagedBody& other) const { return !other.attached && touch_links.count(other.link); }
-  Eigen::Isometry3d pose(double t) const { return moving ? motion.pose(t) : offset; }  ///< of an obstacle
+  Eigen::Isometry3d pose(double t) const { return moving ? motion.pose(t) : offset.isometry(); }  ///< of an obstacle
   BodyRef reference() const { return {link, object, name, moving}; }
   /// Its box where the geometry's frame stands at M.
   /// @param placement  the same.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which links of a tree are neighbours, that may always touch; and which of two carries the other.
+// Which links of a tree are neighbours, and which of two carries the other.
 #pragma once
 
 #include <set>

@@ -7,6 +7,8 @@
 
 #include "fcl/fcl_geometry.h"
 #include "numerics/assertion.h"
+#include "setup/neighbour_findings.h"
+#include "setup/neighbours.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic {
@@ -32,6 +34,11 @@ std::vector<ManagedBody>::iterator require(std::vector<ManagedBody>& bodies,
                                            const fcl::ContinuousCollisionObjectd* object, const char* missing) {
   return requireIf(
       bodies, [&](const ManagedBody& b) { return object && b.moving == object; }, missing);
+}
+
+/// Whether the rule for neighbours leaves the pair out.
+bool isLeftOut(const LinkPairFinding& found) {
+  return found.touchThroughout() || found.undecided();
 }
 
 std::vector<std::string> linkNames(const KinematicTree& tree) {
@@ -142,22 +149,56 @@ void Registry::forget(Bodies& bodies, Bodies::iterator body) {
 
 void Registry::keepNames(const std::function<bool(const std::string& body)>& isKept) {
   margins_.keep(isKept);
-  const auto isGone = [&](const auto& pair) { return !isKept(pair.first) || !isKept(pair.second); };
-  const auto& pairs = allowed_.pairs();
-  if (std::none_of(pairs.begin(), pairs.end(), isGone)) return;
   AllowedCollisionMatrix kept;
-  for (const auto& pair : pairs) {
-    if (!isGone(pair)) kept.allow(pair.first, pair.second);
+  kept.setComplete(allowed_.complete());
+  for (const auto& [a, b] : allowed_.pairs()) {
+    if (isKept(a) && isKept(b)) kept.allow(a, b);
+  }
+  for (const auto& [a, b] : allowed_.disallowedPairs()) {
+    if (isKept(a) && isKept(b)) kept.disallow(a, b);
   }
   allowed_ = std::move(kept);
 }
 
 void Registry::setAllowed(AllowedCollisionMatrix matrix) {
-  for (const auto& [a, b] : matrix.pairs()) {
-    requireBody(a, "setAllowedCollisions");
-    requireBody(b, "setAllowedCollisions");
+  for (const auto* pairs : {&matrix.pairs(), &matrix.disallowedPairs()}) {
+    for (const auto& [a, b] : *pairs) {
+      requireBody(a, "setAllowedCollisions");
+      requireBody(b, "setAllowedCollisions");
+    }
   }
   allowed_ = std::move(matrix);
+}
+
+bool Registry::areOpenNeighbours(const std::set<LinkId>& with_geometry, LinkId a, LinkId b) const {
+  return areNeighbours(*tree_, with_geometry, a, b) && !allowed_.mustBeChecked(tree_->linkName(a), tree_->linkName(b));
+}
+
+Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
+  if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
+  if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
+  if (a.attached || b.attached || !neighbours_) return Excuse::none;
+  const LinkPairFinding* const found = neighbours_->find(a.link, b.link);
+  return found && isLeftOut(*found) ? Excuse::neighbours : Excuse::none;
+}
+
+NamedMargins Registry::marginsOfNeighbours() const {
+  NamedMargins margins;
+  if (!neighbours_) return margins;
+  for (const auto& [links, pair] : neighbours_->pairs) {
+    const LinkPairFinding& found = pair.finding;
+    const bool checked = !allowed_.allowed(found.link1, found.link2) && !isLeftOut(found);
+    if (checked && !margins_.ofPairs().count(std::minmax(found.link1, found.link2)))
+      margins.set(found.link1, found.link2, 0);
+  }
+  return margins;
+}
+
+NamedMargins Registry::margins() const {
+  NamedMargins margins = margins_;
+  const NamedMargins of_neighbours = marginsOfNeighbours();
+  for (const auto& [names, margin] : of_neighbours.ofPairs()) margins.set(names.first, names.second, margin);
+  return margins;
 }
 
 void Registry::allow(const std::string& a, const std::string& b) {

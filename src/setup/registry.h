@@ -4,6 +4,7 @@
 // change is checked here, and one that throws changes nothing. What is made of it for queries is the Setup's.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <set>
@@ -16,6 +17,16 @@
 #include "setup/margins.h"
 
 namespace fcl_artic {
+
+struct NeighbourFindings;
+
+/// Why two geometries on two links are not checked.
+enum class Excuse : std::uint8_t {
+  none,        ///< they are
+  allowed,     ///< somebody said that they may touch
+  touch_link,  ///< the one is carried, and may touch the other
+  neighbours   ///< by the rule for neighbours (ArticulatedCollisionManager::setAllowedCollisions())
+};
 
 class Registry {
  public:
@@ -45,6 +56,16 @@ class Registry {
   /// Links that have geometry of their own, not only attached.
   std::set<LinkId> linksWithGeometry() const;
   bool hasObstacle(const std::string& name) const { return obstacle_names_.count(name) != 0; }
+
+  /// Of two bodies that two links carry, neither of them empty.
+  Excuse excuseOf(const ManagedBody& a, const ManagedBody& b) const;
+  /// Of two links: neighbours by the tree and the links that have geometry, of which nobody says that they are to be
+  /// checked.
+  /// @param with_geometry  linksWithGeometry()
+  bool areOpenNeighbours(const std::set<LinkId>& with_geometry, LinkId a, LinkId b) const;
+  /// What was found of neighbours for the links as they are now; null: nobody looked.
+  const NeighbourFindings* neighbours() const { return neighbours_.get(); }
+  void setNeighbours(std::shared_ptr<const NeighbourFindings> findings) { neighbours_ = std::move(findings); }
 
   /// Whether the two can and must not touch.
   bool mayTouch(const ManagedBody& a, const ManagedBody& b) const {
@@ -85,7 +106,10 @@ class Registry {
   void setMargin(const std::string& body, double margin);
   void setMargin(const std::string& a, const std::string& b, double margin);
   void resetMargins() { margins_.clear(); }
-  const NamedMargins& margins() const { return margins_; }
+  /// Those that were set, and those of neighbours that the rule has checked for touching.
+  NamedMargins margins() const;
+  /// The latter alone.
+  NamedMargins marginsOfNeighbours() const;
 
   /// @throws std::invalid_argument beginning with `what` where the robot has no such link.
   LinkId requireLink(const std::string& name, const std::string& what) const;
@@ -119,6 +143,7 @@ class Registry {
   std::shared_ptr<const KinematicTree> tree_;
   AllowedCollisionMatrix allowed_;
   std::shared_ptr<const LinkPairProofs> proofs_;  ///< null: none
+  std::shared_ptr<const NeighbourFindings> neighbours_;
   Bodies links_, moving_, obstacles_;
   std::unordered_set<const void*> objects_;  ///< of all of these
   std::unordered_set<std::string> obstacle_names_;

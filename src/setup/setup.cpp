@@ -12,8 +12,9 @@ void Setup::build(const Registry& registry) {
   ready_ = false;
   buildScene(registry);
   listMovers();
-  margins_ = PairMargins::of(registry.margins(), problem(),
-                             [&](std::int32_t body) -> const std::string& { return registry.body(body).name; });
+  const auto nameOf = [&](std::int32_t body) -> const std::string& { return registry.body(body).name; };
+  margins_ = PairMargins::of(registry.margins(), problem(), nameOf);
+  margins_of_neighbours_ = PairMargins::of(registry.marginsOfNeighbours(), problem(), nameOf);
   readSolids(registry);
   sweep_views_.clear();
   for (const FrameSweep& sweep : sweeps_) sweep_views_.push_back(sweep.view());

@@ -37,14 +37,20 @@ class Setup {
 
   /// Makes all of the registry's changes effective.
   void build(const Registry& registry);
-  /// Makes the robot's links only, and all pairs of two links, allowed ones too, but for neighbours and attached
-  /// objects: for classifyLinkPairs().
-  void buildEveryPair(const Registry& registry);
+  using IsChecked = std::function<bool(const ManagedBody&, const ManagedBody&)>;
+  /// Makes the robot's links only, and the pairs of two links that are asked for, allowed ones too: for those who look
+  /// at pairs of links. Attached objects and empty geometries make no pair.
+  /// @param asked  of two geometries on different links.
+  void buildPairs(const Registry& registry, const IsChecked& asked);
+  /// Whether what depends on the robot alone is up to date.
+  bool robotReady(const KinematicTree& tree) const { return robot_ready_ && isOf(tree); }
 
   /// What the engine sees of it.
   engine::Problem problem() const;
   /// Of all of the problem's pairs.
   const PairMargins& margins() const { return margins_; }
+  /// Of neighbours that the rule has checked for touching; of no other pairs.
+  const PairMargins& marginsOfNeighbours() const { return margins_of_neighbours_; }
   /// Number of the problem's link pairs, from the first on, that are two links; the others are moving obstacles and
   /// links.
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
@@ -59,7 +65,6 @@ class Setup {
   // setup_robot.cpp: what depends on the links, and on what is allowed between them.
   void buildRobot(const Registry& registry);
   std::vector<Carrier> buildLinks(const Registry& registry);
-  using IsChecked = std::function<bool(const ManagedBody&, const ManagedBody&)>;
   void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked);
   void listMovers();
   void readSolids(const Registry& registry);
@@ -83,7 +88,7 @@ class Setup {
   std::vector<engine::StillBounds> still_bounds_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;
-  PairMargins margins_;
+  PairMargins margins_, margins_of_neighbours_;
   ProvenPairs proven_;
   std::shared_ptr<const LinkTables> tables_ =
       std::make_shared<LinkTables>();  ///< constant: set-ups of one robot share them

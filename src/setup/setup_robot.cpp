@@ -13,12 +13,9 @@
 
 namespace fcl_artic {
 
-void Setup::buildEveryPair(const Registry& registry) {
-  const KinematicTree& tree = *registry.tree();
-  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
+void Setup::buildPairs(const Registry& registry, const IsChecked& asked) {
   buildSelfPairs(registry, buildLinks(registry), [&](const ManagedBody& a, const ManagedBody& b) {
-    return !a.empty() && !b.empty() && !a.attached && !b.attached &&
-           !areNeighbours(tree, with_geometry, a.link, b.link);
+    return !a.empty() && !b.empty() && !a.attached && !b.attached && asked(a, b);
   });
   listMovers();
   readSolids(registry);
@@ -28,11 +25,8 @@ void Setup::buildEveryPair(const Registry& registry) {
 
 void Setup::buildRobot(const Registry& registry) {
   const std::vector<Carrier> carriers = buildLinks(registry);
-  const KinematicTree& tree = *registry.tree();
-  const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   buildSelfPairs(registry, carriers, [&](const ManagedBody& a, const ManagedBody& b) {
-    if (!registry.mayTouch(a, b) || a.mayTouchLink(b) || b.mayTouchLink(a)) return false;
-    return a.attached || b.attached || !areNeighbours(tree, with_geometry, a.link, b.link);
+    return !a.empty() && !b.empty() && registry.excuseOf(a, b) == Excuse::none;
   });
   tables_ready_ = false;
   tree_ = registry.tree()->content();

@@ -12,6 +12,8 @@
 
 #include "fcl_artic/manager.h"
 
+namespace allocation_test {
+
 namespace {
 std::atomic<long> allocations{0};
 }
@@ -142,3 +144,5 @@ TEST(Allocation, PreparedTreesAreNotMadeByTheFirstQuery) {
 }
 
 }  // namespace
+
+}  // namespace allocation_test

@@ -12,6 +12,8 @@
 #endif
 #include "run_program.h"
 
+namespace bench_test {
+
 namespace {
 
 // Free steps this close to pipes this coarse compare triangles.
@@ -261,3 +263,5 @@ TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
 #endif
 
 }  // namespace
+
+}  // namespace bench_test

@@ -9,6 +9,8 @@
 
 #include "run_program.h"
 
+namespace certificate_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -99,3 +101,5 @@ TEST_F(CertificateOptionTest, OfPlansThereIsARecordEach) {
 }
 
 }  // namespace
+
+}  // namespace certificate_test

@@ -13,6 +13,8 @@
 #include "../plans/numpy_sample.h"
 #include "run_program.h"
 
+namespace certify_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -179,6 +181,10 @@ TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
   EXPECT_EQ(folder.status, 0) << folder.err;
   EXPECT_LT(folder.out.find("a.jsonl"), folder.out.find("b.csv"));
   EXPECT_NE(folder.out.find("2 plans: 2 free"), std::string::npos) << folder.out;
+  std::filesystem::create_directory(path("folder/old"));
+  const Outcome more = certify(path("folder"));
+  EXPECT_NE(more.out.find("passed over, as folders or without a plan's ending: old/, readme.md"), std::string::npos)
+      << more.out;
   std::filesystem::create_directory(path("empty"));
   EXPECT_EQ(certify(path("empty")).status, 2);
   EXPECT_EQ(certify("/nowhere.csv").status, 2);
@@ -506,3 +512,5 @@ TEST_F(CertifyProgramTest, SaysWhyItCannotMend) {
 #endif
 
 }  // namespace
+
+}  // namespace certify_test

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace configuration_test {
+
 namespace {
 
 using fcl_artic::Joint;
@@ -77,3 +79,5 @@ TEST(Configuration, RefusalsNameTheJoint) {
 }
 
 }  // namespace
+
+}  // namespace configuration_test

@@ -17,8 +17,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "edges/inputs.h"
 #include "hdf5/hdf5.h"
 #include "run_program.h"
+
+namespace edges_test {
 
 namespace {
 
@@ -116,6 +119,8 @@ TEST_F(EdgesTest, TheTableSaysWhatCheckSaysOneByOne) {
   const Outcome done = run(command("made", "--block-rows 40"));
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_NE(done.out.find("300 rows in 8 blocks"), std::string::npos) << done.out;
+  EXPECT_NE(done.err.find("passed over, as a scene's ending is none of theirs: notes.txt"), std::string::npos)
+      << done.err;
 
   const File table(path("made/table.h5"));
   ASSERT_EQ(table.shape("status"), (std::vector<std::size_t>{2, kEdges}));
@@ -479,6 +484,28 @@ TEST_F(EdgesTest, RowsThatAreNoMotionAreRefusedNotFree) {
   EXPECT_EQ(column<std::int64_t>(File(path("beyond/table.h5")), "status")[2], 2);
 }
 
+// What an earlier library has proven may be wrong: its rows and roadmaps are not believed.
+TEST_F(EdgesTest, HashesKnowTheErrata) {
+  std::istringstream errata(read(std::string(FCL_ARTIC_SOURCE) + "/doc/ERRATA.md"));
+  int entries = 0;
+  for (std::string line; std::getline(errata, line);) entries += line.rfind("**", 0) == 0;
+  EXPECT_EQ(fcl_artic::app::kErrata, entries) << "a new entry raises the number";
+}
+
+TEST_F(EdgesTest, NotesOfScenesArePrinted) {
+  arm();
+  fs::create_directories(folder_ / "doors");
+  write("doors/door.urdf", R"(<robot name="d"><link name="d"/><link name="e"><collision><origin xyz="9 9 9"/>
+    <geometry><sphere radius="0.1"/></geometry></collision></link>
+    <joint name="j" type="continuous"><parent link="d"/><child link="e"/></joint></robot>)");
+  edges(5);
+  const Outcome run = this->run("certify --edges " + path("edges.h5") + " --robot " + path("arm.urdf") + " --scenes " +
+                                path("doors") + " --out " + path("doors_out") + " --threads 1");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.err.find("note: scene 0 ('door.urdf'): "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("its joints stand at 0"), std::string::npos) << run.err;
+}
+
 TEST_F(EdgesTest, ScenesOfShapesAreThoseOfFiles) {
   arm();
   writeScenes();
@@ -618,3 +645,5 @@ TEST_F(EdgesTest, GeneratedFilesAreThoseOfTheirSeed) {
 }
 
 }  // namespace
+
+}  // namespace edges_test

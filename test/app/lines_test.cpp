@@ -7,6 +7,8 @@
 
 #include "run_program.h"
 
+namespace lines_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -51,6 +53,31 @@ TEST_F(LinesTest, AnswersComeInOrder) {
   const double second = (contact * M_PI / 2 - 0.5) / (M_PI / 2 - 0.5);
   EXPECT_NEAR(a.lines[2].at("t_lower").get<double>(), 1 + second, 1e-5);
   EXPECT_NEAR(a.lines[3].at("t_lower").get<double>(), 10 + 10 * contact, 1e-4);
+}
+
+TEST_F(LinesTest, NotesAndWhatWasNotCheckedAreSaid) {
+  const std::string free = "{\"from\": [0, 0], \"to\": [0.1, 0]}\n";
+  const Answers nothing = ask(free, "--no-self --no-scene");
+  EXPECT_EQ(nothing.status, 3);
+  EXPECT_EQ(nothing.lines.at(0).at("nothing_checked"), true);
+  EXPECT_EQ(ask(free).lines.at(0).at("nothing_checked"), false);
+  const Answers beyond = ask("{\"waypoints\": [[0, 0], [2.5, 0]]}\n");
+  EXPECT_NE(beyond.lines.at(0).at("notes").dump().find("waypoint 2: "), std::string::npos) << beyond.lines[0];
+  // Of robot and scene: here that its joint stands at 0.
+  const std::string scene =
+      write("door.urdf",
+            "<robot name='d'><link name='d'/><link name='e'><collision><origin xyz='9 9 9'/><geometry>"
+            "<sphere radius='0.1'/></geometry></collision></link><joint name='j' type='continuous'>"
+            "<parent link='d'/><child link='e'/></joint></robot>");
+  EXPECT_NE(ask(free, "--scene " + scene).err.find("its joints stand at 0"), std::string::npos);
+}
+
+TEST_F(LinesTest, KeysAreThereOnceAndNestingEnds) {
+  const Answers a = ask("{\"from\": [0, 0], \"to\": [0, 0], \"to\": [1, 0]}\n" + std::string(200000, '[') + "\n");
+  EXPECT_EQ(a.status, 2);
+  ASSERT_EQ(a.lines.size(), 2u);
+  EXPECT_NE(a.lines[0].at("error").get<std::string>().find("the key 'to' is there twice"), std::string::npos);
+  EXPECT_NE(a.lines[1].at("error").get<std::string>().find("nested more than"), std::string::npos);
 }
 
 TEST_F(LinesTest, TheStatusIsThatOfTheWorst) {
@@ -121,3 +148,5 @@ TEST_F(LinesTest, NothingAskedIsAnError) {
 }
 
 }  // namespace
+
+}  // namespace lines_test

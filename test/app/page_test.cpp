@@ -16,6 +16,8 @@
 #include "report/page.h"
 #include "run_program.h"
 
+namespace page_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -331,3 +333,5 @@ TEST_F(PageInBrowser, ShowsItselfAsAPicture) {
 }
 
 }  // namespace
+
+}  // namespace page_test

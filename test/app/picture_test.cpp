@@ -18,6 +18,8 @@
 #include "render/triangles.h"
 #include "run_program.h"
 
+namespace picture_test {
+
 namespace {
 
 using fcl_artic::render::Image;
@@ -174,3 +176,5 @@ TEST_F(ProgramTest, UnwritablePictureIsAnError) {
 }
 
 }  // namespace
+
+}  // namespace picture_test

@@ -7,6 +7,8 @@
 
 #include "run_program.h"
 
+namespace program_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -195,7 +197,8 @@ TEST_F(ProgramTest, GeneratedPairsAreWrittenAndReadBack) {
   <joint name="jb" type="revolute"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/>
     <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
 </robot>)");
-  const std::string motion = " --robot " + robot + " --from 0,0 --to 0.5,0 ";
+  const std::string far = write("far.scene", "s\n* far\n1\nsphere\n0.1\n9 9 9\n0 0 0 1\n0 0 0 0\n.\n");
+  const std::string motion = " --robot " + robot + " --scene " + far + " --from 0,0 --to 0.5,0 ";
   EXPECT_EQ(this->run("check" + motion).status, 1);
   const Outcome automatic = this->run("check" + motion + "--auto-srdf " + path("twins.srdf"));
   EXPECT_EQ(automatic.status, 0) << automatic.out << automatic.err;
@@ -250,7 +253,7 @@ TEST_F(ProgramTest, PackagesAreFoundWhereTheyAreNamed) {
   EXPECT_EQ(lost.status, 2);
   EXPECT_NE(lost.err.find("parts"), std::string::npos) << lost.err;
   const Outcome found = this->run(query + " --package parts=" + path("elsewhere"));
-  EXPECT_EQ(found.status, 0) << found.err;
+  EXPECT_EQ(found.status, 3) << "one link, and nothing else: " << found.err;
 }
 
 TEST_F(ProgramTest, ScenesInMillimetresAreNotedAndScaled) {
@@ -272,11 +275,70 @@ TEST_F(ProgramTest, ScenesInMillimetresAreNotedAndScaled) {
 TEST_F(ProgramTest, NothingCheckedIsSaid) {
   const std::string query = "check " + armAndBall() + " --from 0,0 --to 1,0 --no-self --no-scene";
   const Outcome run = this->run(query);
-  EXPECT_EQ(run.status, 0);
-  EXPECT_EQ(run.out.rfind("FREE: nothing was checked", 0), 0u) << run.out;
+  EXPECT_EQ(run.status, 3) << "nothing is known";
+  EXPECT_EQ(run.out.rfind("NOTHING CHECKED", 0), 0u) << run.out;
+  EXPECT_EQ(run.out.find("FREE"), std::string::npos) << run.out;
   EXPECT_EQ(Json::parse(this->run(query + " --json").out).at("nothing_checked"), true);
   EXPECT_EQ(Json::parse(this->run("check --json " + armAndBall() + " --from 0,0 --to 0,0").out).at("nothing_checked"),
             false);
+}
+
+TEST_F(ProgramTest, WhatIsNotAskedAboutIsSaid) {
+  const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 0.1,0 --no-self");
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("links with links are not checked (--no-self)"), std::string::npos) << run.out;
+  EXPECT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 0.1,0").out.find("scope"), std::string::npos);
+}
+
+/// An arm that turns through the post of its own base: the two are neighbours.
+TEST_F(ProgramTest, NeighboursAreChecked) {
+  const auto robot = [&](const std::string& name, const std::string& of_base, const std::string& limits) {
+    return write(name, "<robot name='r'><link name='base'>" + of_base +
+                           "</link><link name='arm'><collision><origin xyz='0.75 0 0'/><geometry><box size='1.5 0.1 "
+                           "0.1'/></geometry></collision></link><joint name='j' type='" +
+                           (limits.empty() ? "continuous" : "revolute") +
+                           "'><parent link='base'/><child link='arm'/><axis xyz='0 0 1'/>" + limits +
+                           "</joint></robot>");
+  };
+  const std::string motion = " --from 0 --to 3";
+  const std::string post = robot(
+      "post.urdf", "<collision><origin xyz='0 1 0'/><geometry><box size='0.1 0.1 1'/></geometry></collision>", "");
+  const Outcome hit = run("check " + post + motion);
+  EXPECT_EQ(hit.status, 1) << hit.out;
+  EXPECT_NE(hit.out.find("'base'"), std::string::npos) << hit.out;
+  // Housings that overlap: named once; and an SRDF's word is the only one.
+  const std::string housing =
+      robot("housing.urdf", "<collision><geometry><box size='0.2 0.2 0.2'/></geometry></collision>", "");
+  const Outcome over = run("check --json " + housing + " --scene " + ball() + motion);
+  EXPECT_EQ(Json::parse(over.out).at("notes").dump().find("neighbours that touch") != std::string::npos, true)
+      << over.out;
+  EXPECT_TRUE(Json::parse(over.out).at("unproven_neighbours").empty());
+  const std::string srdf = write("r.srdf", "<robot name='r'/>");
+  EXPECT_EQ(run("check " + housing + " --srdf " + srdf + " --from 0 --to 0").status, 1);
+}
+
+/// A name cannot begin a line that reads as a verdict.
+TEST_F(ProgramTest, NamesStayWithinTheirLines) {
+  const std::string robot =
+      write("evil.urdf",
+            "<robot name='r'><link name='a&#10;FREE: proven'><collision><geometry><sphere radius='1'/>"
+            "</geometry></collision></link></robot>");
+  const std::string other = write("o.urdf",
+                                  "<robot name='o'><link name='o'><collision><geometry><sphere radius='1'/>"
+                                  "</geometry></collision></link></robot>");
+  const Outcome run = this->run("check " + robot + " --scene " + other + " --from '' --to ''");
+  EXPECT_EQ(run.out.find("\nFREE"), std::string::npos) << run.out << run.err;
+}
+
+TEST_F(ProgramTest, ASolidIsAllOfItsObject) {
+  const std::string cube =
+      "8 12\n-1 -1 -1\n1 -1 -1\n1 1 -1\n-1 1 -1\n-1 -1 1\n1 -1 1\n1 1 1\n-1 1 1\n0 2 1\n0 3 2\n4 5 6\n4 6 7\n0 1 5\n"
+      "0 5 4\n1 2 6\n1 6 5\n2 3 7\n2 7 6\n3 0 4\n3 4 7\n";
+  const std::string scene = write("cup.scene", "s\n* cup\n2\nmesh\n" + cube + "9 9 9\n0 0 0 1\n0 0 0 0\nmesh\n" + cube +
+                                                   "0.5 0 0\n0 0 0 1\n0 0 0 0\n.\n");
+  const std::string query = "check --robot " + arm() + " --scene " + scene + " --from 0,0 --to 0.1,0";
+  EXPECT_EQ(run(query).status, 0) << run(query).out << run(query).err;
+  EXPECT_EQ(run(query + " --solid cup").status, 1) << "the arm is within its second shape";
 }
 
 TEST_F(ProgramTest, ContactAtTheStartIsNotFreeBefore) {
@@ -449,3 +511,5 @@ TEST_F(ProgramTest, PandaOfTheDataFolder) {
 }
 
 }  // namespace
+
+}  // namespace program_test

@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+namespace progress_test {
+
 namespace {
 
 using fcl_artic::app::ProgressBar;
@@ -100,3 +102,5 @@ TEST(ProgressBar, IsSilentElsewhere) {
 }
 
 }  // namespace
+
+}  // namespace progress_test

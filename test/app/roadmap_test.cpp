@@ -17,6 +17,8 @@
 #include "roadmap/nearest.h"
 #include "run_program.h"
 
+namespace roadmap_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -182,6 +184,21 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   write("two.urdf", longer);
   EXPECT_GT(counts("map.h5", "", err).second, 0);
   EXPECT_NE(err.find("another robot"), std::string::npos) << err;
+  // The same through a pipe, of which no file can be read again.
+  const auto piped = [&](const std::string& urdf, const std::string& arguments) {
+    const std::string command = "cat \"" + urdf + "\" | \"" + std::string(FCL_ARTIC_PROGRAM) + "\" roadmap " +
+                                arguments + " --robot /dev/stdin >\"" + path("out") + "\" 2>\"" + path("err") + "\"";
+    EXPECT_EQ(std::system(command.c_str()), 0) << read(path("err"));
+    return read(path("err"));
+  };
+  write("short.urdf", longer.replace(longer.find("0.1 1.3 0.1"), 11, "0.1 1 0.1"));
+  piped(path("short.urdf"), "make --out " + path("piped.h5") + " " + options);
+  EXPECT_EQ(
+      piped(path("short.urdf"), "certify " + path("piped.h5") + " --out " + path("same.csv")).find("another robot"),
+      std::string::npos);
+  EXPECT_NE(
+      piped(path("two.urdf"), "certify " + path("piped.h5") + " --out " + path("other.csv")).find("another robot"),
+      std::string::npos);
   // Another load: points that are larger.
   write("points.xyz", "0 0 0\n");
   const std::string load = " --robot " + robot + " --attach left=" + path("points.xyz") + "@1,0,0 --point-radius ";
@@ -248,8 +265,8 @@ assert whole.number_of_nodes() == valid.number_of_nodes() == 120
 assert whole.number_of_edges() == len(rows)
 for row in rows:
     edge = whole["n" + row["source"]]["n" + row["target"]]
-    assert edge["status"] == row["status"] and edge["t_lower"] == float(row["t_lower"])
-    assert edge["weight"] == float(row["weight"]) and edge["bodies"] == row["bodies"]
+    assert edge["status"] == row["status"] and float(edge["t_lower"]) == float(row["t_lower"])
+    assert float(edge["weight"]) == float(row["weight"]) and edge["bodies"] == row["bodies"]
     assert valid.has_edge("n" + row["source"], "n" + row["target"]) == (row["status"] == "free")
 print(valid.number_of_edges(), len(rows))
 )");
@@ -293,3 +310,5 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
 }
 
 }  // namespace
+
+}  // namespace roadmap_test

@@ -14,6 +14,7 @@
 #include "world.h"
 
 namespace fcl_artic::app {
+namespace robot_bench_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -401,4 +402,5 @@ TEST_F(ProgramTest, BenchRobotRefusesWrongUse) {
 }
 
 }  // namespace
+}  // namespace robot_bench_test
 }  // namespace fcl_artic::app

@@ -9,6 +9,7 @@
 #include "run_program.h"
 
 namespace fcl_artic::app {
+namespace robot_options_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -133,4 +134,5 @@ TEST_F(ProgramTest, ScenesAreFilesAndNoFolders) {
 }
 
 }  // namespace
+}  // namespace robot_options_test
 }  // namespace fcl_artic::app

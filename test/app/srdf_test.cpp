@@ -8,6 +8,8 @@
 
 #include "run_program.h"
 
+namespace srdf_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -150,3 +152,5 @@ TEST_F(SrdfVerbTest, DrawsWhatTouches) {
 #endif
 
 }  // namespace
+
+}  // namespace srdf_test

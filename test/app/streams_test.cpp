@@ -12,6 +12,8 @@
 #include "planning/problems.h"
 #endif
 
+namespace streams_test {
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,3 +262,5 @@ TEST_F(StreamsTest, ProblemsThatAreCutShortNameTheirFile) {
 #endif
 
 }  // namespace
+
+}  // namespace streams_test

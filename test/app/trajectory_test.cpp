@@ -6,6 +6,8 @@
 
 #include "run_program.h"
 
+namespace trajectory_test {
+
 namespace {
 
 using Json = nlohmann::json;
@@ -129,3 +131,5 @@ TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
 }
 
 }  // namespace
+
+}  // namespace trajectory_test

@@ -8,6 +8,7 @@
 #include "visibility_options.h"
 
 namespace fcl_artic::app {
+namespace visibility_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -122,4 +123,5 @@ TEST_F(VisibilityProgram, BenchRobotTellsWhatItDid) {
 }
 
 }  // namespace
+}  // namespace visibility_test
 }  // namespace fcl_artic::app

@@ -27,6 +27,7 @@
 #include "fcl_artic/solid_mesh.h"
 
 namespace fcl_artic {
+namespace continuous_manager_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -832,4 +833,5 @@ TEST(BroadPhaseTest, Fcl523SelfCollision) {
 }
 
 }  // namespace
+}  // namespace continuous_manager_test
 }  // namespace fcl_artic

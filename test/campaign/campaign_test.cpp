@@ -10,6 +10,7 @@
 #include "run.h"
 
 namespace campaign {
+namespace campaign_test {
 namespace {
 
 Options options(std::uint64_t queries) {
@@ -54,4 +55,5 @@ TEST(Campaign, SpoiltAnswersAreSeen) {
 }
 
 }  // namespace
+}  // namespace campaign_test
 }  // namespace campaign

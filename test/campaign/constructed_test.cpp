@@ -8,6 +8,7 @@
 #include "random.h"
 
 namespace campaign {
+namespace constructed_test {
 namespace {
 
 using fcl_artic::CertifiedContact;
@@ -87,4 +88,5 @@ std::vector<std::tuple<std::string, std::string>> combinations() {
 INSTANTIATE_TEST_SUITE_P(Campaign, ConstructedContact, testing::ValuesIn(combinations()), nameOf);
 
 }  // namespace
+}  // namespace constructed_test
 }  // namespace campaign

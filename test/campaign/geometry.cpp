@@ -14,8 +14,6 @@
 namespace campaign {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Lower bound on the distance of two boxes: the larger of the distances of each from the other's enclosure along its
 /// own axes. M_ab: pose of B's frame in A's.
 double boxGap(const Geometry::Node& a, const Geometry::Node& b, const Pose& M_ab) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "convex.h"
 
 namespace campaign {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Rigid pose, kept apart from Eigen::Isometry3d so that nothing is shared with the library under test.
 struct Pose {

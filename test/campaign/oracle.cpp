@@ -8,8 +8,6 @@
 namespace campaign {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Least step in t: half a millimetre of motion, where that is a sensible share of the motion.
 double leastStep(double speed) {
   return std::clamp(5e-4 / speed, 1.0 / 2048, 1.0 / 32);

@@ -13,6 +13,7 @@
 #include "random.h"
 
 namespace campaign {
+namespace oracle_test {
 namespace {
 
 Vec3 anyPoint(Random& r, double size = 1) {
@@ -279,4 +280,5 @@ TEST(Oracle, AgreesWithFclWhereThatIsClear) {
 }
 
 }  // namespace
+}  // namespace oracle_test
 }  // namespace campaign

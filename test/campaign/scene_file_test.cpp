@@ -11,6 +11,7 @@
 #include "generator.h"
 
 namespace campaign {
+namespace scene_file_test {
 namespace {
 
 /// A file of the test's own, which goes with it.
@@ -83,4 +84,5 @@ TEST(SceneFile, AFileCutShortIsRefused) {
 }
 
 }  // namespace
+}  // namespace scene_file_test
 }  // namespace campaign

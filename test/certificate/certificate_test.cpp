@@ -17,6 +17,7 @@
 #include "proof.h"
 
 namespace fcl_artic {
+namespace certificate_test {
 namespace {
 
 using Eigen::Isometry3d;
@@ -422,4 +423,5 @@ TEST(CertificatesOfPairs, AManagerOfManyPairsRefuses) {
 }
 
 }  // namespace
+}  // namespace certificate_test
 }  // namespace fcl_artic

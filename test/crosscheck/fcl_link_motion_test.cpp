@@ -14,6 +14,7 @@
 #include "rivals.h"
 
 namespace fcl_artic {
+namespace fcl_link_motion_test {
 namespace {
 
 using bench::Random;
@@ -251,4 +252,5 @@ TEST(FclLinkMotionTest, OrientedAdvancementFindsAKnownContactEveryTime) {
 }
 
 }  // namespace
+}  // namespace fcl_link_motion_test
 }  // namespace fcl_artic

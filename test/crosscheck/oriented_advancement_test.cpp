@@ -25,6 +25,7 @@
 #include "rivals.h"
 
 namespace fcl_artic {
+namespace oriented_advancement_test {
 namespace {
 
 using bench::kFree;
@@ -337,4 +338,5 @@ TEST(OrientedAdvancementTest, AgreesOnArmsAgainstThemselves) {
 }
 
 }  // namespace
+}  // namespace oriented_advancement_test
 }  // namespace fcl_artic

@@ -10,6 +10,7 @@
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace bundled_robot_test {
 namespace {
 
 const std::string kData = FCL_ARTIC_BUNDLED_DATA;
@@ -109,4 +110,5 @@ TEST(BundledPuma, DocumentedMotionsAreFreeAndInContact) {
 }
 
 }  // namespace
+}  // namespace bundled_robot_test
 }  // namespace fcl_artic

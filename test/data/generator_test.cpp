@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 namespace fcl_artic::generator {
+namespace generator_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +191,5 @@ TEST(Generator, UnwritablePlacesAreNamed) {
 }
 
 }  // namespace
+}  // namespace generator_test
 }  // namespace fcl_artic::generator

@@ -21,6 +21,8 @@
 #include "fcl_artic/bounded_motion.h"
 #include "geometries.h"
 
+namespace dropin_test {
+
 namespace {
 
 using fcl::CollisionGeometryd;
@@ -875,3 +877,5 @@ TEST(DropInThreads, ShareMotionsAndGeometries) {
     EXPECT_EQ(std::memcmp(mine.data(), alone.data(), alone.size() * sizeof(Numbers)), 0);
   }
 }
+
+}  // namespace dropin_test

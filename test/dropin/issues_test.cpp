@@ -15,6 +15,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "geometries.h"
 
+namespace issues_test {
+
 namespace {
 
 using fcl::Transform3d;
@@ -293,3 +295,5 @@ TEST(PythonFcl38, CubesOfTriangles) {
     EXPECT_TRUE(staysFree(t, result));
   }
 }
+
+}  // namespace issues_test

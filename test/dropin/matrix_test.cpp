@@ -27,6 +27,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "geometries.h"
 
+namespace matrix_test {
+
 namespace {
 
 using fcl::Matrix3d;
@@ -372,3 +374,5 @@ TEST(DropInMatrixJudge, KnowsTheCellThatAChildEndedAt) {
 }
 
 }  // namespace
+
+}  // namespace matrix_test

@@ -18,6 +18,8 @@
 
 #include "fcl_artic/continuous_manager.h"
 
+namespace octree_test {
+
 namespace {
 
 using fcl::Transform3d;
@@ -177,3 +179,5 @@ TEST(DropInOcTree, AnswersAreThoseOfAllCells) {
 }
 
 }  // namespace
+
+}  // namespace octree_test

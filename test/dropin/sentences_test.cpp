@@ -33,6 +33,8 @@
 #include "fcl_artic/fcl_artic.h"
 #include "random.h"
 
+namespace sentences_test {
+
 namespace {
 
 using Eigen::Isometry3d;
@@ -483,3 +485,5 @@ TEST(PromiseSentences, AnyModeOnEntryIsLeftAsItWas) {
 }
 
 }  // namespace
+
+}  // namespace sentences_test

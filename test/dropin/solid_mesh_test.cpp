@@ -11,6 +11,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "geometries.h"
 
+namespace solid_mesh_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -132,3 +134,5 @@ TEST(SolidMesh, WhatIsNoneIsRefused) {
 }
 
 }  // namespace
+
+}  // namespace solid_mesh_test

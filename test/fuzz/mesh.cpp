@@ -4,7 +4,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  static const char* const kNames[] = {"input.stl", "input.obj", "input.ply", "input.off", "input.dae"};
-  fcl_artic::fuzz::loadAndQuery(kNames[data[0] % 5], std::string(reinterpret_cast<const char*>(data + 1), size - 1));
+  static const char* const kNames[] = {"input.stl", "input.obj",  "input.ply", "input.off",
+                                       "input.dae", "input.gltf", "input.glb"};
+  fcl_artic::fuzz::loadAndQuery(kNames[data[0] % 7], std::string(reinterpret_cast<const char*>(data + 1), size - 1));
   return 0;
 }

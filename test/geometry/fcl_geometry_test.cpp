@@ -31,6 +31,8 @@
 
 #include "convex/piece_kinds.h"
 
+namespace fcl_geometry_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 using engine::Piece;
@@ -636,3 +638,5 @@ TEST(RequireRigid, TakesWhatFloatsAre) {
   M.translation()[1] = NAN;
   EXPECT_TRUE(contains(refusal([&] { requireRigid(M, "it"); }), "finite"));
 }
+
+}  // namespace fcl_geometry_test

@@ -13,6 +13,8 @@
 #include "geometry/shape_tree.h"
 #include "random.h"
 
+namespace inner_balls_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -265,3 +267,5 @@ TEST(EnclosedSpace, ParityIsCertain) {
   EXPECT_GT(inside, 1000);
   EXPECT_GT(said, 0.9 * inside);
 }
+
+}  // namespace inner_balls_test

@@ -13,6 +13,8 @@
 
 #include "fcl/fcl_geometry.h"
 
+namespace mesh_cache_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -188,3 +190,5 @@ TEST(MeshCache, EightThreads) {
   for (std::thread& thread : threads) thread.join();
   for (const int n : wrong) EXPECT_EQ(n, 0);
 }
+
+}  // namespace mesh_cache_test

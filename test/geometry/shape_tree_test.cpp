@@ -14,6 +14,8 @@
 
 #include "convex/gjk.h"
 
+namespace shape_tree_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -374,3 +376,5 @@ TEST(ShapeTree, BoxesAreRoundedOutward) {
     }
   }
 }
+
+}  // namespace shape_tree_test

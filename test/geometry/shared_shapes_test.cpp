@@ -12,6 +12,8 @@
 
 #include "fcl_artic/solid_mesh.h"
 
+namespace shared_shapes_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -96,3 +98,5 @@ TEST(SharedShapes, ThreadsGetTheTreeOfTheirOwnContent) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(wrong, std::vector<int>(8, 0));
 }
+
+}  // namespace shared_shapes_test

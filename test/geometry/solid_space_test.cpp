@@ -15,6 +15,8 @@
 #include "geometry/closed_parts.h"
 #include "geometry/shape_tree.h"
 
+namespace solid_space_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -215,3 +217,5 @@ TEST(SolidSpace, PointsOfShapes) {
   piece.size[2] = 1;
   EXPECT_TRUE(ShapeTree::fromPiece(piece)->surfacePoints()->parts().empty());
 }
+
+}  // namespace solid_space_test

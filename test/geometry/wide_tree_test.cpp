@@ -7,6 +7,8 @@
 #include "geometry/shape_tree.h"
 #include "geometry/wide_tree.h"
 
+namespace wide_tree_test {
+
 using namespace fcl_artic;
 
 namespace {
@@ -55,3 +57,5 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
 }
 
 }  // namespace
+
+}  // namespace wide_tree_test

@@ -16,6 +16,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace box_batch_test {
 namespace {
 
 using redon::BoxBatch;
@@ -223,5 +224,6 @@ TEST(BoxBatch, KeepsBoxesThatShareAPoint) {
 }
 
 }  // namespace
+}  // namespace box_batch_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

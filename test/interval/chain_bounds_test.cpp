@@ -14,6 +14,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace chain_bounds_test {
 namespace {
 
 constexpr Enclosure kEnclosures[] = {Enclosure::intervalChain, Enclosure::meanValue, Enclosure::taylor};
@@ -186,5 +187,6 @@ TEST(ChainBounds, TurnSeriesHoldExactValues) {
 }
 
 }  // namespace
+}  // namespace chain_bounds_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

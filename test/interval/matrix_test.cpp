@@ -10,6 +10,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace matrix_test {
 namespace {
 
 bool holds(const IntervalVec3& x, const Real3& value) {
@@ -73,5 +74,6 @@ TEST(Matrix, ProductsHoldExactOnes) {
 }
 
 }  // namespace
+}  // namespace matrix_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

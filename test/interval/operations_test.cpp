@@ -17,6 +17,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace operations_test {
 
 std::vector<const Arithmetic*> arithmetics() {
   std::vector<const Arithmetic*> all;
@@ -343,5 +344,6 @@ TEST(Operations, SineAndCosineHoldAllValues) {
 }
 
 }  // namespace
+}  // namespace operations_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

@@ -11,6 +11,7 @@
 #include "interval/sine_cosine.h"
 
 namespace fcl_artic {
+namespace rounding_test {
 namespace {
 
 constexpr int kModes[4] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
@@ -128,4 +129,5 @@ TEST(Hazard, ProductsAreNotFused) {
 }
 
 }  // namespace
+}  // namespace rounding_test
 }  // namespace fcl_artic

@@ -13,6 +13,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace widths_test {
 namespace {
 
 constexpr int kJoints = 6;
@@ -101,5 +102,6 @@ TEST(ChainBounds, TighterEnclosuresAreTighter) {
 }
 
 }  // namespace
+}  // namespace widths_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

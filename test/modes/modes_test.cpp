@@ -9,6 +9,8 @@
 
 #include "rules.h"
 
+namespace modes_test {
+
 namespace {
 
 std::uint64_t fromEnvironment(const char* name, std::uint64_t otherwise) {
@@ -45,3 +47,5 @@ TEST(Modes, WorldsThatFoundFaults) {
 }
 
 }  // namespace
+
+}  // namespace modes_test

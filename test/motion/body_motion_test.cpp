@@ -12,6 +12,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace body_motion_test {
 namespace {
 
 using bench::Random;
@@ -23,6 +24,13 @@ using test::randomDirection;
 using test::randomPose;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+UnitVector unit(const Vector3d& v) {
+  return UnitVector::within3Ulps(v).value();
+}
+RigidTransform rigid(const Isometry3d& M) {
+  return RigidTransform::within12Ulps(M, 1e-12).value();
+}
 
 MotionElement element(Kind kind, std::initializer_list<Vector3d> coefficients) {
   MotionElement e;
@@ -49,7 +57,7 @@ TEST(MotionElementTest, Degree) {
 
 TEST(BodyMotionTest, StandsStillWithoutElements) {
   BodyMotion motion;
-  motion.after.translation() = Vector3d(1, 2, 3);
+  motion.after = RigidTransform(Rotation(), {1, 2, 3});
   EXPECT_EQ(motion.pose(0.7).matrix(), motion.after.matrix());
 }
 
@@ -58,10 +66,10 @@ TEST(BodyMotionTest, StandsStillWithoutElements) {
 TEST(BodyMotionTest, WorkedPose) {
   BodyMotion motion;
   MotionElement prismatic = element(Kind::prismatic, {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), {4, 9, 9}});
-  prismatic.axis = Vector3d::UnitX();
+  prismatic.axis = UnitVector::along(0);
   motion.elements = {element(Kind::slide, {{0, 0, 1}, {0, 0, 0}, {1, 0, 0}}),
                      element(Kind::turn, {{0, 0, 0}, {0, 0, M_PI}}), prismatic};
-  motion.after.translation() = Vector3d(0, 1, 0);
+  motion.after = RigidTransform(Rotation(), {0, 1, 0});
   EXPECT_LE((motion.pose(0.5).translation() - Vector3d(-0.75, 0.5, 1)).norm(), 1e-15);
 }
 
@@ -112,8 +120,8 @@ Case randomCase(Random& random) {
     for (int n = 1 + random.index(4); n > 0; --n) {
       MotionElement e;
       e.kind = static_cast<Kind>(random.index(4));
-      if (random.coin()) e.before = randomPose(random, scale);
-      e.axis = randomDirection(random);
+      if (random.coin()) e.before = rigid(randomPose(random, scale));
+      e.axis = unit(randomDirection(random));
       const double size =
           e.kind == Kind::revolute || e.kind == Kind::turn ? std::pow(10, random.uniform(-4, 0.5)) : scale;
       for (int k = random.index(kMaxDegree + 1); k >= 0; --k) {
@@ -121,7 +129,7 @@ Case randomCase(Random& random) {
       }
       c.motion.elements.push_back(e);
     }
-    if (random.coin()) c.motion.after = randomPose(random, scale);
+    if (random.coin()) c.motion.after = rigid(randomPose(random, scale));
   }
   c.lower = scale * random.uniform() * randomDirection(random);
   c.upper = c.lower + scale * std::pow(10, random.uniform(-3, 0)) * randomDirection(random).cwiseAbs();
@@ -138,31 +146,31 @@ TEST(HeadingTest, DirectionsTurnNoFartherThanItsBound) {
   int tight = 0, still = 0, about_itself = 0;
   for (int n = 0; n < 3000; ++n) {
     Case c = randomCase(random);
-    const Vector3d own = randomDirection(random);
+    const UnitVector own = unit(randomDirection(random));
     // A turn about the direction itself, wherever it is in a chain, leaves it as it is.
     if (n % 3 == 0 && !c.bounded) {
       MotionElement e;
       e.kind = random.coin() ? Kind::revolute : Kind::turn;
-      e.axis = c.motion.after.linear() * own;
+      e.axis = unit(c.motion.after.linear() * own.vector());
       for (int k = 0; k < 3; ++k) {
         const double q = random.uniform(-2, 2);
-        e.coefficients.col(k) = e.kind == Kind::turn ? Vector3d(q * e.axis) : Vector3d(q, 0, 0);
+        e.coefficients.col(k) = e.kind == Kind::turn ? Vector3d(q * e.axis.vector()) : Vector3d(q, 0, 0);
       }
       BodyMotion alone;
       alone.elements = {e};
       alone.after = c.motion.after;
       EXPECT_LE(headingOf(alone, own).deviation, 1e-14);
       for (const double t : {0.0, 0.3, 1.0}) {
-        EXPECT_LE((alone.pose(t).linear() * own - headingOf(alone, own).direction).norm(), 1e-14);
+        EXPECT_LE((alone.pose(t).linear() * own.vector() - headingOf(alone, own).direction).norm(), 1e-14);
       }
       ++about_itself;
       c.motion.elements.push_back(e);
     }
     const Heading heading = headingOf(c.motion, own);
-    EXPECT_LE((heading.direction - c.motion.pose(0).linear() * own).norm(), 2e-14);
+    EXPECT_LE((heading.direction - c.motion.pose(0).linear() * own.vector()).norm(), 2e-14);
     double farthest = 0;
     for (int i = 0; i <= 40; ++i) {
-      farthest = std::max(farthest, (c.motion.pose(i / 40.0).linear() * own - heading.direction).norm());
+      farthest = std::max(farthest, (c.motion.pose(i / 40.0).linear() * own.vector() - heading.direction).norm());
     }
     EXPECT_LE(farthest, heading.deviation + 1e-13) << n;
     tight += farthest > 0.8 * heading.deviation && heading.deviation > 1e-3;
@@ -177,7 +185,7 @@ TEST(HeadingTest, DirectionsTurnNoFartherThanItsBound) {
 TEST(HeadingTest, ATurnWhoseAxisChangesIsNotTakenForOneAboutTheDirection) {
   BodyMotion motion;
   motion.elements = {element(Kind::turn, {{M_PI / 2, 0, 0}, {0, 0, 1}})};
-  EXPECT_GE(headingOf(motion, Vector3d::UnitZ()).deviation, 1);
+  EXPECT_GE(headingOf(motion, UnitVector()).deviation, 1);
   EXPECT_GE((motion.pose(1).linear().col(2) - motion.pose(0).linear().col(2)).norm(), 0.1);
 }
 
@@ -252,10 +260,10 @@ TEST(EnclosePathTest, IsNotWide) {
     // A body of 0.1 to 1 m that turns by a quarter about an axis within 1 m while it goes up to 2 m.
     Case c;
     MotionElement turn = element(Kind::revolute, {{0, 0, 0}, {M_PI / 2, 0, 0}});
-    turn.axis = randomDirection(random);
+    turn.axis = unit(randomDirection(random));
     c.motion.elements = {
         element(Kind::slide, {randomDirection(random), 2 * random.uniform() * randomDirection(random)}), turn};
-    c.motion.after = randomPose(random, 1);
+    c.motion.after = rigid(randomPose(random, 1));
     c.upper = Vector3d(random.uniform(0.05, 0.5), random.uniform(0.05, 0.5), random.uniform(0.05, 0.5));
     c.lower = -c.upper;
     quarter.add(tightness(c));
@@ -300,4 +308,5 @@ TEST(EnclosePathTest, UnboundedBodiesAndWildMotionsGiveUnboundedBoxes) {
 }
 
 }  // namespace
+}  // namespace body_motion_test
 }  // namespace fcl_artic

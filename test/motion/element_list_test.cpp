@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace fcl_artic {
+namespace element_list_test {
 namespace {
 
 using List = ElementList<int, 2>;
@@ -61,4 +62,5 @@ TEST(ElementListTest, ElementsInPlaceLieWithinTheList) {
 }
 
 }  // namespace
+}  // namespace element_list_test
 }  // namespace fcl_artic

@@ -20,6 +20,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace fcl_motion_test {
 namespace {
 
 using bench::Random;
@@ -101,7 +102,7 @@ bool identical(const BodyMotion& a, const BodyMotion& b) {
   bool same = a.elements.size() == b.elements.size() && a.after.matrix() == b.after.matrix();
   for (std::size_t i = 0; same && i < a.elements.size(); ++i) {
     const MotionElement &x = a.elements[i], &y = b.elements[i];
-    same = x.kind == y.kind && x.before.matrix() == y.before.matrix() && x.axis == y.axis &&
+    same = x.kind == y.kind && x.before.matrix() == y.before.matrix() && x.axis.vector() == y.axis.vector() &&
            x.coefficients == y.coefficients && x.bounded == y.bounded;
   }
   return same;
@@ -534,4 +535,5 @@ TEST(ReadTransformTest, FloatsMayBeLessOrthonormal) {
 }
 
 }  // namespace
+}  // namespace fcl_motion_test
 }  // namespace fcl_artic

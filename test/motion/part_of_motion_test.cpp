@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+namespace part_of_motion_test {
+
 using namespace fcl_artic;
 
 // Against long doubles, of 64 bits: no part errs by more than is said of it, and what is said is not far too much.
@@ -34,3 +36,5 @@ TEST(MotionPart, ErrorIsBounded) {
   }
   EXPECT_GT(worst, 0.01);
 }
+
+}  // namespace part_of_motion_test

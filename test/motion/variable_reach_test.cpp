@@ -10,6 +10,8 @@
 
 #include "motion/frame_sweep.h"
 
+namespace variable_reach_test {
+
 using namespace fcl_artic;
 using Eigen::Vector3d;
 
@@ -81,7 +83,9 @@ TEST(VariableReach, NoPointGoesFarther) {
     const Eigen::Isometry3d offset =
         Eigen::Translation3d(u(random), 0, 0) * Eigen::AngleAxisd(u(random), Vector3d::UnitZ());
     for (int v = 0; v < chain.tree.dof(); ++v) {
-      const double bound = reachPerUnit(sweep.view(), carrier.step, makePlacement(carrier, offset), box.view, v, size);
+      const double bound =
+          reachPerUnit(sweep.view(), carrier.step,
+                       makePlacement(carrier, RigidTransform::within12Ulps(offset, 1e-12).value()), box.view, v, size);
       for (int k = 0; k < 50; ++k) {
         Eigen::VectorXd q(chain.tree.dof());
         for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = kMost * u(random);
@@ -121,7 +125,8 @@ TEST(VariableReach, NothingOfTheBaseGoesFarther) {
     const Box box(c - Vector3d::Constant(0.1), c + Vector3d::Constant(0.1));
     const Eigen::Isometry3d offset =
         Eigen::Translation3d(u(random), 0, 0) * Eigen::AngleAxisd(u(random), Vector3d::UnitZ());
-    const double bound = reachOfBase(first, makePlacement(offset.inverse()), box.view);
+    const double bound =
+        reachOfBase(first, makePlacement(RigidTransform::within12Ulps(offset, 1e-12)->inverse()), box.view);
     for (int k = 0; k < 50; ++k) {
       Eigen::VectorXd q(chain.tree.dof());
       for (Eigen::Index j = 0; j < q.size(); ++j) q[j] = kMost * u(random);
@@ -150,8 +155,8 @@ TEST(VariableReach, IsAttained) {
     FrameSweep sweep = FrameSweep::fromLink(chain.tree, 0);
     const Carrier carrier = sweep.carrier(chain.tip);
     const Box box({0, 0, 0}, {0, 0.5, 0});
-    const double bound = reachPerUnit(sweep.view(), carrier.step, makePlacement(carrier, Eigen::Isometry3d::Identity()),
-                                      box.view, 0, size);
+    const double bound =
+        reachPerUnit(sweep.view(), carrier.step, makePlacement(carrier, RigidTransform()), box.view, 0, size);
     const auto at = [&](double value) {
       std::vector<Eigen::Isometry3d> M_0;
       chain.tree.forwardKinematics(value * Eigen::VectorXd::Unit(chain.tree.dof(), 0), M_0);
@@ -162,3 +167,5 @@ TEST(VariableReach, IsAttained) {
     EXPECT_GE(way, bound * (1 - 1e-8)) << "chain " << i;
   }
 }
+
+}  // namespace variable_reach_test

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace fcl_artic {
+namespace elementary_test {
 namespace {
 
 using Real = long double;
@@ -887,4 +888,5 @@ TEST(ElementaryTest, WindowsWithoutWidthAndInputsThatAreNotNumbers) {
 }
 
 }  // namespace
+}  // namespace elementary_test
 }  // namespace fcl_artic

@@ -103,11 +103,9 @@ RealRigid Body::pose(const Real& t) const {
 
 namespace {
 
-Eigen::Isometry3d transform(Random& random, double length) {
-  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
-  M.linear() = random.rotation();
-  M.translation() = length * random.unit() * random.direction();
-  return M;
+RigidTransform transform(Random& random, double length) {
+  const Rotation R = Rotation::within12Ulps(random.rotation(), 1e-12).value();
+  return {R, length * random.unit() * random.direction()};
 }
 
 }  // namespace
@@ -138,7 +136,8 @@ void BodyCase::makeMotion(Random& random, double scale, Body& b) {
   for (int n = random.below(4); n > 0; --n) {
     MotionElement e;
     e.kind = static_cast<Kind>(random.below(4));
-    e.axis = random.chance(0.4) ? Eigen::Vector3d(Eigen::Vector3d::Unit(random.below(3))) : random.direction();
+    e.axis =
+        random.chance(0.4) ? UnitVector::along(random.below(3)) : UnitVector::within3Ulps(random.direction()).value();
     if (random.chance(0.6)) e.before = transform(random, random.chance(0.1) ? random.size(1, 1e3) : scale);
     const bool turns = e.kind == Kind::revolute || e.kind == Kind::turn;
     const double size = turns ? random.size(1e-6, random.chance(0.1) ? 60 : 3) : scale;

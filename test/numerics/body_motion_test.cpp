@@ -13,6 +13,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace body_motion_test {
 namespace {
 
 using Kind = MotionElement::Kind;
@@ -93,7 +94,7 @@ TEST(BodyMotionBounds, RemaindersOfOneFactorAreAttained) {
     PairInput in;
     in.sweep = sweep.view();
     in.step_b = at.step;
-    in.placement_b = makePlacement(at, Eigen::Isometry3d::Identity());
+    in.placement_b = makePlacement(at, RigidTransform());
     in.extents = 1;
     in.query.coefficients = coefficients.data();
     in.query.num_variables = 3;
@@ -115,5 +116,6 @@ TEST(BodyMotionBounds, RemaindersOfOneFactorAreAttained) {
 }
 
 }  // namespace
+}  // namespace body_motion_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

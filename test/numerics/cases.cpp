@@ -122,8 +122,8 @@ PairCase::PairCase(Random& random, int rounding) {
   carrier = sweep->carrier(link_b);
   in.sweep = sweep->view();
   in.step_b = carrier.step;
-  in.placement_b = makePlacement(carrier, offset_b);
-  in.inverse_a = makePlacement(offset_a.inverse());
+  in.placement_b = makePlacement(carrier, stored(offset_b));
+  in.inverse_a = makePlacement(stored(offset_a).inverse());
   in.extents = extent_a + extent_b;
   coefficients = q0;
   coefficients.insert(coefficients.end(), dq.begin(), dq.end());

@@ -59,6 +59,11 @@ class ScopedRounding {
 /// it at `t`, or pass where the bounds of its angle's derivatives have their largest values.
 std::vector<double> randomTangent(Random& random, int degree, double t);
 
+/// A transform that is orthonormal to rounding.
+inline RigidTransform stored(const Eigen::Isometry3d& M) {
+  return RigidTransform::within12Ulps(M, 1e-12).value();
+}
+
 /// Two bodies on a random robot (or one in the world) over eight neighbouring intervals.
 struct PairCase {
   KinematicTree tree;

@@ -9,6 +9,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace certificate_test {
 namespace {
 
 /// Quadratic with Bernstein coefficients G, exact.
@@ -152,7 +153,7 @@ TEST(Certificate, DirectionsForWholeLanesAreFoundWhereThereIsOne) {
     const Eigen::Vector3d from(t[0].toDouble(), t[1].toDouble(), t[2].toDouble());
     const Eigen::Vector3d nearby = random.in(0.2, 2) * c.in.extents * random.direction();
     c.offset_a = c.offset_a * Eigen::Translation3d(from - nearby);
-    c.in.inverse_a = makePlacement(c.offset_a.inverse());
+    c.in.inverse_a = makePlacement(stored(c.offset_a).inverse());
     in.motion = c.in;
     in.a = a.view();
     in.b = b.view();
@@ -206,12 +207,12 @@ TEST(Certificate, PadScalesWithAbsoluteCoordinates) {
     c.offset_a = Eigen::Isometry3d(Eigen::Translation3d(1000 * random.direction()));
     const OwnedPiece a(random, engine::PieceKind::point, 1e-3, true), b(random, engine::PieceKind::point, 1e-3, true);
     CertificateInput in;
-    c.in.inverse_a = makePlacement(c.offset_a.inverse());
+    c.in.inverse_a = makePlacement(stored(c.offset_a).inverse());
     c.in.extents = a.extent() + b.extent();
     c.carrier = c.sweep->carrier(c.link_b);
     c.in.sweep = c.sweep->view();
     c.in.step_b = c.carrier.step;
-    c.in.placement_b = makePlacement(c.carrier, c.offset_b);
+    c.in.placement_b = makePlacement(c.carrier, stored(c.offset_b));
     in.motion = c.in;
     in.a = a.view();
     in.b = b.view();
@@ -290,5 +291,6 @@ TEST(Certificate, PrefixEndsBeforeTheFirstRoot) {
 }
 
 }  // namespace
+}  // namespace certificate_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

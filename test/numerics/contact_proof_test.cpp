@@ -9,6 +9,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace contact_proof_test {
 namespace {
 
 using engine::PieceKind;
@@ -226,5 +227,6 @@ TEST(ContactProof, ChordPiercesOnlyWhatItMeets) {
 }
 
 }  // namespace
+}  // namespace contact_proof_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

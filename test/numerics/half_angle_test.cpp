@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace half_angle_test {
 namespace {
 
 double tangent(Random& random) {
@@ -249,5 +250,6 @@ TEST(HalfAngle, ExactPointsLieInTheQuadratic) {
 }
 
 }  // namespace
+}  // namespace half_angle_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

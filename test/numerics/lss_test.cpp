@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace lss_test {
 namespace {
 
 double tauOf(Random& random) {
@@ -118,7 +119,7 @@ TEST(LineSweptSphere, CertificateWithBoxIsNeverWrong) {
     Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
     M.linear() = random.rotation();
     M.translation() = rounded(body.x) - M.linear() * (y + gap * out);
-    box.inverse = makePlacement(M.inverse());
+    box.inverse = makePlacement(stored(M).inverse());
     const double size = rounded(body.x).norm() + M.translation().norm() + y.norm() + gap + c.extent_b;
     const auto setRadius = [&](double radius) { box.radius = radius; };
     touching.check(gap, size, mode, c, body, setRadius, [&] { return subject.apartFromBox(c.in, body.input, box); });
@@ -197,5 +198,6 @@ TEST(LineSweptSphere, BoxesHoldIt) {
 }
 
 }  // namespace
+}  // namespace lss_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

@@ -9,6 +9,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace motion_test {
 namespace {
 
 double tauOf(Random& random) {
@@ -148,5 +149,6 @@ TEST(Motion, SweptNodesHoldExactPoints) {
 }
 
 }  // namespace
+}  // namespace motion_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

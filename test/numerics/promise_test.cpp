@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace promise_test {
 namespace {
 
 /// A sphere of radius 0.1 that slides along x, or turns about z at a distance of 1, past or into others of its kind.
@@ -131,10 +132,11 @@ TEST(Promise, JointOriginsAreMadeOrthonormal) {
     }
     worst = std::max(worst, sqrt(distance).toDouble());
   }
-  std::printf("farthest from a rotation: %.2f of 2^-52 (pads allow for %g)\n", worst * 0x1p52, kStoredUlps);
-  EXPECT_LE(worst, kStoredUlps * 0x1p-52);
+  std::printf("farthest from a rotation: %.2f of 2^-52 (pads allow for %g)\n", worst * 0x1p52, Rotation::kUlps);
+  EXPECT_LE(worst, Rotation::kUlps * 0x1p-52);
 }
 
 }  // namespace
+}  // namespace promise_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

@@ -16,6 +16,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace registers_test {
 
 std::vector<const RegisterFile*> registerFiles() {
   std::vector<const RegisterFile*> all;
@@ -258,5 +259,6 @@ TEST(Registers, FloatsAreTheListsInAnyRoundingMode) {
 }
 
 }  // namespace
+}  // namespace registers_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

@@ -7,6 +7,7 @@
 
 namespace fcl_artic {
 namespace numerics_test {
+namespace sine_cosine_test {
 namespace {
 
 /// Values where the reduction by pi/2 is hardest: the doubles next to k pi/2, and ends of its range.
@@ -57,5 +58,6 @@ TEST(SineCosine, WithinFourUlpOfMpfrInAnyRoundingMode) {
 }
 
 }  // namespace
+}  // namespace sine_cosine_test
 }  // namespace numerics_test
 }  // namespace fcl_artic

@@ -19,6 +19,7 @@
 #include "slide.h"
 
 namespace fcl_artic::planning {
+namespace joint_mapping_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -233,4 +234,5 @@ TEST(JointMappingTest, WholeTurnsOfAMimickedJoint) {
 }
 
 }  // namespace
+}  // namespace joint_mapping_test
 }  // namespace fcl_artic::planning

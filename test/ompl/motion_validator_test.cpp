@@ -14,6 +14,7 @@
 #include "slide.h"
 
 namespace fcl_artic::planning {
+namespace motion_validator_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -370,4 +371,5 @@ TEST(ContinuousMotionValidatorTest, CountsFromManyThreads) {
 }
 
 }  // namespace
+}  // namespace motion_validator_test
 }  // namespace fcl_artic::planning

@@ -11,6 +11,7 @@
 #include "plan.h"
 
 namespace fcl_artic::planning {
+namespace planner_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -139,4 +140,5 @@ TEST_F(PlannerData, FewUr5PlansHoldNoCollision) {
 }
 
 }  // namespace
+}  // namespace planner_test
 }  // namespace fcl_artic::planning

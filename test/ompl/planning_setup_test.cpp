@@ -15,6 +15,7 @@
 #include "slide.h"
 
 namespace fcl_artic::planning {
+namespace planning_setup_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -295,4 +296,5 @@ TEST_F(PlanningSetupTest, BadJointsOfAManagerAreNamed) {
 }
 
 }  // namespace
+}  // namespace planning_setup_test
 }  // namespace fcl_artic::planning

@@ -18,6 +18,7 @@
 #include "fcl_artic/ompl/planning_setup.h"
 
 namespace fcl_artic::planning {
+namespace rigid_body_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -211,4 +212,5 @@ TEST(RigidBody, WhatIsNoneIsRefused) {
 }
 
 }  // namespace
+}  // namespace rigid_body_test
 }  // namespace fcl_artic::planning

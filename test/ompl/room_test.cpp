@@ -27,6 +27,7 @@
 #include "slide.h"
 
 namespace fcl_artic::planning {
+namespace room_test {
 namespace {
 
 namespace ob = ::ompl::base;
@@ -495,4 +496,5 @@ TEST(Room, AcceptedMotionsInAllSpacesAgainstFcl) {
 }
 
 }  // namespace
+}  // namespace room_test
 }  // namespace fcl_artic::planning

@@ -12,6 +12,8 @@
 #include "../app/run_program.h"
 #include "bench/children.h"
 
+namespace compare_test {
+
 namespace {
 
 using fcl_artic::app::runInChildren;
@@ -113,3 +115,5 @@ TEST_F(CompareTest, WrongUseIsTwo) {
 }
 
 }  // namespace
+
+}  // namespace compare_test

@@ -10,6 +10,7 @@
 #include "pair_campaign.h"
 
 namespace pair_campaign {
+namespace judge_test {
 namespace {
 
 using namespace pairs;
@@ -157,4 +158,5 @@ TEST(PairJudge, ASpeedOfATurningBoundIsNotGenerous) {
 }
 
 }  // namespace
+}  // namespace judge_test
 }  // namespace pair_campaign

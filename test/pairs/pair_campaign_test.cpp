@@ -11,6 +11,7 @@
 #include "pair_campaign.h"
 
 namespace pair_campaign {
+namespace pair_campaign_test {
 namespace {
 
 Options options(std::uint64_t queries) {
@@ -78,4 +79,5 @@ TEST(PairCampaign, SpoiltAnswersAreSeen) {
 }
 
 }  // namespace
+}  // namespace pair_campaign_test
 }  // namespace pair_campaign

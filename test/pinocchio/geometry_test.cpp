@@ -8,6 +8,7 @@
 #include "fcl_artic/pinocchio/coal_geometry.h"
 
 namespace fcl_artic {
+namespace geometry_test {
 namespace {
 
 TEST(CoalGeometry, MeshesAreCopiedTriangleByTriangle) {
@@ -42,4 +43,5 @@ TEST(CoalGeometry, SweptRadii) {
 }
 
 }  // namespace
+}  // namespace geometry_test
 }  // namespace fcl_artic

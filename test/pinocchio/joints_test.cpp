@@ -12,6 +12,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace joints_test {
 namespace {
 
 using pinocchio::JointIndex;
@@ -181,4 +182,5 @@ TEST(PinocchioJoints, WhatIsNotThereIsNamed) {
 }
 
 }  // namespace
+}  // namespace joints_test
 }  // namespace fcl_artic

@@ -19,6 +19,7 @@
 #include "random_robot.h"
 
 namespace fcl_artic {
+namespace queries_test {
 namespace {
 
 using test::Random;
@@ -339,4 +340,5 @@ TEST(PinocchioQueries, EveryGeometryOfCoals) {
 }
 
 }  // namespace
+}  // namespace queries_test
 }  // namespace fcl_artic

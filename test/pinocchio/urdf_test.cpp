@@ -18,6 +18,7 @@
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace urdf_test {
 namespace {
 
 /// FCL's mesh as coal's, triangle by triangle.
@@ -115,4 +116,5 @@ TEST(PinocchioUrdf, ThousandMotionsOfThePuma) {
 }
 
 }  // namespace
+}  // namespace urdf_test
 }  // namespace fcl_artic

@@ -5,6 +5,7 @@
 #include "arm.h"
 
 namespace fcl_artic::plans {
+namespace motion_test {
 namespace {
 
 /// The curve of one joint between two waypoints h apart: that of the degree with these values and derivatives at its
@@ -183,4 +184,5 @@ TEST(PlanMotionTest, OtherJointsKeepTheirState) {
 }
 
 }  // namespace
+}  // namespace motion_test
 }  // namespace fcl_artic::plans

@@ -11,6 +11,7 @@
 #include "plans/write.h"
 
 namespace fcl_artic::plans {
+namespace readers_test {
 namespace {
 
 /// An array file of version 1.0.
@@ -483,4 +484,5 @@ TEST(PlanReadersTest, DamagedFilesAreErrors) {
 }
 
 }  // namespace
+}  // namespace readers_test
 }  // namespace fcl_artic::plans

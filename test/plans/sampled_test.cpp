@@ -9,6 +9,7 @@
 #include "planning/fcl_state_check.h"
 
 namespace fcl_artic::plans {
+namespace sampled_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -106,4 +107,5 @@ TEST(PlanSampledTest, NoSampleTouchesWhatIsCertifiedFree) {
 }
 
 }  // namespace
+}  // namespace sampled_test
 }  // namespace fcl_artic::plans

@@ -15,6 +15,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/continuous_manager.h"
 
+namespace added_margin_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -221,3 +223,5 @@ TEST(AddedMargin, BadValuesAreRefused) {
   arm.manager->setup();
   EXPECT_THROW(ask(*arm.manager, q, q, asking(0, kMost)), std::invalid_argument);
 }
+
+}  // namespace added_margin_test

@@ -10,6 +10,8 @@
 
 #include "expect_time.h"
 
+namespace attached_object_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -182,3 +184,5 @@ TEST(AttachedObject, BadInputChangesNothing) {
   m.setup();
   EXPECT_TRUE(touchesAt(k.run(0, 2), 1.65 / 2));
 }
+
+}  // namespace attached_object_test

@@ -15,6 +15,8 @@
 #include "expect_time.h"
 #include "fcl_artic/continuous_collision.h"
 
+namespace batch_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -246,3 +248,5 @@ TEST(Batch, BadInputIsNamedBeforeAnythingIsAsked) {
   ArticulatedCollisionManager fresh(scene.tree);
   EXPECT_THROW(fresh.continuousCollide(scene.motions, {}, results, 2), std::logic_error);
 }
+
+}  // namespace batch_test

@@ -15,6 +15,8 @@
 #include "fcl_artic/manager.h"
 #include "meshes.h"
 
+namespace calls_test {
+
 using namespace fcl_artic;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
@@ -303,3 +305,5 @@ struct FirstOfTemporary<T, std::void_t<decltype(std::declval<T>().first())>> : s
 static_assert(!FirstOfTemporary<CertifiedResult>::value && FirstOfTemporary<const CertifiedResult&>::value);
 
 }  // namespace
+
+}  // namespace calls_test

@@ -27,6 +27,8 @@
 #include "fcl_artic/continuous_manager.h"
 #include "meshes.h"
 
+namespace changes_campaign_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -722,7 +724,7 @@ class ManyBodies {
       const CertifiedPairResult &x = a.pairs[i].result, &y = b.pairs[i].result;
       if (!sameVerdict(x, y) || x.contacts.size() != y.contacts.size()) return false;
       for (std::size_t k = 0; k < x.contacts.size(); ++k) {
-        if (!::same(x.contacts[k], y.contacts[k])) return false;
+        if (!changes_campaign_test::same(x.contacts[k], y.contacts[k])) return false;
       }
     }
     return true;
@@ -808,3 +810,5 @@ TEST(ChangesCampaign, ManyBodiesAreAsIfBuiltFromScratch) {
   EXPECT_GT(counts.contacts, counts.answers / 10);
   EXPECT_GT(counts.answers - counts.contacts, counts.answers / 10);
 }
+
+}  // namespace changes_campaign_test

@@ -16,6 +16,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "meshes.h"
 
+namespace contact_modes_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -456,3 +458,5 @@ TEST(ContactModes, WhatWouldTouchAfterTheEndDoesNot) {
 }
 
 }  // namespace
+
+}  // namespace contact_modes_test

@@ -17,6 +17,8 @@
 
 #include "crossing_links.h"
 
+namespace crossing_links_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -177,3 +179,5 @@ TEST(CrossingLinks, ACopyAtTheStartIsCheapAndCertain) {
     EXPECT_LT(r.statistics.gjk, 5000u);
   }
 }
+
+}  // namespace crossing_links_test

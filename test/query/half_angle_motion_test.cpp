@@ -19,6 +19,7 @@
 #include "fcl_artic/visibility.h"
 
 namespace fcl_artic {
+namespace half_angle_motion_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -442,4 +443,5 @@ TEST(TangentHalfAngle, ClearanceTrajectoriesBatchesAndVisibilityAgreeWithTheQuer
 }
 
 }  // namespace
+}  // namespace half_angle_motion_test
 }  // namespace fcl_artic

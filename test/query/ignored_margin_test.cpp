@@ -10,6 +10,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/trajectory.h"
 
+namespace ignored_margin_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -130,3 +132,5 @@ TEST(IgnoredMargin, WithoutContactsTheVerdictIsTheSame) {
     EXPECT_GE(without.t_upper, with.t_upper);
   }
 }
+
+}  // namespace ignored_margin_test

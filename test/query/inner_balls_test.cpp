@@ -14,6 +14,8 @@
 
 #include "crossing_links.h"
 
+namespace inner_balls_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -222,3 +224,5 @@ TEST(InnerBalls, FclAgrees) {
   EXPECT_GT(by_balls, 100);
   EXPECT_GT(free, 100);
 }
+
+}  // namespace inner_balls_test

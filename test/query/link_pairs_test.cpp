@@ -16,6 +16,8 @@
 #include "fcl_artic/manager.h"
 #include "fcl_artic/solid_mesh.h"
 
+namespace link_pairs_test {
+
 using namespace fcl_artic;
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
@@ -420,3 +422,5 @@ TEST(LinkPairs, RefusesBadOptions) {
 }
 
 }  // namespace
+
+}  // namespace link_pairs_test

@@ -19,6 +19,8 @@
 #include "expect_time.h"
 #include "meshes.h"
 
+namespace manager_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -180,7 +182,7 @@ TEST(Manager, NothingCheckedIsSaid) {
     out << r;
     return out.str();
   };
-  const std::string nothing = "free: nothing was checked, there is no pair of bodies";
+  const std::string nothing = "nothing was checked, there is no pair of bodies";
   CertifiedRequest request;
   for (const ContactMode mode : {ContactMode::first, ContactMode::any, ContactMode::firstOfEveryPair}) {
     for (const Method method : {Method::standard, Method::redon2004}) {
@@ -512,3 +514,5 @@ TEST(ManagerBadInput, EachIsRefusedByNameAndChangesNothing) {
   EXPECT_EQ(manager.size(), 1u);
   EXPECT_EQ(cart.run(0, 1).status, Status::contact);
 }
+
+}  // namespace manager_test

@@ -11,6 +11,8 @@
 
 #include "expect_time.h"
 
+namespace margin_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -346,3 +348,5 @@ TEST(Margin, BadInputIsRefusedAndChangesNothing) {
   EXPECT_THROW(way.manager->setMargin("pots", "cart", 0.4), std::invalid_argument);
   EXPECT_TRUE(touchesAt(way.run(0, 2), wallTime(0)));
 }
+
+}  // namespace margin_test

@@ -12,6 +12,8 @@
 #include "fcl_artic/fcl_link_motion.h"
 #include "fcl_artic/in_between.h"
 
+namespace motion_tree_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -402,3 +404,5 @@ TEST(MotionTree, FingerprintsOfRandomTrees) {
   EXPECT_GT(changed, 100);
   EXPECT_GT(kept, 500);
 }
+
+}  // namespace motion_tree_test

@@ -14,6 +14,8 @@
 #include "expect_time.h"
 #include "fcl_artic/bounded_motion.h"
 
+namespace moving_obstacle_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -340,3 +342,5 @@ TEST(MovingObstacle, RandomMotionsAgainstDenseSampling) {
   EXPECT_GT(hits, 30);
   EXPECT_GT(frees, 30);
 }
+
+}  // namespace moving_obstacle_test

@@ -11,6 +11,8 @@
 #include "expect_time.h"
 #include "fcl_artic/bounded_motion.h"
 
+namespace moving_trajectory_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -172,3 +174,5 @@ TEST(MovingTrajectory, CutIntoPiecesItIsTheSame) {
   EXPECT_GT(hits, 50);
   EXPECT_GT(free, 50);
 }
+
+}  // namespace moving_trajectory_test

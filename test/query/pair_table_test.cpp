@@ -14,6 +14,8 @@
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/trajectory.h"
 
+namespace pair_table_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -455,3 +457,5 @@ TEST(PairTable, AThirdVariablesOwnLeverHoldsBeyondItsLimits) {
     return VectorXd(Vector3d(5 * u(random), 0.05 * u(random), (u(random) > 0 ? 1 : -1) * (0.03 + 0.0074 * u(random))));
   });
 }
+
+}  // namespace pair_table_test

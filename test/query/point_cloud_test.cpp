@@ -16,6 +16,8 @@
 
 #include "fcl_artic/fcl_artic.h"
 
+namespace point_cloud_test {
+
 namespace {
 
 using Eigen::Isometry3d;
@@ -264,3 +266,5 @@ TEST(PointCloud, WhatIsNoCloudIsRefused) {
 }
 
 }  // namespace
+
+}  // namespace point_cloud_test

@@ -10,6 +10,8 @@
 
 #include "meshes.h"
 
+namespace slivers_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -65,3 +67,5 @@ TEST(Slivers, ThatPassEachOtherAskewAreApartAcrossBoth) {
   }
   EXPECT_EQ(touching, 6);
 }
+
+}  // namespace slivers_test

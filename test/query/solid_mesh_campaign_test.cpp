@@ -17,6 +17,8 @@
 #include "fcl_artic/continuous_collision.h"
 #include "solid_meshes.h"
 
+namespace solid_mesh_campaign_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -379,3 +381,5 @@ TEST(SolidMeshCampaign, WindingNumbersOfRandomBodies) {
   EXPECT_GT(free, n / 30);
   EXPECT_GT(volume, n / 20);
 }
+
+}  // namespace solid_mesh_campaign_test

@@ -20,6 +20,8 @@
 #include "fcl_artic/trajectory.h"
 #include "solid_meshes.h"
 
+namespace solid_mesh_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -521,3 +523,5 @@ TEST(SolidMesh, OthersAreRefused) {
   pair.addBox({1, 1, 1}, {2, 2, 0});
   EXPECT_EQ(reason(pair), "");
 }
+
+}  // namespace solid_mesh_test

@@ -23,6 +23,8 @@
 #include "fcl_artic/continuous_manager.h"
 #include "meshes.h"
 
+namespace stale_geometry_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Vector3d;
@@ -340,3 +342,5 @@ TEST(StaleGeometry, ManyObjects) {
     }
   }
 }
+
+}  // namespace stale_geometry_test

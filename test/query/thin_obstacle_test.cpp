@@ -16,6 +16,8 @@
 #include "arms.h"
 #include "meshes.h"
 
+namespace thin_obstacle_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -211,3 +213,5 @@ TEST(Resting, AnyContactOfWhatRestsIsCheap) {
               static_cast<int>(r.statistics.gjk), static_cast<int>(r.statistics.contact_proofs));
   EXPECT_LT(r.statistics.gjk, 40u);
 }
+
+}  // namespace thin_obstacle_test

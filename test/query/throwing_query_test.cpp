@@ -17,6 +17,8 @@
 #include "fcl_artic/continuous_manager.h"
 #include "meshes.h"
 
+namespace throwing_query_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::test;
 using Eigen::Isometry3d;
@@ -353,3 +355,5 @@ TEST(ThrowingQuery, ResetKeepsMemory) {
   EXPECT_EQ(result.contacts.data(), contacts);
   EXPECT_EQ(result.M_0_at_lower.data(), poses);
 }
+
+}  // namespace throwing_query_test

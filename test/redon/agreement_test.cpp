@@ -16,6 +16,8 @@
 #include "pair_campaign.h"
 #include "run.h"
 
+namespace agreement_test {
+
 namespace {
 
 using fcl_artic::CertifiedRequest;
@@ -176,3 +178,5 @@ TEST(Redon2004, EveryPairHasItsOwnFirstContact) {
 }
 
 }  // namespace
+
+}  // namespace agreement_test

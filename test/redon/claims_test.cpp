@@ -17,6 +17,8 @@
 #include "generator.h"
 #include "oracle.h"
 
+namespace claims_test {
+
 namespace {
 
 using fcl_artic::CertifiedRequest;
@@ -218,3 +220,5 @@ TEST(Claims, NoTwoAnswersContradictEachOtherOrASample) {
 }
 
 }  // namespace
+
+}  // namespace claims_test

@@ -7,6 +7,8 @@
 #include "fcl_artic/fcl_artic.h"
 #include "meshes.h"
 
+namespace closed_form_test {
+
 namespace {
 
 using Eigen::Isometry3d;
@@ -49,6 +51,30 @@ void expectContactAt(const CertifiedPairResult& result, double t) {
     EXPECT_LE(result.t_upper, t + 1e-6);
   }
   EXPECT_EQ(result.statistics.redon.pairs_by_standard, 0u);
+}
+
+/// A T-junction closed by a sliver that comes first, so that the tip is its own: corners in a line but for the rounding
+/// of a turn. Its box takes no part in the walls' orientation.
+TEST(ClosedForm, TipOfASliverMeetsFace) {
+  const Vector3d tip(0.57999999999999996, 0.57999999999999996, 3.4681054687499995e-20);
+  const auto wedge = redon_test::mesh(
+      {{0.42, 0.42, 2.5113867187499998e-20},
+       {0.099999999999999895, 0.1, 5.9794921875000005e-21},
+       tip,
+       {0.1, 0.1, -0.3},
+       {0.1, 0.1, 0.3}},
+      {fcl::Triangle(0, 1, 2), fcl::Triangle(1, 2, 3), fcl::Triangle(2, 0, 4), fcl::Triangle(0, 1, 4)});
+  const Vector3d n = Vector3d(1, 1, 0).normalized(), side = Vector3d(1, -1, 0).normalized();
+  for (int k = 0; k < 24; ++k) {
+    const double angle = k * kPi / 12, far = 3;
+    const Vector3d u = std::cos(angle) * side + std::sin(angle) * Vector3d::UnitZ(), v = n.cross(u);
+    const Vector3d middle = (tip.dot(n) + 0.13) * n;
+    const auto wall = triangle(middle - far * (u + v), middle + far * (2 * u - v), middle + far * (2 * v - u));
+    const Vector3d way = 0.14 * n;  // 10 mm beyond
+    const CertifiedPairResult result =
+        slide(*wedge, at(0, 0, 0), Isometry3d(Eigen::Translation3d(way)), *wall, at(0, 0, 0));
+    expectContactAt(result, 0.13 / 0.14);
+  }
 }
 
 TEST(ClosedForm, VertexMeetsFace) {
@@ -232,3 +258,5 @@ TEST(ClosedForm, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace closed_form_test

@@ -9,6 +9,8 @@
 #include "fcl_artic/in_between.h"
 #include "meshes.h"
 
+namespace in_between_test {
+
 namespace {
 
 using Eigen::AngleAxisd;
@@ -144,3 +146,5 @@ TEST(InBetween, BadInputIsRefused) {
 }
 
 }  // namespace
+
+}  // namespace in_between_test

@@ -13,6 +13,8 @@
 #include "meshes.h"
 #include "redon/parts.h"
 
+namespace levels_test {
+
 namespace {
 
 using Eigen::Vector3d;
@@ -334,3 +336,5 @@ TEST(Levels, TheBudgetCountsBoxesLeavesEquationsAndEvaluations) {
 }
 
 }  // namespace
+
+}  // namespace levels_test

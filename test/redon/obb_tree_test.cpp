@@ -14,6 +14,8 @@
 #include "geometry/shape_tree.h"
 #include "meshes.h"
 
+namespace obb_tree_test {
+
 namespace {
 
 using Eigen::Vector3d;
@@ -64,6 +66,39 @@ TEST(ObbTree, EveryNodeHoldsItsTrianglesAndEveryLeafIsReachedOnce) {
     EXPECT_EQ(std::set<int>(reached.begin(), reached.end()).size(), reached.size());
   }
   EXPECT_GT(checked, 10000u);
+}
+
+/// The axes as stored: what the test of two boxes takes for granted.
+double defect(const ObbNode& node) {
+  Eigen::Matrix3d e;
+  for (int k = 0; k < 3; ++k) e.row(k) = Vector3d(node.axis[k][0], node.axis[k][1], node.axis[k][2]);
+  return (e * e.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+}
+
+/// Triangles whose corners are in a line but for rounding, of all sizes: their normals are residues, which may lie
+/// along the longest edge or vanish.
+TEST(ObbTree, AxesOfSliversAreOrthonormal) {
+  const Vector3d known[3] = {{0.42, 0.42, 2.5113867187499998e-20},
+                             {0.099999999999999895, 0.1, 5.9794921875000005e-21},
+                             {0.57999999999999996, 0.57999999999999996, 3.4681054687499995e-20}};
+  std::mt19937_64 random(7);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  double worst = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Vector3d v[3];
+    const double size = n % 4 ? 1 : std::pow(10, uniform(-320, 8));
+    const Vector3d along(uniform(-1, 1), n % 3 ? 1 : uniform(-1, 1), n % 5 ? 0 : 6.123e-17);
+    for (int k = 0; k < 3; ++k) {
+      v[k] = n == 0 ? known[k] : Vector3d(size * std::round(100 * uniform(-1, 1)) / 100 * along);
+      if (n > 0 && n % 2) v[k][2] += size * 1e-21 * std::round(uniform(-2, 2));
+    }
+    const auto shape = fcl_artic::readGeometry(*redon_test::triangle(v[0], v[1], v[2]));
+    for (const ObbNode& node : shape->obbTree()->nodes()) {
+      worst = std::max(worst, defect(node));
+      for (const Vector3d& x : v) ASSERT_TRUE(holds(node, x)) << n;
+    }
+  }
+  EXPECT_LE(worst, 0x1p-21);
 }
 
 /// Some nodes of the body's own tree, and which of the tree's are within them, against each triangle's piece.
@@ -152,3 +187,5 @@ TEST(ObbTree, ZeroLengthEdgesAreLeftOut) {
 }
 
 }  // namespace
+
+}  // namespace obb_tree_test

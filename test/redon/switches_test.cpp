@@ -11,6 +11,8 @@
 #include "engine.h"
 #include "generator.h"
 
+namespace switches_test {
+
 namespace {
 
 using fcl_artic::CertifiedRequest;
@@ -103,3 +105,5 @@ TEST(Switches, AllCombinationsAgreeInAllModesAndWithinBudgets) {
 }
 
 }  // namespace
+
+}  // namespace switches_test

@@ -16,6 +16,8 @@
 #include "fcl_artic/fcl_artic.h"
 #include "meshes.h"
 
+namespace unexamined_test {
+
 namespace {
 
 using fcl_artic::CertifiedRequest;
@@ -185,3 +187,5 @@ TEST(Unexamined, AnyContactIsTheFirst) {
 }
 
 }  // namespace
+
+}  // namespace unexamined_test

@@ -13,6 +13,8 @@
 #include "generator.h"
 #include "redon/parts.h"
 
+namespace visibility_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -206,3 +208,5 @@ TEST(RedonVisibility, SameAnswersWithTheStageAndWithout) {
 }
 
 }  // namespace
+
+}  // namespace visibility_test

@@ -14,6 +14,8 @@
 
 #include "setup/mover_rows.h"
 
+namespace movers_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::baseline;
 
@@ -208,3 +210,5 @@ TEST(StageOne, LeavesWhatOverflows) {
 }
 
 }  // namespace
+
+}  // namespace movers_test

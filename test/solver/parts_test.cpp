@@ -8,6 +8,8 @@
 
 #include "two_balls.h"
 
+namespace parts_test {
+
 using namespace fcl_artic;
 using namespace fcl_artic::baseline;
 using fcl_artic::engine::LeafContact;
@@ -701,3 +703,5 @@ TEST(PairSearch, FindsTheFirstContact) {
 }
 
 }  // namespace
+
+}  // namespace parts_test

@@ -18,6 +18,8 @@
 #include "setup/setup.h"
 #include "tables/pair_table.h"
 
+namespace cells_test {
+
 using namespace fcl_artic;
 using Eigen::VectorXd;
 
@@ -226,3 +228,5 @@ TEST(TableCells, OfRandomLinks) {
   EXPECT_GT(static_cast<double>(counts.tables), 0.3 * static_cast<double>(pairs));
   EXPECT_GT(counts.near, counts.motions / 200) << "the cells say little";
 }
+
+}  // namespace cells_test

@@ -14,6 +14,8 @@
 #include "fcl_artic/manager.h"
 #include "random_links.h"
 
+namespace random_tables_test {
+
 using namespace fcl_artic;
 using Eigen::VectorXd;
 using tables::RandomLinks;
@@ -160,3 +162,5 @@ TEST(RandomTables, NothingFreeByATableTouches) {
     EXPECT_GT(static_cast<double>(c.contact), 0.05 * n);
   }
 }
+
+}  // namespace random_tables_test

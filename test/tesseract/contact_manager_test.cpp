@@ -16,6 +16,7 @@
 #include "fcl_artic/tesseract/contact_manager.h"
 
 namespace fcl_artic {
+namespace contact_manager_test {
 namespace {
 
 namespace collision = ::tesseract::collision;
@@ -423,4 +424,5 @@ TEST(TesseractContactManager, PlugIn) {
 }
 
 }  // namespace
+}  // namespace contact_manager_test
 }  // namespace fcl_artic

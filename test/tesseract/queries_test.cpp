@@ -20,6 +20,7 @@
 #include "fcl_artic/tesseract/contact_manager.h"
 
 namespace fcl_artic {
+namespace queries_test {
 namespace {
 
 namespace collision = ::tesseract::collision;
@@ -193,4 +194,5 @@ TEST(TesseractQueries, ThousandMotions) {
 }
 
 }  // namespace
+}  // namespace queries_test
 }  // namespace fcl_artic

@@ -16,6 +16,7 @@
 #include "fcl_artic/tesseract/scene.h"
 
 namespace fcl_artic {
+namespace scene_test {
 namespace {
 
 namespace collision = ::tesseract::collision;
@@ -357,4 +358,5 @@ TEST(TesseractScene, ThousandTrajectories) {
 }
 
 }  // namespace
+}  // namespace scene_test
 }  // namespace fcl_artic

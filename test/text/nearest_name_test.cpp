@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace fcl_artic::text {
+namespace nearest_name_test {
 namespace {
 
 TEST(NearestNameTest, CountsSlips) {
@@ -30,4 +31,5 @@ TEST(NearestNameTest, FindsTheNameThatWasMeant) {
 }
 
 }  // namespace
+}  // namespace nearest_name_test
 }  // namespace fcl_artic::text

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+namespace xml_test {
+
 namespace {
 
 using fcl_artic::text::xmlText;
@@ -14,3 +16,5 @@ TEST(XmlText, LeavesNoMark) {
 }
 
 }  // namespace
+
+}  // namespace xml_test

@@ -9,6 +9,7 @@
 #include "scene.h"
 
 namespace trajectory_test {
+namespace campaign_test {
 namespace {
 
 class Random {
@@ -196,4 +197,5 @@ TEST(TrajectoryCampaign, NoContactIsMissed) {
 }
 
 }  // namespace
+}  // namespace campaign_test
 }  // namespace trajectory_test

@@ -4,6 +4,7 @@
 #include "scene.h"
 
 namespace trajectory_test {
+namespace joints_test {
 namespace {
 
 /// A rotation that is none of the simple ones.
@@ -229,4 +230,5 @@ TEST(Joints, FclLinkMotionFollowsThem) {
 }
 
 }  // namespace
+}  // namespace joints_test
 }  // namespace trajectory_test

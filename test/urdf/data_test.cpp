@@ -3,12 +3,14 @@
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace data_test {
 namespace {
 
 struct Expected {
@@ -51,7 +53,12 @@ TEST_P(RealRobot, LoadsWithItsJointsAndTriangles) {
   EXPECT_EQ(boxes, GetParam().boxes);
   EXPECT_EQ(meshes + boxes, static_cast<int>(robot.geometry.size()));
   EXPECT_EQ(triangles, GetParam().triangles);
-  for (const std::string& note : robot.notes) ADD_FAILURE() << "unexpected note: " << note;
+  for (const std::string& note : robot.notes) {
+    // The Panda's link6.obj has edges of its own.
+    const bool edges = note.find("link6.obj': its lines, 19, have no surface") != note.npos ||
+                       note.find("link6.obj': 24 of 966 vertices belong to no triangle") != note.npos;
+    if (!edges) ADD_FAILURE() << "unexpected note: " << note;
+  }
 }
 
 TEST_P(RealRobot, SrdfPairsAreRead) {
@@ -67,8 +74,22 @@ TEST_P(RealRobot, GeneratedPairsHoldTheAdjacentOnes) {
   quick.samples = 20;
   quick.work = 100000;
   const LinkPairReport report = generateAllowedCollisions(robot, quick);
-  EXPECT_GE(static_cast<int>(report.count(LinkPairKind::neighbours)), robot.tree->dof() - 1) << "each link has one";
+  const auto neighbours = std::count_if(report.pairs.begin(), report.pairs.end(),
+                                        [](const LinkPairFinding& pair) { return pair.neighbours; });
+  EXPECT_GE(neighbours, robot.tree->dof() - 1) << "each link has one";
   EXPECT_GT(report.count(LinkPairKind::never), 0u);
+}
+
+// Housings overlap in their joints: without an SRDF each pair of neighbours is proven apart or left out, so that none
+// is in contact here and free there.
+TEST_P(RealRobot, NeighboursAreApartOrTouchThroughout) {
+  const Robot robot = loadUrdf(base_.string() + ".urdf");
+  ArticulatedCollisionManager manager(robot.tree);
+  robot.addTo(manager);
+  manager.setup();
+  EXPECT_GE(static_cast<int>(manager.neighbours().size()), robot.tree->dof() - 1);
+  for (const LinkPairFinding& pair : manager.neighbours())
+    EXPECT_TRUE(pair.kind == LinkPairKind::never || pair.touchThroughout()) << pair;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -79,4 +100,5 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.robot); });
 
 }  // namespace
+}  // namespace data_test
 }  // namespace fcl_artic

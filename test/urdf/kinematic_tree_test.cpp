@@ -8,6 +8,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace kinematic_tree_test {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
@@ -59,6 +60,36 @@ TEST(KinematicTree, PlanarArmByHand) {
   expectPose(M_0[1], {0, 0, 0}, quarter_turn);
   expectPose(M_0[2], {0, 1, 0}, Eigen::Matrix3d::Identity());
   expectPose(M_0[3], {0.5, 1, 0}, Eigen::Matrix3d::Identity());
+}
+
+// A planar joint p has the variables p/x, p/y and p/theta.
+TEST(KinematicTree, VariablesOfOneNameAreRefused) {
+  KinematicTree tree("r");
+  for (const char* link : {"a", "b", "c"}) tree.addLink(link);
+  Joint planar;
+  planar.name = "p";
+  planar.type = JointType::planar;
+  planar.parent = "a";
+  planar.child = "b";
+  planar.axis = Eigen::Vector3d::UnitZ();
+  tree.addJoint(planar);
+  Joint slide = planar;
+  slide.name = "p/x";
+  slide.type = JointType::prismatic;
+  slide.parent = "b";
+  slide.child = "c";
+  try {
+    tree.addJoint(slide);
+    ADD_FAILURE() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("would have the variable 'p/x', which joint 'p' has already"),
+              std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(tree.numJoints(), 1);
+  slide.name = "slide";
+  tree.addJoint(slide);
+  EXPECT_EQ(tree.dof(), 4);
 }
 
 TEST(KinematicTree, PrismaticAxisTurnsWithItsOrigin) {
@@ -324,4 +355,5 @@ TEST(JointMotion, ShortestRefusesMimicsThatWouldEndElsewhere) {
 }
 
 }  // namespace
+}  // namespace kinematic_tree_test
 }  // namespace fcl_artic

@@ -186,7 +186,7 @@ std::set<std::pair<std::string, std::string>> neverAsMoveItSays(const Robot& rob
   pairs::Random random(seed);
   std::list<std::pair<Judge, const LinkPairFinding*>> open;
   for (const LinkPairFinding& pair : report.pairs) {
-    if (pair.kind != LinkPairKind::neighbours) open.emplace_back(Judge(robot, pair.link1, pair.link2), &pair);
+    open.emplace_back(Judge(robot, pair.link1, pair.link2), &pair);
   }
   for (long i = 0; i < samples; ++i) {
     VectorXd q = tree.neutralConfiguration();
@@ -250,11 +250,10 @@ void look(const Robot& robot, const Options& options, std::uint64_t seed, bool v
   }
   if (!options.spoil) sum.never += pairs_of_this;
   if (!verbose) return;
-  std::printf(
-      "%-14s %zu pairs: neighbours %zu, never %zu, always %zu, sometimes %zu, unproven %zu; %.3f s%s; closest %.2g m\n",
-      robot.tree->name().c_str(), report.pairs.size(), report.count(LinkPairKind::neighbours),
-      report.count(LinkPairKind::never), report.count(LinkPairKind::always), report.count(LinkPairKind::sometimes),
-      report.count(LinkPairKind::unproven), time, moveit.c_str(), closest_of_all);
+  std::printf("%-14s %zu pairs: never %zu, always %zu, sometimes %zu, unproven %zu; %.3f s%s; closest %.2g m\n",
+              robot.tree->name().c_str(), report.pairs.size(), report.count(LinkPairKind::never),
+              report.count(LinkPairKind::always), report.count(LinkPairKind::sometimes),
+              report.count(LinkPairKind::unproven), time, moveit.c_str(), closest_of_all);
   std::fflush(stdout);
 }
 

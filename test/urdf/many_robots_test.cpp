@@ -10,6 +10,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace many_robots_test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -93,6 +94,31 @@ TEST_F(ManyRobotsTest, ArmMeetsTheOtherOnesBase) {
   ASSERT_EQ(r.contacts.size(), 1u);
   EXPECT_EQ(r.contacts[0].body1.name, "left_base");
   EXPECT_EQ(r.contacts[0].body2.name, "right_arm");
+}
+
+// The same of robots that were combined before: each root has a mount of its own.
+TEST_F(ManyRobotsTest, CombinedTwiceTheyAreNoNeighboursEither) {
+  const Robot one = arm();
+  const Robot both = combineRobots({{&one, "left_"}, {&one, "right_", facing(1)}});
+  const Robot again = combineRobots({{&both, "cell_", Eigen::Isometry3d(Eigen::Translation3d(5, 0, 0))}, {&one, "c_"}});
+  EXPECT_TRUE(again.tree->hasLink("cell_mount_of_left_mount"));
+  EXPECT_TRUE(again.tree->hasLink("c_mount"));
+  ArticulatedCollisionManager manager(again.tree);
+  again.addTo(manager);
+  manager.setup();
+  const CertifiedResult r = ask(manager, {kPi, kPi / 2, 0}, {kPi, 0, 0});
+  EXPECT_TRUE(touchesAt(r, 1 - 2 * std::asin(0.15) * 2 / kPi));
+}
+
+TEST_F(ManyRobotsTest, WhatTheirMatricesSayOfNeighboursStays) {
+  const Robot plain = arm();
+  Robot complete = arm();
+  complete.allowed.setComplete();
+  EXPECT_TRUE(combineRobots({{&complete, "a_"}, {&complete, "b_"}}).allowed.complete());
+  const Robot both = combineRobots({{&complete, "a_"}, {&plain, "b_"}});
+  EXPECT_FALSE(both.allowed.complete());
+  EXPECT_TRUE(both.allowed.mustBeChecked("a_arm", "a_base"));
+  EXPECT_FALSE(both.allowed.mustBeChecked("b_arm", "b_base"));
 }
 
 TEST_F(ManyRobotsTest, AllowedPairsGetThePrefixAndBadInputIsNamed) {
@@ -243,4 +269,5 @@ TEST_F(ManyRobotsTest, UnknownSpaceIsFewBoxes) {
 }
 
 }  // namespace
+}  // namespace many_robots_test
 }  // namespace fcl_artic

@@ -7,6 +7,7 @@
 #include "tree_campaign.h"
 
 namespace urdf_trees {
+namespace random_trees_test {
 namespace {
 
 TEST(RandomTrees, NothingIsMissedAndWrongAnswersWouldBeSeen) {
@@ -29,4 +30,5 @@ TEST(RandomTrees, NothingIsMissedAndWrongAnswersWouldBeSeen) {
 }
 
 }  // namespace
+}  // namespace random_trees_test
 }  // namespace urdf_trees

@@ -15,6 +15,7 @@
 #include "temp_folder.h"
 
 namespace fcl_artic {
+namespace scene_test {
 namespace {
 
 class SceneTest : public TempFolderTest {
@@ -133,7 +134,7 @@ std::map<std::string, std::string> filesOf(const Points& points) {
   for (const Eigen::Vector3d& p : points) {
     const std::string x = shortest(p[0]), y = shortest(p[1]), z = shortest(p[2]);
     ascii += "255 " + x + " " + y + " 0 0 1 " + z + "\n";
-    xyz += x + ", " + y + "\t" + z + " 17\r\n";
+    xyz += x + ", " + y + "," + z + " ,\t17\r\n";
     ply_ascii += x + " " + y + " 9 " + z + "\n";
     append(rows, std::uint32_t{255}), append(rows, static_cast<float>(p[0])), append(rows, p[1]);
     for (int k = 0; k < 3; ++k) append(rows, 1.0f);
@@ -237,6 +238,21 @@ TEST_F(SceneTest, APlyFileWithFacesIsAMesh) {
   EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(scene.obstacles[0]).num_tris, 1);
 }
 
+TEST_F(SceneTest, NothingFollowsTheEndOfAScene) {
+  const std::string scene = "s\n* a\n1\nsphere\n0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n";
+  EXPECT_EQ(load("one.scene", scene + " \n\n").obstacles.size(), 1u);
+  expectContains(errorOf("two.scene", scene + scene), "two.scene': goes on after the '.' that closes a scene: 's'");
+  // Two numbers without a blank between them would shift all that follows.
+  expectContains(errorOf("a.scene", "s\n* a\n1\nsphere\n0.5.3\n0 0\n0 0 0 1\n0 0 0 0\n.\n"), "not a number");
+}
+
+TEST_F(SceneTest, PointsThatAreTooNearAreNoted) {
+  std::vector<std::string> notes;
+  loadPointCloud(write("zed.xyz", "1 2 3\n-inf -inf -inf\nnan nan nan\n"), 0.1, &notes);
+  ASSERT_EQ(notes.size(), 2u);
+  expectContains(notes[1], "1 of these are -inf, by which some cameras mean that something is too near");
+}
+
 TEST_F(SceneTest, NamesAreGivenOnce) {
   const std::string ball = "sphere\n0.5\n0 0 0\n0 0 0 1\n0 0 0 0\n";
   const Scene scene = load("balls.scene", "s\n* a#2\n1\n" + ball + "* a\n3\n" + ball + ball + ball + ".\n");
@@ -247,6 +263,12 @@ TEST_F(SceneTest, NamesAreGivenOnce) {
   EXPECT_EQ(namesOf(both), (std::vector<std::string>{"a#2", "a#3", "a#3#2", "a#4", "floor", "a#5"}));
   ASSERT_EQ(both.notes.size(), 3u);
   expectContains(both.notes[0], "obstacle 'a' is called 'a#3' here");
+  // An object's name stands for all of its shapes, and not for another object that is called as one of them.
+  EXPECT_EQ(scene.namesOf("a"), (std::vector<std::string>{"a", "a#3", "a#4"}));
+  EXPECT_EQ(scene.namesOf("a#2"), std::vector<std::string>{"a#2"});
+  EXPECT_EQ(scene.namesOf("a#4"), std::vector<std::string>{"a#4"});
+  EXPECT_EQ(both.namesOf("a#3"), (std::vector<std::string>{"a#3", "a#3#2", "a#4"}));
+  EXPECT_EQ(both.namesOf("a#5"), std::vector<std::string>{"a#5"});
 }
 
 TEST_F(SceneTest, IsAddedAsAWholeOrNotAtAll) {
@@ -519,4 +541,5 @@ TEST_F(SceneTest, MissingAndUnknownFilesAreNamed) {
 }
 
 }  // namespace
+}  // namespace scene_test
 }  // namespace fcl_artic

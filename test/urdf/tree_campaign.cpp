@@ -180,7 +180,7 @@ class Case {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       for (std::size_t j = i + 1; j < bodies_.size(); ++j) {
         const int a = bodies_[i].link, b = bodies_[j].link;
-        if (a < 0 || a == b || (b >= 0 && tree_.neighbours(a, b))) continue;
+        if (a < 0 || a == b) continue;
         const bool touching = b >= 0 && touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], Size::larger);
         if (touching && !random_.chance(0.01)) allowed_.allow(RandomTree::linkName(a), RandomTree::linkName(b));
       }
@@ -189,7 +189,6 @@ class Case {
       for (std::size_t j = i + 1; j < bodies_.size(); ++j) {
         const int a = bodies_[i].link, b = bodies_[j].link;
         if (a < 0 || a == b) continue;
-        if (b >= 0 && tree_.neighbours(a, b)) continue;
         if (b >= 0 && allowed_.allowed(RandomTree::linkName(a), RandomTree::linkName(b))) continue;
         watched_.emplace_back(i, j);
       }

@@ -6,9 +6,12 @@
 #include <fcl/geometry/shape/sphere.h>
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "temp_folder.h"
@@ -19,6 +22,7 @@ extern "C" const char* __lsan_default_suppressions() {  // NOLINT: its name
 }
 
 namespace fcl_artic {
+namespace urdf_test {
 namespace {
 
 const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -460,9 +464,10 @@ TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
       {"unknown shape", linkWith(collision("<torus radius='1'/>")), "torus"},
       {"bad shape after a good one", linkWith(collision("<sphere radius='1'/>") + collision("<torus/>")), "torus"},
       {"bad collision origin", linkWith(collision("<sphere radius='1'/>", "<origin xyz='0 x 0'/>")), "a"},
-      {"no geometry", linkWith("<collision/>"), "link 'a', line 1: a collision element needs one geometry"},
+      {"no geometry", linkWith("<collision/>"), "<collision> of link 'a': it has no <geometry>"},
       {"empty geometry", linkWith(collision("")), "needs one geometry element with one shape"},
-      {"two shapes", linkWith(collision("<sphere radius='1'/><sphere radius='2'/>")), "with one shape"},
+      {"two shapes", linkWith(collision("<sphere radius='1'/><sphere radius='2'/>")),
+       "<sphere> of link 'a': <geometry> may have only one"},
   };
   write("t.obj", kTriangle);
   write("empty.stl", "solid x\nendsolid x\n");
@@ -475,6 +480,127 @@ TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
     expectContains(message, c.reason);
     EXPECT_EQ(message.find("no reason"), std::string::npos) << message;
   }
+}
+
+// Whatever could be geometry, place or motion is understood, or refused by name.
+TEST_F(UrdfTest, WhatIsNotUnderstoodIsRefusedByName) {
+  const std::string ball = "<geometry><sphere radius='1'/></geometry>", ab = "<link name='a'/><link name='b'/>";
+  const auto inCollision = [&](const std::string& more) {
+    return linkWith("<collision>" + ball + more + "</collision>");
+  };
+  const auto inJoint = [&](const std::string& more) { return ab + joint("j", "continuous", "a", "b", more); };
+  const std::vector<BadUrdf> cases = {
+      {"xacro in a link", linkWith("<xacro:if value='1'><collision>" + ball + "</collision></xacro:if>"),
+       "<xacro:if> of link 'a': is left of xacro"},
+      {"xacro in a collision", inCollision("<xacro:insert_block name='o'/>"), "is left of xacro"},
+      {"xacro in a joint", inJoint("<xacro:insert_block name='o'/>"), "<xacro:insert_block> of joint 'j'"},
+      {"block", inJoint("<insert_block name='o'/>"), "is left of xacro"},
+      {"inclusion", ab + joint("j", "fixed", "a", "b") + "<xi:include href='c.urdf'/>", "is an inclusion"},
+      {"quaternion", inCollision("<origin xyz='0 0 0' quat_xyzw='0 0 1 0'/>"), "write the rotation as rpy"},
+      {"slip in a joint", inJoint("<orgin xyz='1 0 0'/>"), "did you mean 'origin'?"},
+      {"slip in a collision", inCollision("<Origin xyz='1 0 0'/>"), "did you mean 'origin'?"},
+      {"scale in capitals", linkWith(collision("<mesh filename='t.obj' Scale='2 2 2'/>")), "did you mean 'scale'?"},
+      {"collision in capitals", linkWith("<Collision>" + ball + "</Collision>"), "did you mean 'collision'?"},
+      {"group", linkWith("<group><collision>" + ball + "</collision></group>"), "line 1, <group> of link 'a'"},
+      {"two origins", inCollision("<origin xyz='1 0 0'/><origin xyz='2 0 0'/>"), "may have only one"},
+      {"two parents", ab + "<joint name='j' type='fixed'><parent link='a'/><parent link='b'/><child link='b'/></joint>",
+       "may have only one"},
+      {"two axes", inJoint("<axis xyz='1 0 0'/><axis xyz='0 0 1'/>"), "may have only one"},
+      {"no child", ab + "<joint name='j' type='fixed'><parent link='a'/></joint>", "<joint> 'j': it has no <child>"},
+      {"attribute twice", linkWith(collision("<sphere radius='1' radius='2'/>")), "sphere"},
+      {"robot in a robot", ab + "<robot name='c'/>", "<robot>"},
+      {"soft body", linkWith("") + "<deformable name='d'/>", "<deformable>"},
+      {"text", linkWith("<collision>${shape}" + ball + "</collision>"), "the text '${shape}'"},
+      {"angles of an axis", inJoint("<axis xyz='1 0 0' rpy='0 1 0'/>"), "'rpy'"},
+      {"a limit's slip", inJoint("<limit Lower='0' upper='1'/>"), "'Lower'"},
+      {"a mimic's factor", inJoint("<mimic joint='k' multiplyer='2'/>"), "did you mean 'multiplier'?"},
+      {"nested collision", inCollision("<collision>" + ball + "</collision>"), "<collision>"},
+  };
+  for (const BadUrdf& c : cases) {
+    SCOPED_TRACE(c.what);
+    const std::string message = errorOf(c.body);
+    expectContains(message, c.reason);
+    expectContains(message, "ine ");  // or Line
+  }
+  const auto wholeFile = [&](const std::string& text) {
+    return messageOf([&] { loadUrdf(write("whole.urdf", text)); });
+  };
+  expectContains(wholeFile("<robot name='a'>" + linkWith("") + "</robot><robot name='b'/>"), "a second root element");
+  expectContains(wholeFile("<!DOCTYPE robot><robot name='a'>" + linkWith("") + "</robot>"),
+                 "document types are not read");
+}
+
+TEST_F(UrdfTest, WhatSurelyIsNoGeometryIsPassedOver) {
+  const Robot r = load(
+      "<material name='m'/><gazebo reference='a'><collision/></gazebo><transmission name='t'/><ros2_control/>"
+      "<link name='a' type='x'><visual/><contact><stiffness value='1'/></contact><self_filter><geometry/></self_filter>"
+      "<collision name='c'>" +
+      std::string("<geometry><sphere radius='1'/></geometry><verbose value='1'/></collision>") +
+      "</link><link name='b'/>" +
+      joint("j", "continuous", "a", "b",
+            "<axis xyz='1 0 0' rpy='0 0 0'/><dynamics damping='1'/><calibration rising='0'/>"
+            "<limit effort='1' velocity='1' acceleration='2'/>"));
+  EXPECT_EQ(r.geometry.size(), 1u);
+}
+
+// A ".." after a link leads to another folder than the text without both.
+TEST_F(UrdfTest, PathsAreOpenedAsTheyStand) {
+  write("there/deep/x", "");
+  const std::string small = write("there/t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("t.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+  std::filesystem::create_directory_symlink(path("there/deep"), path("link"));
+  const auto size = [&](const std::string& uri) {
+    const std::string text = robot(linkWith(collision("<mesh filename='" + uri + "'/>")));
+    return loadUrdf(write("r.urdf", text)).geometry.at(0).object->collisionGeometry()->aabb_local.max_.x();
+  };
+  EXPECT_EQ(size("link/../t.obj"), 1) << "what " << small << " holds";
+  EXPECT_EQ(size(path("link/../t.obj")), 1);
+  write("a b.obj", "v 0 0 0\nv 3 0 0\nv 0 3 0\nf 1 2 3\n");
+  EXPECT_EQ(size("file://" + path("a%20b.obj")), 3);
+  EXPECT_EQ(size("file://localhost" + path("a%20b.obj")), 3);
+  expectContains(messageOf([&] { size("file://a.obj"); }), "needs an absolute path");
+  expectContains(messageOf([&] { size("file:///a%2.obj"); }), "two hexadecimal digits");
+}
+
+TEST_F(UrdfTest, PackagesThatStandInTwoPlacesAreNoted) {
+  const Variable no_ros("ROS_PACKAGE_PATH", ""), ament("AMENT_PREFIX_PATH", path("over") + ":" + path("under"));
+  write("over/share/arm/t.obj", kTriangle);
+  write("under/share/arm/t.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+  const std::string file = write("r.urdf", robot(linkWith(collision("<mesh filename='package://arm/t.obj'/>"))));
+  const auto notes = [&] {
+    std::string all;
+    for (const std::string& note : loadUrdf(file).notes) all += note + "\n";
+    return all;
+  };
+  expectContains(notes(), "is taken from '" + path("over/share/arm/t.obj") + "'; '" + path("under/share/arm/t.obj"));
+  write("under/share/arm/t.obj", kTriangle);
+  EXPECT_EQ(notes(), "") << "they are the same";
+}
+
+// In /dev/shm stand files as in any folder.
+TEST_F(UrdfTest, FilesInSharedMemoryHaveAFolder) {
+  const std::filesystem::path folder = "/dev/shm/fcl_artic_urdf_test_" + std::to_string(getpid());
+  std::error_code error;
+  if (!std::filesystem::create_directories(folder, error)) GTEST_SKIP() << "no /dev/shm";
+  std::ofstream(folder / "t.obj") << kTriangle;
+  std::ofstream(folder / "r.urdf") << robot(linkWith(collision("<mesh filename='t.obj'/>")));
+  EXPECT_EQ(loadUrdf((folder / "r.urdf").string()).geometry.size(), 1u);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(UrdfTest, ScenesFindPackagesAndSayWhereTheirJointsStand) {
+  write("ws/arm/t.obj", kTriangle);
+  const std::string file =
+      write("cell.urdf", robot("<link name='a'>" + collision("<mesh filename='package://arm_of_mine/t.obj'/>") +
+                               "</link><link name='b'/>" +
+                               joint("j", "revolute", "a", "b",
+                                     "<axis xyz='1 0 0'/><limit lower='1' upper='2' effort='1' velocity='1'/>")));
+  SceneOptions options;
+  options.packages["arm_of_mine"] = path("ws/arm");
+  const Scene scene = loadScene(file, options);
+  EXPECT_EQ(scene.obstacles.size(), 1u);
+  ASSERT_EQ(scene.notes.size(), 1u);
+  expectContains(scene.notes[0], "its joints stand at 0, which the limits of these exclude: 'j'");
 }
 
 /// A slider of half length 0.1 along x, and a wall whose face stands at x = 0.9: they meet at q = 0.8.
@@ -548,4 +674,5 @@ TEST_F(UrdfTest, FilesThatAreNoUrdf) {
 }
 
 }  // namespace
+}  // namespace urdf_test
 }  // namespace fcl_artic

@@ -15,6 +15,8 @@
 #include "fcl_artic/visibility/offscreen.h"
 #endif
 
+namespace at_once_test {
+
 namespace {
 
 using fcl_artic::CertifiedResult;
@@ -138,3 +140,5 @@ TEST(AtOnce, AgreesWithOffAndSolvesOnce) {
 }
 
 }  // namespace
+
+}  // namespace at_once_test

@@ -22,6 +22,8 @@
 #include "fcl_artic/visibility/offscreen.h"
 #endif
 
+namespace batch_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -333,3 +335,5 @@ TEST_F(Batches, AnExecutorThatFailsCostsNothingButTime) {
 }
 
 }  // namespace
+
+}  // namespace batch_test

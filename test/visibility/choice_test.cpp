@@ -9,6 +9,7 @@
 
 namespace fcl_artic {
 namespace visibility {
+namespace choice_test {
 namespace {
 
 /// Queries that take these times, us, answered as solve() answers them.
@@ -193,5 +194,6 @@ TEST(Choice, QueriesOfABatchCountEach) {
 }
 
 }  // namespace
+}  // namespace choice_test
 }  // namespace visibility
 }  // namespace fcl_artic

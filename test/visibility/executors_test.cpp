@@ -20,6 +20,7 @@
 
 namespace fcl_artic {
 namespace visibility {
+namespace executors_test {
 namespace {
 
 /// FCL_ARTIC_VISIBILITY_PAIRS=1000000 in the environment makes it a campaign.
@@ -336,5 +337,6 @@ TEST(Culler, ResolutionOutOfRangeIsRefused) {
 }
 
 }  // namespace
+}  // namespace executors_test
 }  // namespace visibility
 }  // namespace fcl_artic

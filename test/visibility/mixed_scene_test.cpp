@@ -25,6 +25,8 @@
 #include "fcl_artic/solid_mesh.h"
 #include "recorder.h"
 
+namespace mixed_scene_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -284,3 +286,5 @@ TEST_F(MixedScene, BatchesOfAllSizesWithContactsAtTheStart) {
 }
 
 }  // namespace
+
+}  // namespace mixed_scene_test

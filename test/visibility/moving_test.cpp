@@ -21,6 +21,8 @@
 #include "fcl_artic/visibility/offscreen.h"
 #endif
 
+namespace moving_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -510,3 +512,5 @@ TEST(MovingAnswers, LinksThatKeepToTheirSidesAreNotLookedAt) {
 }
 
 }  // namespace
+
+}  // namespace moving_test

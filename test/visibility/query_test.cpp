@@ -19,6 +19,8 @@
 #include "fcl_artic/visibility/offscreen.h"
 #endif
 
+namespace query_test {
+
 namespace {
 
 using fcl_artic::CertifiedResult;
@@ -402,3 +404,5 @@ TEST_F(ArmAmidBalls, FourThreadsGetTheSameAnswers) {
 }
 
 }  // namespace
+
+}  // namespace query_test

@@ -13,6 +13,7 @@
 
 namespace fcl_artic {
 namespace visibility {
+namespace rule_test {
 namespace {
 
 /// FCL_ARTIC_VISIBILITY_PAIRS=1000000 in the environment makes it a campaign.
@@ -74,5 +75,6 @@ INSTANTIATE_TEST_SUITE_P(Resolutions, CpuRule,
                          });
 
 }  // namespace
+}  // namespace rule_test
 }  // namespace visibility
 }  // namespace fcl_artic

@@ -12,6 +12,7 @@
 
 namespace fcl_artic {
 namespace visibility {
+namespace solve_test {
 namespace {
 
 /// One pair of a ball that sweeps along x and a triangle, `away` above it.
@@ -227,5 +228,6 @@ TEST_F(SolveTwice, MakingAnExecutorIsNoCostOfAQuery) {
 }
 
 }  // namespace
+}  // namespace solve_test
 }  // namespace visibility
 }  // namespace fcl_artic

@@ -15,6 +15,8 @@
 #include "fcl_artic/fcl_artic.h"
 #include "recorder.h"
 
+namespace swept_test {
+
 namespace {
 
 using namespace fcl_artic;
@@ -130,3 +132,5 @@ TEST_F(Swept, PiecesHoldTheObstacle) {
 }
 
 }  // namespace
+
+}  // namespace swept_test

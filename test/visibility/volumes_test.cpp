@@ -13,6 +13,7 @@
 
 namespace fcl_artic {
 namespace visibility {
+namespace volumes_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -74,5 +75,6 @@ TEST(BodyPieces, NodesHoldTheirPieces) {
 }
 
 }  // namespace
+}  // namespace volumes_test
 }  // namespace visibility
 }  // namespace fcl_artic

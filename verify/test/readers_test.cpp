@@ -151,7 +151,7 @@ TEST_F(VerifyReaders, TextStl) {
   const MeshFile mesh =
       readMesh(write("u.stl", "solid a vertex 9 9 9\n" + facet("0 0 0", "1 0 0", "0 1" + spaces + "35") +
                                   "endsolid\nSOLID\n" + facet("0.1 0 0", "1e-3 +2. .5", "-0 0 1") + "EndSolid a\n"));
-  EXPECT_EQ(mesh.points, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 35, 0.1f, 0, 0, 1e-3f, 2, 0.5, 0, 0, 1}));
+  EXPECT_EQ(mesh.points, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 35, 0.1, 0, 0, 1e-3, 2, 0.5, 0, 0, 1}));
   EXPECT_EQ(mesh.ends, (std::vector<std::size_t>{3, 6}));
   const std::string good = facet("0 0 0", "1 0 0", "0 1 0");
   EXPECT_NO_THROW(readMesh(write("g.stl", "solid\n" + good + "endsolid\n")));
@@ -160,9 +160,11 @@ TEST_F(VerifyReaders, TextStl) {
         "solid\n" + facet("0 0 0", "1 0 0", "0,5 1 0") + "endsolid\n",
         "solid\n" + facet("0 0 0", "1 0 0", "0x1 1 0") + "endsolid\n",
         "solid\n" + facet("0 0 0", "1 0 0", "nan 1 0") + "endsolid\n",
-        "solid\n" + facet("0 0 0", "1 0 0", "1e99 1 0") + "endsolid\n",
+        "solid\n" + facet("0 0 0", "1 0 0", "1e999 1 0") + "endsolid\n",
         "solid\n" + facet("0 0 0", "1 0 0", "1 0") + "endsolid\n",
-        "solid\n" + facet("0 0 0", "1 0 0", "1 0 0\nvertex 2 0 0") + "endsolid\n", std::string("solid\nendsolid\n")})
+        "solid\n" + facet("0 0 0", "1 0 0", "1 0 0\nvertex 2 0 0") + "endsolid\n", std::string("solid\nendsolid\n"),
+        "solid\n" + good + "endsolid\n" + good, "solid\n" + good + "endsolid a solid b\n" + good + "endsolid\n",
+        "solid a " + good + good + "endsolid\n", "solid\nsolid\n" + good + "endsolid\n"})
     EXPECT_THROW(readMesh(write("b.stl", text)), BadInput) << text;
 }
 
@@ -207,17 +209,19 @@ TEST_F(VerifyReaders, Obj) {
   EXPECT_EQ(mesh.points, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 2, 1, 0}));
   // Vertices after faces, lines that go on, weights and colours, old line ends.
-  mesh = read("f 1 2 3\nv 0 0 0\nv 2 \\\n 0 \\\r\n 0 2\nv 0 1 0 0.5 0.5 0.5\n");
+  mesh = read("f 1 2 3\nv 0 0 0\nv 1 \\\n 0 \\\r\n 0 1\nv 0 1 0 0.5 0.5 0.5\n");
   EXPECT_EQ(mesh.points, (Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
   EXPECT_EQ(read("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").corners, (Indices{0, 1, 2}));
+  EXPECT_EQ(read("v 0 0 0\rv 1 0 0\nv 0 1 0\r\nf 1 2 3\n").corners, (Indices{0, 1, 2}));
   EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\n# C:\\\nf 1 2 3 3 # \\\n").corners, (Indices{0, 1, 2, 2}));
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", f = "f 1 2 3\n";
   EXPECT_NO_THROW(read(v + f));
   for (const std::string& text :
        {v + "f 1 2 4\n", v + "f 1 2 -4\n", v + "f 1 2 0\n", v + "f 1 2 x\n", v + "f 1 2 3x\n", v + "f\n" + f, v,
         v + f + "surf 0 1 0 1 1 2 3\n", v + f + "cstype bezier\n", v + f + "call other.obj\n", "v 0,5 0 0\n" + v + f,
-        "v 0 0 1e400\n" + v + f, "v 0 0\n" + v + f, "v 0 0 0 0\n" + v + f, "v 0 0 0x1\n" + v + f})
+        "v 0 0 1e400\n" + v + f, "v 0 0\n" + v + f, "v 0 0 0 0\n" + v + f, "v 0 0 0 2\n" + v + f,
+        "v 0 0 0 v 1\n" + v + f, "v 0 0 0 0.1 0.1 0.1 1\n" + v + f, "v 0 0 0x1\n" + v + f})
     EXPECT_THROW(read(text), BadInput) << text;
 }
 
@@ -261,7 +265,11 @@ TEST_F(VerifyReaders, AllowedPairsAreInTheSrdf) {
     return compareWithSrdf(readWorld(world), write("robot.srdf", "<robot name=\"r\">" + srdf + "</robot>"))
         .differences.size();
   };
-  const std::string g = goodWorld();
+  EXPECT_EQ(compare(goodWorld(), ""), 2u) << "allowed, and neighbours: both are the SRDF's to name";
+  EXPECT_EQ(compare(goodWorld(),
+                    "<disable_collisions link1='hand' link2='base'/><disable_collisions link1='arm' link2='base'/>"),
+            0u);
+  const std::string g = replaced(goodWorld(), "unchecked neighbours base arm\n", "");
   EXPECT_EQ(compare(g, ""), 1u);
   EXPECT_EQ(compare(g, "<disable_collisions link1=\"hand\" link2=\"base\" reason=\"Never\"/>"), 0u);
   EXPECT_EQ(compare(g, "<disable_collisions link1=\"hand\" link2=\"arm\"/>"), 1u);

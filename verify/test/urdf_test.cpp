@@ -344,7 +344,8 @@ TEST_F(VerifyMeshes, NumbersAreReadInFull) {
   }
   for (const char* last : {"3,5", "3x", "0x3", "3 5 ;", "3.e", "inf", "--3"})
     EXPECT_NE(saidOf(mesh(3), "l.stl", stl(last)), "same") << last;
-  EXPECT_EQ(saidOf(mesh(0.1f), "l.stl", stl("0.1")), "same");
+  EXPECT_EQ(saidOf(mesh(0.1), "l.stl", stl("0.1")), "same");
+  EXPECT_NE(saidOf(mesh(0.1f), "l.stl", stl("0.1")), "same");
 }
 
 TEST_F(VerifyUrdf, NumbersOfTheFileAreReadInFull) {

@@ -3,6 +3,7 @@
 // part of the verifier, and nothing in it has to be right for the verifier to be.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>

@@ -28,7 +28,8 @@ struct Robot {
   std::shared_ptr<const KinematicTree> tree;  ///< Links and joint variables in the order of the file.
   std::vector<LinkGeometry> geometry;         ///< Collision geometry of the links; a link may have several.
   /// Pairs of links that may touch: empty after loadUrdf(), to be set from loadSrdf() or generateAllowedCollisions().
-  /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry.
+  /// Neighbours (ArticulatedCollisionManager::setAllowedCollisions()) need no entry, unless the matrix is complete, as
+  /// that of an SRDF is.
   AllowedCollisionMatrix allowed;
   /// Proofs of pairs that never touch, from generateAllowedCollisions(); null: none.
   std::shared_ptr<const LinkPairProofs> proofs;
@@ -52,8 +53,9 @@ struct UrdfOptions {
   /// Whether meshes are solids (SolidMesh), so that what lies within one touches it. A mesh that is not closed and
   /// consistently oriented is an error then. (For some meshes only: apply makeSolid() to the geometries of Robot.)
   bool solid_meshes = false;
-  /// Whether a COLLADA file's up axis counts: what it says is up (y, if it says nothing) becomes z. If not, as in
-  /// RViz and MoveIt, coordinates are taken as they stand, and a file that says that x or y is up is noted.
+  /// Whether the up axis of COLLADA and glTF files counts: what is up (of COLLADA what the file says, y if it says
+  /// nothing; of glTF y) becomes z. If not, as in RViz and MoveIt, coordinates are taken as they stand, and a file in
+  /// which x or y is up is noted.
   bool collada_up_axis = false;
   /// Pose of the robot's root link in the world. If it is not the identity, the tree has one more link, "world" (or, if
   /// the robot has a link of that name, "world_"), its last, and one more joint, "base_mount", its first.
@@ -61,11 +63,12 @@ struct UrdfOptions {
   /// Whether the robot's root link moves freely in the world: the tree has one more link, as for `base`, and a floating
   /// joint "floating_base", whose origin is `base`. Its 7 variables come before the robot's own.
   bool floating_base = false;
+  /// Whether meshes of formats that loadMesh() does not read itself are read by assimp, with a note.
+  bool import_meshes = false;
 };
 
-/// Reads a robot from a URDF file. Meshes may be in any format that assimp reads, with their scale, and are found by
-/// absolute path, path relative to the URDF's folder, `file:` or `package:` URL. Triangles without area are left out,
-/// with a note. Xacro files must be expanded before.
+/// Reads a robot from a URDF file. Meshes are read as by loadMesh(), with their scale, and are found by absolute path,
+/// path relative to the URDF's folder, `file:` or `package:` URL. Xacro files must be expanded before.
 /// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
 ///   empty mesh, with all places that were searched, mesh without a triangle of positive area, mesh that is to be a
 ///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs.
@@ -79,10 +82,11 @@ struct PlacedRobot {
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
 };
 
-/// Combines several robots into one forest, each on a link of its own, prefix + "mount". Their variables follow each
-/// other in the order of the parts. Allowed pairs are those of the parts, proofs are none; every link of one robot is
-/// checked against every link of the others, also for robots that touch where they stand. Geometries are shared with
-/// the parts.
+/// Combines several robots into one forest, each on a link of its own, prefix + "mount"; of a part that was combined
+/// before, each of its roots on prefix + "mount_of_" + the root's name. Their variables follow each other in the order
+/// of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none; every link of
+/// one robot is checked against every link of the others, also for robots that touch where they stand. Geometries are
+/// shared with the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
@@ -104,7 +108,8 @@ struct SrdfPair {
 };
 
 /// Reads the pairs of links that need no check from an SRDF file, as MoveIt does: `disable_collisions`, and
-/// `disable_default_collisions` with its exceptions, `enable_collisions`.
+/// `disable_default_collisions` with its exceptions, `enable_collisions`. As in MoveIt, all other pairs are checked,
+/// neighbours too: the matrix is complete (AllowedCollisionMatrix::setComplete()).
 ///
 /// Entries with a link that the robot lacks are passed over, which leaves no pair unchecked: the SRDFs of many makers
 /// name links that not all of their URDFs have.
@@ -128,8 +133,9 @@ FCL_ARTIC_EXPORT std::vector<SrdfPair> readSrdf(const std::string& path, const K
 /// @throws std::invalid_argument for a robot without a tree, and as ArticulatedCollisionManager::bind() and
 ///   classifyLinkPairs().
 FCL_ARTIC_EXPORT LinkPairReport generateAllowedCollisions(const Robot& robot, const LinkPairOptions& options = {});
-/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): neighbours
-/// ("Adjacent"), pairs that never touch, proven ("Never"), and that always do ("Always"). The file is written as a
+/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): pairs that
+/// never touch, proven ("Never"), that always do ("Always"), and neighbours that a manager leaves out by itself
+/// ("Adjacent"). The file is written as a
 /// whole or, if this throws, not at all.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report);
@@ -140,9 +146,14 @@ struct Scene {
   struct Obstacle {
     std::string name;                               ///< Unique in the scene.
     std::shared_ptr<fcl::CollisionObjectd> object;  ///< Geometry, at its pose in the world.
+    /// Of a shape of an object that has several: the name of the object, which is that of its first shape; else empty.
+    std::string shape_of;
   };
   std::vector<Obstacle> obstacles;  ///< The obstacles, in the order of the file.
   std::vector<std::string> notes;   ///< What was accepted though unusual, one line each.
+  /// Names of all obstacles that a name stands for: of a whole object, its shapes. (Margins, allowed pairs and attach()
+  /// go by the names of single obstacles: one call for each.)
+  FCL_ARTIC_EXPORT std::vector<std::string> namesOf(const std::string& object) const;
   /// Registers every obstacle by its name. Needs setup() afterwards. The manager keeps the obstacles alive; the Scene
   /// may go.
   /// @throws std::invalid_argument as ArticulatedCollisionManager::registerObject(); none stays registered then.
@@ -161,12 +172,13 @@ struct SceneOptions {
   /// Radius of a point cloud's points, in m, whatever the scale. Above 0 for files of points; 0: they are refused.
   double point_radius = 0;
   std::map<std::string, std::string> packages;  ///< For URDF files, as UrdfOptions::packages.
+  bool import_meshes = false;                   ///< As UrdfOptions::import_meshes.
 };
 
-/// Reads a scene. The file's ending decides how: meshes in any format that assimp reads (.obj .stl .ply .dae ...), one
-/// obstacle a file; URDF (.urdf), all links in the neutral configuration as obstacles; MoveIt's scene text (.scene);
-/// OctoMap (.bt .ot), occupied cells as boxes; point clouds (.pcd .xyz, .ply without faces), balls. Names are made
-/// unique: further shapes of an object become NAME#2 and so on.
+/// Reads a scene. The file's ending decides how: meshes as by loadMesh(), one obstacle a file; URDF (.urdf), all links
+/// in the neutral configuration as obstacles; MoveIt's scene text (.scene); OctoMap (.bt .ot), occupied cells as boxes;
+/// point clouds (.pcd .xyz, .ply without faces), balls. Names are made unique: further shapes of an object become
+/// NAME#2 and so on.
 /// @throws std::invalid_argument for a scale that is not above 0 and finite; std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& options = {});
 
@@ -182,8 +194,9 @@ FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const Kin
 FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene);
 
 /// Reads a point cloud: PCD (.pcd: ascii, binary, binary_compressed), PLY (.ply, its vertices), lines that begin with
-/// three numbers (.xyz). Points that are not finite, as of rays without an echo, are left out. A PCD file's VIEWPOINT
-/// is not applied.
+/// three numbers (.xyz; one separator, a blank, a comma or a semicolon, and one number of columns a file). Points that
+/// are not finite, as of rays without an echo, are left out, with a note. A PCD file's VIEWPOINT is not applied; a note
+/// says so where it is not the identity. Counts that do not agree, and what follows the last point, are refused.
 /// @param radius  of all points, in m.
 /// @param notes   what was accepted though unusual is appended, one line each; may be null.
 /// @throws std::invalid_argument for a radius that is not above 0 and finite; std::runtime_error naming file and
@@ -191,17 +204,27 @@ FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Sc
 FCL_ARTIC_EXPORT std::shared_ptr<PointCloud> loadPointCloud(const std::string& path, double radius,
                                                             std::vector<std::string>* notes = nullptr);
 
-/// Reads a triangle mesh by assimp, all parts of the file in one BVHModel<OBBRSSd>.
+/// Reads a triangle mesh, all parts of the file in one BVHModel<OBBRSSd>: STL (.stl), OBJ (.obj), PLY (.ply), OFF
+/// (.off), COLLADA (.dae), glTF 2.0 (.gltf, .glb). Decimals become the nearest doubles; places of nodes (COLLADA, glTF)
+/// are computed in doubles. What may be geometry, or its place, and is not understood is refused by name; points, lines
+/// and vertices without a triangle are left out, with a note. Triangles without area stay, as the segments that they
+/// are, but for those with two equal corners along an edge of another triangle. The manual's page "What is read" has
+/// the list.
 /// @param scale  factor for each axis, finite, not 0.
 /// @param notes  what was accepted though unusual is appended, one line each; may be null.
 /// @param solid  whether to return a SolidMesh<OBBRSSd>, triangles without area included. A mesh that is not closed and
 ///   consistently oriented is refused then.
-/// @param collada_up_axis  whether a COLLADA file's up axis counts, as UrdfOptions::collada_up_axis; its unit does.
+/// @param collada_up_axis  whether the up axis of COLLADA and glTF files counts, as UrdfOptions::collada_up_axis; the
+///   unit of COLLADA does.
+/// @param import_meshes  whether files of other formats are read by assimp, with a note. .3mf, .amf and .x3d are
+/// refused:
+///   their units or parts would get lost.
 /// @throws std::runtime_error naming file and reason: unreadable, no triangle of positive area, a scale of 0 or not
 ///   finite, no solid though it is to be one.
 FCL_ARTIC_EXPORT std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path,
                                                                    const Eigen::Vector3d& scale,
                                                                    std::vector<std::string>* notes = nullptr,
-                                                                   bool solid = false, bool collada_up_axis = false);
+                                                                   bool solid = false, bool collada_up_axis = false,
+                                                                   bool import_meshes = false);
 
 }  // namespace fcl_artic

@@ -11,20 +11,10 @@
 namespace fcl_artic {
 namespace {
 
-/// The word that MoveIt's assistant has for it; null: the pair is to be checked.
-const char* reasonOf(LinkPairKind kind) {
-  switch (kind) {
-    case LinkPairKind::neighbours:
-      return "Adjacent";
-    case LinkPairKind::never:
-      return "Never";
-    case LinkPairKind::always:
-      return "Always";
-    case LinkPairKind::sometimes:
-    case LinkPairKind::unproven:
-      return nullptr;
-  }
-  return nullptr;
+/// The word that MoveIt's assistant has for a pair that needs no check.
+const char* reasonOf(const LinkPairFinding& pair) {
+  if (pair.kind == LinkPairKind::never) return "Never";
+  return pair.neighbours ? "Adjacent" : "Always";
 }
 
 }  // namespace
@@ -40,18 +30,18 @@ void writeSrdf(const std::string& path, const std::string& robot_name, const Lin
   tinyxml2::XMLDocument document;
   document.InsertEndChild(document.NewDeclaration());
   document.InsertEndChild(document.NewComment(
-      " Adjacent: at most one moving joint between the links. Never: proven apart for all joint values within their "
-      "limits. Always: in contact in all configurations that were tried. "));
+      " Never: proven apart for all joint values within their limits. Always: in contact in all configurations that "
+      "were tried. Adjacent: the same, or too near to decide, of links with at most one moving joint between them. "));
   tinyxml2::XMLElement* robot = document.NewElement("robot");
   robot->SetAttribute("name", robot_name.c_str());
   document.InsertEndChild(robot);
+  const AllowedCollisionMatrix need_no_check = report.needNoCheck();
   for (const LinkPairFinding& pair : report.pairs) {
-    const char* reason = reasonOf(pair.kind);
-    if (!reason) continue;
+    if (!need_no_check.allowed(pair.link1, pair.link2)) continue;
     tinyxml2::XMLElement* element = robot->InsertNewChildElement("disable_collisions");
     element->SetAttribute("link1", pair.link1.c_str());
     element->SetAttribute("link2", pair.link2.c_str());
-    element->SetAttribute("reason", reason);
+    element->SetAttribute("reason", reasonOf(pair));
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);

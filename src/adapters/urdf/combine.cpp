@@ -1,28 +1,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "fcl_artic/urdf/urdf.h"
 
 namespace fcl_artic {
+namespace {
+
+/// What a part's matrix says, with the names of all robots together.
+/// @param spelt_out  whether what a complete matrix says of neighbours has to be said pair by pair, as the matrix of
+///   all robots is not complete.
+void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix& all) {
+  const AllowedCollisionMatrix& own = part.robot->allowed;
+  if (spelt_out && own.complete()) {
+    std::set<std::string> names;
+    for (const LinkGeometry& g : part.robot->geometry) names.insert(part.robot->tree->linkName(g.link));
+    for (auto a = names.begin(); a != names.end(); ++a) {
+      for (auto b = std::next(a); b != names.end(); ++b) all.disallow(part.prefix + *a, part.prefix + *b);
+    }
+  }
+  for (const auto& [a, b] : own.disallowedPairs()) all.disallow(part.prefix + a, part.prefix + b);
+  for (const auto& [a, b] : own.pairs()) all.allow(part.prefix + a, part.prefix + b);
+}
+
+}  // namespace
 
 Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name) {
   auto tree = std::make_shared<KinematicTree>(name);
   Robot all;
+  const bool complete = !parts.empty() && std::all_of(parts.begin(), parts.end(), [](const PlacedRobot& part) {
+    return part.robot && part.robot->allowed.complete();
+  });
+  all.allowed.setComplete(complete);
   for (const PlacedRobot& part : parts) {
     if (!part.robot || !part.robot->tree) throw std::invalid_argument("combineRobots: a robot is null");
     const KinematicTree& own = *part.robot->tree;
     const auto named = [&](const std::string& own_name) { return part.prefix + own_name; };
-    // A root of its own for each: robots that stand side by side are no neighbours of each other.
-    tree->addLink(named("mount"));
+    // A mount of its own for each root: robots that stand side by side are no neighbours of each other, also those
+    // that were combined before.
+    std::vector<LinkId> roots;
+    for (LinkId l = 0; l < own.numLinks(); ++l) {
+      if (own.parentJoint(l) < 0) roots.push_back(l);
+    }
+    const auto mountOf = [&](LinkId root) {
+      return roots.size() == 1 ? named("mount") : named("mount_of_" + own.linkName(root));
+    };
+    for (const LinkId root : roots) tree->addLink(mountOf(root));
     std::vector<LinkId> link(static_cast<std::size_t>(own.numLinks()));
     for (LinkId l = 0; l < own.numLinks(); ++l) {
       link[static_cast<std::size_t>(l)] = tree->addLink(named(own.linkName(l)));
     }
-    for (LinkId l = 0; l < own.numLinks(); ++l) {
-      if (own.parentJoint(l) >= 0) continue;
+    for (const LinkId l : roots) {
       Joint joint;
       joint.name = named("mount_to_" + own.linkName(l));
-      joint.parent = named("mount");
+      joint.parent = mountOf(l);
       joint.child = named(own.linkName(l));
       joint.origin = part.base;
       tree->addJoint(joint);
@@ -44,7 +76,7 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
           std::const_pointer_cast<fcl::CollisionGeometryd>(object.collisionGeometry()), object.getTransform());
       all.geometry.push_back(std::move(geometry));
     }
-    for (const auto& [a, b] : part.robot->allowed.pairs()) all.allowed.allow(named(a), named(b));
+    addAllowed(part, !complete, all.allowed);
     for (const std::string& note : part.robot->notes) all.notes.push_back(note);
   }
   all.tree = std::move(tree);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "fcl_artic/kinematic_tree.h"
+#include "meshes/triangle_soup.h"
 
 namespace fcl_artic::detail {
 
@@ -31,22 +32,20 @@ GeometryPtr makeSphere(double radius, const std::string& where);
 /// Centred at the origin, axis z, as in FCL, URDF and MoveIt.
 GeometryPtr makeCylinder(double radius, double length, const std::string& where);
 GeometryPtr makeCone(double radius, double length, const std::string& where);
-/// A BVHModel<OBBRSSd> of the triangles that have an area; what is dropped is noted.
+/// A BVHModel<OBBRSSd>. Triangles with two equal corners, a segment each, are left out where an edge of another
+/// triangle covers them, with a note; vertices without a triangle are noted.
 /// @param solid  a SolidMesh of all triangles: those without area may be what closes it.
 /// @throws std::runtime_error naming `where` for an index out of range, a vertex that is not finite or no triangle
-/// left; for a mesh that is to be a solid and can't be one.
+/// with an area; for a mesh that is to be a solid and can't be one.
 GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid = false);
 
 /// The geometry, as a loader makes it, with all its lengths multiplied. @throws std::runtime_error naming `where`.
 GeometryPtr scaledGeometry(const GeometryPtr& geometry, double scale, const std::string& where);
 
-/// Refuses an STL, PLY or OFF file that is cut short or broken, and what assimp would leave out or change in silence.
-/// @param ending  of the file's name, in lower case, such as ".stl". @throws std::runtime_error naming `where`.
-void requireWholeMesh(std::string_view content, const std::string& ending, const std::string& where);
-
-/// Whether a file is a PLY file of points and no faces.
-bool isPlyWithoutFaces(std::string_view content);
+/// Reads a mesh by assimp, for formats that have no reader here, with a note that says so.
+/// @throws std::runtime_error naming the source, also for bones, morph targets, animations.
+meshes::TriangleSoup importMesh(const meshes::Source& source, const std::string& ending);
 
 /// The ending of a file's name, in lower case, such as ".stl".
 std::string endingOf(const std::string& path);

@@ -15,6 +15,8 @@
 #include "detail.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
+#include "meshes/readers.h"
+#include "meshes/text.h"
 
 namespace fcl_artic {
 namespace {
@@ -48,13 +50,18 @@ class SceneBuilder {
     if (!scaled) scaled = detail::scaledGeometry(geometry, options.scale, "obstacle '" + name + "'");
     Eigen::Isometry3d M_scaled = M_0;
     M_scaled.translation() *= options.scale;
-    scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(scaled, M_scaled)});
+    scene.obstacles.push_back({names_.take(name), std::make_shared<fcl::CollisionObjectd>(scaled, M_scaled), {}});
+    const auto [first, is_new] = first_of_.try_emplace(name, scene.obstacles.size() - 1);
+    if (is_new) return;
+    Scene::Obstacle& first_shape = scene.obstacles[first->second];
+    scene.obstacles.back().shape_of = first_shape.shape_of = first_shape.name;
   }
   Scene scene;
   const SceneOptions& options;
 
  private:
   UniqueNames names_;
+  std::map<std::string, std::size_t> first_of_;                ///< number of each object's first shape
   std::map<detail::GeometryPtr, detail::GeometryPtr> scaled_;  ///< those that obstacles share stay shared
 };
 
@@ -74,7 +81,10 @@ class MoveItSceneReader {
     for (;;) {
       std::string marker;
       if (!(in_ >> marker)) fail(where_, "ends before the '.' that closes a scene");
-      if (marker == ".") return;
+      if (marker == ".") {
+        if (in_ >> marker) fail(where_, "goes on after the '.' that closes a scene: " + meshes::shown(marker));
+        return;
+      }
       if (marker != "*") fail(where_, "has '" + marker + "' where an object ('* name') or the end ('.') belongs");
       readObject(has_poses);
     }
@@ -167,14 +177,16 @@ class MoveItSceneReader {
   }
 
   double number(const std::string& part, const std::string& what) {
-    double value;
-    if (!(in_ >> value)) fail(part, "its " + what + " is cut short or not a number");
+    std::string word;
+    double value = 0;
+    if (!(in_ >> word) || !meshes::toNumber(word, value)) fail(part, "its " + what + " is cut short or not a number");
     return value;
   }
   std::size_t count(const std::string& part, const std::string& what) {
-    long long value;
-    if (!(in_ >> value) || value < 0) fail(part, "its " + what + " is cut short or not a count");
-    return static_cast<std::size_t>(value);
+    std::string word;
+    std::uint64_t value = 0;
+    if (!(in_ >> word) || !meshes::toCount(word, value)) fail(part, "its " + what + " is cut short or not a count");
+    return value;
   }
 
   std::string where_;
@@ -350,10 +362,30 @@ void readOctoMap(const std::string& path, bool binary, bool unknown_cells, Scene
   if (builder.scene.obstacles.empty()) builder.scene.notes.push_back(where + ": no cell is an obstacle");
 }
 
+/// Says where the joints of a scene's robot stand, and which may not stand there.
+void noteJoints(const std::string& path, const KinematicTree& tree, std::vector<std::string>& notes) {
+  if (tree.dof() == 0) return;
+  std::string beyond;
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    const bool excluded = !joint.mimics && hasLimits(joint) && (joint.lower > 0 || joint.upper < 0);
+    if (excluded) beyond += (beyond.empty() ? "" : ", ") + ("'" + joint.name + "'");
+  }
+  notes.push_back("'" + path + "': its joints stand at 0" +
+                  (beyond.empty() ? "" : ", which the limits of these exclude: " + beyond));
+}
+
+bool hasFaces(const std::string& path) {
+  const std::string content = files::read(path);
+  return meshes::plyHasFaces({path, content, "'" + path + "'", nullptr});
+}
+
 void readRobot(const std::string& path, SceneBuilder& builder) {
   UrdfOptions options;
   options.solid_meshes = builder.options.solid_meshes;
   options.collada_up_axis = builder.options.collada_up_axis;
+  options.packages = builder.options.packages;
+  options.import_meshes = builder.options.import_meshes;
   const Robot robot = loadUrdf(path, options);
   std::vector<Eigen::Isometry3d> M_0;
   robot.tree->forwardKinematics(robot.tree->neutralConfiguration(), M_0);
@@ -363,9 +395,18 @@ void readRobot(const std::string& path, SceneBuilder& builder) {
                 M_0[g.link] * g.offset);
   }
   builder.scene.notes.insert(builder.scene.notes.end(), robot.notes.begin(), robot.notes.end());
+  noteJoints(path, *robot.tree, builder.scene.notes);
 }
 
 }  // namespace
+
+std::vector<std::string> Scene::namesOf(const std::string& object) const {
+  std::vector<std::string> names;
+  for (const Obstacle& obstacle : obstacles) {
+    if (obstacle.name == object || obstacle.shape_of == object) names.push_back(obstacle.name);
+  }
+  return names;
+}
 
 void Scene::addTo(ArticulatedCollisionManager& manager) const {
   auto added = obstacles.begin();
@@ -383,8 +424,11 @@ Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree)
   for (LinkId link = 0; link < tree.numLinks(); ++link) names.take(tree.linkName(link));
   for (const Scene& scene : scenes) {
     all.notes.insert(all.notes.end(), scene.notes.begin(), scene.notes.end());
+    std::map<std::string, std::string> called;  // objects of several shapes, by their first one's name
     for (const Scene::Obstacle& obstacle : scene.obstacles) {
-      all.obstacles.push_back({names.take(obstacle.name), obstacle.object});
+      all.obstacles.push_back({names.take(obstacle.name), obstacle.object, {}});
+      if (!obstacle.shape_of.empty())
+        all.obstacles.back().shape_of = called.try_emplace(obstacle.shape_of, all.obstacles.back().name).first->second;
       const std::string& name = all.obstacles.back().name;
       if (name == obstacle.name) continue;
       all.notes.push_back("obstacle '" + obstacle.name + "' is called '" + name + "' here, the name is taken");
@@ -405,8 +449,7 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
     MoveItSceneReader(path, builder).read();
   } else if (ending == ".bt" || ending == ".ot") {
     readOctoMap(path, ending == ".bt", options.unknown_cells, builder);
-  } else if (ending == ".pcd" || ending == ".xyz" ||
-             (ending == ".ply" && detail::isPlyWithoutFaces(files::read(path)))) {
+  } else if (ending == ".pcd" || ending == ".xyz" || (ending == ".ply" && !hasFaces(path))) {
     if (!(options.point_radius > 0)) {
       fail("'" + path + "'",
            "is a point cloud: say how large its points are (--point-radius, SceneOptions::point_radius)");
@@ -414,10 +457,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
     builder.add(fs::path(path).stem().string(), loadPointCloud(path, options.point_radius, &builder.scene.notes),
                 Eigen::Isometry3d::Identity());
   } else {
-    builder.add(
-        fs::path(path).stem().string(),
-        loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes, options.collada_up_axis),
-        Eigen::Isometry3d::Identity());
+    builder.add(fs::path(path).stem().string(),
+                loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes,
+                         options.collada_up_axis, options.import_meshes),
+                Eigen::Isometry3d::Identity());
   }
   return std::move(builder.scene);
 }

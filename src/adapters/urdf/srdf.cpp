@@ -144,6 +144,7 @@ std::vector<SrdfPair> readSrdf(const std::string& path, const KinematicTree& tre
 
 AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree, std::vector<std::string>* notes) {
   AllowedCollisionMatrix matrix;
+  matrix.setComplete();
   for (const SrdfPair& pair : readSrdf(path, tree, notes)) matrix.allow(pair.link1, pair.link2);
   return matrix;
 }

@@ -11,13 +11,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <tuple>
 
 #include "detail.h"
 #include "files/files.h"
+#include "text/percent.h"
 #include "threads/parallel.h"
+#include "urdf_elements.h"
 
 namespace fcl_artic {
 namespace {
@@ -70,14 +73,8 @@ std::size_t numChildren(const tinyxml2::XMLElement* parent, const char* name = n
   return count;
 }
 
-Document::Link readLink(const std::string& where, const std::string& name, tinyxml2::XMLElement& element) {
+Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) {
   Document::Link link{name, numChildren(&element, "collision"), numChildren(&element, "visual") > 0};
-  for (auto* e = element.FirstChildElement("collision"); e; e = e->NextSiblingElement("collision")) {
-    if (numChildren(e, "geometry") != 1 || numChildren(e->FirstChildElement("geometry")) != 1) {
-      fail(where, "link '" + name + "', line " + std::to_string(e->GetLineNum()) +
-                      ": a collision element needs one geometry element with one shape");
-    }
-  }
   for (const char* unused : {"visual", "inertial"}) {
     while (auto* e = element.FirstChildElement(unused)) element.DeleteChild(e);
   }
@@ -85,18 +82,19 @@ Document::Link readLink(const std::string& where, const std::string& name, tinyx
 }
 
 Document readDocument(const std::string& where, const std::string& file) {
+  if (file.find('\0') != std::string::npos) fail(where, "has a byte 0, where XML would end");
   tinyxml2::XMLDocument xml;
   if (xml.Parse(file.c_str(), file.size()) != tinyxml2::XML_SUCCESS) fail(where, xml.ErrorStr());
-  tinyxml2::XMLElement* robot = xml.RootElement();
-  if (!robot || std::string(robot->Name()) != "robot") fail(where, "is not a URDF: the root element is not <robot>");
+  tinyxml2::XMLElement& robot = detail::requireUnderstood(where, xml);
   Document document;
-  for (auto* e = robot->FirstChildElement(); e; e = e->NextSiblingElement()) {
+  for (auto* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string kind = e->Name();
-    if (kind.rfind("xacro:", 0) == 0) fail(where, "is a xacro file; expand it to URDF first");
     const char* name = e->Attribute("name");
-    if (kind == "link" && name) document.links.push_back(readLink(where, name, *e));
+    if (kind == "link" && name) document.links.push_back(readLink(name, *e));
     if (kind == "joint" && name) document.joints.push_back(name);
   }
+  // (Of visual elements only, and so of no concern here.)
+  while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
   document.xml = printer.CStr();
@@ -161,13 +159,19 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
   return out;
 }
 
+/// The direction of an axis, which is brought near 1 before it is squared: it may be of any length. 0 stays 0.
+Eigen::Vector3d directionOf(const Eigen::Vector3d& axis) {
+  const double largest = axis.cwiseAbs().maxCoeff();
+  return largest > 0 ? Eigen::Vector3d((axis / largest).normalized()) : axis;
+}
+
 /// A joint that follows one that stands still at `value` stands still too.
 void freeze(Joint& joint, double value) {
   const double q = joint.mimic.multiplier * value + joint.mimic.offset;
   if (joint.type == JointType::prismatic) {
-    joint.origin.translate(q * joint.axis.normalized());
+    joint.origin.translate(q * directionOf(joint.axis));
   } else {
-    joint.origin.rotate(Eigen::AngleAxisd(q, joint.axis.normalized()));
+    joint.origin.rotate(Eigen::AngleAxisd(q, directionOf(joint.axis)));
   }
   joint.type = JointType::fixed;
   joint.mimics = false;
@@ -230,7 +234,7 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
     std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
-      if (joint.type == JointType::planar && !joint.axis.normalized().isApprox(Eigen::Vector3d::UnitZ())) {
+      if (joint.type == JointType::planar && !directionOf(joint.axis).isApprox(Eigen::Vector3d::UnitZ())) {
         notes.push_back("joint '" + name + "' is planar across its axis, which is not z; some tools ignore the axis");
       }
       const bool limitable = KinematicTree::numVariables(joint.type) == 1 && joint.type != JointType::continuous;
@@ -278,8 +282,17 @@ std::vector<fs::path> foldersOf(const char* variable) {
 
 /// Where a URDF's relative paths begin: its own folder; the present one for what a shell passes on, as `<(xacro ...)`.
 fs::path folderOf(const std::string& urdf_path) {
-  const bool passed_on = urdf_path.rfind("/dev/", 0) == 0 || urdf_path.rfind("/proc/", 0) == 0;
-  return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path().lexically_normal();
+  const auto begins = [&](const char* with) { return urdf_path.rfind(with, 0) == 0; };
+  const bool passed_on = urdf_path == "/dev/stdin" || begins("/dev/fd/") || begins("/proc/");
+  return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path();
+}
+
+/// The same folder by a path that can be gone up: what ".." is above a link, only the disk knows.
+fs::path withoutDots(const fs::path& folder) {
+  if (std::find(folder.begin(), folder.end(), "..") == folder.end()) return folder.lexically_normal();
+  std::error_code error;
+  const fs::path there = fs::canonical(folder, error);
+  return error ? folder : there;
 }
 
 /// The name that a folder's package.xml gives; empty where it has none that can be read.
@@ -303,11 +316,14 @@ class MeshFinder {
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
       : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
+  /// What is unusual about the paths that were found, one line each.
+  const std::vector<std::string>& notes() const { return notes_; }
+
   std::string find(const std::string& where, const std::string& uri) {
     const auto after = [&](const std::string& scheme) { return uri.substr(scheme.size()); };
     const auto starts = [&](const std::string& scheme) { return uri.rfind(scheme, 0) == 0; };
     if (starts("package://")) return inPackage(where, uri, after("package://"));
-    if (starts("file://")) return existing(where, after("file://"));
+    if (starts("file://")) return existing(where, inFileUrl(where, uri));
     if (uri.find("://") != std::string::npos) fail(where, "mesh '" + uri + "': only file:// and package:// are read");
     return existing(where, folder_ / uri);  // an absolute path stays as it is
   }
@@ -319,7 +335,18 @@ class MeshFinder {
   }
   static std::string existing(const std::string& where, const fs::path& path) {
     if (!isThere(path)) fail(where, "mesh '" + path.string() + "': no such file");
-    return path.lexically_normal().string();
+    return path.string();  // as it stands: a ".." after a link is another folder than the text without both
+  }
+  /// file:///PATH or file://localhost/PATH, %20 and the like decoded.
+  static std::string inFileUrl(const std::string& where, const std::string& uri) {
+    std::string path = uri.substr(std::string("file://").size());
+    if (path.rfind("localhost/", 0) == 0) path.erase(0, std::string("localhost").size());
+    const std::optional<std::string> decoded = text::percentDecoded(path);
+    if (!decoded) fail(where, "mesh '" + uri + "': a % without two hexadecimal digits after it; write %25");
+    if (decoded->empty() || decoded->front() != '/') {
+      fail(where, "mesh '" + uri + "': a file: URL needs an absolute path, file:///PATH");
+    }
+    return *decoded;
   }
 
   std::string inPackage(const std::string& where, const std::string& uri, const std::string& path) {
@@ -327,8 +354,13 @@ class MeshFinder {
     if (slash == std::string::npos || slash + 1 == path.size()) fail(where, "mesh '" + uri + "': names no file");
     const std::string name = path.substr(begin, slash - begin), rest = path.substr(slash + 1);
     const std::vector<fs::path>& folders = foldersOfPackage(name);
+    std::vector<std::string> there;
     for (const fs::path& folder : folders) {
-      if (isThere(folder / rest)) return (folder / rest).lexically_normal().string();
+      if (isThere(folder / rest)) there.push_back((folder / rest).string());
+    }
+    if (!there.empty()) {
+      noteOther(uri, there);
+      return there.front();
     }
     std::string reason = "mesh '" + uri + "': ";
     if (packages_.count(name)) fail(where, reason + "no such file in '" + folders.front().string() + "'");
@@ -344,6 +376,23 @@ class MeshFinder {
                     folder_.string() + "', below " + listed("ROS_PACKAGE_PATH") + ", in share/ of " +
                     listed("AMENT_PREFIX_PATH") + ". Say where it is: --package " + name +
                     "=DIR (C++: UrdfOptions::packages, Python: packages={'" + name + "': 'DIR'})");
+  }
+  /// A package that stands in several folders: which one is meant is not known where they differ.
+  void noteOther(const std::string& uri, const std::vector<std::string>& there) {
+    if (!noted_.insert(uri).second) return;
+    const std::string first = contentOf(there.front());
+    const auto other =
+        std::find_if(there.begin() + 1, there.end(), [&](const std::string& path) { return contentOf(path) != first; });
+    if (other == there.end()) return;
+    notes_.push_back("mesh '" + uri + "' is taken from '" + there.front() + "'; '" + *other +
+                     "' is another file, which other programs may take (--package NAME=DIR says which is meant)");
+  }
+  static std::string contentOf(const std::string& path) {
+    try {
+      return files::read(path);
+    } catch (const std::runtime_error&) {
+      return {};  // a folder, or one that may not be read
+    }
   }
   static std::string listed(const char* variable) {
     const char* value = std::getenv(variable);
@@ -365,7 +414,7 @@ class MeshFinder {
         folders.push_back(folder);
       }
     };
-    for (fs::path dir = folder_;; dir = dir.parent_path()) {
+    for (fs::path dir = withoutDots(folder_);; dir = dir.parent_path()) {
       if (dir.filename() == name || packageName(dir) == name) add(dir);
       add(dir / name);
       if (dir == dir.parent_path()) break;
@@ -403,6 +452,8 @@ class MeshFinder {
 
   static constexpr int kDeepest = 12, kMostFolders = 100000;  // a link may lead in a circle
   fs::path folder_;
+  std::vector<std::string> notes_;
+  std::set<std::string> noted_;  ///< URLs
   std::map<std::string, std::string> packages_;
   std::map<std::string, std::vector<fs::path>> found_;
 };
@@ -430,6 +481,7 @@ class GeometryFactory {
     std::vector<decltype(meshes_)::value_type*> unread;
     for (auto& entry : meshes_) unread.push_back(&entry);
     parallelFor(unread.size(), 0, [&](std::size_t k) { read(unread[k]->first, unread[k]->second); });
+    notes_.insert(notes_.end(), finder_.notes().begin(), finder_.notes().end());
   }
 
   struct Made {
@@ -469,7 +521,8 @@ class GeometryFactory {
   void read(const Key& key, Mesh& mesh) const {
     const auto& [path, x, y, z] = key;
     try {
-      mesh.geometry = loadMesh(path, {x, y, z}, &mesh.notes, options_.solid_meshes, options_.collada_up_axis);
+      mesh.geometry = loadMesh(path, {x, y, z}, &mesh.notes, options_.solid_meshes, options_.collada_up_axis,
+                               options_.import_meshes);
     } catch (const std::runtime_error& error) {
       mesh.error = error.what();
     }

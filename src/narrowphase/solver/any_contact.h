@@ -1,8 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// For queries that any contact answers: stage 1 gathers poses at which contact is likely, and they are tried before any
-// pair is followed. And for bodies in each other at the start, whatever is asked. Nothing rests on the guesses; what is
-// reported is proven.
+// Poses at which contact is likely, for queries that any contact answers: they are tried before any pair is
+// followed, and the first proof ends the query. Nothing rests on the guesses: a contact that is reported is proven,
+// and its time is the pose's. tryTriangles() serves first contacts too, of bodies in each other at the start.
+//
+// 1. Before stage 1, tryLikely(): balls inside two links, in a pose in which their grid has them meet.
+// 2. In stage 1, tryObstacle(), for a link deep in a solid: a ball inside the link, a hull's vertex in the solid, a
+//    chord of the solid through a triangle.
+// 3. In stage 1, considerLinks(): a ball inside a link in a ball inside another, in the pose in which their line
+//    swept spheres are deepest in each other.
+// 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()):
+//    their hulls; if these are open, tryLinks() has such balls at all other poses in which they may meet. Of links
+//    deep in each other it tests boxes by the six axes, in one pose, down to an edge of one triangle that certainly
+//    pierces another.
+// 5. tryOverlaps(): leaves at the middle of a part in which hulls overlap, unless the pair rests from the start on.
+// 6. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
+//    expected.
 #pragma once
 
 #include "narrowphase/solver/ball_proofs.h"

@@ -1,7 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The search for the first contact among the pairs that the stages have left: earliest part of the motion first, and in
-// it the pair that meets first.
+// The search for the first contact among the pairs that the stages have left: earliest part of the motion first,
+// and in it the pair that meets first.
+//
+// 1. testHulls(), the first batch: over the eight parts of [0, 1] boxes and then hulls of whole bodies are tested,
+//    which part most neighbours before any triangle is examined. GJK finds directions for a whole part of the
+//    motion (swept_difference.h), between a link and an obstacle from stage 1's direction on, and witnesses at the
+//    middle. If GJK claims an overlap, later parts are put off (Horizon::suspect()); if the claim proves wrong,
+//    lookAtPutOff() examines them.
+// 2. search(): a problem of one pair, as the drop-in asks it, is followed from its first open part to its last at
+//    once. For many pairs descendIntoPieces() traverses their trees over the first batch, and solveLane() takes the
+//    parts one after the other.
+// 3. solveLane() follows the hulls of each pair to where they meet (Follower::followToRoot()): certificates up to
+//    the first root of the gap's bound, then a new direction from there. Two directions show how they turn, and the
+//    next certificate's turns likewise: the steps of a secant method.
+// 4. The pair that meets first is solved first, and a contact found ends the search in the others. If a mesh is
+//    convex, its triangle at the hulls' witness touches at that very time, which is proven at once
+//    (proveBelowHulls()). If bodies rest on each other there, pieces at the hulls' witness are tried first
+//    (restsAt()); if they are in each other from t = 0 on, triangles that cross there, the first leaves that touch,
+//    and triangles that cross within the tolerance after it (touchesAtStart()).
+// 5. solvePieces() searches below the hulls: windows of time, each again in eight parts (solveInterval()), with a
+//    dual traversal (Traversal::descend()). Swept boxes part pairs of nodes, one box for each node and batch
+//    whatever the other node is; so do the hulls around their subtrees, which cut a bent link into convex parts.
+//    Triangles' normals, the last direction and GJK's witness at the middle of one part, frozen in either frame,
+//    part pairs of leaves; each direction is tried on all parts at once. Nodes smaller than the motion are left to
+//    the next level.
+// 6. followLeaves() follows the few leaf pairs left in a part one by one: followToRoot() finds t_lower, decide()
+//    finds t_upper by proofs of contact within the tolerance after it. If neither decides, the part is divided,
+//    down to the tolerance. A pair that is then nearer than the distance tolerance or the pad of rounding is a
+//    contact with `certain = false`; of many such pairs kEnoughUncertain are recorded.
 #pragma once
 
 #include <utility>

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace fcl_artic::detail {
+namespace fcl_artic::meshes {
 
 /// Corners of a polygon that cutPolygon() takes at most, where it is not convex: the time grows with their square.
 constexpr std::size_t kMostCorners = 20000;
@@ -26,4 +26,4 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
 /// Whether the polygon is convex as seen along its normal, within rounding: a fan covers it.
 bool isConvexPolygon(const std::vector<Eigen::Vector3d>& corners);
 
-}  // namespace fcl_artic::detail
+}  // namespace fcl_artic::meshes

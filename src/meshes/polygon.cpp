@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "polygon.h"
+#include "meshes/polygon.h"
 
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
 
-namespace fcl_artic::detail {
+namespace fcl_artic::meshes {
 namespace {
 
-using Points = std::vector<Eigen::Vector2d>;
+using Outline = std::vector<Eigen::Vector2d>;
 
 /// Twice the signed area of a triangle: positive where it turns to the left.
 double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
@@ -19,14 +19,14 @@ double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vec
 
 /// The corners as seen against the polygon's normal (Newell's: the sum of its edges' cross products), in which it turns
 /// to the left; its size is made 1, so that no product overflows. Without an area: all at 0.
-Points flattened(const std::vector<Eigen::Vector3d>& corners) {
+Outline flattened(const std::vector<Eigen::Vector3d>& corners) {
   Eigen::Vector3d lower = corners[0], upper = corners[0];
   for (const Eigen::Vector3d& x : corners) {
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
   }
   const double size = (upper / 2 - lower / 2).maxCoeff();
-  Points points(corners.size(), Eigen::Vector2d::Zero());
+  Outline points(corners.size(), Eigen::Vector2d::Zero());
   if (!(size > 0)) return points;
   const auto scaled = [&](std::size_t i) -> Eigen::Vector3d {
     return (corners[i % corners.size()] - corners[0]) / size;
@@ -43,7 +43,7 @@ Points flattened(const std::vector<Eigen::Vector3d>& corners) {
 constexpr double kFlat = 16 * std::numeric_limits<double>::epsilon();
 
 /// Whether the polygon turns to the left at all of its corners, and once round in all.
-bool isConvex(const Points& points) {
+bool isConvex(const Outline& points) {
   const std::size_t n = points.size();
   int changes = 0;  // of the direction from left to right: two of a convex polygon
   double last = 0, first = 0;
@@ -75,7 +75,7 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
   const std::size_t n = corners.size();
   std::vector<std::array<std::size_t, 3>> triangles;
   triangles.reserve(n - 2);
-  const Points points = flattened(corners);
+  const Outline points = flattened(corners);
   if (n == 3 || isConvex(points)) {
     for (std::size_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
     return triangles;
@@ -112,4 +112,4 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
   return triangles;
 }
 
-}  // namespace fcl_artic::detail
+}  // namespace fcl_artic::meshes

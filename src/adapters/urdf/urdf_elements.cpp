@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "urdf_elements.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "detail.h"
+#include "text/nearest_name.h"
+
+namespace fcl_artic::detail {
+namespace {
+
+constexpr int kAny = 1 << 30;
+
+/// How often an element may stand in another one.
+struct Count {
+  int least, most;
+};
+
+/// What an element may hold.
+struct Grammar {
+  std::map<std::string, Count> children;  ///< that are understood
+  std::set<std::string> attributes;       ///< that are understood
+  /// What is passed over: what it says is of looks, of masses, forces, sensors and controllers, of names.
+  std::set<std::string> passed_over, passed_over_attributes;
+};
+
+/// By name of the element. (No name is that of two kinds.)
+const std::map<std::string, Grammar>& grammar() {
+  static const std::map<std::string, Grammar> elements = {
+      {"robot",
+       {{{"link", {0, kAny}}, {"joint", {0, kAny}}},
+        {"name"},
+        {"material", "gazebo", "transmission", "ros2_control", "sensor", "force_element", "frame", "bullet",
+         "drake:collision_filter_group"},
+        {"version", "xsi:schemaLocation"}}},
+      {"link",
+       {{{"collision", {0, kAny}}},
+        {"name"},
+        {"visual", "inertial", "contact", "surface", "gravity", "kinematic", "sensor", "audio_source", "bullet",
+         "self_filter"},
+        {"type", "concave"}}},
+      {"collision",
+       {{{"origin", {0, 1}}, {"geometry", {1, 1}}},
+        {},
+        {"material", "verbose", "contact_coefficients", "drake:proximity_properties"},
+        {"name", "concave", "group", "mask"}}},
+      {"geometry", {{{"box", {0, 1}}, {"sphere", {0, 1}}, {"cylinder", {0, 1}}, {"mesh", {0, 1}}}, {}, {}, {}}},
+      {"box", {{}, {"size"}, {}, {}}},
+      {"sphere", {{}, {"radius"}, {}, {}}},
+      {"cylinder", {{}, {"radius", "length"}, {}, {}}},
+      {"mesh", {{}, {"filename", "scale"}, {}, {}}},
+      {"origin", {{}, {"xyz", "rpy"}, {}, {}}},
+      {"joint",
+       {{{"parent", {1, 1}},
+         {"child", {1, 1}},
+         {"origin", {0, 1}},
+         {"axis", {0, 1}},
+         {"limit", {0, 1}},
+         {"mimic", {0, 1}}},
+        {"name", "type"},
+        {"dynamics", "safety_controller", "calibration", "controller_gains", "joint_properties", "traits",
+         "hardwareInterface"},
+        {"dont_collapse"}}},
+      {"parent", {{}, {"link"}, {}, {}}},
+      {"child", {{}, {"link"}, {}, {}}},
+      {"axis", {{}, {"xyz"}, {}, {}}},
+      {"limit",
+       {{},
+        {"lower", "upper"},
+        {},
+        {"effort", "velocity", "acceleration", "deceleration", "jerk", "current", "command_effort", "gear_velocity"}}},
+      {"mimic", {{}, {"joint", "multiplier", "offset"}, {}, {}}}};
+  return elements;
+}
+
+class Strict {
+ public:
+  explicit Strict(const std::string& where) : where_(where) {}
+
+  void check(const tinyxml2::XMLElement& e) const {
+    const Grammar& of = grammar().at(e.Name());
+    attributes(e, of);
+    std::map<std::string, int> counts;
+    for (const tinyxml2::XMLNode* node = e.FirstChild(); node; node = node->NextSibling()) {
+      if (const tinyxml2::XMLText* text = node->ToText()) {
+        refuse(e, std::string("the text '") + text->Value() + "' stands in it, which is not understood; remove it");
+      }
+      const tinyxml2::XMLElement* const child = node->ToElement();
+      if (!child || of.passed_over.count(child->Name())) continue;  // a comment
+      const auto known = of.children.find(child->Name());
+      if (known == of.children.end()) unknown(*child, e, of);
+      if (++counts[child->Name()] > known->second.most) {
+        refuse(*child, std::string("<") + e.Name() + "> may have only one of these; remove the others");
+      }
+      check(*child);
+    }
+    for (const auto& [name, count] : of.children) {
+      if (count.least > 0 && !counts.count(name)) refuse(e, "it has no <" + name + ">");
+    }
+    if (std::strcmp(e.Name(), "geometry") == 0 && counts.size() != 1) {
+      refuse(e, "it has " + std::string(counts.empty() ? "no shape" : "several shapes") +
+                    "; a collision element needs one geometry element with one shape");
+    }
+  }
+
+  [[noreturn]] void refuse(const tinyxml2::XMLElement& e, const std::string& why) const {
+    fail(where_, "line " + std::to_string(e.GetLineNum()) + ", <" + e.Name() + ">" + partOf(e) + ": " + why);
+  }
+
+ private:
+  /// " of link 'arm'": the link or joint that an element is or stands in, if it has a name.
+  static std::string partOf(const tinyxml2::XMLElement& e) {
+    for (const tinyxml2::XMLNode* up = &e; up; up = up->Parent()) {
+      const tinyxml2::XMLElement* const part = up->ToElement();
+      const bool named = part && (std::strcmp(part->Name(), "link") == 0 || std::strcmp(part->Name(), "joint") == 0);
+      if (named && part->Attribute("name"))
+        return std::string(part == &e ? " '" : std::string(" of ") + part->Name() + " '") + part->Attribute("name") +
+               "'";
+    }
+    return "";
+  }
+
+  void attributes(const tinyxml2::XMLElement& e, const Grammar& of) const {
+    for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
+      const std::string name = a->Name();  // there once: tinyxml2 sees to that
+      if (name == "xmlns" || name.rfind("xmlns:", 0) == 0 || of.attributes.count(name)) continue;
+      if (of.passed_over_attributes.count(name)) continue;
+      // Of an axis that some writers give angles, all of them 0, they say nothing.
+      if (std::strcmp(e.Name(), "axis") == 0 && name == "rpy" && isZero(a->Value())) continue;
+      const std::string cure = name == "quat_xyzw" || name == "quat_wxyz"
+                                   ? "; write the rotation as rpy=\"ROLL PITCH YAW\" (rad)"
+                                   : text::didYouMean(name, {of.attributes.begin(), of.attributes.end()});
+      refuse(e, "the attribute '" + name + "' is not understood, and may be of a geometry, a place or a motion" +
+                    (cure.empty() ? "; if it is not, remove it" : cure));
+    }
+  }
+
+  static bool isZero(const std::string& text) { return text.find_first_not_of(" \t\r\n0.-+") == std::string::npos; }
+
+  [[noreturn]] void unknown(const tinyxml2::XMLElement& e, const tinyxml2::XMLElement& in, const Grammar& of) const {
+    const std::string name = e.Name();
+    if (name.rfind("xacro:", 0) == 0 || name == "insert_block") {
+      refuse(e, "is left of xacro; expand the file first (xacro FILE > robot.urdf)");
+    }
+    if (name.rfind("xi:", 0) == 0) refuse(e, "is an inclusion, which is not read; put in what it names");
+    std::vector<std::string> known(of.passed_over.begin(), of.passed_over.end());
+    for (const auto& [child, count] : of.children) known.push_back(child);
+    const std::string hint = text::didYouMean(name, known);
+    refuse(e, std::string("in <") + in.Name() + "> it is not understood, and may be a geometry, a place or a motion" +
+                  (hint.empty() ? "; if it is not, remove it" : hint));
+  }
+
+  const std::string& where_;
+};
+
+}  // namespace
+
+tinyxml2::XMLElement& requireUnderstood(const std::string& where, tinyxml2::XMLDocument& document) {
+  tinyxml2::XMLElement* robot = nullptr;
+  for (tinyxml2::XMLNode* node = document.FirstChild(); node; node = node->NextSibling()) {
+    if (node->ToUnknown()) fail(where, "line " + std::to_string(node->GetLineNum()) + ": document types are not read");
+    if (node->ToText()) fail(where, "line " + std::to_string(node->GetLineNum()) + ": text outside of <robot>");
+    tinyxml2::XMLElement* const element = node->ToElement();
+    if (!element) continue;
+    if (robot) {
+      fail(where, "line " + std::to_string(element->GetLineNum()) + ": <" + element->Name() +
+                      "> is a second root element; a file holds one <robot>");
+    }
+    robot = element;
+  }
+  if (!robot || std::strcmp(robot->Name(), "robot") != 0) {
+    fail(where, "is not a URDF: the root element is not <robot>");
+  }
+  Strict(where).check(*robot);
+  return *robot;
+}
+
+}  // namespace fcl_artic::detail

@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small files, each with one thing that once was passed over, or misread.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "meshes/readers.h"
+#include "meshes/text.h"
+
+namespace readers_test {
+
+using namespace fcl_artic::meshes;
+using Eigen::Vector3d;
+
+std::vector<std::string> notes;
+
+using Reader = std::function<TriangleSoup(const Source&)>;
+
+TriangleSoup read(const Reader& reader, const std::string& content) {
+  notes.clear();
+  const Source source{"file", content, "file", &notes};
+  TriangleSoup soup = reader(source);
+  soup.tell(source);
+  return soup;
+}
+
+/// Of a file that is to be refused.
+std::string errorOf(const Reader& reader, const std::string& content) {
+  try {
+    return std::to_string(read(reader, content).triangles.size()) + " triangles are read";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+void expectContains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is not in: " << text;
+}
+
+// The nearest double of a decimal number that is too small for any other is 0; one that is too large is refused.
+TEST(NumbersOfFiles, AreDecimalAndNearest) {
+  const auto number = [](const char* word) {
+    double value = 77;
+    return toNumber(word, value) ? value : std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_EQ(number("1e-400"), 0);
+  EXPECT_TRUE(std::signbit(number("-1e-400")));
+  EXPECT_EQ(number("0.00000000000000000000000000000000001e-330"), 0);
+  EXPECT_EQ(number("100000000000000000000e-419"), 0);
+  EXPECT_EQ(number("4.9e-324"), std::numeric_limits<double>::denorm_min());
+  EXPECT_EQ(number("451237.038"), 451237.038);
+  EXPECT_EQ(number("+.5"), 0.5);
+  EXPECT_EQ(number("-5."), -5);
+  EXPECT_EQ(number("1E+2"), 100);
+  for (const char* wrong : {"1e400", "-1e400", "100000e999999999999999999999", "", "+", "-", ".", "+-1", "-+1", "0x3",
+                            "1e", "1e+", "1.2.3", "1,5", "nan", "inf", "1d3", "1 "}) {
+    EXPECT_TRUE(std::isnan(number(wrong))) << wrong;
+  }
+}
+
+// ---- STL
+
+const std::string kFacet =
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 451237.038 5411234.492 312.537\nvertex 0 1 "
+    "0\nendloop\nendfacet\n";
+
+TEST(StlText, KeepsDecimals) {
+  const TriangleSoup soup = read(readStl, "solid\n" + kFacet + "endsolid\n");
+  ASSERT_EQ(soup.triangles.size(), 1u);
+  EXPECT_EQ(soup.vertices[1], Vector3d(451237.038, 5411234.492, 312.537));
+}
+
+TEST(StlText, ThatIsBinaryTooIsRefused) {
+  std::string text = "solid" + std::string(75, ' ') + std::string("\4\0\0\0", 4) + "\n" + kFacet + "endsolid\n";
+  text.resize(84 + 50 * 4, ' ');
+  expectContains(errorOf(readStl, text), "as text and as binary");
+  EXPECT_EQ(read(readStl, text + " ").triangles.size(), 1u);
+}
+
+TEST(StlText, OfSeveralSolidsIsReadOrRefused) {
+  const auto count = [](const std::string& content) { return read(readStl, content).triangles.size(); };
+  EXPECT_EQ(count("solid part endsolidworks\n" + kFacet + kFacet + "endsolid part endsolidworks\n"), 2u);
+  EXPECT_EQ(count("solid a\n" + kFacet + "endsolid a\nsolid b\n" + kFacet + "endsolid\nSOLID\nENDSOLID\n"), 2u);
+  expectContains(errorOf(readStl, "solid a\n" + kFacet + "endsolid a\n" + kFacet), "outside of its solids");
+  expectContains(errorOf(readStl, "solid a\n" + kFacet + "endsolid a solid b\n" + kFacet + "endsolid b\n"),
+                 "'solid' within the name");
+  expectContains(errorOf(readStl, "solid a " + kFacet + kFacet + "endsolid a\n"), "within the name");
+  expectContains(errorOf(readStl, "solid a\n" + kFacet + "solid b\n" + kFacet + "endsolid\n"),
+                 "a solid within a solid");
+  expectContains(errorOf(readStl, "solid a\n" + kFacet + "endsolid\nendsolid\n"), "after no solid");
+  expectContains(errorOf(readStl, "solid a\n" + kFacet), "no 'endsolid'");
+  expectContains(errorOf(readStl, "solid a\n" + kFacet + "hull 1\nendsolid\n"), "between facets, at 'hull'");
+  expectContains(errorOf(readStl,
+                         "solid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 vertex 1 1 0 "
+                         "endloop endfacet endsolid\n"),
+                 "within a facet");
+  expectContains(errorOf(readStl,
+                         "solid\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1e999 0 0 vertex 0 1 0 endloop "
+                         "endfacet endsolid\n"),
+                 "'1e999' of a vertex");
+}
+
+// ---- OBJ
+
+const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 2 0\n";
+
+TEST(Obj, MarksLineEndsAndWordsThatWouldShiftVertices) {
+  const auto isRead = [](const std::string& content) {
+    const TriangleSoup soup = read(readObj, content);
+    return soup.triangles.size() == 1 && soup.vertices[soup.triangles[0][1]] == Vector3d(1, 0, 0);
+  };
+  EXPECT_TRUE(isRead("\xEF\xBB\xBF" + kObj + "f 1 2 3\n"));
+  EXPECT_TRUE(isRead("v 0 0 0\rv 1 0 0\nv 0 2 0\r\nf 1 2 3\r"));
+  EXPECT_TRUE(isRead(kObj + "fo 1 2 3\n"));
+  EXPECT_TRUE(isRead("3 1\n" + kObj + "f 1 2 3\n"));
+  expectContains(errorOf(readObj, "4 1\n" + kObj + "f 1 2 3\n"), "its first line says 4 vertices");
+  expectContains(errorOf(readObj, "\xFF\xFEv"), "UTF-16");
+  expectContains(errorOf(readObj, "v 0 0 0 v 1 0 0\n"), "'v' is not a finite number");
+  expectContains(errorOf(readObj, "v 0 0 0 1 2\n"), "five numbers");
+  expectContains(errorOf(readObj, "v 0 0 0 .1 .2 .3 .4\n"), "fourth number that is not 1");
+  expectContains(errorOf(readObj, "v 0 0 0 1 .2 .3 .4 5\n"), "goes on after");
+  expectContains(errorOf(readObj, "v 2 0 0 2\n"), "fourth number that is not 1");
+  expectContains(errorOf(readObj, kObj + "call more.obj\nf 1 2 3\n"), "'call' refers to another file");
+  expectContains(errorOf(readObj, kObj + "surf 0 1 0 1 1 2 3\nf 1 2 3\n"), "free-form");
+  expectContains(errorOf(readObj, kObj + "face 1 2 3\nf 1 2 3\n"), "'face' begins a line of no kind");
+  expectContains(errorOf(readObj, kObj + "f 1 2 3 x/1\n"), "'x/1' names no vertex");
+}
+
+TEST(Obj, PointsLinesAndFacesThatAreNotFlatAreNoted) {
+  read(readObj, kObj + "v 1 1 0.3\nf 1 2 4 3\np 1\nl 1 2\nf 1 2\nf 3\n");
+  ASSERT_EQ(notes.size(), 3u);
+  expectContains(notes[0], "its points, 2, have no surface");
+  expectContains(notes[1], "its lines, 2, have no surface");
+  expectContains(notes[2], "1 face is not flat");
+  // Six digits are not enough for flat ones far away.
+  read(readObj,
+       "v 451237 100.333 1\nv 451238 100.333 1.33333\nv 451238 101.333 1.66667\nv 451237 101.333 1.33334\nf 1 2 3 4\n");
+  EXPECT_TRUE(notes.empty());
+}
+
+// ---- OFF
+
+TEST(Off, CountsAndWhatFollowsThem) {
+  const std::string vertices = "0 0 0\n1 0 0\n0 2 451237.038\n";
+  const TriangleSoup soup = read(readOff, "OFF 3 1 0\n" + vertices + "3 0 1 2\n");
+  EXPECT_EQ(soup.vertices[2], Vector3d(0, 2, 451237.038));
+  expectContains(errorOf(readOff, "OFF 3 1 0\n" + vertices + "3 0 1 2\n3 0 2 1\n"), "goes on after its last face");
+  expectContains(errorOf(readOff, "OFF 3 1 0\n" + vertices + "3 0 1 3\n"), "vertex 3 of 3");
+  expectContains(errorOf(readOff, "OFF 3 1 0\n" + vertices + "3 0 1 1.5\n"), "'1.5' is no number of a vertex");
+  expectContains(errorOf(readOff, "OFF 3 1 0\n" + vertices + "3 0 1 2 0 1\n"), "not with a colour");
+  expectContains(errorOf(readOff, "4OFF 3 1 0\n" + vertices + "3 0 1 2\n"), "begins with '4OFF'");
+  expectContains(errorOf(readOff, "OFF BINARY\n"), "binary OFF");
+  expectContains(errorOf(readOff, "OFF 3 1 0\n0 0 0 1 0 0\n0 2 0\n3 0 1 2\n"), "a vertex has 6 numbers");
+}
+
+// ---- PLY
+
+std::string ply(const std::string& elements, const std::string& body) {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" + elements +
+         "end_header\n0 0 0\n1 0 0\n0 451237.038 0\n" + body;
+}
+const std::string kFaces = "element face 1\nproperty list uchar int vertex_indices\n";
+
+TEST(Ply, ElementsThatMayBeGeometryAreReadOrRefused) {
+  EXPECT_EQ(read(readPly, ply(kFaces, "3 0 1 2\n")).vertices[2], Vector3d(0, 451237.038, 0));
+  const auto error = [](const std::string& elements, const std::string& body) {
+    return errorOf(readPly, ply(elements, body));
+  };
+  expectContains(error(kFaces + kFaces, "3 0 1 2\n3 0 1 2\n"), "two elements 'face'");
+  expectContains(error("element polygon 1\nproperty list uchar int vertex_indices\n", "3 0 1 2\n"), "no triangles");
+  expectContains(error(kFaces + "element polygon 1\nproperty int a\n", "3 0 1 2\n1\n"),
+                 "element 'polygon', which is not read");
+  expectContains(error(kFaces, "3 0 1 2\n3 0 1 2\n"), "goes on after its last element");
+  expectContains(error(kFaces, "3 0 1 1.5\n"), "has a face with vertex 1 of 3");
+  expectContains(error(kFaces, "3 0 1 -1\n"), "vertex -1 of 3");
+  expectContains(error(kFaces, "3 0 1\n"), "isn't there or has other entries");
+  expectContains(error(kFaces, "3 0 1 2 2\n"), "isn't there or has other entries");
+  expectContains(error("element face 1\nproperty list uchar int vertices\n", "3 0 1 2\n"),
+                 "has a list 'vertices', which is not read");
+  expectContains(error("element face 1\nproperty list uchar int vertex_index\nproperty list uchar int vertex_indices\n",
+                       "3 0 1 2 3 0 1 2\n"),
+                 "two lists of vertices");
+  expectContains(error("property float radius\n" + kFaces, "3 0 1 2\n"), "an extent ('radius')");
+  const std::string cloud = ply("element polygon 1\nproperty list uchar int vertex_indices\n", "3 0 1 2\n");
+  const Source source{"file", cloud, "file", nullptr};
+  EXPECT_THROW(readPlyPoints(source), std::runtime_error);
+  read(readPly,
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float "
+       "warmth\n" +
+           kFaces +
+           "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 "
+           "2\n0 1\n");
+  ASSERT_EQ(notes.size(), 2u);
+  expectContains(notes[0], "passed over of each vertex: 'warmth'");
+  expectContains(notes[1], "its lines, 1,");
+}
+
+// ---- COLLADA
+
+/// @param more  into the mesh. @param node  of the scene. @param libraries  beside the geometry.
+std::string collada(const std::string& more, const std::string& node, const std::string& libraries = "") {
+  return "<COLLADA><asset><unit meter=\"0.5\"/><up_axis>Z_UP</up_axis></asset><library_geometries><geometry "
+         "id=\"g\"><mesh>"
+         "<source id=\"p\"><float_array id=\"a\" count=\"9\">0 0 0 451237.038 0 0 0 2 0</float_array><technique_common>"
+         "<accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\"/><param name=\"Y\"/><param "
+         "name=\"Z\"/></accessor>"
+         "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>" +
+         more + "</mesh></geometry></library_geometries>" + libraries +
+         "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">" + node +
+         "</node></visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+}
+const std::string kInput = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
+const std::string kTriangles = "<triangles count=\"1\">" + kInput + "<p>0 1 2</p></triangles>";
+const std::string kHere = "<instance_geometry url=\"#g\"/>";
+TriangleSoup readDae(const Source& source) {
+  return readCollada(source, false);
+}
+
+TEST(ColladaFile, KeepsDecimalsAndPlaces) {
+  const TriangleSoup soup = read(readDae, collada(kTriangles, "<translate>5411234.492 0 1</translate>" + kHere));
+  EXPECT_EQ(soup.vertices[1], Vector3d(0.5 * (451237.038 + 5411234.492), 0, 0.5));
+  EXPECT_TRUE(notes.empty());
+}
+
+TEST(ColladaFile, WhatIsNotReadIsRefused) {
+  const auto error = [](const std::string& more, const std::string& node, const std::string& libraries = "") {
+    return errorOf(readDae, collada(more, node, libraries));
+  };
+  expectContains(error(kTriangles, "<skew>30 0 1 0 1 0 0</skew>" + kHere), "<skew> is not read");
+  EXPECT_EQ(
+      read(readDae, collada(kTriangles, kHere + "<node><lookat>1 2 3 4 5 6 7 8 9</lookat></node>")).triangles.size(),
+      1u);
+  expectContains(error(kTriangles, "<instance_controller url=\"#c\"/>" + kHere), "bends a mesh");
+  expectContains(error(kTriangles, kHere, "<library_animations><animation><channel/></animation></library_animations>"),
+                 "without animations");
+  expectContains(error(kTriangles + "<trianglos/>", kHere), "<trianglos> is not read");
+  expectContains(error(kTriangles, kHere + "<instance_geometri url=\"#g\"/>"), "<instance_geometri> is not read");
+  expectContains(error("<triangles>" + kInput + "<p>0 1 2</p></triangles>", kHere), "has no count");
+  expectContains(error("<triangles count=\"2\">" + kInput + "<p>0 1 2</p></triangles>", kHere), "needs 6 corners");
+  expectContains(error("<triangles count=\"1\">" + kInput + "<p>0 1 2.5</p></triangles>", kHere),
+                 "'2.5' in place of a whole number");
+  expectContains(error("<triangles count=\"1\">" + kInput + "<p>0 1 3</p></triangles>", kHere), "vertex 3 of 3");
+  expectContains(error("<triangles count=\"1\">" + kInput + "<p>0 1 -1</p></triangles>", kHere), "'-1' in place of");
+  expectContains(error("<polygons count=\"1\">" + kInput + "<ph><p>0 1 2</p><h>0</h></ph></polygons>", kHere), "holes");
+  expectContains(error(kTriangles, "<instance_geometry url=\"#h\"/>"), "which isn't there");
+  expectContains(error(kTriangles, "<instance_geometry url=\"other.dae#g\"/>"), "another file");
+  expectContains(error(kTriangles, kHere + "<instance_node url=\"#n\"/>"), "in a circle");
+  std::string convex = collada(kTriangles, kHere);
+  convex.replace(convex.find("<mesh>"), 6, "<convex_mesh>");
+  convex.replace(convex.find("</mesh>"), 7, "</convex_mesh>");
+  expectContains(errorOf(readDae, convex), "<convex_mesh> is not read");
+  std::string short_array = collada(kTriangles, kHere);
+  short_array.replace(short_array.find("451237.038 "), 11, "");
+  expectContains(errorOf(readDae, short_array), "says that it has 9 numbers, it has 8");
+}
+
+TEST(ColladaFile, GeometryThatTheSceneDoesNotShowIsNoted) {
+  read(readDae,
+       collada(kTriangles, kHere, "<library_geometries><geometry id=\"h\"><mesh/></geometry></library_geometries>"));
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "1 geometry element of 2 left out");
+}
+
+// ---- glTF
+
+#ifdef FCL_ARTIC_GLTF
+
+/// One triangle (0,0,0) (1,0,0) (0,2,0). @param node, mesh, primitive, root  more of each.
+std::string gltf(const std::string& node, const std::string& primitive = "", const std::string& root = "",
+                 const std::string& mesh = "") {
+  return "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0" + node +
+         "}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}" + primitive + "}]" + mesh +
+         "}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"bufferViews\":"
+         "[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64,"
+         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAA\"}]" +
+         root + "}";
+}
+TriangleSoup readAsItStands(const Source& source) {
+  return readGltf(source, false);
+}
+
+TEST(GltfFile, IsUpInYAndKeepsPlaces) {
+  const std::string content = gltf(",\"translation\":[451237.038,5411234.492,0]");
+  const TriangleSoup soup = read(readAsItStands, content);
+  ASSERT_EQ(soup.triangles.size(), 1u);
+  EXPECT_EQ(soup.vertices[2], Vector3d(451237.038, 5411236.492, 0));
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "by the rules of its format y is up: taken as it stands");
+  const TriangleSoup turned = read([](const Source& source) { return readGltf(source, true); }, content);
+  EXPECT_EQ(turned.vertices[2], Vector3d(451237.038, 0, 5411236.492));
+  expectContains(notes[0], "turned so that z is");
+}
+
+TEST(GltfFile, WhatIsNotReadIsRefused) {
+  const auto error = [](const std::string& content) { return errorOf(readAsItStands, content); };
+  expectContains(error(gltf("", "", ",\"extensionsRequired\":[\"EXT_mesh_gpu_instancing\"]")),
+                 "needs the extension 'EXT_mesh_gpu_instancing'");
+  EXPECT_EQ(read(readAsItStands, gltf("", "", ",\"extensionsRequired\":[\"KHR_materials_unlit\"]")).triangles.size(),
+            1u);
+  expectContains(error(gltf(",\"extensions\":{\"EXT_mesh_gpu_instancing\":{}}")), "node 0 has the extension");
+  expectContains(error(gltf("", ",\"extensions\":{\"KHR_draco_mesh_compression\":{}}")),
+                 "primitive 0 has the extension");
+  expectContains(error(gltf(",\"skin\":0")), "by bones");
+  expectContains(error(gltf(",\"weights\":[1]")), "weights of morph targets");
+  expectContains(error(gltf("", "", "", ",\"weights\":[1]")), "weights of morph targets");
+  expectContains(error(gltf("", ",\"targets\":[{}]")), "morph targets");
+  expectContains(error(gltf("", "", ",\"animations\":[{}]")), "animations");
+  expectContains(error(gltf("", ",\"mode\":7")), "unknown mode 7");
+  expectContains(error(gltf(",\"translations\":[0,0,1]")), "'translations', which is not read");
+  expectContains(error(gltf(",\"scale\":[1,1]")), "no list of 3 numbers");
+  expectContains(error(gltf(",\"rotation\":[0,0,0,0.5]")), "no quaternion of length 1");
+  expectContains(error(gltf(",\"children\":[0]")), "below");
+  expectContains(error(gltf(",\"mesh\":0")), "the key 'mesh' twice");
+  expectContains(error(gltf("", ",\"indices\":0")), "not of type SCALAR");
+  std::string content = gltf("");
+  content.replace(content.find("\"count\":3"), 9, "\"count\":4");
+  expectContains(error(content), "beyond its bufferView");
+  expectContains(error(std::string(200000, '[')), "no glTF");
+}
+
+#endif
+
+// ---- points
+
+Points cloudOf(const std::function<Points(const Source&)>& reader, const std::string& content) {
+  notes.clear();
+  return reader({"file", content, "file", &notes});
+}
+std::string cloudError(const std::function<Points(const Source&)>& reader, const std::string& content) {
+  try {
+    return std::to_string(cloudOf(reader, content).size()) + " points are read";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+TEST(Xyz, HasOneSeparatorAndOneNumberOfColumns) {
+  const Points points = cloudOf(readXyz, "1 2 3\n1e-400 0 0\n");
+  EXPECT_EQ(points[1], Vector3d(0, 0, 0)) << "and not the point before";
+  expectContains(cloudError(readXyz, "1 2 3\n1e400 0 0\n"), "'1e400'");
+  for (const char* commas : {"0,5 0,0 0,0\n", "0,5;0,0;0,0\n", "0,5\t0,0\t0,0\n"}) {
+    expectContains(cloudError(readXyz, commas), "decimals need a point");
+  }
+  EXPECT_EQ(cloudOf(readXyz, "1, 2, 3, 9\n4,5,6,7\n").size(), 2u);
+  expectContains(cloudError(readXyz, "1 2 3\n1,2,3\n"), "line 2");
+  expectContains(cloudError(readXyz, "1 2 3\n1 2 3 4\n"), "4 columns, the first line has 3");
+  expectContains(cloudError(readXyz, "1 2\n"), "three numbers");
+}
+
+std::string pcd(const std::string& more, const std::string& body,
+                const std::string& counts = "WIDTH 2\nHEIGHT 1\nPOINTS 2\n") {
+  return "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n" + counts + more + "DATA ascii\n" + body;
+}
+
+TEST(PcdFile, CountsAgreeAndNothingIsLeftOver) {
+  EXPECT_EQ(cloudOf(readPcd, pcd("", "1 2 3\n1e-400 0 0\n"))[1], Vector3d(0, 0, 0));
+  expectContains(cloudError(readPcd, pcd("", "1 2 3\n4 5 6\n7 8 9\n")), "goes on after its last point");
+  expectContains(cloudError(readPcd, pcd("", "1 2 3\n4 5 6\n", "WIDTH 1\nHEIGHT 1\nPOINTS 2\n")),
+                 "are not WIDTH times HEIGHT");
+  expectContains(cloudError(readPcd, pcd("", "1 2 3\n4 5 6\n", "WIDTH 3\nHEIGHT 1\nPOINTS 2\n")),
+                 "are not WIDTH times HEIGHT");
+  expectContains(cloudError(readPcd, pcd("POINTS 1\n", "1 2 3\n4 5 6\n")), "two lines 'POINTS'");
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nDATA binary\n";
+  EXPECT_EQ(cloudOf(readPcd, head + std::string(12, '\0') + std::string(100, '\0')).size(), 1u)
+      << "zeros up to a page's end";
+  expectContains(cloudError(readPcd, head + std::string(24, '\1')), "goes on after its last point");
+}
+
+TEST(PcdFile, AViewpointThatIsNoneIsNoted) {
+  for (const char* none : {"0 0 0 1 0 0 0", "0.0 0.0 0 1.0 0 0 0", "0 0 0 -1 0 0 0", "-0 0e3 0 1 0 0 0"}) {
+    cloudOf(readPcd, pcd("VIEWPOINT " + std::string(none) + "\n", "1 2 3\n4 5 6\n"));
+    EXPECT_TRUE(notes.empty()) << none;
+  }
+  for (const char* other : {"10 0 0 1 0 0 0", "0 0 0 1 0 0 0.1", "10 0 0 0 1 0 0 0", "0 0 0.5 1 0 0 0"}) {
+    cloudOf(readPcd, pcd("VIEWPOINT " + std::string(other) + "\n", "1 2 3\n4 5 6\n"));
+    EXPECT_EQ(notes.size(), 1u) << other;
+  }
+}
+
+}  // namespace readers_test

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Neighbours: links with at most one moving joint between them. What the manager makes of them where nobody says
+// whether they may touch, and who says so instead.
+#include <cmath>
+#include <sstream>
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <gtest/gtest.h>
+
+#include "fcl_artic/manager.h"
+
+namespace neighbours_test {
+
+using namespace fcl_artic;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kPi = 3.14159265358979323846;
+
+VectorXd at(double q) {
+  return VectorXd::Constant(1, q);
+}
+
+std::shared_ptr<fcl::CollisionObjectd> box(double x, double y, double z) {
+  return std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(x, y, z));
+}
+
+Isometry3d to(double x, double y, double z) {
+  return Isometry3d(Eigen::Translation3d(x, y, z));
+}
+
+/// A base and an arm that turns about z, by -pi to pi:
+///
+///     base [ ]<=====================  1.5 m         | post, 1 m from the base along y
+///           axis
+struct PostRobot {
+  explicit PostRobot(JointType type = JointType::revolute) {
+    auto made = std::make_shared<KinematicTree>("post");
+    made->addLink("base");
+    made->addLink("arm");
+    Joint joint;
+    joint.name = "joint";
+    joint.type = type;
+    joint.parent = "base";
+    joint.child = "arm";
+    joint.axis = type == JointType::prismatic ? Vector3d::UnitX() : Vector3d::UnitZ();
+    if (type == JointType::revolute) {
+      joint.lower = -kPi;
+      joint.upper = kPi;
+    }
+    made->addJoint(joint);
+    tree = made;
+  }
+  /// @param post  whether the base has one.
+  /// @param gap  between base and arm along the axis; below 0: they overlap in the joint.
+  ArticulatedCollisionManager manager(bool post, double gap) const {
+    ArticulatedCollisionManager manager(tree);
+    manager.bind("base", box(0.2, 0.2, 0.2), to(0, 0, -0.15 - gap));
+    if (post) manager.bind("base", box(0.1, 0.1, 1), to(0, 1, 0));
+    manager.bind("arm", box(1.5, 0.1, 0.1), to(0.75, 0, 0));
+    return manager;
+  }
+  std::shared_ptr<const KinematicTree> tree;
+};
+
+TEST(Neighbours, AnArmMeetsThePostOfItsOwnBase) {
+  ArticulatedCollisionManager manager = PostRobot().manager(true, 0.01);
+  manager.setup();
+  const CertifiedResult r = manager.continuousCollide(at(0), at(kPi));
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_TRUE(r.certain);
+  // The corner (c, d) = (0.05, 0.95) meets the side y = 0.05 of the arm: -c sin(q) + d cos(q) = 0.05.
+  const double q = std::acos(0.05 / std::hypot(0.05, 0.95)) - std::atan2(0.05, 0.95);
+  EXPECT_NEAR(r.t_lower, q / kPi, 1e-5);
+  ASSERT_EQ(manager.neighbours().size(), 1u);
+  EXPECT_EQ(manager.neighbours()[0].kind, LinkPairKind::sometimes);
+  EXPECT_TRUE(manager.notes().empty());
+  EXPECT_TRUE(manager.continuousCollide(at(0), at(kPi / 4)).isFree());
+}
+
+TEST(Neighbours, ProvenApartNothingIsSaid) {
+  ArticulatedCollisionManager manager = PostRobot().manager(false, 0.01);
+  manager.setup();
+  EXPECT_EQ(manager.neighbours().at(0).kind, LinkPairKind::never);
+  EXPECT_TRUE(manager.notes().empty());
+  const CertifiedResult r = manager.continuousCollide(at(0), at(kPi));
+  EXPECT_TRUE(r.isFree() && !r.nothingChecked());
+  EXPECT_EQ(exceptionsOf(r), "");
+}
+
+TEST(Neighbours, HousingsThatOverlapAreNamedOnce) {
+  ArticulatedCollisionManager manager = PostRobot().manager(false, -0.01);
+  manager.setup();
+  ASSERT_EQ(manager.notes().size(), 1u);
+  EXPECT_NE(manager.notes()[0].find("'base' and 'arm'"), std::string::npos) << manager.notes()[0];
+  const CertifiedResult r = manager.continuousCollide(at(0), at(kPi));
+  EXPECT_TRUE(r.nothingChecked()) << "there is no other pair";
+  EXPECT_EQ(r.unproven_allowed_pairs, 0u);
+  EXPECT_TRUE(manager.checkedLinkPairs().empty());
+}
+
+// A slide without limits: there is no range to look at.
+TEST(Neighbours, UndecidedOnesAreCountedInEachAnswer) {
+  ArticulatedCollisionManager manager = PostRobot(JointType::prismatic).manager(false, -0.01);
+  const auto obstacle = box(0.1, 0.1, 0.1);
+  obstacle->setTranslation(Vector3d(0, 0, 5));
+  manager.registerObject(obstacle, "far");
+  manager.setup();
+  const CertifiedResult r = manager.continuousCollide(at(0), at(1));
+  EXPECT_TRUE(r.isFree());
+  EXPECT_EQ(exceptionsOf(r), "but for 1 pair of neighbours not proven apart: base, arm");
+  EXPECT_EQ(r.unproven_allowed_pairs, 1u);
+  EXPECT_EQ(manager.notes().size(), 1u);
+  const auto way = JointTrajectory::linear(*PostRobot(JointType::prismatic).tree, {0, 1}, {at(0), at(1)});
+  EXPECT_EQ(exceptionsOf(manager.continuousCollide(way)), exceptionsOf(r));
+  CertifiedRequest scene;
+  scene.check_self = false;
+  EXPECT_EQ(exceptionsOf(manager.continuousCollide(JointMotion::linear(manager.tree(), at(0), at(1)), scene)), "");
+  const ArticulatedCollisionManager shared = manager.shareRobot();
+  EXPECT_EQ(shared.neighbours().size(), 1u);
+  manager.allow("base", "arm");
+  manager.setup();
+  EXPECT_EQ(exceptionsOf(manager.continuousCollide(at(0), at(1))), "but for 1 allowed pair not proven apart");
+}
+
+TEST(Neighbours, WhoIsAskedForIsChecked) {
+  for (const bool by_matrix : {false, true}) {
+    ArticulatedCollisionManager manager = PostRobot().manager(false, -0.01);
+    AllowedCollisionMatrix matrix;
+    matrix.setComplete();
+    if (by_matrix) manager.setAllowedCollisions(matrix);
+    if (!by_matrix) manager.disallow("arm", "base");
+    manager.setup();
+    EXPECT_EQ(manager.collide(at(0)).status, Status::contact);
+    EXPECT_TRUE(manager.neighbours().empty());
+    manager.allow("arm", "base");
+    manager.setup();
+    EXPECT_TRUE(manager.collide(at(0)).isFree());
+    manager.disallow("base", "arm");
+    manager.setup();
+    EXPECT_EQ(manager.shareRobot().collide(at(0)).status, Status::contact);
+  }
+  ArticulatedCollisionManager manager = PostRobot().manager(false, -0.01);
+  AllowedCollisionMatrix wrong;
+  wrong.disallow("base", "nobody");
+  EXPECT_THROW(manager.setAllowedCollisions(wrong), std::invalid_argument);
+}
+
+// Of allowed neighbours `free` says nothing: those that touch at some values only count.
+TEST(Neighbours, AllowedOnesCountWhereTheyTouchAtSomeValuesOnly) {
+  ArticulatedCollisionManager post = PostRobot().manager(true, 0.01), housing = PostRobot().manager(false, -0.01);
+  for (ArticulatedCollisionManager* manager : {&post, &housing}) {
+    manager->allow("base", "arm");
+    manager->setup();
+    EXPECT_TRUE(manager->notes().empty()) << "somebody said so";
+  }
+  EXPECT_EQ(post.continuousCollide(at(0), at(kPi)).unproven_allowed_pairs, 1u);
+  EXPECT_EQ(housing.continuousCollide(at(0), at(kPi)).unproven_allowed_pairs, 0u);
+}
+
+TEST(Neighbours, AreCheckedForTouchingUnlessThePairHasAMargin) {
+  ArticulatedCollisionManager manager = PostRobot().manager(true, 0.01);
+  manager.setMargin("arm", 0.02);
+  manager.setup();
+  CertifiedRequest wide;
+  wide.margin = 0.03;
+  const JointMotion motion = JointMotion::linear(manager.tree(), at(0), at(kPi / 4));
+  EXPECT_TRUE(manager.continuousCollide(motion, wide).isFree());
+  EXPECT_EQ(manager.continuousCollide(at(0), at(kPi)).status, Status::contact);
+  EXPECT_GT(manager.clearance(motion).lower, 0.1) << "the gap in the joint is no clearance";
+  wide.added_margin = 0.02;
+  EXPECT_EQ(manager.continuousCollide(motion, wide).status, Status::contact);
+  manager.setMargin("arm", "base", 0.02);
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(kPi / 4)).status, Status::contact);
+  manager.resetMargins();
+  manager.disallow("arm", "base");
+  manager.setup();
+  wide.added_margin = 0;
+  EXPECT_EQ(manager.continuousCollide(motion, wide).status, Status::contact);
+}
+
+// What was found is looked for again where the geometry has changed, also in place.
+TEST(Neighbours, AreLookedAtAgainWhenTheyChange) {
+  const auto shape = std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2);
+  const auto base = std::make_shared<fcl::CollisionObjectd>(shape);
+  ArticulatedCollisionManager manager(PostRobot().tree);
+  manager.bind("base", base, to(0, 0, -0.16));
+  manager.bind("arm", box(1.5, 0.1, 0.1), to(0.75, 0, 0));
+  manager.setup();
+  EXPECT_EQ(manager.neighbours().at(0).kind, LinkPairKind::never);
+  shape->side[2] = 0.4;
+  manager.setup();
+  EXPECT_TRUE(manager.neighbours().at(0).touchThroughout());
+  const auto post = box(0.1, 0.1, 1);
+  shape->side[2] = 0.2;
+  manager.bind("base", post, to(0, 1, 0));
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(kPi)).status, Status::contact);
+  manager.unbind(post);
+  manager.setup();
+  EXPECT_TRUE(manager.continuousCollide(at(0), at(kPi)).isFree());
+}
+
+TEST(Neighbours, AreClassifiedAsAnyPair) {
+  const LinkPairReport report = PostRobot().manager(true, 0.01).classifyLinkPairs();
+  ASSERT_EQ(report.pairs.size(), 1u);
+  EXPECT_TRUE(report.pairs[0].neighbours);
+  EXPECT_EQ(report.pairs[0].kind, LinkPairKind::sometimes);
+  EXPECT_TRUE(report.needNoCheck().pairs().empty());
+  const LinkPairReport housing = PostRobot().manager(false, -0.01).classifyLinkPairs();
+  EXPECT_EQ(housing.pairs.at(0).kind, LinkPairKind::always);
+  EXPECT_TRUE(housing.alwaysTouching().pairs().empty()) << "the manager's own to find";
+  EXPECT_EQ(housing.needNoCheck().pairs().size(), 1u);
+}
+
+}  // namespace neighbours_test
