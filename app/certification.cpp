@@ -5,7 +5,10 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -15,6 +18,7 @@
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "pair_options.h"
 #include "plans/write.h"
 #include "progress.h"
 #include "query_options.h"
@@ -47,10 +51,10 @@ std::vector<std::string> filesOf(const std::string& path, std::vector<std::strin
 }
 
 void readFile(const KinematicTree& tree, const std::string& file, const std::optional<plans::Format>& format,
-              std::vector<CertifiedPlan>& out) {
+              const plans::ColumnOptions& columns, std::vector<CertifiedPlan>& out) {
   try {
     const plans::Format kind = format ? *format : plans::formatOf(file);
-    for (plans::Plan& plan : plans::parsePlans(tree, files::read(file == "-" ? "/dev/stdin" : file), kind)) {
+    for (plans::Plan& plan : plans::parsePlans(tree, files::read(file == "-" ? "/dev/stdin" : file), kind, columns)) {
       CertifiedPlan& one = out.emplace_back();
       one.file = file;
       one.plan = std::move(plan);
@@ -60,6 +64,31 @@ void readFile(const KinematicTree& tree, const std::string& file, const std::opt
     one.file = file;
     one.plan.error = error.what();
   }
+}
+
+// How far the clearance of a mended plan is looked at: beyond what was asked for, but not all the way.
+constexpr double kClearanceShown = 4, kLeastShown = 0.01;  // the latter in m
+
+NamePair namesOf(const BodyRef& a, const BodyRef& b) {
+  return std::minmax(a.name, b.name);
+}
+
+MendPairs mendPairsOf(const ArticulatedCollisionManager& manager, const CertifiedPlan& plan,
+                      const MendOptions& mending) {
+  MendPairs pairs;
+  for (const auto& [a, b] : plan.result.ignored_initial_contacts) pairs.ignored.insert(namesOf(a, b));
+  CertifiedRequest near;
+  static_cast<Scope&>(near) = mending.request;
+  near.margin = mending.request.margin + mending.clearance;
+  near.mode = ContactMode::firstOfEveryPair;
+  near.max_contacts = std::numeric_limits<std::int32_t>::max();
+  for (const Eigen::VectorXd& q : {plan.motion->waypoints.front(), plan.motion->waypoints.back()}) {
+    for (const CertifiedContact& contact : manager.collide(q, near).contacts) {
+      const NamePair names = namesOf(contact.body1, contact.body2);
+      if (pairs.ignored.count(names) == 0) pairs.near.insert(names);
+    }
+  }
+  return pairs;
 }
 
 }  // namespace
@@ -74,7 +103,8 @@ int CertifiedPlan::exitStatus() const {
 }
 
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
-                                     const std::optional<plans::Format>& format, std::vector<std::string>& notes) {
+                                     const std::optional<plans::Format>& format, const plans::ColumnOptions& columns,
+                                     std::vector<std::string>& notes) {
   std::error_code none;
   for (const std::string& path : paths) {
     if (format || fs::is_directory(path, none) || plans::hasPlanEnding(path)) continue;
@@ -84,7 +114,7 @@ std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vecto
   }
   std::vector<CertifiedPlan> out;
   for (const std::string& path : paths) {
-    for (const std::string& file : filesOf(path, notes)) readFile(tree, file, format, out);
+    for (const std::string& file : filesOf(path, notes)) readFile(tree, file, format, columns, out);
   }
   return out;
 }
@@ -96,6 +126,10 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
     const auto begin = Clock::now();
     manager.continuousCollide(plan.motion->trajectory, options.request, plan.result);
     plan.us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+    const CertifiedContact* first = plan.result.first();
+    if (first && plan.result.t_lower <= plan.motion->trajectory.beginTime()) {
+      plan.motion->notes.insert(plan.motion->notes.begin(), startHint(*first));
+    }
     if (options.clearance) {
       plan.clearance = manager.clearance(plan.motion->trajectory, clearanceOf(*options.clearance, options.request));
     }
@@ -133,7 +167,8 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
 }
 
 void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
-             const MendOptions& mending, std::vector<CertifiedPlan>& plans) {
+             const MendOptions& mending, std::vector<CertifiedPlan>& plans, const ManagerForMending& managerFor) {
+  std::map<MendPairs, std::shared_ptr<const ArticulatedCollisionManager>> managers{{{}, manager}};
   std::vector<CertifiedPlan*> touching;
   for (CertifiedPlan& plan : plans) {
     if (plan.error.empty() && plan.result.status == Status::contact) touching.push_back(&plan);
@@ -142,7 +177,10 @@ void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, 
   double done = 0;
   for (CertifiedPlan* plan : touching) {
     try {
-      plan->mended = mend(manager, *plan->motion, options.motion.turns, mending);
+      const MendPairs pairs = managerFor ? mendPairsOf(*manager, *plan, mending) : MendPairs();
+      std::shared_ptr<const ArticulatedCollisionManager>& own = managers[pairs];
+      if (!own) own = managerFor(pairs, mending.request.margin);
+      plan->mended = mend(own, *plan->motion, options.motion.turns, mending);
       plan->mended->plan.name = plan->plan.name;
       const std::string written = plans::writePlans({plan->mended->plan}, plans::Format::json);
       auto again = std::make_shared<CertifiedPlan>();
@@ -150,7 +188,12 @@ void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, 
       again->plan = plans::parsePlans(manager->tree(), written, plans::Format::json).at(0);
       CertifyOptions straight = options;
       straight.motion.interpolation = plans::Interpolation::linear;
+      straight.motion.degrees = false;              // it is in rad
       straight.motion.turns = plans::Turns::given;  // its steps are what was proven
+      if (!straight.clearance) {
+        straight.clearance.emplace();
+        straight.clearance->most = kClearanceShown * (mending.request.margin + mending.clearance) + kLeastShown;
+      }
       certify(*manager, straight, *again);
       plan->as_mended = again;
     } catch (const std::runtime_error& error) {

@@ -3,9 +3,13 @@
 // Plans of files against a robot and a scene.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "fcl_artic/manager.h"
@@ -46,11 +50,13 @@ struct CertifyOptions {
 
 /// The plans of files and folders (those of its files whose ending names a format, by name), in their order.
 /// @param format  of all files; none: each by its ending.
+/// @param columns  of CSV files.
 /// @param[out] notes  gets a line for each folder that holds more than plans.
 /// @return one for each plan; a file that can't be read is one with an error.
 /// @throws std::invalid_argument for a folder without plans, and for a file whose ending names no format.
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
-                                     const std::optional<plans::Format>& format, std::vector<std::string>& notes);
+                                     const std::optional<plans::Format>& format, const plans::ColumnOptions& columns,
+                                     std::vector<std::string>& notes);
 
 /// Makes the plan's motion and asks the manager.
 void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan);
@@ -58,8 +64,23 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
 void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options,
              std::vector<CertifiedPlan>& plans);
 
+/// Two bodies by name, the lesser one first.
+using NamePair = std::pair<std::string, std::string>;
+/// What a plan itself does at its ends, and a detour may do too.
+struct MendPairs {
+  std::set<NamePair> ignored;  ///< pairs that touch at the start and are ignored
+  std::set<NamePair> near;     ///< pairs that are nearer than the clearance, at the start or the goal
+  bool empty() const { return ignored.empty() && near.empty(); }
+  bool operator<(const MendPairs& other) const { return std::tie(ignored, near) < std::tie(other.ignored, other.near); }
+};
+/// A manager of the same world, set up, that leaves the ignored pairs out, and whose near pairs have the request's
+/// margin as their own.
+using ManagerForMending =
+    std::function<std::shared_ptr<const ArticulatedCollisionManager>(const MendPairs& pairs, double margin)>;
+
 /// Mends those that touch, and certifies what comes out: not the plan in memory, but what writePlans() writes of it.
+/// @param managerFor  null: detours keep the clearance from all, and no pair is ignored.
 void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
-             const MendOptions& mending, std::vector<CertifiedPlan>& plans);
+             const MendOptions& mending, std::vector<CertifiedPlan>& plans, const ManagerForMending& managerFor = {});
 
 }  // namespace fcl_artic::app

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "certify.h"
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -20,19 +21,26 @@
 #include "files/files.h"
 #include "outputs.h"
 #include "plan_variables.h"
+#include "plans/variables.h"
 #include "plans/write.h"
 #include "query_options.h"
+#include "render/picture.h"
 #include "usage.h"
+#include "views.h"
 #include "world.h"
 
 namespace fcl_artic::app {
 namespace {
 
+constexpr double kFullTurn = 6.28318530717958647693;
+
 struct CertifyVerb {
   WorldOptions world;
   PlanVariables variables;
+  PlanColumnOptions columns;
   std::vector<std::string> plans;
   std::string format, interpolation = "auto", csv, out, certificate;
+  ViewOptions views;
   double blend = 0;
   CertifyOptions certify;
   bool clearance = false, json = false, failed_only = false, mend = false;
@@ -54,19 +62,87 @@ std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::ve
   return out;
 }
 
-/// The plans that are free, mended ones among them, as a file.
-void writeOut(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
+/// A certified plan in the words of a format, so that who reads it goes the way that was certified: velocities only
+/// where these counted, turns as they were taken, the values of all other joints.
+plans::Plan writtenPlan(const KinematicTree& tree, const CertifiedPlan& one, plans::Turns turns, bool degrees,
+                        plans::Format format) {
+  const plans::PlanMotion& motion = *one.motion;
+  plans::Plan out = one.plan;
+  out.joints = motion.joints;
+  out.state.clear();
+  const bool quintic = motion.interpolation == plans::Interpolation::quintic,
+             splines = quintic || motion.interpolation == plans::Interpolation::cubic;
+  if (!splines) out.velocities.clear();
+  if (!quintic) out.accelerations.clear();
+  if (degrees) out = plans::inRadians(tree, out);
+  out.state = motion.rest;
+  std::vector<int> variables;
+  for (const std::string& joint : out.joints) variables.push_back(plans::variableOf(tree, joint, "the plan"));
+  for (std::size_t j = 0; turns == plans::Turns::shortest && j < variables.size(); ++j) {
+    const Joint& joint = tree.joint(tree.variableJoint(variables[j]));
+    const bool forever =
+        joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(variables[j]));
+    for (std::size_t k = 1; forever && k < out.positions.size(); ++k) {
+      double& value = out.positions[k][j];
+      value += kFullTurn * std::nearbyint((out.positions[k - 1][j] - value) / kFullTurn);
+    }
+  }
+  if (format != plans::Format::ompl) return out;
+  if (motion.interpolation != plans::Interpolation::linear) {
+    throw std::invalid_argument(
+        fmt::format("--out: OMPL's text holds no {} plan, only straight ways between waypoints: "
+                    "take .csv, .json, .jsonl or .yaml",
+                    toString(motion.interpolation)));
+  }
+  // It has no names: all variables, in the robot's order.
+  plans::Plan all = out;
+  all.joints.clear();
+  all.state.clear();
+  for (int v = 0; v < tree.dof(); ++v) all.joints.push_back(tree.variableName(v));
+  for (std::size_t k = 0; k < out.positions.size(); ++k) {
+    Eigen::VectorXd q = motion.waypoints[k];
+    for (std::size_t j = 0; j < variables.size(); ++j) q[variables[j]] = out.positions[k][j];
+    all.positions[k].assign(q.data(), q.data() + q.size());
+  }
+  return all;
+}
+
+/// The plans that are free, mended ones among them, as a file. It is read again first: what it holds is proven free, or
+/// it is not written.
+void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, const std::vector<CertifiedPlan>& all) {
+  const plans::Format format = plans::formatOf(o.out);
   std::vector<plans::Plan> out;
+  std::vector<const CertifiedPlan*> from;
   for (const CertifiedPlan& plan : all) {
     if (plan.exitStatus() != kExitFree) continue;
-    const CertifiedPlan& one = plan.as_mended ? *plan.as_mended : plan;
-    plans::Plan& written = out.emplace_back(one.plan);
-    written.joints = one.motion->joints;
-    written.state = one.motion->rest;
+    from.push_back(plan.as_mended ? plan.as_mended.get() : &plan);
+    // A mended plan's own steps are what was proven.
+    const plans::Turns turns = plan.as_mended ? plans::Turns::given : o.certify.motion.turns;
+    const bool degrees = !plan.as_mended && o.certify.motion.degrees;
+    plans::Plan& written = out.emplace_back(writtenPlan(manager.tree(), *from.back(), turns, degrees, format));
     if (written.name.empty() && all.size() > 1) written.name = plan.file;
   }
   if (out.empty()) return;  // the report says that none is free
-  files::write(o.out, plans::writePlans(out, plans::formatOf(o.out)));
+  const std::string text = plans::writePlans(out, format);
+  const std::vector<plans::Plan> again = plans::parsePlans(manager.tree(), text, format);
+  CertifyOptions read = o.certify;
+  read.motion.joints.clear();
+  read.motion.degrees = false;  // what is written is in rad
+  read.motion.turns = plans::Turns::given;
+  read.clearance.reset();
+  read.request.certificate = false;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    CertifiedPlan one;
+    one.plan = again.at(i);
+    const bool blends = from[i]->motion->interpolation == plans::Interpolation::blends;
+    read.motion.interpolation = blends ? plans::Interpolation::blends : plans::Interpolation::automatic;
+    certify(manager, read, one);
+    if (one.exitStatus() == kExitFree) continue;
+    throw std::runtime_error(
+        fmt::format("--out '{}': {} is free, but not as the file would hold it{}{}: nothing is written", o.out,
+                    from[i]->title(), one.error.empty() ? "" : ": ", one.error));
+  }
+  files::write(o.out, text);
 }
 
 /// Writes a record for each plan, as it was mended, that has a proof.
@@ -84,22 +160,58 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
   return all.size() == 1 ? note : fmt::format("certificates of {} of {} plans; {}", proofs, all.size(), note);
 }
 
+/// FILE.mended.png beside FILE.png.
+ViewOptions mendedViews(const ViewOptions& views) {
+  ViewOptions out = views;
+  for (std::string* path : {&out.image, &out.html}) {
+    if (path->empty()) continue;
+    const std::filesystem::path file(*path);
+    *path = std::filesystem::path(file).replace_extension(".mended" + file.extension().string()).string();
+  }
+  return out;
+}
+
+/// Shows the first plan that is not free, or the first, and beside it what it is mended to.
+/// @return one line for the user.
+std::string writePlanViews(const CertifyVerb& o, const ViewOptions& of_mended, const World& world,
+                           const ArticulatedCollisionManager& manager, const std::vector<CertifiedPlan>& all) {
+  const CertifiedPlan* shown = nullptr;
+  for (const CertifiedPlan& plan : all) {
+    if (!plan.motion) continue;
+    if (!shown || (shown->result.isFree() && !plan.result.isFree())) shown = &plan;
+  }
+  if (!shown) return "there is no plan to show";
+  const auto show = [&](const ViewOptions& views, const CertifiedPlan& plan) {
+    writeViews(views, world, manager, plan.motion->trajectory, reportOf(manager.tree(), o.certify.request, plan));
+  };
+  show(o.views, *shown);
+  if (!shown->as_mended || !shown->as_mended->motion) return "shown: " + shown->title();
+  show(of_mended, *shown->as_mended);
+  return fmt::format("shown: {}, and what it is mended to in {}{}{}", shown->title(), of_mended.html,
+                     of_mended.html.empty() || of_mended.image.empty() ? "" : " and ", of_mended.image);
+}
+
 int runCertify(CertifyVerb& o) {
   if (o.mend) requireMending();
   if (!o.out.empty()) (void)plans::formatOf(o.out);
   std::vector<std::string> inputs = inputsOf(o.world);
   inputs.insert(inputs.end(), o.plans.begin(), o.plans.end());
   std::string certificate_world = o.certificate.empty() ? "" : CertificateFile(o.certificate).worldPath();
+  if (!o.views.image.empty()) render::requirePictures();
+  ViewOptions of_mended = mendedViews(o.views);
   removeEarlierOutputs({{"--out", &o.out},
                         {"--csv", &o.csv},
+                        {"--image", &o.views.image},
+                        {"--html", &o.views.html},
+                        {"--image of what is mended", &of_mended.image},
+                        {"--html of what is mended", &of_mended.html},
                         {"--certificate", &o.certificate},
                         {"--certificate's world", &certificate_world},
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
   world.readRobot();
-  const bool check_allowed = !o.world.robot.srdf.empty() && o.certify.request.check_self;
-  if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
+  world.provePairsFor(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = plans::interpolationNamed(o.interpolation);
   o.certify.motion.blend = o.blend;
@@ -107,11 +219,14 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.joints = o.variables.joints;
   o.certify.motion.state = parseValues(tree, o.variables.state, "--state");
   o.certify.motion.ignore_limits = o.variables.ignore_limits;
+  o.certify.motion.limit_tolerance = o.columns.limit_tolerance;
+  o.certify.motion.degrees = o.columns.degrees;
+  o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
-  std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, plan_notes);
+  std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns, plan_notes);
   world.readScene();
   o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
@@ -124,13 +239,20 @@ int runCertify(CertifyVerb& o) {
   const double seconds = secondsSince(begin);
   if (o.mend) {
     o.mending.request = o.certify.request;
-    mendAll(manager, o.certify, o.mending, all);
+    mendAll(manager, o.certify, o.mending, all, [&](const MendPairs& pairs, double margin) {
+      return std::make_shared<const ArticulatedCollisionManager>(
+          world.makeManager([&](ArticulatedCollisionManager& changed) {
+            for (const auto& [a, b] : pairs.ignored) changed.allow(a, b);
+            for (const auto& [a, b] : pairs.near) changed.setMargin(a, b, margin);
+          }));
+    });
   }
-  if (!o.out.empty()) writeOut(o, all);
+  if (!o.out.empty()) writeOut(o, *manager, all);
 
   std::vector<std::string> notes = world.notes(*manager);
   notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
   if (certificates.wanted()) notes.push_back(writeCertificates(certificates, all));
+  if (o.views.wanted()) notes.push_back(writePlanViews(o, of_mended, world, *manager, all));
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
   if (!o.csv.empty()) files::write(o.csv, csvReport(report));
   if (o.json) {
@@ -161,7 +283,6 @@ void addCertify(CLI::App& program, int& exit_status) {
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");
-  takeOneValueEach(*certify);
 
   certify->add_option("--format", o.format, "What the files are, whatever their endings")
       ->check(CLI::IsMember({"csv", "json", "jsonl", "yaml", "ompl", "numpy"}))
@@ -176,6 +297,7 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->capture_default_str();
   certify->add_option("--blend", o.blend, "Half the duration of a blend, in s")->check(requirePositive)->group("Plans");
   addPlanVariables(*certify, o.variables);
+  addPlanColumns(*certify, o.columns);
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
@@ -193,6 +315,14 @@ void addCertify(CLI::App& program, int& exit_status) {
       ->group("Mending")
       ->capture_default_str();
   certify
+      ->add_option("--mend-clearance", o.mending.clearance,
+                   "What detours keep beyond the margin, in m; less only where no way is found that does, and between "
+                   "pairs that are nearer where the plan begins or ends")
+      ->check(requireNotNegative)
+      ->needs(mend)
+      ->group("Mending")
+      ->capture_default_str();
+  certify
       ->add_option("--out", o.out, "Write the plans that are free, mended ones among them (.csv, .json, .jsonl, ...)")
       ->group("Mending")
       ->type_name("FILE");
@@ -204,6 +334,7 @@ void addCertify(CLI::App& program, int& exit_status) {
                    "Write a proof of each answer, and what it is about to FILE.world: fcl_artic_verify proves it again")
       ->group("Output")
       ->type_name("FILE");
+  addViewOptions(*certify, o.views);
   certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
   certify->callback([options, &exit_status] {
     if ((options->interpolation == "blends") != (options->blend > 0)) {

@@ -43,18 +43,6 @@ Sum sumOf(const std::vector<CertifiedPlan>& plans) {
   return sum;
 }
 
-Report reportOf(const CertifyReport& r, const CertifiedPlan& plan) {
-  const JointTrajectory& way = plan.motion->trajectory;
-  return {r.tree,
-          r.request,
-          plan.result,
-          plan.motion->notes,
-          [&way](double t) { return way.configuration(t); },
-          way.beginTime(),
-          way.endTime(),
-          plan.clearance ? &*plan.clearance : nullptr};
-}
-
 /// "linear, 12 waypoints, t from 0 to 3.5".
 std::string motionText(const CertifiedPlan& plan) {
   const plans::PlanMotion& m = *plan.motion;
@@ -99,12 +87,19 @@ std::string mendedText(const CertifiedPlan& plan) {
   if (!plan.not_mended.empty()) return "not mended: " + plan.not_mended;
   if (!plan.as_mended) return {};
   const Mended& m = *plan.mended;
-  const bool velocities = plan.motion->interpolation != plans::Interpolation::linear;
-  return fmt::format(
-      "mended in {:.1f} ms, {} detour{}, {} waypoints, {:g} times as long, off by at most {:.4g} in any "
-      "joint{}; certified again: {}",
-      m.ms, m.detours, m.detours == 1 ? "" : "s", m.plan.positions.size(), m.length_ratio, m.deviation,
-      velocities ? ", straight between waypoints and without velocities" : "", verdictText(*plan.as_mended));
+  std::string text = fmt::format(
+      "mended in {:.1f} ms, {} detour{} at {:g} m beyond the margin, {} waypoints, {:.4g} times as long, off by at "
+      "most "
+      "{:.4g} {} ('{}')",
+      m.ms, m.detours, m.detours == 1 ? "" : "s", m.kept, m.plan.positions.size(), m.length_ratio, m.deviation,
+      m.deviation_is_angle ? "rad" : "m", m.deviation_joint);
+  if (plan.motion->timed) text += fmt::format(", {:.4g} s longer", m.added_time);
+  text += fmt::format("; straight between waypoints: make its time law anew, for the controller; certified again: {}",
+                      verdictText(*plan.as_mended));
+  if (plan.as_mended->clearance && plan.as_mended->clearance->upper < m.kept) {
+    text += "; nearer than the detours' clearance only where the plan as given is, or pairs that begin or end so";
+  }
+  return text;
 }
 
 std::string sumText(const CertifyReport& r) {
@@ -125,7 +120,7 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
     return out;
   }
   const plans::PlanMotion& motion = *plan.motion;
-  const Json all = jsonReport(reportOf(r, plan));
+  const Json all = jsonReport(reportOf(r.tree, r.request, plan));
   for (const char* key : {"status", "t_lower", "t_upper", "certain", "nothing_checked", "t_begin", "t_end"}) {
     out[key] = all.at(key);
   }
@@ -147,7 +142,12 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   if (plan.as_mended) {
     Json& mended = out["mended"] = planJson(r, *plan.as_mended);
     mended["detours"] = plan.mended->detours;
+    mended["clearance_kept"] = plan.mended->kept;
     mended["deviation"] = plan.mended->deviation;
+    mended["deviation_joint"] = plan.mended->deviation_joint;
+    mended["deviation_unit"] = plan.mended->deviation_is_angle ? "rad" : "m";
+    mended["added_time"] = motion.timed ? Json(plan.mended->added_time) : Json();
+    mended["time_law"] = "to be made anew";
     mended["length_ratio"] = plan.mended->length_ratio;
     mended["ms"] = plan.mended->ms;
   }
@@ -168,6 +168,20 @@ std::string field(const std::string& text) {
 
 }  // namespace
 
+Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, const CertifiedPlan& plan) {
+  const JointTrajectory& way = plan.motion->trajectory;
+  Report report{tree,
+                request,
+                plan.result,
+                plan.motion->notes,
+                [&way](double t) { return way.configuration(t); },
+                way.beginTime(),
+                way.endTime(),
+                plan.clearance ? &*plan.clearance : nullptr};
+  report.pieces = way.numPieces();
+  return report;
+}
+
 std::string textReport(const CertifyReport& r) {
   std::string text;
   if (r.plans.size() == 1 && r.plans[0].error.empty()) {
@@ -176,7 +190,7 @@ std::string textReport(const CertifyReport& r) {
     if (plan.result.status != Status::free) {
       text += fmt::format("after waypoint {}\n", plan.motion->waypointBefore(plan.result.t_lower));
     }
-    text += textReport(reportOf(r, plan));
+    text += textReport(reportOf(r.tree, r.request, plan));
     if (const std::string mended = mendedText(plan); !mended.empty()) text += line("", mended);
     for (const std::string& note : r.notes) text += line("note: ", note);
     return text + columnsText(r);

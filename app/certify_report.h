@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "certification.h"
+#include "report/report.h"
 
 namespace fcl_artic::app {
 
@@ -20,6 +21,8 @@ struct CertifyReport {
   bool failed_only = false;               ///< rows of the table
 };
 
+/// The answer to a plan that has a motion. It refers to all three.
+Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, const CertifiedPlan& plan);
 /// One plan in full, several as a table, and what they come to.
 std::string textReport(const CertifyReport& report);
 /// With the keys of fcl_artic(1).

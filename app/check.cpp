@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "check.h"
 
-#include <array>
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,9 +21,8 @@
 #include "query_options.h"
 #include "redon_options.h"
 #include "render/picture.h"
-#include "report/page.h"
-#include "report/title_line.h"
 #include "usage.h"
+#include "views.h"
 #include "visibility_options.h"
 #include "waypoints.h"
 #include "world.h"
@@ -34,14 +30,13 @@
 namespace fcl_artic::app {
 namespace {
 
-constexpr double kMaxPixels = 4096;  // a side; the buffers to draw in are twice as large
 constexpr std::size_t kAllContacts = 1000000;
 
 struct CheckVerb {
   WorldOptions world;
-  std::string certificate, image, html, trajectory, lines, interpolation = "linear";
+  ViewOptions views;
+  std::string certificate, trajectory, lines, interpolation = "linear";
   std::vector<std::string> from, to;
-  std::string size = "1600x1000", camera;
   CertifiedRequest request;
   VisibilityChoice visibility;
   std::optional<std::size_t> max_contacts;
@@ -50,75 +45,23 @@ struct CheckVerb {
   ClearanceRequest clearance_request;
 };
 
-/// Two numbers with a separator between them, as "1600x1000" or "-60,25"; nothing when the text is something else.
-std::optional<std::array<double, 2>> numberPair(const std::string& text, char separator) {
-  const char* at = text.c_str();
-  char* end = nullptr;
-  std::array<double, 2> out{};
-  out[0] = std::strtod(at, &end);
-  if (end == at || *end != separator) return std::nullopt;
-  at = end + 1;
-  out[1] = std::strtod(at, &end);
-  if (end == at || *end != '\0') return std::nullopt;
-  return out;
-}
-
-std::string requireSize(const std::string& text) {
-  const auto size = numberPair(text, 'x');
-  const bool good =
-      size && (*size)[0] >= 64 && (*size)[1] >= 64 && (*size)[0] <= kMaxPixels && (*size)[1] <= kMaxPixels;
-  return good ? "" : "'" + text + "' is not a size WxH in pixels from 64x64 to 4096x4096";
-}
-
-std::string requireCamera(const std::string& text) {
-  const auto angles = numberPair(text, ',');
-  const bool good = angles && std::abs((*angles)[0]) <= 360 && std::abs((*angles)[1]) <= 90;
-  return good ? "" : "'" + text + "' is not azimuth,elevation in degrees, as -60,25";
-}
-
-/// Writes the answer as a page.
-void writePage(const std::string& file, const World& world, const ArticulatedCollisionManager& manager,
-               const RobotMotion& motion, const Report& report) {
-  std::vector<PageBody> bodies = linksOf(report.tree, world.robot.geometry);
-  const std::size_t carried = world.scene.obstacles.size() - world.attachments.size();
-  for (std::size_t i = 0; i < world.scene.obstacles.size(); ++i) {
-    const Scene::Obstacle& o = world.scene.obstacles[i];
-    PageBody body{o.name, "obstacle", -1, Eigen::Isometry3d(o.object->getTransform()), o.object->collisionGeometry(),
-                  {}};
-    if (i >= carried) {
-      const Attachment& a = world.attachments[i - carried];
-      body.kind = "attached object";
-      body.link = report.tree.linkId(a.link);
-      body.pose = a.pose;
-    }
-    bodies.push_back(body);
-  }
-  DistanceOptions measured;
-  measured.obstacles = report.request.check_scene;
-  measured.links = report.request.check_self;
-  measured.most = sizeOf(report, bodies);
-  const WaitingNote note("writing " + file);
-  files::write(file, htmlPage(report, bodies, measureDistances(manager, motion, measured)));
-}
-
 int runCheck(CheckVerb& options) {
-  if (!options.image.empty()) render::requirePictures();
+  if (!options.views.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
   std::vector<std::string> inputs = inputsOf(options.world);
   for (const std::string& file : {options.trajectory, options.lines}) {
     if (!file.empty()) inputs.push_back(file);
   }
   std::string certificate_world = options.certificate.empty() ? "" : CertificateFile(options.certificate).worldPath();
-  removeEarlierOutputs({{"--image", &options.image},
-                        {"--html", &options.html},
+  removeEarlierOutputs({{"--image", &options.views.image},
+                        {"--html", &options.views.html},
                         {"--certificate", &options.certificate},
                         {"--certificate's world", &certificate_world},
                         {"--auto-srdf", &options.world.auto_srdf}},
                        inputs);
   World world(options.world);
   world.readRobot();
-  const bool check_allowed = !options.world.robot.srdf.empty() && options.request.check_self;
-  if (check_allowed || !options.world.auto_srdf.empty()) world.provePairs();
+  world.provePairsFor(options.request);
   const KinematicTree& tree = *world.robot.tree;
   // One of the two.
   std::optional<JointMotion> motion;
@@ -197,11 +140,7 @@ int runCheck(CheckVerb& options) {
     return trajectory ? trajectory->configuration(t) : motion->configuration(t);
   };
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
-  if (result.status == Status::contact && result.t_lower <= begin && !request.ignore_initial_contact) {
-    notes.push_back(
-        "nothing is known of what comes after that contact; pairs that may touch at the start, as a base and "
-        "its floor, are left out until they part with --ignore-initial-contact");
-  }
+  if (result.first() && result.t_lower <= begin) notes.insert(notes.begin(), startHint(*result.first()));
   if (result.certificate) {
     notes.push_back(certificates.add(*result.certificate));
     certificates.write();
@@ -209,25 +148,7 @@ int runCheck(CheckVerb& options) {
   Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
   if (trajectory) report.pieces = trajectory->numPieces();
 
-  if (!options.image.empty()) {
-    const auto size = *numberPair(options.size, 'x');
-    render::PictureOptions picture;
-    picture.width = static_cast<int>(size[0]);
-    picture.height = static_cast<int>(size[1]);
-    picture.title = titleLine(report.result);
-    if (!options.camera.empty()) picture.camera = numberPair(options.camera, ',');
-    CertifiedResult drawn = result;  // in the time of a picture
-    drawn.t_lower = (result.t_lower - begin) / (end - begin);
-    const auto path = [&](double t) { return configuration(begin + t * (end - begin)); };
-    Robot shown = world.robot;
-    Scene scene = world.scene;
-    moveToLinks(world.attachments, scene, shown);
-    const WaitingNote note("drawing " + options.image);
-    render::writePicture(options.image, shown, scene.obstacles, path, drawn, picture);
-  }
-  if (!options.html.empty()) {
-    writePage(options.html, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
-  }
+  writeViews(options.views, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
   if (options.json) {
     fmt::print("{}\n", jsonReport(report).dump(2));
   } else {
@@ -313,33 +234,7 @@ void addCheck(CLI::App& program, int& exit_status) {
                    "Write the answer's proof, and what it is about to FILE.world: fcl_artic_verify proves it again")
       ->group("Output")
       ->type_name("FILE");
-  CLI::Option* image = check->add_option("--image", o.image, "Draw robot, sweep and first contact as PNG")
-                           ->check(requirePng)
-                           ->excludes(lines)
-                           ->group("Output")
-                           ->type_name("FILE");
-  check->add_option("--size", o.size, "Size of the picture in pixels")
-      ->check(requireSize)
-      ->needs(image)
-      ->group("Output")
-      ->type_name("WxH")
-      ->capture_default_str();
-  check
-      ->add_option("--camera", o.camera,
-                   "Where the picture is seen from: azimuth from +x and elevation, in degrees; "
-                   "without it a view that shows the contact is chosen")
-      ->check(requireCamera)
-      ->needs(image)
-      ->group("Output")
-      ->type_name("AZ,EL");
-
-  check
-      ->add_option("--html", o.html,
-                   "Write the answer as a page for a browser: the motion in 3-D to scrub through, contacts, distances")
-      ->excludes(lines)
-      ->group("Output")
-      ->type_name("FILE");
-
+  for (CLI::Option* view : addViewOptions(*check, o.views)) view->excludes(lines);
   clearance->excludes(lines);
   check->callback([options, from, to, trajectory, lines, &exit_status] {
     const bool waypoints = trajectory->count() > 0 || lines->count() > 0;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exit_status.h"
+#include "outputs.h"
 #include "progress.h"
 #include "render/picture.h"
 #include "robot_options.h"
@@ -97,9 +98,25 @@ Json jsonOf(const KinematicTree& tree, const LinkPairFinding& pair) {
   return out;
 }
 
+/// The picture of a pair.
+std::string pictureOf(const std::string& folder, const std::string& link1, const std::string& link2) {
+  std::string name = link1 + "-" + link2 + ".png";
+  std::replace(name.begin(), name.end(), '/', '_');  // a link's name is no path
+  return folder + "/" + name;
+}
+
+/// Those of an earlier run, of any pair of the robot's links.
+void removePictures(const KinematicTree& tree, const std::string& folder) {
+  for (LinkId a = 0; a < tree.numLinks(); ++a) {
+    for (LinkId b = 0; b < tree.numLinks(); ++b) {
+      std::string path = pictureOf(folder, tree.linkName(a), tree.linkName(b));
+      removeEarlierOutputs({{"--images", &path}}, {});
+    }
+  }
+}
+
 /// Draws each pair that touches sometimes, where it does.
 void drawTouching(const Robot& robot, const LinkPairReport& report, const std::string& folder) {
-  render::requirePictures();
   std::filesystem::create_directories(folder);
   for (const LinkPairFinding& pair : report.pairs) {
     if (pair.kind != LinkPairKind::sometimes) continue;
@@ -111,9 +128,7 @@ void drawTouching(const Robot& robot, const LinkPairReport& report, const std::s
     manager.setup();
     render::PictureOptions options;
     options.title = fmt::format("{} and {}", pair.link1, pair.link2);
-    std::string name = pair.link1 + "-" + pair.link2 + ".png";
-    std::replace(name.begin(), name.end(), '/', '_');  // a link's name is no path
-    const std::string path = folder + "/" + name;
+    const std::string path = pictureOf(folder, pair.link1, pair.link2);
     render::writePicture(
         path, robot, {}, [&](double) { return pair.configuration; }, manager.collide(pair.configuration), options);
     fmt::print("picture {}\n", path);
@@ -138,9 +153,12 @@ void printPairs(const KinematicTree& tree, const LinkPairReport& report, bool al
   }
 }
 
-int runSrdf(const SrdfVerb& options) {
+int runSrdf(SrdfVerb& options) {
+  if (!options.images.empty()) render::requirePictures();
+  removeEarlierOutputs({{"--write", &options.write}}, {options.robot.robot, options.check});
   Robot robot = loadUrdf(options.robot.robot, urdfOptions(options.robot));
   const KinematicTree& tree = *robot.tree;
+  if (!options.images.empty()) removePictures(tree, options.images);
   std::optional<AllowedCollisionMatrix> disabled;
   if (!options.check.empty()) disabled = loadSrdf(options.check, tree, &robot.notes);
   const LinkPairReport report = classify(robot, options.search);
@@ -202,8 +220,10 @@ std::string summaryOf(const LinkPairReport& report) {
       all, apart, all - apart - always, always);
 }
 
-std::vector<std::string> doubtsOf(const LinkPairReport& disabled) {
+std::vector<std::string> doubtsOf(const LinkPairReport& disabled, double margin) {
   std::vector<std::string> lines;
+  const std::string touch = margin > 0 ? fmt::format("come within the margin of {:g} m", margin) : "touch";
+  const std::string apart = margin > 0 ? fmt::format(" by the margin of {:g} m", margin) : "";
   const auto names = [&](LinkPairKind kind) {
     constexpr std::size_t kMost = 3;
     std::string text;
@@ -216,11 +236,12 @@ std::vector<std::string> doubtsOf(const LinkPairReport& disabled) {
     return std::make_pair(count, text);
   };
   if (const auto [count, text] = names(LinkPairKind::sometimes); count > 0) {
-    lines.push_back(fmt::format("{} allowed pair{} can touch, and {} not checked: {}", count, count == 1 ? "" : "s",
+    lines.push_back(fmt::format("{} allowed pair{} can {}, and {} not checked: {}", count, count == 1 ? "" : "s", touch,
                                 count == 1 ? "is" : "are", text));
   }
   if (const auto [count, text] = names(LinkPairKind::unproven); count > 0) {
-    lines.push_back(fmt::format("{} allowed pair{} not proven apart: {}", count, count == 1 ? " is" : "s are", text));
+    lines.push_back(
+        fmt::format("{} allowed pair{} not proven apart{}: {}", count, count == 1 ? " is" : "s are", apart, text));
   }
   if (!lines.empty()) lines.back() += " (fcl_artic srdf --check tells more)";
   return lines;

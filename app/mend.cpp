@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,6 +32,16 @@ constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kRoom = 1;      // m, that positions of planar and floating joints have beyond the plan's own
 constexpr double kLeast = 0.05;  // s, for a stretch
 
+// Pieces that are not free are divided, so that a detour begins and ends near what it goes around: parts of no more
+// than this, rad or m, of any joint, but no more parts than that.
+constexpr double kPart = 0.1;
+constexpr int kMostParts = 64;
+// Parts of the clearance that are tried, one after the other, and of the time that is left for each.
+constexpr double kClearances[] = {1, 0.25, 0}, kShares[] = {0.5, 0.5, 1};
+// A planner's way is brought back towards the plan at points of no more than this, rad or m, from each other.
+constexpr double kPull = 0.2;
+constexpr int kPulls = 3;
+
 // Small detours, by one waypoint or two off the plan: how far each joint goes at most, rad or m, and how often it is
 // tried. They cost some ms where none is found, and keep what they mend near the plan (bench certify).
 constexpr double kNudges[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.4};
@@ -53,31 +64,64 @@ VectorXd pointAt(const Points& points, double share) {
   return points.back();
 }
 
-double deviationOf(const Points& a, const Points& b) {
+/// The largest difference of any variable, and which one that is.
+std::pair<double, Eigen::Index> deviationOf(const Points& a, const Points& b) {
   constexpr int kSamples = 200;
-  double most = 0;
+  std::pair<double, Eigen::Index> most{0, 0};
   for (int i = 0; i <= kSamples; ++i) {
     const double share = static_cast<double>(i) / kSamples;
-    most = std::max(most, (pointAt(a, share) - pointAt(b, share)).lpNorm<Eigen::Infinity>());
+    Eigen::Index at = 0;
+    const double off = (pointAt(a, share) - pointAt(b, share)).cwiseAbs().maxCoeff(&at);
+    if (off > most.first) most = {off, at};
   }
   return most;
 }
 
-/// Where the plan's joints go straight between its waypoints.
+/// The plan, its joints going straight between its waypoints.
 struct Straight {
   Points points;                    ///< unwrapped
+  std::vector<double> times;        ///< of these
+  std::vector<bool> given;          ///< which of these are the plan's own waypoints
   std::vector<JointMotion> pieces;  ///< one fewer
+  std::vector<bool> free;           ///< pieces that are proven free
+
+  /// The number of the plan's waypoint at or before a point.
+  std::size_t waypoint(std::size_t point) const {
+    return static_cast<std::size_t>(
+               std::count(given.begin(), given.begin() + static_cast<std::ptrdiff_t>(point) + 1, true)) -
+           1;
+  }
 };
 
-Straight straightOf(const KinematicTree& tree, const plans::PlanMotion& motion, plans::Turns turns) {
+/// @param isFree  of a piece: those that are not are divided.
+template <class IsFree>
+Straight straightOf(const KinematicTree& tree, const plans::PlanMotion& motion, plans::Turns turns,
+                    const IsFree& isFree) {
   const auto unwrap = turns == plans::Turns::shortest ? JointTrajectory::Unwrap::yes : JointTrajectory::Unwrap::no;
   const JointTrajectory way = JointTrajectory::linear(tree, motion.times, motion.waypoints, unwrap);
   Straight out;
-  out.points.push_back(way.piece(0).configuration(0));
+  const auto add = [&](VectorXd q, double t, bool given) {
+    out.points.push_back(std::move(q));
+    out.times.push_back(t);
+    out.given.push_back(given);
+  };
+  add(way.piece(0).configuration(0), motion.times[0], true);
   for (std::size_t k = 0; k < way.numPieces(); ++k) {
-    out.pieces.push_back(way.piece(k));
+    const JointMotion& piece = way.piece(k);
     // As the next piece begins: there are the plan's own numbers.
-    out.points.push_back(k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : way.piece(k).configuration(1));
+    const VectorXd end = k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : piece.configuration(1);
+    const bool free = isFree(piece);
+    const double step = (end - out.points.back()).lpNorm<Eigen::Infinity>();
+    const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMostParts);
+    for (int i = 1; i < parts; ++i) {
+      const double share = static_cast<double>(i) / parts;
+      const VectorXd q = piece.configuration(share);
+      out.pieces.push_back(JointMotion::linear(tree, out.points.back(), q));
+      add(q, motion.times[k] + share * (motion.times[k + 1] - motion.times[k]), false);
+    }
+    out.pieces.push_back(parts == 1 ? piece : JointMotion::linear(tree, out.points.back(), end));
+    out.free.resize(out.pieces.size(), free);
+    add(end, motion.times[k + 1], true);
   }
   return out;
 }
@@ -90,9 +134,11 @@ struct Detour {
 
 class Mender {
  public:
+  /// @param clearance  m, that detours keep.
+  /// @param seconds  that it may take.
   Mender(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const plans::PlanMotion& motion,
-         plans::Turns turns, const MendOptions& options)
-      : tree_(manager->tree()), options_(options), way_(straightOf(tree_, motion, turns)) {
+         plans::Turns turns, const MendOptions& options, double clearance, double seconds)
+      : tree_(manager->tree()), options_(options), seconds_(seconds), manager_(manager) {
     planning::SetupOptions setup;
     for (const std::string& name : motion.joints) {
       const int v = plans::variableOf(tree_, name, "the plan");
@@ -107,33 +153,31 @@ class Mender {
     }
     if (values != variables_.size()) throw std::runtime_error("the plan moves only some of the values of a joint");
     setup.fixed = motion.rest;
-    addBounds(setup);
     setup.request.margin = options.request.margin;
     setup.request.check_self = options.request.check_self;
     setup.request.check_scene = options.request.check_scene;
     setup.request.work_budget = options.request.work_budget;
-    setup_ = planning::setUpPlanning(manager, joints_, setup);
+    given_request_ = setup.request;
+    way_ = straightOf(tree_, motion, turns, [&](const JointMotion& piece) { return isFreeAsGiven(piece); });
+    addBounds(setup);
+    setup.request.margin += clearance;
     request_ = setup.request;
-    manager_ = manager;
+    setup_ = planning::setUpPlanning(manager, joints_, setup);
   }
 
   Mended run(const plans::PlanMotion& motion) {
     const Clock::time_point begin = Clock::now();
     const std::size_t last = way_.points.size() - 1;
-    if (!valid(0))
-      throw std::runtime_error("its start touches something, or is beyond its limits: no detour begins there");
-    if (!valid(last))
-      throw std::runtime_error("its goal touches something, or is beyond its limits: no detour ends there");
+    if (!valid(0)) throw std::runtime_error("its start touches something: no detour begins there");
+    if (!valid(last)) throw std::runtime_error("its goal touches something: no detour ends there");
     for (std::size_t k = 0; k < last;) {
-      if (manager_->isFree(way_.pieces[k], request_)) {
+      if (way_.free[k] || isFreeAsGiven(way_.pieces[k])) {
         ++k;
         continue;
       }
       k = replace(k, begin);
     }
-    Mended out = assemble(motion);
-    out.ms = 1e3 * secondsSince(begin);
-    return out;
+    return assemble(motion);
   }
 
  private:
@@ -187,9 +231,11 @@ class Mender {
     }
   }
 
+  /// (Limits of the plan's own points have been judged: a sensor's may be a little beyond them.)
   bool valid(std::size_t k) const {
-    const ob::ScopedState<> state = stateOf(way_.points[k]);
-    return setup_.si->isValid(state.get());
+    CertifiedRequest any = request_;
+    any.max_contacts = 0;
+    return manager_->collide(way_.points[k], any).isFree();
   }
 
   /// Finds a way around what the piece from waypoint k on touches.
@@ -203,10 +249,13 @@ class Mender {
       std::size_t first = detours_.size();  // of those that this one holds
       while (first > 0 && a < detours_[first - 1].end) a = std::min(a, detours_[--first].begin);
       const bool whole = a == 0 && b == last;
-      const double left = options_.seconds - secondsSince(begin);
+      const double left = seconds_ - secondsSince(begin);
       if (left < kLeast) break;
       std::optional<Points> points = wider == 0 ? nudge(k, a, b) : std::nullopt;
-      if (!points) points = plan(way_.points[a], way_.points[b], whole ? left : left / 4);
+      if (!points) {
+        points = plan(way_.points[a], way_.points[b], whole ? left : left / 4);
+        if (points) pullBack(stretch(a, b), *points);
+      }
       if (points) {
         detours_.resize(first);
         detours_.push_back({a, b, std::move(*points)});
@@ -214,8 +263,49 @@ class Mender {
       }
       if (whole) break;
     }
-    throw std::runtime_error(
-        fmt::format("no way around what it touches after waypoint {} was found in {:g} s", k, options_.seconds));
+    throw std::runtime_error(fmt::format("no way around what it touches after waypoint {} was found in {:g} s",
+                                         way_.waypoint(k), options_.seconds));
+  }
+
+  /// Whether a joint has a quaternion, which goes no straight way in its values.
+  bool hasRotations() const {
+    return std::any_of(joints_.begin(), joints_.end(),
+                       [&](const std::string& joint) { return tree_.quaternionVariable(tree_.jointId(joint)) >= 0; });
+  }
+
+  bool isFreeAsGiven(const JointMotion& piece) const { return manager_->isFree(piece, given_request_); }
+
+  Points stretch(std::size_t a, std::size_t b) const {
+    return {way_.points.begin() + static_cast<std::ptrdiff_t>(a),
+            way_.points.begin() + static_cast<std::ptrdiff_t>(b) + 1};
+  }
+
+  /// Brings inner points of a way nearer to what it replaces, as far as all stays free.
+  void pullBack(const Points& before, Points& points) const {
+    if (hasRotations() || points.back() != before.back()) return;  // the latter by whole turns
+    Points fine{points.front()};
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const VectorXd step = points[i] - points[i - 1];
+      const int parts = std::clamp(static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / kPull)), 1, kMostParts);
+      for (int k = 1; k < parts; ++k) fine.push_back(points[i - 1] + static_cast<double>(k) / parts * step);
+      fine.push_back(points[i]);
+    }
+    if (!free(fine)) return;  // by a rounding
+    for (int pass = 0; pass < kPulls; ++pass) {
+      const double length = lengthOf(fine);
+      double at = 0;
+      for (std::size_t i = 1; i + 1 < fine.size(); ++i) {
+        at += (fine[i] - fine[i - 1]).norm();
+        const VectorXd target = pointAt(before, std::min(1.0, at / length));
+        for (const double part : {1.0, 0.5, 0.25}) {
+          const VectorXd nearer = fine[i] + part * (target - fine[i]);
+          if (!free(Points{fine[i - 1], nearer, fine[i + 1]})) continue;
+          fine[i] = nearer;
+          break;
+        }
+      }
+    }
+    points = std::move(fine);
   }
 
   bool free(const VectorXd& from, const VectorXd& to) const {
@@ -223,8 +313,8 @@ class Mender {
   }
 
   bool free(const Points& points) const {
-    for (const VectorXd& q : points) {
-      if (!setup_.space->satisfiesBounds(stateOf(q).get())) return false;
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {  // both ends are the plan's own
+      if (!setup_.space->satisfiesBounds(stateOf(points[i]).get())) return false;
     }
     for (std::size_t i = 1; i < points.size(); ++i) {
       if (!free(points[i - 1], points[i])) return false;
@@ -254,11 +344,8 @@ class Mender {
 
   /// Tries ways from waypoint a to b that leave the plan by a little, around what is met on them.
   std::optional<Points> nudge(std::size_t k, std::size_t a, std::size_t b) {
-    for (const std::string& joint : joints_) {
-      if (tree_.quaternionVariable(tree_.jointId(joint)) >= 0) return std::nullopt;
-    }
-    const Points before(way_.points.begin() + static_cast<std::ptrdiff_t>(a),
-                        way_.points.begin() + static_cast<std::ptrdiff_t>(b) + 1);
+    if (hasRotations()) return std::nullopt;
+    const Points before = stretch(a, b);
     const double begin = meets(before, false), end = std::max(begin, meets(before, true));
     const VectorXd shares[3] = {pointAt(before, begin), pointAt(before, (begin + end) / 2), pointAt(before, end)};
     std::mt19937 random(static_cast<unsigned>(k));  // the same answer each time
@@ -295,7 +382,8 @@ class Mender {
 
   std::optional<Points> plan(const VectorXd& from, const VectorXd& to, double limit) const {
     og::SimpleSetup simple(setup_.si);
-    const ob::ScopedState<> start = stateOf(from), goal = stateOf(to);
+    ob::ScopedState<> start = stateOf(from), goal = stateOf(to);
+    for (ob::ScopedState<>* end : {&start, &goal}) setup_.space->enforceBounds(end->get());
     simple.setStartAndGoalStates(start, goal);
     simple.setPlanner(std::make_shared<og::RRTConnect>(setup_.si));
     if (simple.solve(limit) != ob::PlannerStatus::EXACT_SOLUTION) return std::nullopt;
@@ -322,15 +410,28 @@ class Mender {
     };
     VectorXd turned = VectorXd::Zero(tree_.dof());  // whole turns, by the detours so far
     std::size_t k = 0;
+    // Points that were put between waypoints are no waypoints, unless a detour begins or ends there.
+    const auto follow = [&](std::size_t end) {
+      for (double since = 0; k < end;) {
+        since += way_.times[k + 1] - way_.times[k];
+        ++k;
+        if (!way_.given[k] && k != end) continue;
+        add(way_.points[k] + turned, since);
+        since = 0;
+      }
+    };
     for (const Detour& detour : detours_) {
-      for (; k < detour.begin; ++k) add(way_.points[k + 1] + turned, motion.times[k + 1] - motion.times[k]);
-      const auto begin = way_.points.begin() + static_cast<std::ptrdiff_t>(detour.begin),
-                 end = way_.points.begin() + static_cast<std::ptrdiff_t>(detour.end);
-      const Points before(begin, end + 1);
+      follow(detour.begin);
+      const Points before = stretch(detour.begin, detour.end);
       const double length = lengthOf(detour.points), old = lengthOf(before);
       const double duration =
-          (motion.times[detour.end] - motion.times[detour.begin]) * (old > 0 ? std::max(1.0, length / old) : 1);
-      out.deviation = std::max(out.deviation, deviationOf(before, detour.points));
+          (way_.times[detour.end] - way_.times[detour.begin]) * (old > 0 ? std::max(1.0, length / old) : 1);
+      const auto [off, variable] = deviationOf(before, detour.points);
+      if (off > out.deviation) {
+        out.deviation = off;
+        out.deviation_joint = tree_.variableName(static_cast<int>(variable));
+        out.deviation_is_angle = tree_.isAngle(static_cast<int>(variable));
+      }
       for (std::size_t i = 1; i < detour.points.size(); ++i) {
         const double step = (detour.points[i] - detour.points[i - 1]).norm();
         if (step > 0) add(detour.points[i] + turned, duration * step / length);
@@ -338,7 +439,8 @@ class Mender {
       turned += detour.points.back() - way_.points[detour.end];
       k = detour.end;
     }
-    for (; k + 1 < way_.points.size(); ++k) add(way_.points[k + 1] + turned, motion.times[k + 1] - motion.times[k]);
+    follow(way_.points.size() - 1);
+    out.added_time = times.back() - times.front() - (motion.times.back() - motion.times.front());
     const double old = lengthOf(way_.points);
     out.length_ratio = old > 0 ? lengthOf(points) / old : 1;
     out.plan.joints = motion.joints;
@@ -353,11 +455,12 @@ class Mender {
 
   const KinematicTree& tree_;
   const MendOptions& options_;
+  const double seconds_;
   Straight way_;
   std::vector<int> variables_;       ///< of the plan's columns
   std::vector<std::string> joints_;  ///< that these belong to
   planning::PlanningSetup setup_;
-  CertifiedRequest request_;
+  CertifiedRequest given_request_, request_;  ///< by which the plan is looked at, and detours
   std::shared_ptr<const ArticulatedCollisionManager> manager_;
   std::vector<Detour> detours_;  ///< in their order, none within another
 };
@@ -369,10 +472,22 @@ void requireMending() {}
 Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const plans::PlanMotion& motion,
             plans::Turns turns, const MendOptions& options) {
   ompl::msg::noOutputHandler();
-  try {
-    return Mender(manager, motion, turns, options).run(motion);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(error.what());
+  const Clock::time_point begin = Clock::now();
+  for (std::size_t i = 0;; ++i) {
+    const bool last = kClearances[i] == 0;
+    if (!last && options.clearance == 0) continue;
+    try {
+      const double kept = kClearances[i] * options.clearance;
+      Mended out = Mender(manager, motion, turns, options, kept, kShares[i] * (options.seconds - secondsSince(begin)))
+                       .run(motion);
+      out.kept = kept;
+      out.ms = 1e3 * secondsSince(begin);
+      return out;
+    } catch (const std::invalid_argument& error) {  // nothing that depends on the clearance
+      throw std::runtime_error(error.what());
+    } catch (const std::runtime_error&) {
+      if (last) throw;
+    }
   }
 }
 

@@ -69,7 +69,7 @@ void removeEarlierOutputs(const std::vector<Output>& outputs, const std::vector<
 
 std::vector<std::string> inputsOf(const WorldOptions& options) {
   std::vector<std::string> files = options.scenes;
-  for (const std::string& file : {options.robot.robot, options.robot.srdf}) {
+  for (const std::string& file : {options.robot.robot, options.robot.srdf, options.pairs.margins}) {
     if (!file.empty()) files.push_back(file);
   }
   for (const std::string& text : options.robot.attached) {  // LINK=FILE@POSE

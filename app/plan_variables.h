@@ -19,6 +19,16 @@ struct PlanVariables {
   bool ignore_limits = false;
 };
 
+/// What verbs say of columns and units of files of plans.
+struct PlanColumnOptions {
+  plans::ColumnOptions columns;
+  bool degrees = false;
+  double limit_tolerance = plans::MotionOptions().limit_tolerance;  ///< rad
+};
+
+/// Adds --columns, --skip, --time, --degrees and --limit-tolerance.
+void addPlanColumns(CLI::App& verb, PlanColumnOptions& options);
+
 /// Adds --turns, --joints, --state and --ignore-limits.
 void addPlanVariables(CLI::App& verb, PlanVariables& options);
 

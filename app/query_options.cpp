@@ -49,6 +49,8 @@ ClearanceRequest clearanceOf(const ClearanceRequest& request, const CertifiedReq
   ClearanceRequest out = request;
   static_cast<Scope&>(out) = query;
   out.work_budget = query.work_budget;
+  out.ignore_initial_contact = query.ignore_initial_contact;
+  out.ignored_margin = query.margin;
   return out;
 }
 

@@ -17,7 +17,7 @@ void addQueryOptions(CLI::App& verb, CertifiedRequest& request);
 /// @return --clearance, for what excludes it.
 CLI::Option* addClearanceOptions(CLI::App& verb, bool& wanted, ClearanceRequest& request);
 
-/// The request with the query's scope and budget, as the clearance of its motion is asked for.
+/// The request with the query's scope, budget and ignored pairs, as the clearance of its motion is asked for.
 ClearanceRequest clearanceOf(const ClearanceRequest& request, const CertifiedRequest& query);
 
 }  // namespace fcl_artic::app

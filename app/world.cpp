@@ -18,9 +18,6 @@
 namespace fcl_artic::app {
 namespace {
 
-// A check looks at an SRDF's pairs in passing, a second or two for all of them; the verb srdf takes its time.
-constexpr std::uint64_t kWorkForAllowed = 40000000, kLeastWorkForPair = 20000;
-
 /// The object with its mesh as a solid.
 /// @param name  of its link or obstacle.
 std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& object, const std::string& name) {
@@ -72,8 +69,9 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
                   "Obstacles: mesh, .urdf, MoveIt .scene, OctoMap .bt .ot, points .pcd "
                   ".ply .xyz; may be repeated")
       ->check(requireInput)
+      ->allow_extra_args(false)
       ->group("Robot and scene")
-      ->type_name("FILE...");
+      ->type_name("FILE");
   verb.add_option("--scale", o.scale, "Factor for all lengths of the scenes: 0.001 if they are in millimetres")
       ->check(requirePositive)
       ->group("Robot and scene")
@@ -92,13 +90,15 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
                 "Meshes are solids: what lies within one touches it. They must be closed")
       ->group("Robot and scene");
   verb.add_option("--solid", o.solids, "Link or obstacle whose meshes are solids, and no others; may be repeated")
+      ->allow_extra_args(false)
       ->group("Robot and scene")
       ->type_name("NAME");
   addAttachOption(verb, o.robot);
-}
-
-void takeOneValueEach(CLI::App& verb) {
-  for (const char* name : {"--scene", "--solid"}) verb.get_option(name)->allow_extra_args(false);
+  addPairOptions(verb, o.pairs);
+  verb.add_option("--proof-work", o.proof_work,
+                  "Tests at most for the proof that one allowed pair of links never touches, as --work of srdf")
+      ->group("Robot and scene")
+      ->capture_default_str();
 }
 
 std::string shellArguments(const WorldOptions& o) {
@@ -129,37 +129,68 @@ std::string shellArguments(const WorldOptions& o) {
   addFlag("--solid-meshes", o.robot.solid_meshes);
   addAll("--solid", o.solids);
   addAll("--attach", o.robot.attached);
+  addAll("--margin-of", o.pairs.margins_of);
+  addAll("--margin-pair", o.pairs.pair_margins);
+  add("--margins", o.pairs.margins);
+  addAll("--allow", o.pairs.allowed);
+  if (o.proof_work != WorldOptions().proof_work) add("--proof-work", fmt::format("{}", o.proof_work));
   return text;
 }
 
-World::World(const WorldOptions& options) : options_(options), solids_(options.solids.begin(), options.solids.end()) {}
+World::World(const WorldOptions& options)
+    : options_(options),
+      pairs_(readPairSettings(options.pairs)),
+      solids_(options.solids.begin(), options.solids.end()) {}
 
 void World::readRobot() {
   robot = app::readRobot(options_.robot);
+  allowLinks();
   makeSolids(
       robot.geometry, [&](const LinkGeometry& g) { return std::vector{robot.tree->linkName(g.link)}; }, solids_);
 }
 
-LinkPairReport World::provePairs() {
-  LinkPairOptions search;
-  const bool given = !options_.robot.srdf.empty();
-  if (given) {
-    search.only = &robot.allowed;
-    search.work = std::clamp<std::uint64_t>(kWorkForAllowed / std::max<std::size_t>(robot.allowed.pairs().size(), 1),
-                                            kLeastWorkForPair, search.work);
+/// Allowed pairs of two links are part of the robot: their proofs are made with the others.
+void World::allowLinks() {
+  for (const PairSettings::Said& said : pairs_.allowed) {
+    if (robot.tree->hasLink(said.a) && robot.tree->hasLink(said.b)) robot.allowed.allow(said.a, said.b);
   }
-  LinkPairReport report = classify(robot, search);
-  robot.proofs = report.proofs;
-  if (given) {
-    for (const std::string& doubt : doubtsOf(report)) robot.notes.push_back(doubt);
+}
+
+LinkPairReport World::provePairs(double margin) {
+  LinkPairOptions search;
+  search.work = options_.proof_work;
+  if (!options_.robot.srdf.empty()) {
+    search.only = &robot.allowed;
+    search.margin = margin;
+    const LinkPairReport report = classify(robot, search);
+    robot.proofs = report.proofs;
+    for (const std::string& doubt : doubtsOf(report, margin)) robot.notes.push_back(doubt);
     return report;
   }
+  // Which pairs always touch is no matter of the margin: what only comes near stays checked.
+  LinkPairReport report = classify(robot, search);
+  robot.proofs = report.proofs;
   robot.allowed = report.alwaysTouching();
+  allowLinks();
   if (!options_.auto_srdf.empty()) {
     writeSrdf(options_.auto_srdf, robot.tree->name(), report);
     robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options_.auto_srdf));
   }
+  if (margin > 0) {
+    AllowedCollisionMatrix apart;
+    for (const LinkPairFinding& pair : report.pairs) {
+      if (pair.kind == LinkPairKind::never) apart.allow(pair.link1, pair.link2);
+    }
+    search.only = &apart;
+    search.margin = margin;
+    robot.proofs = classify(robot, search).proofs;
+  }
   return report;
+}
+
+void World::provePairsFor(const CertifiedRequest& request) {
+  const bool allowed = !options_.robot.srdf.empty() && request.check_self;
+  if (allowed || !options_.auto_srdf.empty()) provePairs(request.margin);
 }
 
 void World::readScene() {
@@ -187,11 +218,13 @@ void World::readScene() {
                                           text::didYouMean(*solids_.begin(), names)));
 }
 
-ArticulatedCollisionManager World::makeManager() const {
+ArticulatedCollisionManager World::makeManager(const std::function<void(ArticulatedCollisionManager&)>& change) const {
   ArticulatedCollisionManager manager(robot.tree);
   robot.addTo(manager);
   scene.addTo(manager);
   attachLast(attachments, scene, manager);
+  pairs_.apply(scene, manager);
+  if (change) change(manager);
   manager.setup();
   return manager;
 }

@@ -3,6 +3,8 @@
 // What verbs ask questions about: a robot, the pairs of its links that need no check, obstacles, carried objects.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -10,26 +12,27 @@
 #include <CLI/CLI.hpp>
 
 #include "fcl_artic/urdf/urdf.h"
+#include "pair_options.h"
 #include "robot_options.h"
 
 namespace fcl_artic::app {
 
 struct WorldOptions {
   RobotOptions robot;
-  std::string auto_srdf;                    ///< file to write; empty: none
-  std::vector<std::string> scenes, solids;  ///< files; names of links and obstacles
+  PairOptions pairs;
+  std::string auto_srdf;                              ///< file to write; empty: none
+  std::uint64_t proof_work = LinkPairOptions().work;  ///< tests at most for the proof of one pair of links
+  std::vector<std::string> scenes, solids;            ///< files; names of links and obstacles
   bool unknown_cells = false;
   double scale = 1;         ///< of the scenes
   double point_radius = 0;  ///< of point clouds, m; 0: none is given
 };
 
 /// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
-/// --unknown-cells, --point-radius, --solid-meshes, --solid and --attach.
+/// --unknown-cells, --point-radius, --solid-meshes, --solid, --attach and those of addPairOptions(). Each takes one
+/// value, so that a verb's own arguments may stand after it.
 /// @param robot_names  of the robot's option.
 void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& robot_names = kRobotNames);
-
-/// Has --scene and --solid take one value each, so that a verb's own arguments may stand after them.
-void takeOneValueEach(CLI::App& verb);
 
 /// The options as `check` takes them, ready for a shell. Without an SRDF they have the pairs of links that need no
 /// check found again (--auto-srdf /dev/null).
@@ -40,30 +43,40 @@ std::string shellArguments(const WorldOptions& options);
 class World {
  public:
   /// @param options  must outlive this object.
+  /// @throws as readPairSettings().
   explicit World(const WorldOptions& options);
 
   /// Reads the robot and the pairs that its SRDF allows.
   /// @throws as loadUrdf() and loadSrdf(), and std::invalid_argument for a link that can't be made solid.
   void readRobot();
-  /// Finds proofs of pairs of links that never touch, and notes what they leave open. With --srdf, of the pairs that it
-  /// allows; without, of all pairs: those that always touch become the allowed ones, and --auto-srdf is written.
-  LinkPairReport provePairs();
+  /// Finds proofs of pairs of links that never come within a margin, and notes what they leave open. With --srdf, of
+  /// the pairs that it and --allow allow. Without, of all pairs: those that always touch become allowed, and
+  /// --auto-srdf is written.
+  /// @param margin  m.
+  LinkPairReport provePairs(double margin);
+  /// The same, where queries of links against links make use of it.
+  void provePairsFor(const CertifiedRequest& request);
   /// Reads the obstacles and what links carry.
   /// @throws as loadScene() and parseAttachment(), and std::invalid_argument for a --solid that names nothing.
   void readScene();
   /// A manager of all this, after setup().
-  /// @throws std::invalid_argument as ArticulatedCollisionManager::attach().
-  ArticulatedCollisionManager makeManager() const;
+  /// @throws std::invalid_argument as ArticulatedCollisionManager::attach(), and as PairSettings::apply().
+  /// @param change  called before setup().
+  ArticulatedCollisionManager makeManager(const std::function<void(ArticulatedCollisionManager&)>& change = {}) const;
   /// Notes of robot, scene and manager, and what suggests other units, one line each.
   /// @param manager  of this world.
   std::vector<std::string> notes(const ArticulatedCollisionManager& manager) const;
+  const PairSettings& pairs() const { return pairs_; }
 
   Robot robot;
   Scene scene;                          ///< The last obstacles are carried, one for each attachment.
   std::vector<Attachment> attachments;  ///< in the order of the carried obstacles
 
  private:
+  void allowLinks();
+
   const WorldOptions& options_;
+  const PairSettings pairs_;
   std::set<std::string> solids_;  ///< names that are still to be found
 };
 

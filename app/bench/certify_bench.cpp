@@ -11,6 +11,7 @@
 #include "certification.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
@@ -43,7 +44,7 @@ class CertifyBench {
   void run() {
     std::vector<CertifiedPlan> given;
     std::vector<std::string> notes;  // what else a folder holds is of no concern here
-    if (!options_.plans.empty()) given = readPlans(*robot_.tree, {options_.plans}, std::nullopt, notes);
+    if (!options_.plans.empty()) given = readPlans(*robot_.tree, {options_.plans}, std::nullopt, {}, notes);
     std::vector<std::string> names = options_.environments;
     if (names.empty()) names = environmentsOf(options_.data, options_.robot);
     std::size_t taken = 0;
@@ -224,7 +225,8 @@ class CertifyBench {
 
 }  // namespace
 
-int benchCertify(const CertifyBenchOptions& options) {
+int benchCertify(CertifyBenchOptions& options) {
+  removeEarlierOutputs({{"--csv", &options.csv}}, {options.plans});
   CertifyBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());

@@ -24,6 +24,6 @@ struct CertifyBenchOptions {
 /// @return exit status: 1 when a plan certified free, mended or not, is seen to collide.
 /// @throws std::runtime_error naming a file that is missing or can't be written; a plan that is wrong or names no
 /// problem; that this program was built without OMPL.
-int benchCertify(const CertifyBenchOptions& options);
+int benchCertify(CertifyBenchOptions& options);
 
 }  // namespace fcl_artic::app

@@ -16,6 +16,7 @@
 #include "exit_status.h"
 #include "files/files.h"
 #include "generator.h"
+#include "outputs.h"
 #include "redon_options.h"
 
 namespace fcl_artic::app {
@@ -100,7 +101,8 @@ std::vector<JointMotion> collidingSteps(const Snake& s, int joints, const DepthO
   return motions;
 }
 
-int runDepth(const DepthOptions& o) {
+int runDepth(DepthOptions& o) {
+  removeEarlierOutputs({{"--csv", &o.csv}, {"--svg", &o.svg}}, {});
   Table table;
   table.columns = {{"joints", "joints"},
                    {"equations", "solver"},

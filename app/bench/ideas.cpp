@@ -12,6 +12,7 @@
 #include "bench/table1.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "progress.h"
 
 namespace fcl_artic::app {
@@ -98,7 +99,8 @@ std::string csvOf(const std::vector<Row>& rows) {
   return csvOf(table);
 }
 
-int runIdeas(const IdeasOptions& o) {
+int runIdeas(IdeasOptions& o) {
+  removeEarlierOutputs({{"--csv", &o.csv}}, {});
   const PumaInPipes scenery = pumaInPipes(o);
   const std::vector<Idea> all = ideas();
   std::vector<Row> rows;

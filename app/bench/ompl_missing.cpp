@@ -8,15 +8,15 @@
 
 namespace fcl_artic::app {
 
-int benchPlanning(const PlanningBenchOptions&) {
+int benchPlanning(PlanningBenchOptions&) {
   throw std::runtime_error("bench planning: this program was built without OMPL (component ompl)");
 }
 
-int benchCertify(const CertifyBenchOptions&) {
+int benchCertify(CertifyBenchOptions&) {
   throw std::runtime_error("bench certify: this program was built without OMPL (component ompl)");
 }
 
-int benchRigid(const RigidBenchOptions&) {
+int benchRigid(RigidBenchOptions&) {
   throw std::runtime_error("bench rigid: this program was built without OMPL (component ompl)");
 }
 

@@ -14,6 +14,7 @@
 #include "bench/bars.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
@@ -299,9 +300,14 @@ bool hasPictures() {
 
 }  // namespace
 
-int benchPlanning(const PlanningBenchOptions& options) {
+int benchPlanning(PlanningBenchOptions& options) {
   const fs::path out = options.out;
-  if (!options.out.empty()) fs::create_directories(out);
+  if (!options.out.empty()) {
+    fs::create_directories(out);
+    std::string table = out / "planning.txt", rows = out / "planning.csv", plot = out / "planning.svg",
+                picture = out / "planning.png";
+    removeEarlierOutputs({{"--out", &table}, {"--out", &rows}, {"--out", &plot}, {"--out", &picture}}, {});
+  }
   PlanningBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());

@@ -21,6 +21,6 @@ struct PlanningBenchOptions {
 /// @return exit status: 1 when a plan made with our validator collides.
 /// @throws std::runtime_error naming a file that is missing or can't be written; that this program was built without
 /// OMPL.
-int benchPlanning(const PlanningBenchOptions& options);
+int benchPlanning(PlanningBenchOptions& options);
 
 }  // namespace fcl_artic::app

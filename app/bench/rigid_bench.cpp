@@ -17,6 +17,7 @@
 #include "fcl_artic/ompl/planning_setup.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "planning/plans.h"
 #include "progress.h"
 
@@ -306,7 +307,8 @@ class RigidBench {
 
 }  // namespace
 
-int benchRigid(const RigidBenchOptions& options) {
+int benchRigid(RigidBenchOptions& options) {
+  removeEarlierOutputs({{"--csv", &options.csv}}, options.problems);
   RigidBench bench(options);
   bench.run();
   fmt::print("{}", bench.table());

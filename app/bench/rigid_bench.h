@@ -18,6 +18,6 @@ struct RigidBenchOptions {
 /// @return exit status: 1 when a plan made with our validator is seen to collide.
 /// @throws std::runtime_error naming a file that is missing or can't be read or written, or what it lacks; that this
 /// program was built without OMPL.
-int benchRigid(const RigidBenchOptions& options);
+int benchRigid(RigidBenchOptions& options);
 
 }  // namespace fcl_artic::app

@@ -28,6 +28,7 @@
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "progress.h"
 #include "random_motions.h"
@@ -91,7 +92,7 @@ class Asked {
     world_.readScene();
     setup_.load_ms = measured();
     const std::optional<double> before = residentKilobytes();
-    const LinkPairReport report = world_.provePairs();
+    const LinkPairReport report = world_.provePairs(request_.margin);
     setup_.proofs_ms = measured();
     manager_.emplace(world_.makeManager());
     setup_.setup_ms = measured();
@@ -378,7 +379,8 @@ std::string plotOf(const Outcome& o) {
                 chart("the slowest motion", 1)});
 }
 
-int benchRobot(const RobotBenchOptions& options) {
+int benchRobot(RobotBenchOptions& options) {
+  removeEarlierOutputs({{"--csv", &options.csv}, {"--svg", &options.svg}}, inputsOf(options.world));
   if (options.no_fcl && options.only.find("FCL") != std::string::npos) {
     throw std::invalid_argument("--only '" + options.only + "' is a row of FCL's: leave --no-fcl out");
   }
@@ -435,6 +437,9 @@ void addRobotBench(CLI::App& bench, int& exit_status) {
       "Exit status: 0, 1 when answers contradict each other (first and any, or a state in contact for FCL on a motion\n"
       "that is proven free), 2 error.");
   addWorldOptions(*verb, o.world);
+  for (const char* name : {"--margin-of", "--margin-pair", "--margins", "--allow"}) {
+    verb->remove_option(verb->get_option(name));  // FCL's check of states knows none of these
+  }
   addVisibilityOptions(*verb, o.visibility);
   verb->add_option("--angle", o.angle,
                    "Each joint moves by at most this, in degrees, either way; a length by the same part of its range\n"

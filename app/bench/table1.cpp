@@ -14,6 +14,7 @@
 #include "bench/step_bench.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "progress.h"
 #include "redon_options.h"
 #include "render/picture.h"
@@ -189,8 +190,9 @@ void drawStep(const PumaInPipes& scenery, const CloseSteps& steps, const std::st
       path, scenery.robot, scenery.pipes.obstacles, [&](double t) { return step.configuration(t); }, result, picture);
 }
 
-int runTable1(const Table1Options& o) {
+int runTable1(Table1Options& o) {
   if (!o.image.empty()) render::requirePictures();
+  removeEarlierOutputs({{"--csv", &o.csv}, {"--svg", &o.svg}, {"--image", &o.image}}, {});
   const PumaInPipes scenery = pumaInPipes(o);
   const bool stage2 = o.executor != kNoExecutor;
   const auto culler = makeCuller(stage2 ? o.executor : "cpu");

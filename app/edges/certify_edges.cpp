@@ -300,8 +300,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
                       std::optional<RunFolder>& folder) {
   World world(world_options);
   world.readRobot();
-  const bool check_allowed = !world_options.robot.srdf.empty() && o.request.check_self;
-  if (check_allowed || !world_options.auto_srdf.empty()) world.provePairs();
+  world.provePairsFor(o.request);
   const KinematicTree& tree = *world.robot.tree;
   o.columns.state = parseValues(tree, o.state, "--state");
   const EdgeSource edges(tree, o.edges, o.columns);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "edges/certify_edges.h"
+#include "outputs.h"
 #include "plan_variables.h"
 #include "query_options.h"
 #include "usage.h"
@@ -31,6 +32,7 @@ int runCertifyEdges(EdgesVerb& o) {
   o.edges.state = o.variables.state;
   o.edges.request.mode = o.any ? ContactMode::any : ContactMode::first;
   o.edges.request.certificate = o.edges.certificates;
+  removeEarlierOutputs({{"--auto-srdf", &o.world.auto_srdf}}, inputsOf(o.world));
   return certifyEdges(o.world, o.edges);
 }
 
@@ -84,7 +86,6 @@ void addCertifyEdges(CLI::App& program, int& exit_status) {
 
   addWorldOptions(*certify, o.world, "--robot,--urdf");
   certify->get_option("--robot")->required(false);  // --merge needs none
-  takeOneValueEach(*certify);
   addPlanVariables(*certify, o.variables);
   addQueryOptions(*certify, o.edges.request);
   certify->add_option("--threads", o.edges.threads, "Threads at most; 0: as many as the machine runs at once")

@@ -15,6 +15,7 @@
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "hdf5/hdf5.h"
+#include "outputs.h"
 #include "random_motions.h"
 #include "usage.h"
 
@@ -28,7 +29,8 @@ struct Edges {
   std::uint64_t seed = 1;
 };
 
-void writeEdges(const Edges& o) {
+void writeEdges(Edges& o) {
+  removeEarlierOutputs({{"OUT.h5", &o.path}}, {o.robot});
   const Robot robot = loadUrdf(o.robot);
   const KinematicTree& tree = *robot.tree;
   RandomMotions motions(tree, o.angle, o.seed);
@@ -55,7 +57,8 @@ struct Scenes {
 };
 
 /// Boxes, spheres, cylinders and capsules, turned anyhow, in a ball shell about the origin.
-void writeScenes(const Scenes& o) {
+void writeScenes(Scenes& o) {
+  removeEarlierOutputs({{"OUT.h5", &o.path}}, {});
   Random random(o.seed);
   std::vector<std::int64_t> first = {0};
   std::vector<std::int8_t> kind;

@@ -164,6 +164,7 @@ std::string robotHash(const World& read) {
     content.add(hashes.of(*obstacle.object));
   }
   addAllowed(read.robot.allowed, content);
+  content.add(read.pairs().text());
   return content.hash();
 }
 

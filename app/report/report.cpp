@@ -103,6 +103,7 @@ std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
     text += fmt::format("; {} and {} are within {:.6g} m at t = {:.12g}", bodyText(tree, c.body1, -1),
                         bodyText(tree, c.body2, -1), c.upper, c.time);
   }
+  if (!c.ignored_initial_contacts.empty()) text += ", the ignored pairs apart";
   return text + (c.within_tolerance ? "" : " (the search ended early)");
 }
 
@@ -155,11 +156,14 @@ Json bodyJson(const KinematicTree& tree, const BodyRef& body, std::intptr_t prim
 
 Json clearanceJson(const KinematicTree& tree, const Clearance& c) {
   const bool any = std::isfinite(c.upper);
+  Json ignored = Json::array();
+  for (const auto& [a, b] : c.ignored_initial_contacts) ignored.push_back({a.name, b.name});
   return {{"lower", c.lower},
           {"upper", any ? Json(c.upper) : Json()},
           {"t", any ? Json(c.time) : Json()},
           {"body1", any ? bodyJson(tree, c.body1, -1) : Json()},
           {"body2", any ? bodyJson(tree, c.body2, -1) : Json()},
+          {"ignored_initial_contacts", ignored},
           {"within_tolerance", c.within_tolerance}};
 }
 

@@ -181,6 +181,10 @@ Roadmap readRoadmap(const std::string& path, const KinematicTree& tree) {
   return roadmap;
 }
 
+std::string verticesFileOf(const std::string& path) {
+  return roadmapEndingOf(path) == ".csv" ? std::filesystem::path(path).replace_extension(".vertices.csv").string() : "";
+}
+
 void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_only) {
   requireRoadmapEnding(path);
   const std::vector<std::size_t> edges = writtenEdges(roadmap, valid_only);
@@ -188,7 +192,7 @@ void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_on
   if (ending == ".graphml") {
     files::write(path, graphml(roadmap, edges));
   } else if (ending == ".csv") {
-    files::write(std::filesystem::path(path).replace_extension(".vertices.csv").string(), verticesCsv(roadmap));
+    files::write(verticesFileOf(path), verticesCsv(roadmap));
     files::write(path, edgesCsv(roadmap, edges));
   } else {
     files::write(path, hdf5Bytes(roadmap, edges));

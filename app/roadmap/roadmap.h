@@ -64,6 +64,8 @@ Roadmap readRoadmap(const std::string& path, const KinematicTree& tree);
 /// @param valid_only  edges that are not proven free are left out.
 /// @throws std::invalid_argument for another ending; std::runtime_error naming the file.
 void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_only);
+/// PATH.vertices.csv; empty where none is written.
+std::string verticesFileOf(const std::string& path);
 /// @throws std::invalid_argument unless writeRoadmap() knows the ending.
 void requireRoadmapEnding(const std::string& path);
 

@@ -15,6 +15,7 @@
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "plans/plan.h"
 #include "query_options.h"
 #include "roadmap/roadmap.h"
@@ -36,8 +37,7 @@ struct RoadmapVerb {
 /// Robot and allowed pairs, without a scene.
 void readRobot(World& world, const RoadmapVerb& o) {
   world.readRobot();
-  const bool check_allowed = !o.world.robot.srdf.empty() && o.request.check_self;
-  if (check_allowed || !o.world.auto_srdf.empty()) world.provePairs();
+  world.provePairsFor(o.request);
 }
 
 void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
@@ -70,8 +70,20 @@ std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const
   return configurations;
 }
 
-int make(RoadmapVerb& o) {
+/// What a file of an earlier run must not be taken for.
+void removeEarlier(RoadmapVerb& o) {
   requireRoadmapEnding(o.out);
+  std::vector<std::string> inputs = inputsOf(o.world);
+  for (const std::string& file : {o.given, o.roadmap}) {
+    if (!file.empty()) inputs.push_back(file);
+  }
+  std::string vertices = verticesFileOf(o.out);
+  removeEarlierOutputs({{"--out", &o.out}, {"--out's vertices", &vertices}, {"--auto-srdf", &o.world.auto_srdf}},
+                       inputs);
+}
+
+int make(RoadmapVerb& o) {
+  removeEarlier(o);
   World world(o.world);
   readRobot(world, o);
   if (!o.given.empty()) o.make.given = readConfigurations(*world.robot.tree, o.given);
@@ -89,7 +101,7 @@ int make(RoadmapVerb& o) {
 }
 
 int certify(RoadmapVerb& o) {
-  requireRoadmapEnding(o.out);
+  removeEarlier(o);
   World world(o.world);
   readRobot(world, o);
   Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
@@ -123,8 +135,6 @@ int certify(RoadmapVerb& o) {
 
 void addCommon(CLI::App& verb, RoadmapVerb& o) {
   addWorldOptions(verb, o.world, "--robot,--urdf");
-  for (const char* name : {"--scene", "--attach", "--package", "--solid"})
-    verb.get_option(name)->allow_extra_args(false);
   addQueryOptions(verb, o.request);
   verb.remove_option(verb.get_option("--ignore-initial-contact"));  // edges are gone along both ways
   verb.add_option("--threads", o.make.threads, "Threads at most; 0: as many as the machine runs at once")

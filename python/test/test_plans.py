@@ -35,6 +35,25 @@ def test_numpys_own_file_and_json_say_what_check_trajectory_says(shared_world, r
     assert verdicts == [True, False]
 
 
+def test_logs_of_others_are_read(robot, tmp_path):
+    rows = np.column_stack([[0.5, 2.5], [FROM, TO]])
+    np.savetxt(tmp_path / "bare.csv", rows)
+    (plan,) = fcl_artic.load_plans(tmp_path / "bare.csv", robot)
+    assert np.allclose(plan.waypoints, [FROM, TO], atol=1e-15) and list(plan.times) == [0.5, 2.5]
+    assert plan.notes[0].startswith("its columns are taken so: time = column 0, joint1 = column 1")
+    log = np.column_stack([rows[:, 0], np.degrees(rows[:, 1:]), [7, 7]])
+    np.savetxt(tmp_path / "log.csv", log, delimiter=";", comments="", header="stamp;q1;q2;q3;q4;q5;q6;gripper")
+    (plan,) = fcl_artic.load_plans(tmp_path / "log.csv", robot, skip=["gripper"], time="stamp", degrees=True)
+    assert np.allclose(plan.waypoints, [FROM, TO], atol=1e-12)
+    columns = ["time", *robot.tree.variables, "-"]
+    (plan,) = fcl_artic.load_plans(tmp_path / "log.csv", robot, columns=columns, degrees=True)
+    assert np.allclose(plan.waypoints, [FROM, TO], atol=1e-12)
+    (plan,) = fcl_artic.load_plans(tmp_path / "log.csv", robot, columns=columns)
+    assert "are these degrees?" in plan.error
+    with pytest.raises(ValueError, match="leave skip and time out"):
+        fcl_artic.load_plans(tmp_path / "log.csv", robot, columns=columns, time="stamp")
+
+
 def test_what_is_wrong_is_said(shared_world, robot, tmp_path):
     file = tmp_path / "plans.jsonl"
     file.write_text(json.dumps({"waypoints": [FROM, ASIDE]}) + "\n" + json.dumps({"waypoints": [FROM, ASIDE[:5]]}))

@@ -130,7 +130,7 @@ TEST_F(ProgramTest, EveryPairReportsEachPair) {
   const std::string second = write("second.urdf", R"(<robot name="second"><link name="ball"><collision>
     <origin xyz="0.3 0.7 0"/><geometry><sphere radius="0.1"/></geometry></collision></link></robot>)");
   const Outcome run =
-      this->run("check --json --every-pair " + armAndBall() + " " + second + " --from 0,0 --to 90deg,0");
+      this->run("check --json --every-pair " + armAndBall() + " --scene " + second + " --from 0,0 --to 90deg,0");
   ASSERT_EQ(run.status, 1) << run.err;
   const Json answer = Json::parse(run.out);
   ASSERT_EQ(answer.at("contacts").size(), 2u);

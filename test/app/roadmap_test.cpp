@@ -276,6 +276,21 @@ print(valid.number_of_edges(), len(rows))
   EXPECT_EQ(status, 0) << read(path("said"));
 }
 
+TEST_F(RoadmapTest, FilesOfEarlierRunsAreNotLeft) {
+  const std::string broken = write("broken.urdf", "<robot name='x'><link name=''/>");
+  for (const char* verb : {"make ", "certify "}) {
+    const std::string out = write("old.csv", "old"), vertices = write("old.vertices.csv", "old");
+    const std::string given = std::string(verb) == "make " ? "" : write("map.h5", "none") + " ";
+    EXPECT_EQ(run(std::string("roadmap ") + verb + given + "--robot " + broken + " --out " + out).status, 2);
+    EXPECT_EQ(read(out), "");
+    EXPECT_EQ(read(vertices), "");
+  }
+  const std::string map = write("map.h5", "none");
+  const Outcome same = run("roadmap certify " + map + " --robot " + arm() + " --out " + map);
+  EXPECT_EQ(same.status, 2);
+  EXPECT_EQ(read(map), "none");
+}
+
 TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
   const std::string given = write("given.csv", "rail,hinge\n0.25,0.5\n-0.5,1.75\n");
   ASSERT_EQ(make("map.h5", "--vertices 30 --with " + given).status, 0);

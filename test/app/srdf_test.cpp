@@ -101,8 +101,49 @@ TEST_F(SrdfVerbTest, AnswersSayWhatTheyRestOn) {
   EXPECT_EQ(found.status, 1) << found.out;
 }
 
+// Left and lamp are never nearer than 1.85 m.
+TEST_F(SrdfVerbTest, ProofsAreMadeForTheMarginThatIsAskedFor) {
+  const std::string robot = twoArms(), allowed = " --srdf " + srdf("a.srdf", "left", "lamp"),
+                    motion = " --from 0,0,0 --to 0,0.5,0";
+  const auto check = [&](const std::string& more) { return run("check " + robot + allowed + motion + more); };
+  for (const char* margin : {"0", "0.005", "0.1"}) {
+    const Outcome proven = check(std::string(" --margin ") + margin);
+    EXPECT_EQ(proven.status, 0);
+    EXPECT_EQ(proven.out.rfind("FREE: proven", 0), 0u) << margin << proven.out;
+  }
+  const Outcome near = check(" --margin 1.95 --no-scene");
+  EXPECT_NE(near.out.find("1 allowed pair can come within the margin of 1.95 m, and is not checked: left and lamp"),
+            std::string::npos)
+      << near.out;
+  // All pairs, found by themselves; what only comes near stays checked.
+  const Outcome found = run("check " + robot + " --auto-srdf " + path("auto.srdf") + motion + " --margin 0.1 --json");
+  EXPECT_EQ(found.status, 0) << found.err;
+  const Json answer = Json::parse(found.out);
+  EXPECT_EQ(answer.at("unproven_allowed_pairs"), 0);
+  EXPECT_EQ(answer.at("statistics").at("pairs"), 3);
+}
+
+TEST_F(SrdfVerbTest, FilesOfEarlierRunsAreNotLeft) {
+  const std::string broken = write("broken.urdf", "<robot name='x'><link name=''/>"),
+                    old = write("old.srdf", "<robot/>");
+  EXPECT_EQ(run("srdf " + broken + " --write " + old).status, 2);
+  EXPECT_EQ(read(old), "");
+  // An output is no input.
+  const std::string robot = twoArms(), given = srdf("given.srdf", "left", "lamp");
+  const Outcome same = run("srdf " + robot + " --check " + given + " --write " + given);
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("--write '" + given + "' is a file that this run reads"), std::string::npos) << same.err;
+  EXPECT_NE(read(given), "");
+  // Tables of measurements, likewise.
+  const std::string table = write("old.csv", "old");
+  EXPECT_EQ(run("bench robot " + broken + " --csv " + table).status, 2);
+  EXPECT_EQ(read(table), "");
+}
+
 #ifdef FCL_ARTIC_HAS_PICTURES
 TEST_F(SrdfVerbTest, DrawsWhatTouches) {
+  ASSERT_EQ(std::system(("mkdir -p '" + path("pictures") + "'").c_str()), 0);
+  write("pictures/left-lamp.png", "an earlier run's");
   const Outcome drawn = run("srdf " + twoArms() + " --images " + path("pictures"));
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_EQ(read(path("pictures") + "/left-right.png").rfind("\x89PNG", 0), 0u);
