@@ -76,6 +76,11 @@ struct Arm {
         if (uniform(0, 1) < 0.4 && link != std::string(other)) manager->setMargin(link, other, margin());
       }
     }
+    // Neighbours are checked for touching, whatever the request's margin.
+    AllowedCollisionMatrix neighbours;
+    neighbours.allow("base", "upper");
+    neighbours.allow("upper", "lower");
+    manager->setAllowedCollisions(neighbours);
     manager->setup();
   }
 };

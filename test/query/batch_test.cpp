@@ -92,6 +92,9 @@ struct Scene {
       manager->registerObject(objects.back().get());
     }
     manager->registerObject(&moving);
+    AllowedCollisionMatrix neighbours;
+    for (int j = 1; j < 4; ++j) neighbours.allow("link" + std::to_string(j), "link" + std::to_string(j + 1));
+    manager->setAllowedCollisions(neighbours);
     manager->setup();
     const auto q = [&] {
       return (VectorXd(4) << 3 * u(random), 2 * u(random), 3 * u(random), 2 * u(random)).finished();
