@@ -82,6 +82,8 @@ install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" "${PROJECT_SOURCE_DIR}/README.md" 
 # What the README and the pages it names link to, as it lies in the repository.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/doc" "${PROJECT_SOURCE_DIR}/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
   COMPONENT documentation PATTERN man EXCLUDE PATTERN manual EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/doc/manual" DESTINATION "${CMAKE_INSTALL_DOCDIR}/doc" COMPONENT documentation
+  FILES_MATCHING PATTERN "*.md")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/python/example" DESTINATION "${CMAKE_INSTALL_DOCDIR}/python"
   COMPONENT documentation)
 foreach(folder data bench)

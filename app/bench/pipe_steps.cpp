@@ -40,7 +40,7 @@ Scene::Obstacle obstacleOf(const generator::Mesh& mesh, const std::string& name)
   model->beginModel(static_cast<int>(mesh.triangles.size()), static_cast<int>(mesh.vertices.size()));
   model->addSubModel(mesh.vertices, faces);
   model->endModel();
-  return {name, std::make_shared<fcl::CollisionObjectd>(model)};
+  return {name, std::make_shared<fcl::CollisionObjectd>(model), {}};
 }
 
 /// Random configurations and directions within the joints' limits; joints without limits turn within +-pi.

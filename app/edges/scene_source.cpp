@@ -185,7 +185,7 @@ Scene SceneSource::loadShapes(const Entry& entry) const {
       const double scaled[3] = {options_.scale * size[3 * i], options_.scale * size[3 * i + 1],
                                 options_.scale * size[3 * i + 2]};
       scene.obstacles.push_back(
-          {"obstacle" + std::to_string(i), std::make_shared<fcl::CollisionObjectd>(makeShape(kind[i], scaled), M)});
+          {"obstacle" + std::to_string(i), std::make_shared<fcl::CollisionObjectd>(makeShape(kind[i], scaled), M), {}});
     } catch (const std::invalid_argument& error) {
       fail(fmt::format("obstacle {}: {}", i, error.what()));
     }

@@ -99,7 +99,7 @@ def _pickle_by_protocol_2() -> None:
 
     for kind in vars(_fcl_artic).values():
         if isinstance(kind, type) and "__setstate__" in vars(kind):
-            kind.__reduce_ex__ = reduce
+            setattr(kind, "__reduce_ex__", reduce)
 
 
 _pickle_by_protocol_2()

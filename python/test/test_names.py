@@ -204,7 +204,7 @@ def resolve(path):
 
 def headers():
     for path in sorted(INCLUDE.rglob("*.h")):
-        if path.name in ("fcl_names.h", "export.h", "fcl_artic.h"):  # FCL's own names; no names
+        if path.name in ("fcl_names.h", "abi.h", "export.h", "fcl_artic.h"):  # FCL's own names; no names
             continue
         text = re.sub(r"//.*", "", path.read_text())
         yield path, text

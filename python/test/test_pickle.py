@@ -191,7 +191,7 @@ def test_a_pool_of_processes_asks(robot, scene, hit, miss):
 
 @pytest.mark.parametrize("protocol", range(pickle.HIGHEST_PROTOCOL + 1))
 def test_every_protocol_pickles(protocol, robot):
-    for value in (fcl_artic.box(1, 2, 3), robot, fcl_artic.Request(margin=0.25)):
+    for value in (fcl_artic.box((1, 2, 3)), robot, fcl_artic.Request(margin=0.25)):
         copy = pickle.loads(pickle.dumps(value, protocol))
         assert type(copy) is type(value)
     assert repr(pickle.loads(pickle.dumps(robot, protocol))) == repr(robot)

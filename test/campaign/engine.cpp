@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "engine.h"
+#include "../support/allow_neighbours.h"
 
 #include <chrono>
 
@@ -80,7 +81,7 @@ Question prepare(const Scene& scene) {
   fcl_artic::AllowedCollisionMatrix allowed;
   for (const auto& [a, b] : scene.allowed) allowed.allow(scene.nameOf(a), scene.nameOf(b));
   manager.setAllowedCollisions(allowed);
-  manager.setup();
+  fcl_artic::test::setUpWithoutNeighbours(manager);
 
   fcl_artic::CertifiedRequest& request = question.request;
   request.tolerance_time = scene.tolerance_time;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "world.h"
+#include "../support/allow_neighbours.h"
 
 #include <algorithm>
 #include <array>
@@ -257,7 +258,7 @@ void World::choosePairs(Random& random) {
     }
   }
   manager_->setAllowedCollisions(allowed);
-  manager_->setup();
+  fcl_artic::test::setUpWithoutNeighbours(*manager_);
 }
 
 void World::chooseMotion(Random& random) {

@@ -181,7 +181,8 @@ TEST(PlanMotionTest, OtherJointsKeepTheirState) {
   plan.positions[1][0] = 2.5;
   options.ignore_limits = true;
   plan.state.clear();
-  expectContains(toMotion(tree, plan, options).notes[1], "joint 'hinge': waypoint 1 is beyond its limits [-1, 2], by at most 0.5 rad");
+  expectContains(toMotion(tree, plan, options).notes[1],
+                 "joint 'hinge': waypoint 1 is beyond its limits [-1, 2], by at most 0.5 rad");
 }
 
 }  // namespace

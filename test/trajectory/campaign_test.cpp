@@ -6,6 +6,7 @@
 
 #include <fcl/narrowphase/collision.h>
 
+#include "../support/allow_neighbours.h"
 #include "scene.h"
 
 namespace trajectory_test {
@@ -161,6 +162,7 @@ TEST(TrajectoryCampaign, NoContactIsMissed) {
   for (std::uint64_t n = 0; n < kCases; ++n) {
     Random random(kSeed + n);
     Case c(random);
+    test::setUpWithoutNeighbours(c.scene.ready());
     const JointTrajectory x = c.trajectory(random);
     pieces += static_cast<int>(x.numPieces());
     const CertifiedResult r = c.scene.run(x);

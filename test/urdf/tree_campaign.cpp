@@ -87,9 +87,10 @@ class Case {
     return robot;
   }
 
-  /// @param without  link whose geometry is left out; -1: none.
-  CertifiedResult ask(const Robot& robot, ContactMode mode, const std::string& without = {},
-                      bool certificate = false) const {
+  /// @param without  link whose geometry is left out; empty: none.
+  /// @param[out] neighbours  what the manager found of these; null: not asked.
+  CertifiedResult ask(const Robot& robot, ContactMode mode, const std::string& without = {}, bool certificate = false,
+                      std::vector<LinkPairFinding>* neighbours = nullptr) const {
     const KinematicTree& tree = *robot.tree;
     ArticulatedCollisionManager manager(robot.tree);
     for (const LinkGeometry& g : robot.geometry) {
@@ -103,6 +104,7 @@ class Case {
       manager.registerObject(objects.back().get());
     }
     manager.setup();
+    if (neighbours) *neighbours = manager.neighbours();
     Eigen::VectorXd q0 = tree.neutralConfiguration(), q1 = q0;
     for (std::size_t i = 1; i < way_.size(); ++i) {
       if (way_[i].from.empty() || tree_.links()[i].master >= 0) continue;
@@ -120,10 +122,39 @@ class Case {
     return result;
   }
 
+  /// Neighbours that the manager's rule leaves out are not watched. Those that it says touch throughout are to touch.
+  /// @return what contradicts the rule; empty: nothing.
+  std::string leaveOut(const std::vector<LinkPairFinding>& neighbours, const CertifiedResult& result, long* left_out) {
+    for (const LinkPairFinding& found : neighbours) {
+      if (!found.touchThroughout() && !found.undecided()) continue;
+      ++*left_out;
+      left_out_.allow(found.link1, found.link2);
+      if (found.undecided()) {
+        const auto& said = result.unproven_neighbours;
+        const std::pair<std::string, std::string> names(found.link1, found.link2);
+        if (!said || std::find(said->begin(), said->end(), names) == said->end()) return "nobody says " + found.link1;
+        continue;
+      }
+      for (int s = 0; s <= kSamples; ++s) {
+        const std::vector<Isometry3d> M = shapePoses(static_cast<double>(s) / kSamples);
+        const auto touchThen = [&](const auto& pair) {
+          const auto [i, j] = pair;
+          return isLeftOut(i, j, found) && touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], Size::larger);
+        };
+        if (std::none_of(watched_.begin(), watched_.end(), touchThen)) {
+          return found.link1 + " and " + found.link2 + " are apart at " + std::to_string(s);
+        }
+      }
+    }
+    return {};
+  }
+
   bool touches(double t, Size size) const {
     const std::vector<Isometry3d> M = shapePoses(t);
     return std::any_of(watched_.begin(), watched_.end(), [&](const auto& pair) {
       const auto [i, j] = pair;
+      const int a = bodies_[i].link, b = bodies_[j].link;
+      if (a >= 0 && b >= 0 && left_out_.allowed(RandomTree::linkName(a), RandomTree::linkName(b))) return false;
       return touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], size);
     });
   }
@@ -145,6 +176,12 @@ class Case {
   long numWatched() const { return static_cast<long>(watched_.size()); }
 
  private:
+  bool isLeftOut(std::size_t i, std::size_t j, const LinkPairFinding& found) const {
+    if (bodies_[i].link < 0 || bodies_[j].link < 0) return false;
+    const std::string a = RandomTree::linkName(bodies_[i].link), b = RandomTree::linkName(bodies_[j].link);
+    return std::minmax(a, b) == std::minmax(found.link1, found.link2);
+  }
+
   /// Large trees meet themselves soon.
   double reach() { return random_.uniform(0.3, 4) / std::sqrt(static_cast<double>(tree_.links().size())); }
 
@@ -202,7 +239,7 @@ class Case {
   std::vector<Shape> obstacles_;
   std::vector<Body> bodies_;
   std::vector<std::pair<std::size_t, std::size_t>> watched_;
-  AllowedCollisionMatrix allowed_;
+  AllowedCollisionMatrix allowed_, left_out_;
 };
 
 /// The contact's link that is not the other one's base.
@@ -217,8 +254,11 @@ void judge(const Options& options, int number, const std::string& folder, Report
     ++count;
     if (report.faults.size() < kMostFaults) report.faults.push_back("tree " + std::to_string(number) + ": " + what);
   };
-  const CertifiedResult r = c.ask(robot, ContactMode::first, {}, static_cast<bool>(options.certificates)),
+  std::vector<LinkPairFinding> neighbours;
+  const CertifiedResult r = c.ask(robot, ContactMode::first, {}, static_cast<bool>(options.certificates), &neighbours),
                         any = c.ask(robot, ContactMode::any);
+  const std::string untrue = c.leaveOut(neighbours, r, &report.left_out);
+  if (!untrue.empty()) fault(report.untrue, "neighbours: " + untrue);
   if (options.certificates) options.certificates(number, r);
 
   ++report.trees;
@@ -274,6 +314,7 @@ void Report::add(const Report& o) {
   free += o.free;
   uncertain += o.uncertain;
   pairs += o.pairs;
+  left_out += o.left_out;
   samples += o.samples;
   missed += o.missed;
   untrue += o.untrue;
@@ -314,7 +355,8 @@ std::string toText(const Report& r) {
   out << r.trees << " trees: " << r.links << " links, " << r.joints << " joints (revolute " << r.of_kind[0]
       << ", continuous " << r.of_kind[1] << ", prismatic " << r.of_kind[2] << ", fixed " << r.of_kind[3] << ", planar "
       << r.of_kind[4] << ", floating " << r.of_kind[5] << "; " << r.mimics << " mimic, " << r.chains
-      << " of them a mimic), " << r.meshes << " meshes, " << r.pairs << " watched pairs of shapes\n"
+      << " of them a mimic), " << r.meshes << " meshes, " << r.pairs << " watched pairs of shapes, " << r.left_out
+      << " pairs of neighbours left out\n"
       << r.hits << " contacts (" << r.at_start << " at the start, " << r.uncertain << " not certain), " << r.free
       << " free; " << r.samples << " samples\n"
       << "missed " << r.missed << ", untrue " << r.untrue << ", modes that differ " << r.differing << "\n";

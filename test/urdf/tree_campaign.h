@@ -31,6 +31,7 @@ struct Report {
   long hits = 0, at_start = 0, free = 0;  ///< answers
   long uncertain = 0;                     ///< contacts that are not proven
   long pairs = 0, samples = 0;            ///< watched pairs of shapes; poses looked at
+  long left_out = 0;                      ///< pairs of neighbours, by the rule
   long missed = 0;                        ///< said to be free where a sample touches
   long untrue = 0;                        ///< said to touch where nothing does
   long differing = 0;                     ///< the verdict of mode `any` contradicts that of mode `first`

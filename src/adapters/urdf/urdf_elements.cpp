@@ -129,7 +129,8 @@ class Strict {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
       const std::string name = a->Name();  // there once: tinyxml2 sees to that
       if (name == "xmlns" || name.rfind("xmlns:", 0) == 0 || of.attributes.count(name)) continue;
-      if (of.passed_over_attributes.count(name)) continue;
+      // Another vocabulary's word for it, such as drake:acceleration, is passed over as ours is.
+      if (of.passed_over_attributes.count(name.substr(name.find(':') + 1))) continue;
       // Of an axis that some writers give angles, all of them 0, they say nothing.
       if (std::strcmp(e.Name(), "axis") == 0 && name == "rpy" && isZero(a->Value())) continue;
       const std::string cure = name == "quat_xyzw" || name == "quat_wxyz"
