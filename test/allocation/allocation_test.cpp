@@ -18,7 +18,10 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-// glibc's own, under its other names.
+}  // namespace allocation_test
+
+// glibc's own, under its other names. Outside of the namespace they are the ones that its header declares, which are
+// seen by all libraries.
 extern "C" {
 void* __libc_malloc(std::size_t size);                           // NOLINT: glibc's name
 void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT
@@ -26,22 +29,24 @@ void* __libc_realloc(void* memory, std::size_t size);            // NOLINT
 void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT
 
 void* malloc(std::size_t size) {
-  ++allocations;
+  ++allocation_test::allocations;
   return __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
+  ++allocation_test::allocations;
   return __libc_calloc(count, size);
 }
 void* realloc(void* memory, std::size_t size) {
-  ++allocations;
+  ++allocation_test::allocations;
   return __libc_realloc(memory, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
+  ++allocation_test::allocations;
   return __libc_memalign(alignment, size);
 }
 }
+
+namespace allocation_test {
 
 using namespace fcl_artic;
 using Eigen::Isometry3d;
