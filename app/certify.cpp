@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "angles.h"
 #include "certificate_file.h"
 #include "certification.h"
 #include "certify_report.h"
@@ -31,8 +32,6 @@
 
 namespace fcl_artic::app {
 namespace {
-
-constexpr double kFullTurn = 6.28318530717958647693;
 
 struct CertifyVerb {
   WorldOptions world;
@@ -84,7 +83,7 @@ plans::Plan writtenPlan(const KinematicTree& tree, const CertifiedPlan& one, pla
         joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(variables[j]));
     for (std::size_t k = 1; forever && k < out.positions.size(); ++k) {
       double& value = out.positions[k][j];
-      value += kFullTurn * std::nearbyint((out.positions[k - 1][j] - value) / kFullTurn);
+      value += 2 * kPi * std::nearbyint((out.positions[k - 1][j] - value) / (2 * kPi));
     }
   }
   if (format != plans::Format::ompl) return out;

@@ -89,8 +89,7 @@ std::string mendedText(const CertifiedPlan& plan) {
   const Mended& m = *plan.mended;
   std::string text = fmt::format(
       "mended in {:.1f} ms, {} detour{} at {:g} m beyond the margin, {} waypoints, {:.4g} times as long, off by at "
-      "most "
-      "{:.4g} {} ('{}')",
+      "most {:.4g} {} ('{}')",
       m.ms, m.detours, m.detours == 1 ? "" : "s", m.kept, m.plan.positions.size(), m.length_ratio, m.deviation,
       m.deviation_is_angle ? "rad" : "m", m.deviation_joint);
   if (plan.motion->timed) text += fmt::format(", {:.4g} s longer", m.added_time);

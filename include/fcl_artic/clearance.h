@@ -35,8 +35,9 @@ struct ClearanceRequest : Scope {
 /// The smallest distance of any checked pair over a whole motion: lower <= distance <= upper, both proven. It is found
 /// by queries with margins (CertifiedRequest::margin).
 struct Clearance {
-  /// No checked pair comes nearer than this, in m, at any time. 0 if something touches, and if nothing larger is
-  /// proven.
+  /// No checked pair comes nearer than this, in m, at any time, but neighbours that are checked for touching only
+  /// (ArticulatedCollisionManager::setAllowedCollisions()): of these, that they do not touch. 0 if something touches,
+  /// and if nothing larger is proven.
   double lower = 0;
   /// At `time`, body1 and body2 are proven to be no farther apart than this, in m. Infinite if nothing is proven to
   /// come within ClearanceRequest::most.

@@ -99,6 +99,9 @@ struct LinkPairFinding {
   bool undecided() const {
     return kind == LinkPairKind::unproven && !touchThroughout() && (tried == 0 || apart < tried);
   }
+  /// Whether a manager's rule leaves the two out, if they are neighbours of which nobody says anything
+  /// (ArticulatedCollisionManager::setAllowedCollisions()).
+  bool leftOut() const { return touchThroughout() || undecided(); }
 };
 
 /// How classifyLinkPairs() works.

@@ -197,10 +197,10 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// that the matrix neither allows nor has checked (AllowedCollisionMatrix::mustBeChecked()), setup() finds out what
   /// they do over all values of the joint between them, as classifyLinkPairs() does of all pairs, once and with less
   /// work:
-  /// - Those that touch whatever the joint does, as housings that overlap in it, are not checked; notes() names them.
-  /// - Those that touch nowhere, proven, or somewhere are checked, for touching: a request's margin and those of the
-  /// two
-  ///   bodies do not count, but only the pair's own (setMargin()) and what a request adds (added_margin).
+  /// - Geometries of theirs that touch, or are too near to tell, at all values of it that are tried, as housings that
+  ///   overlap in it, are not checked; notes() names the links. Their other geometries are checked.
+  /// - All others that touch nowhere, proven, or somewhere are checked, for touching: a request's margin and those of
+  ///   the two bodies do not count, but only the pair's own (setMargin()) and what a request adds (added_margin).
   /// - Those of which it can't be decided are not checked, and counted in each answer
   ///   (CertifiedResult::unproven_neighbours).
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.

@@ -130,7 +130,8 @@ struct CertifiedResult : Bracket {
   /// or neighbours of which it can't be decided whether they touch (unproven_neighbours), and that nothing proves apart
   /// for this motion and margin, of those the request asks about. `free` says nothing of them;
   /// ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours that touch whatever the joint
-  /// between them does, as housings that overlap in it, do not count: ArticulatedCollisionManager::notes() names them.
+  /// between them does, as housings that overlap in it, do not count: ArticulatedCollisionManager::notes() names those
+  /// that nobody allowed.
   std::size_t unproven_allowed_pairs = 0;
   /// Names of the links of those of these pairs that are neighbours which nobody allowed; null: none. (Shared by all
   /// answers of one set-up.)

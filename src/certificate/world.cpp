@@ -14,6 +14,7 @@
 #include "numerics/baseline_isa.h"
 
 #include "convex/piece_kinds.h"
+#include "setup/neighbour_findings.h"
 
 namespace fcl_artic::certificate {
 namespace {
@@ -412,9 +413,16 @@ class ManagedWorld {
       case Excuse::neighbours:
         return "neighbours";
       case Excuse::none:
-        return nullptr;
+        return isPartOfLeftOut(a, b) ? "neighbours" : nullptr;
     }
     return nullptr;
+  }
+  /// A world leaves out all bodies of two names: of links whose housings overlap it says nothing of their other parts
+  /// either, which the query checks.
+  bool isPartOfLeftOut(const ManagedBody& a, const ManagedBody& b) const {
+    if (a.attached || b.attached || !registry_.neighbours()) return false;
+    const NeighbourFindings::Pair* const pair = registry_.neighbours()->find(a.link, b.link);
+    return pair && pair->finding.leftOut();
   }
 
   void addPairs() {

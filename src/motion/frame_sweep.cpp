@@ -106,8 +106,9 @@ namespace {
 
 /// Multiplies a constant transform in; translations are summed: where they cancel, their rounding does not.
 void moveBy(Carrier& carrier, const RigidTransform& constant, bool down) {
-  if (isIdentity(constant)) {
+  if (isIdentity(constant)) {  // a product may come out so
     carrier.ulps += constant.ulps();
+    carrier.length += constant.length();
     return;
   }
   const RigidTransform factor = down ? constant : constant.inverse();

@@ -108,15 +108,15 @@ class RigidTransform {
 
   /// The product, with the errors of both.
   RigidTransform operator*(const RigidTransform& other) const {
-    if (isIdentity(M_)) return other;
-    if (isIdentity(other.M_)) return *this;
+    if (isStored() && isIdentity(M_)) return other;
+    if (other.isStored() && isIdentity(other.M_)) return *this;
     return product(M_ * other.M_, ulps_ + other.ulps_, length_ + other.length_);
   }
   /// The inverse. -R^T t is off by the errors of both R and t: twice as much, for a product; a stored t is exact.
   RigidTransform inverse() const {
     RigidTransform inverse = *this;
     inverse.M_ = M_.inverse();
-    if (ulps_ == kTransformUlps) {
+    if (isStored()) {
       inverse.place(inverse.M_.translation());
     } else {
       inverse.ulps_ *= 2;
@@ -144,6 +144,8 @@ class RigidTransform {
   friend Eigen::Isometry3d operator*(const Eigen::Isometry3d& a, const RigidTransform& b) { return a * b.M_; }
 
  private:
+  /// Not a product.
+  bool isStored() const { return ulps_ == kTransformUlps; }
   void place(const Eigen::Vector3d& t) {
     M_.translation() = t;
     length_ = t.norm() * (1 + 1e-15);

@@ -97,12 +97,29 @@ class Classifier {
     const bool rigid = variables().empty();
     for (std::size_t samples = 1; samples <= (rigid ? 1 : options_.samples); samples *= 2) {
       tryConfigurations(samples, finding);
-      if (finding.touching > 0 && finding.apart > 0) return set(finding, LinkPairKind::sometimes, true);
+      if (finding.touching > 0 && finding.apart > 0) return setTouching(finding);
     }
-    if (finding.touching > 0) return set(finding, LinkPairKind::always, rigid);
+    if (finding.touching > 0) return setTouching(finding);
     if (finding.apart == finding.tried && prove(options_.work, false)) return setNever(finding);
     if (!rigid) search(0, kSearches, finding);
-    set(finding, finding.touching > 0 ? LinkPairKind::sometimes : LinkPairKind::unproven, finding.touching > 0);
+    if (finding.touching == 0) return set(finding, LinkPairKind::unproven, false);
+    setTouching(finding);
+  }
+
+  /// Of links that touch at all configurations that runShort() tries: which of their geometries, each with each, are
+  /// apart at one of these. A housing that overlaps in the joint excuses no other part of the two links.
+  /// @return empty: none, or no joint moves them.
+  std::vector<bool> apartSomewhere() {
+    std::vector<bool> apart(proofs_.size());
+    if (variables().empty() || proofs_.size() == 1) return {};
+    for (std::size_t i = 0; i < proofs_.size(); ++i) {
+      for (std::size_t sample = 0; sample < options_.samples && !apart[i]; ++sample) {
+        const std::vector<double> values = ofProof(proofs_[i], valuesToTry(sample));
+        apart[i] = proofs_[i].at(values, options_.margin) == RangeProof::Contact::none;
+      }
+    }
+    if (std::none_of(apart.begin(), apart.end(), [](bool one) { return one; })) return {};
+    return apart;
   }
 
   /// @param[out] finding  all but the names.
@@ -120,9 +137,7 @@ class Classifier {
     }
     if (finding.touching == 0 && finding.configuration.size() == 0) return;
     if (finding.touching == 0) return set(finding, LinkPairKind::unproven, false);
-    finding.nearest = options_.margin;
-    const bool always = finding.apart == 0;
-    set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || rigid);
+    setTouching(finding);
   }
 
  private:
@@ -138,6 +153,12 @@ class Classifier {
   static void set(LinkPairFinding& finding, LinkPairKind kind, bool proven) {
     finding.kind = kind;
     finding.proven = proven;
+  }
+  /// Of links that touch in some configuration, or in all that were tried.
+  void setTouching(LinkPairFinding& finding) const {
+    finding.nearest = options_.margin;
+    const bool always = finding.apart == 0;
+    set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || variables().empty());
   }
   /// Proven: what was tried before is of no interest.
   static void setNever(LinkPairFinding& finding) {
@@ -222,18 +243,19 @@ class Classifier {
     return values;
   }
 
+  /// The configuration that is tried so many after the first: the robot at rest, all joints at 0 or as near as their
+  /// limits let them.
+  std::vector<double> valuesToTry(std::size_t sample) const {
+    if (sample > 0) return spread(ranges_, sample);
+    std::vector<double> values;
+    for (const ValueRange& range : ranges_) values.push_back(std::clamp(0.0, range.lower, range.upper));
+    return values;
+  }
+
   /// Tries configurations, until so many are tried.
   void tryConfigurations(std::size_t samples, LinkPairFinding& finding) {
-    const EvenlySpread spread(variables().size());
-    std::vector<double> values(variables().size());
     for (; finding.tried < samples; ++finding.tried) {
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const ValueRange& range = ranges_[i];
-        // The first one is the robot at rest: all joints at 0, or as near as their limits let them.
-        const double value =
-            finding.tried == 0 ? 0 : range.lower + spread(finding.tried, i) * (range.upper - range.lower);
-        values[i] = std::clamp(value, range.lower, range.upper);
-      }
+      const std::vector<double> values = valuesToTry(finding.tried);
       const RangeProof::Contact contact = at(values, options_.margin);
       finding.apart += contact == RangeProof::Contact::none;
       if (contact != RangeProof::Contact::touch) continue;
@@ -300,15 +322,13 @@ std::vector<Pair> pairsOf(const Registry& registry, const engine::Problem& probl
   return all;
 }
 
-/// What proofs and findings of a pair of geometries are good for: the one of the link with the lower number first.
+/// What proofs and findings of a pair of geometries are good for.
 PairMaking makingOf(const Registry& registry, const engine::LinkPair& pair) {
-  const ManagedBody *a = &registry.body(pair.a), *b = &registry.body(pair.b);
-  if (a->link > b->link) std::swap(a, b);
-  return {*registry.tree(), *a, *b};
+  return PairMaking::inOrder(*registry.tree(), registry.body(pair.a), registry.body(pair.b));
 }
 
 /// Classifies pairs over threads.
-/// @param seek  f(classifier, finding) for each; the names are there already.
+/// @param seek  f(i, classifier, finding) for the i-th pair; the names are there already.
 /// @param[out] findings  of each pair.
 /// @param[out] proofs  of those that never touch.
 /// @param done  called after each, by one thread at a time.
@@ -328,7 +348,7 @@ void classifyPairs(const Registry& registry, const engine::Problem& problem, con
     finding.neighbours = areNeighbours(tree, with_geometry, pairs[i].link1, pairs[i].link2);
     const WorkspaceLoan workspace;
     Classifier classifier(tree, problem, pairs[i], options, *workspace);
-    seek(classifier, finding);
+    seek(i, classifier, finding);
     variables[i] = classifier.variables();
     const std::lock_guard<std::mutex> lock(mutex);
     done();
@@ -343,7 +363,6 @@ void classifyPairs(const Registry& registry, const engine::Problem& problem, con
 }  // namespace
 
 std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& registry) {
-  const KinematicTree& tree = *registry.tree();
   const std::set<LinkId> with_geometry = registry.linksWithGeometry();
   const auto asked = [&](const ManagedBody& a, const ManagedBody& b) {
     return registry.areOpenNeighbours(with_geometry, a.link, b.link);
@@ -377,13 +396,18 @@ std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& regist
   options.samples = kSamplesOfNeighbours;
   options.work = kWorkOfNeighbours;
   std::vector<LinkPairFinding> findings;
+  std::vector<std::vector<bool>> apart(open.size());
   classifyPairs(
       registry, problem, open, options,
-      [](Classifier& classifier, LinkPairFinding& finding) { classifier.runShort(finding); }, [] {}, findings,
-      found->proofs);
+      [&](std::size_t i, Classifier& classifier, LinkPairFinding& finding) {
+        classifier.runShort(finding);
+        if (finding.touchThroughout()) apart[i] = classifier.apartSomewhere();
+      },
+      [] {}, findings, found->proofs);
   for (std::size_t i = 0; i < open.size(); ++i) {
     const NeighbourFindings::Links links(open[i].link1, open[i].link2);
-    found->pairs.emplace(links, NeighbourFindings::Pair{std::move(findings[i]), std::move(made_of_open[i])});
+    found->pairs.emplace(
+        links, NeighbourFindings::Pair{std::move(findings[i]), std::move(made_of_open[i]), std::move(apart[i])});
   }
   return found;
 }
@@ -398,11 +422,15 @@ std::vector<LinkPairFinding> ArticulatedCollisionManager::neighbours() const {
 }
 
 std::vector<std::string> ArticulatedCollisionManager::notes() const {
+  impl_->requireReady();
   std::string throughout, undecided;
-  for (const LinkPairFinding& pair : neighbours()) {
-    const std::string names = "'" + pair.link1 + "' and '" + pair.link2 + "'";
-    if (pair.touchThroughout()) throughout += (throughout.empty() ? "" : ", ") + names;
-    if (pair.undecided()) undecided += (undecided.empty() ? "" : ", ") + names;
+  for (const auto& [links, pair] : impl_->registry.neighbours()->pairs) {
+    const LinkPairFinding& found = pair.finding;
+    if (impl_->registry.allowed().allowed(found.link1, found.link2)) continue;
+    const std::string names = "'" + found.link1 + "' and '" + found.link2 + "'" +
+                              (pair.apart.empty() ? "" : " (but for their parts that are apart at one of these)");
+    if (found.touchThroughout()) throughout += (throughout.empty() ? "" : ", ") + names;
+    if (found.undecided()) undecided += (undecided.empty() ? "" : ", ") + names;
   }
   std::vector<std::string> notes;
   if (!throughout.empty())
@@ -445,7 +473,7 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
   std::size_t done = 0;
   classifyPairs(
       registry, problem, pairs, options,
-      [](Classifier& classifier, LinkPairFinding& finding) { classifier.run(finding); },
+      [](std::size_t, Classifier& classifier, LinkPairFinding& finding) { classifier.run(finding); },
       [&] {
         if (options.progress) options.progress(++done, pairs.size());
       },
@@ -465,8 +493,7 @@ AllowedCollisionMatrix LinkPairReport::alwaysTouching() const {
 AllowedCollisionMatrix LinkPairReport::needNoCheck() const {
   AllowedCollisionMatrix matrix = alwaysTouching();
   for (const LinkPairFinding& pair : pairs) {
-    const bool left_out = pair.neighbours && (pair.touchThroughout() || pair.undecided());
-    if (pair.kind == LinkPairKind::never || left_out) matrix.allow(pair.link1, pair.link2);
+    if (pair.kind == LinkPairKind::never || (pair.neighbours && pair.leftOut())) matrix.allow(pair.link1, pair.link2);
   }
   return matrix;
 }

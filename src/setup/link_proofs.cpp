@@ -5,7 +5,6 @@
 #include <limits>
 #include <set>
 #include <string>
-#include <tuple>
 
 #include "motion/half_angles.h"
 #include "numerics/arc_tangent.h"
@@ -62,10 +61,9 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
   const auto find = [&](const ManagedBody& a, const ManagedBody& b, double margin) {
     const LinkPairProofs::Proof* proof = nullptr;
     if (a.attached || b.attached) return proof;
-    const auto& [first, second] = a.link < b.link ? std::tie(a, b) : std::tie(b, a);
+    const auto [lower, higher] = std::minmax(a.link, b.link);
     for (const LinkPairProofs* proofs : all_proofs) {
-      if (!proof && proofs && proofs->has(first.link, second.link))
-        proof = proofs->find(PairMaking(tree, first, second), margin);
+      if (!proof && proofs && proofs->has(lower, higher)) proof = proofs->find(PairMaking::inOrder(tree, a, b), margin);
     }
     return proof;
   };
@@ -88,12 +86,14 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     const Excuse excuse = registry.excuseOf(a, b);
     if (excuse == Excuse::none) return;
     if (excuse != Excuse::touch_link && !a.attached && !b.attached && neighbours) {
-      const LinkPairFinding* const found = neighbours->find(a.link, b.link);
-      if (found && found->touchThroughout()) return;  // notes() names it
+      const NeighbourFindings::Pair* const pair = neighbours->find(a.link, b.link);
+      const bool overlaps = pair && pair->finding.touchThroughout();
       if (excuse == Excuse::neighbours) {
-        undecided.emplace(found->link1, found->link2);
-        return;
+        if (!overlaps) undecided.emplace(pair->finding.link1, pair->finding.link2);
+        return;  // notes() names it
       }
+      // An allowed pair that overlaps in the joint counts where parts of it are apart, which a contact may hide.
+      if (overlaps && pair->apart.empty()) return;
     }
     excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
   });

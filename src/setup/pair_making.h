@@ -21,6 +21,10 @@ struct PairMaking {
   Fingerprint tree;
 
   PairMaking(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b);
+  /// As proofs and findings of two links' geometries are kept: the one of the link with the lower number first.
+  static PairMaking inOrder(const KinematicTree& tree, const ManagedBody& a, const ManagedBody& b) {
+    return a.link < b.link ? PairMaking(tree, a, b) : PairMaking(tree, b, a);
+  }
   /// Trees are the same as numbers, geometries by their content, whoever holds them.
   bool sameAs(const PairMaking& other) const;
   /// Of links and offsets: equal for those that are the same.

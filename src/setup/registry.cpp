@@ -36,11 +36,6 @@ std::vector<ManagedBody>::iterator require(std::vector<ManagedBody>& bodies,
       bodies, [&](const ManagedBody& b) { return object && b.moving == object; }, missing);
 }
 
-/// Whether the rule for neighbours leaves the pair out.
-bool isLeftOut(const LinkPairFinding& found) {
-  return found.touchThroughout() || found.undecided();
-}
-
 std::vector<std::string> linkNames(const KinematicTree& tree) {
   std::vector<std::string> names;
   for (LinkId link = 0; link < tree.numLinks(); ++link) names.push_back(tree.linkName(link));
@@ -149,13 +144,18 @@ void Registry::forget(Bodies& bodies, Bodies::iterator body) {
 
 void Registry::keepNames(const std::function<bool(const std::string& body)>& isKept) {
   margins_.keep(isKept);
+  const auto isGone = [&](const auto& pair) { return !isKept(pair.first) || !isKept(pair.second); };
+  const auto haveGone = [&](const AllowedCollisionMatrix::Pairs& pairs) {
+    return std::any_of(pairs.begin(), pairs.end(), isGone);
+  };
+  if (!haveGone(allowed_.pairs()) && !haveGone(allowed_.disallowedPairs())) return;
   AllowedCollisionMatrix kept;
   kept.setComplete(allowed_.complete());
-  for (const auto& [a, b] : allowed_.pairs()) {
-    if (isKept(a) && isKept(b)) kept.allow(a, b);
+  for (const auto& pair : allowed_.pairs()) {
+    if (!isGone(pair)) kept.allow(pair.first, pair.second);
   }
-  for (const auto& [a, b] : allowed_.disallowedPairs()) {
-    if (isKept(a) && isKept(b)) kept.disallow(a, b);
+  for (const auto& pair : allowed_.disallowedPairs()) {
+    if (!isGone(pair)) kept.disallow(pair.first, pair.second);
   }
   allowed_ = std::move(kept);
 }
@@ -178,8 +178,7 @@ Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
   if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
   if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
   if (a.attached || b.attached || !neighbours_) return Excuse::none;
-  const LinkPairFinding* const found = neighbours_->find(a.link, b.link);
-  return found && isLeftOut(*found) ? Excuse::neighbours : Excuse::none;
+  return neighbours_->leavesOut(*tree_, a, b) ? Excuse::neighbours : Excuse::none;
 }
 
 NamedMargins Registry::marginsOfNeighbours() const {
@@ -187,9 +186,7 @@ NamedMargins Registry::marginsOfNeighbours() const {
   if (!neighbours_) return margins;
   for (const auto& [links, pair] : neighbours_->pairs) {
     const LinkPairFinding& found = pair.finding;
-    const bool checked = !allowed_.allowed(found.link1, found.link2) && !isLeftOut(found);
-    if (checked && !margins_.ofPairs().count(std::minmax(found.link1, found.link2)))
-      margins.set(found.link1, found.link2, 0);
+    if (pair.isChecked() && !allowed_.allowed(found.link1, found.link2)) margins.set(found.link1, found.link2, 0);
   }
   return margins;
 }
@@ -197,7 +194,9 @@ NamedMargins Registry::marginsOfNeighbours() const {
 NamedMargins Registry::margins() const {
   NamedMargins margins = margins_;
   const NamedMargins of_neighbours = marginsOfNeighbours();
-  for (const auto& [names, margin] : of_neighbours.ofPairs()) margins.set(names.first, names.second, margin);
+  for (const auto& [names, margin] : of_neighbours.ofPairs()) {
+    if (margins_.ofPairs().count(names) == 0) margins.set(names.first, names.second, margin);
+  }
   return margins;
 }
 

@@ -136,6 +136,19 @@ TEST(RotationTest, FramesWithAGivenZAreRotations) {
   EXPECT_LE(worst, Rotation::kUlps);
 }
 
+// There and back again may come out as the identity: what it cost is kept.
+TEST(RigidTransformTest, AProductThatIsTheIdentityKeepsItsError) {
+  const RigidTransform there = *RigidTransform::within12Ulps(Isometry3d(Eigen::Translation3d(1, 0, 0)), 1e-9);
+  const RigidTransform and_back = there * there.inverse();
+  ASSERT_TRUE(isIdentity(and_back.isometry()));
+  EXPECT_EQ(and_back.length(), 2 * there.length());
+  for (const RigidTransform& product : {and_back * there, there * and_back}) {
+    EXPECT_EQ(product.ulps(), 3 * there.ulps());
+    EXPECT_EQ(product.length(), 3 * there.length());
+  }
+  EXPECT_EQ((RigidTransform() * there).ulps(), there.ulps()) << "a stored one costs nothing";
+}
+
 TEST(RigidTransformTest, ProductsAndInversesAreAsNearAsTheySay) {
   Random random(4);
   double rotation = 0, place = 0;

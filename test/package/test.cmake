@@ -225,7 +225,8 @@ print(fcl_artic.__file__, fcl_artic.World(robot).check([0] * 6, [0.1] * 6))")
 elseif(CASE STREQUAL "ros")
   # package.xml says what scripts/setup installs, in rosdep's names, and the project's version.
   set(names eigen=libeigen3-dev libfcl-dev=libfcl-dev libccd-dev=libccd-dev liboctomap-dev=liboctomap-dev tbb=libtbb-dev
-    liburdfdom-dev=liburdfdom-dev liburdfdom-headers-dev=liburdfdom-headers-dev assimp=libassimp-dev
+    liburdfdom-dev=liburdfdom-dev liburdfdom-headers-dev=liburdfdom-headers-dev
+    libconsole-bridge-dev=libconsole-bridge-dev assimp=libassimp-dev
     tinyxml2=libtinyxml2-dev ompl=libompl-dev opengl=libgl-dev libosmesa6-dev=libosmesa6-dev cli11=libcli11-dev
     nlohmann-json-dev=nlohmann-json3-dev fmt=libfmt-dev libpng-dev=libpng-dev yaml-cpp=libyaml-cpp-dev hdf5=libhdf5-dev mpi=libopenmpi-dev zlib=zlib1g-dev libgmp=libgmp-dev mpfr=libmpfr-dev
     pybind11-dev=pybind11-dev python3-dev=python3-dev python3-numpy=python3-numpy gtest=libgtest-dev
@@ -255,7 +256,7 @@ elseif(CASE STREQUAL "ros")
     list(APPEND covered ${package})
   endforeach()
   list(FILTER installed INCLUDE REGEX "-dev$")
-  list(REMOVE_ITEM installed dpkg-dev libegl-dev libconsole-bridge-dev)  # the one is for Debian's packages only, the others come with opengl and liburdfdom-dev
+  list(REMOVE_ITEM installed dpkg-dev libegl-dev)  # the one is for Debian's packages only, the other comes with opengl
   foreach(package IN LISTS installed)
     if(NOT package IN_LIST covered)
       message(FATAL_ERROR "package.xml lacks ${package}, which scripts/setup installs")

@@ -102,6 +102,32 @@ TEST(Neighbours, HousingsThatOverlapAreNamedOnce) {
   EXPECT_TRUE(manager.checkedLinkPairs().empty());
 }
 
+// A housing that overlaps in the joint excuses no other part of the two links.
+TEST(Neighbours, AnArmWhoseHousingOverlapsMeetsThePostOfItsOwnBase) {
+  ArticulatedCollisionManager manager = PostRobot().manager(true, -0.01);
+  manager.setup();
+  const CertifiedResult r = manager.continuousCollide(at(0), at(kPi));
+  ASSERT_EQ(r.status, Status::contact);
+  EXPECT_NEAR(r.t_lower, (std::acos(0.05 / std::hypot(0.05, 0.95)) - std::atan2(0.05, 0.95)) / kPi, 1e-5);
+  ASSERT_EQ(manager.notes().size(), 1u);
+  EXPECT_NE(manager.notes()[0].find("'base' and 'arm' (but for their parts"), std::string::npos) << manager.notes()[0];
+  const CertifiedResult before = manager.continuousCollide(at(0), at(kPi / 4));
+  EXPECT_TRUE(before.isFree() && !before.nothingChecked());
+  CertifiedRequest wide;
+  wide.margin = 0.5;
+  EXPECT_TRUE(manager.continuousCollide(JointMotion::linear(manager.tree(), at(0), at(0.1)), wide).isFree())
+      << "for touching";
+  // Set up again nothing is looked at anew, and the same parts are checked.
+  manager.disallow("base", "arm");
+  manager.setAllowedCollisions({});
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(kPi)).t_lower, r.t_lower);
+  // Who allows the two has it counted: their parts that are apart may meet.
+  manager.allow("base", "arm");
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(kPi)).unproven_allowed_pairs, 1u);
+}
+
 // A slide without limits: there is no range to look at.
 TEST(Neighbours, UndecidedOnesAreCountedInEachAnswer) {
   ArticulatedCollisionManager manager = PostRobot(JointType::prismatic).manager(false, -0.01);

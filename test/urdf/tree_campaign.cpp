@@ -122,29 +122,24 @@ class Case {
     return result;
   }
 
-  /// Neighbours that the manager's rule leaves out are not watched. Those that it says touch throughout are to touch.
+  /// Neighbours of which the manager says that it can't decide are not watched, nor, of those that it says touch
+  /// throughout, the shapes that touch throughout this motion: there are to be some.
   /// @return what contradicts the rule; empty: nothing.
   std::string leaveOut(const std::vector<LinkPairFinding>& neighbours, const CertifiedResult& result, long* left_out) {
     for (const LinkPairFinding& found : neighbours) {
-      if (!found.touchThroughout() && !found.undecided()) continue;
+      if (!found.leftOut()) continue;
       ++*left_out;
-      left_out_.allow(found.link1, found.link2);
-      if (found.undecided()) {
-        const auto& said = result.unproven_neighbours;
-        const std::pair<std::string, std::string> names(found.link1, found.link2);
-        if (!said || std::find(said->begin(), said->end(), names) == said->end()) return "nobody says " + found.link1;
-        continue;
+      const auto& said = result.unproven_neighbours;
+      const std::pair<std::string, std::string> names(found.link1, found.link2);
+      if (found.undecided() && (!said || std::find(said->begin(), said->end(), names) == said->end())) {
+        return "nobody says " + found.link1 + ", " + found.link2;
       }
-      for (int s = 0; s <= kSamples; ++s) {
-        const std::vector<Isometry3d> M = shapePoses(static_cast<double>(s) / kSamples);
-        const auto touchThen = [&](const auto& pair) {
-          const auto [i, j] = pair;
-          return isLeftOut(i, j, found) && touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], Size::larger);
-        };
-        if (std::none_of(watched_.begin(), watched_.end(), touchThen)) {
-          return found.link1 + " and " + found.link2 + " are apart at " + std::to_string(s);
-        }
-      }
+      const auto isLeftOut = [&](const auto& pair) {
+        return areOf(pair, found) && (found.undecided() || touchThroughout(pair.first, pair.second));
+      };
+      const auto kept = std::remove_if(watched_.begin(), watched_.end(), isLeftOut);
+      if (kept == watched_.end()) return found.link1 + ", " + found.link2 + ": no two shapes touch throughout";
+      watched_.erase(kept, watched_.end());
     }
     return {};
   }
@@ -153,8 +148,6 @@ class Case {
     const std::vector<Isometry3d> M = shapePoses(t);
     return std::any_of(watched_.begin(), watched_.end(), [&](const auto& pair) {
       const auto [i, j] = pair;
-      const int a = bodies_[i].link, b = bodies_[j].link;
-      if (a >= 0 && b >= 0 && left_out_.allowed(RandomTree::linkName(a), RandomTree::linkName(b))) return false;
       return touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], size);
     });
   }
@@ -176,10 +169,18 @@ class Case {
   long numWatched() const { return static_cast<long>(watched_.size()); }
 
  private:
-  bool isLeftOut(std::size_t i, std::size_t j, const LinkPairFinding& found) const {
-    if (bodies_[i].link < 0 || bodies_[j].link < 0) return false;
-    const std::string a = RandomTree::linkName(bodies_[i].link), b = RandomTree::linkName(bodies_[j].link);
-    return std::minmax(a, b) == std::minmax(found.link1, found.link2);
+  bool areOf(const std::pair<std::size_t, std::size_t>& shapes, const LinkPairFinding& found) const {
+    const int a = bodies_[shapes.first].link, b = bodies_[shapes.second].link;
+    if (a < 0 || b < 0) return false;
+    const std::string x = RandomTree::linkName(a), y = RandomTree::linkName(b);
+    return std::minmax(x, y) == std::minmax(found.link1, found.link2);
+  }
+  bool touchThroughout(std::size_t i, std::size_t j) const {
+    for (int s = 0; s <= kSamples; ++s) {
+      const std::vector<Isometry3d> M = shapePoses(static_cast<double>(s) / kSamples);
+      if (!touch(*bodies_[i].shape, M[i], *bodies_[j].shape, M[j], Size::larger)) return false;
+    }
+    return true;
   }
 
   /// Large trees meet themselves soon.
@@ -239,7 +240,7 @@ class Case {
   std::vector<Shape> obstacles_;
   std::vector<Body> bodies_;
   std::vector<std::pair<std::size_t, std::size_t>> watched_;
-  AllowedCollisionMatrix allowed_, left_out_;
+  AllowedCollisionMatrix allowed_;
 };
 
 /// The contact's link that is not the other one's base.
