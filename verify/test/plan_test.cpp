@@ -58,11 +58,11 @@ TEST_F(VerifyPlan, WaypointsAreThoseOfTheMotion) {
   EXPECT_TRUE(noted("every timing of these straight lines"));
   EXPECT_TRUE(noted("not in the plan, standing still: 'door' 0"));
   EXPECT_EQ(said(motion({q(0, {0.1, kStep, 0}) + q(1, {1}), second}), csv), "same");
-  for (const char* wrong :
-       {"time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.70000000000000007\n", "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.6,0.7\n",
-        "time,b,a\n0,1,0.2\n2,1,0.7\n3,1.5,0.7\n", "time,a,b\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n",
-        "time,b,a\n0,1,0.1\n3,1.5,0.7\n", "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n4,1.5,0.8\n",
-        "time,b,a\n0,1,0.1\n2,1,0.7\n2,1.5,0.7\n", "time,b\n0,1\n2,1\n3,1.5\n"})
+  for (const char* wrong : {"time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.70000000000000007\n",
+                            "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.6,0.7\n", "time,b,a\n0,1,0.2\n2,1,0.7\n3,1.5,0.7\n",
+                            "time,a,b\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n", "time,b,a\n0,2,0.1\n2,2,0.7\n3,2.5,0.7\n",
+                            "time,b,a\n0,1,0.1\n3,1.5,0.7\n", "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n4,1.5,0.8\n",
+                            "time,b,a\n0,1,0.1\n2,1,0.7\n2,1.5,0.7\n", "time,b\n0,1\n2,1\n3,1.5\n"})
     EXPECT_NE(said(good, wrong), "same") << wrong;
   // A motion that bends, stops elsewhere, or that something else joins.
   EXPECT_NE(said(motion({q(0, {0.1, 0, kStep}) + q(1, {1}), second}), csv), "same");

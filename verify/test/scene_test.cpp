@@ -68,6 +68,9 @@ TEST_F(VerifyScene, ANameThatIsTakenGetsANumber) {
   EXPECT_EQ(said(named("post#2", "post#3"), {one, two}), "same");  // a link is called post
   EXPECT_EQ(said(named("post", "post#2#3"), {one, two}), "same");  // post#2 of a file, where another one is called so
   EXPECT_NE(said(named("post", "post#"), {one, two}), "same");
+  const std::string numbered = write("3/post#2.stl", kStl);
+  EXPECT_EQ(said(world(body("obstacle", "post#2", 0, 1), mesh()), {numbered}), "same");
+  EXPECT_NE(said(world(body("obstacle", "post", 0, 1), mesh()), {numbered}), "same");
   EXPECT_NE(said(named("post", "post2"), {one, two}), "same");
   EXPECT_NE(said(named("post", "post#2x"), {one, two}), "same");
   EXPECT_NE(said(named("post", "post#2"), {one, one}), "same");
