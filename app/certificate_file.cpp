@@ -4,21 +4,26 @@
 #include <fmt/format.h>
 
 #include "files/files.h"
+#include "world.h"
 
 namespace fcl_artic::app {
 
 std::string CertificateFile::add(const Certificate& certificate) {
   if (!certificate) return "no certificate: " + certificate.missing;
   records_ += certificate.record();
+  ++count_;
   world_ = certificate.world;
-  return fmt::format("certificate of {} bytes in {}, its world in {}; fcl_artic_verify {} {} proves it again",
-                     certificate.proof.size(), path_, worldPath(), worldPath(), path_);
+  return "";
 }
 
-void CertificateFile::write() const {
-  if (!world_) return;
+std::string CertificateFile::write(const std::string& files) const {
+  if (!world_) return "";
   files::write(worldPath(), *world_);
   files::write(path_, records_);
+  return fmt::format(
+      "{} certificate{}, {} bytes, in {}, what {} about, {} bytes, in {}; fcl_artic_verify {} {}{} proves {} again",
+      count_, count_ == 1 ? "" : "s", records_.size(), path_, count_ == 1 ? "it is" : "they are", world_->size(),
+      worldPath(), shellWord(worldPath()), shellWord(path_), files, count_ == 1 ? "it" : "them");
 }
 
 }  // namespace fcl_artic::app

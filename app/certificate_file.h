@@ -19,14 +19,17 @@ class CertificateFile {
   std::string worldPath() const { return path_ + ".world"; }
 
   /// Adds an answer's certificate, if it has a proof.
-  /// @return one line for the user.
+  /// @return why it has none, as one line for the user; empty: it has one.
   std::string add(const Certificate& certificate);
   /// Writes both files, or none if nothing was added. (Those of an earlier run are gone: removeEarlierOutputs().)
+  /// @param files  arguments of fcl_artic_verify that say which files the claim is about, each after a space.
+  /// @return one line for the user: counts and sizes of what was written; empty if nothing was.
   /// @throws std::runtime_error naming the file.
-  void write() const;
+  std::string write(const std::string& files = "") const;
 
  private:
   std::string path_, records_;
+  std::size_t count_ = 0;
   std::shared_ptr<const std::string> world_;
 };
 

@@ -145,18 +145,42 @@ void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, 
 }
 
 /// Writes a record for each plan, as it was mended, that has a proof.
+/// @param files  of CertificateFile::write().
 /// @return one line for the user.
-std::string writeCertificates(CertificateFile& certificates, const std::vector<CertifiedPlan>& all) {
-  std::size_t proofs = 0;
-  std::string note;
+std::string writeCertificates(CertificateFile& certificates, const std::vector<CertifiedPlan>& all,
+                              const std::string& files) {
+  std::string missing;
   for (const CertifiedPlan& plan : all) {
     const CertifiedPlan& one = plan.as_mended ? *plan.as_mended : plan;
     if (!one.result.certificate) continue;
-    note = certificates.add(*one.result.certificate);
-    proofs += static_cast<bool>(*one.result.certificate);
+    const std::string why = certificates.add(*one.result.certificate);
+    if (missing.empty()) missing = why;
   }
-  certificates.write();
-  return all.size() == 1 ? note : fmt::format("certificates of {} of {} plans; {}", proofs, all.size(), note);
+  const std::string written = certificates.write(files);
+  if (written.empty()) return missing.empty() ? "no certificate: no plan has an answer" : missing;
+  return all.size() == 1 ? written : fmt::format("of {} plans {}", all.size(), written);
+}
+
+/// The plans that have certificates as fcl_artic_verify takes them, each word after a space: CSV files, as they were
+/// given or, of what was mended, written; empty where it does not compare them.
+std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
+  const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
+                        o.columns.columns.time.empty() && !o.columns.degrees;
+  if (!as_named || o.variables.turns == "shortest" || o.interpolation == "blends") return "";
+  std::string text;
+  bool mended = false;
+  for (const CertifiedPlan& plan : all) {
+    const auto& certificate = plan.as_mended ? plan.as_mended->result.certificate : plan.result.certificate;
+    if (!certificate || !*certificate) continue;
+    const std::string& file = plan.as_mended ? o.out : plan.file;
+    if (!plans::hasPlanEnding(file) || plans::formatOf(file) != plans::Format::csv) return "";
+    text += " --plan " + shellWord(file);
+    mended = mended || plan.as_mended;
+  }
+  for (const std::string& value : o.variables.state) text += " --state " + shellWord(value);
+  if (mended && o.interpolation != "auto" && o.interpolation != "linear") return "";  // which goes straight
+  if (o.interpolation != "auto") text += " --interpolation " + o.interpolation;
+  return text;
 }
 
 /// FILE.mended.png beside FILE.png.
@@ -250,7 +274,8 @@ int runCertify(CertifyVerb& o) {
 
   std::vector<std::string> notes = world.notes(*manager);
   notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
-  if (certificates.wanted()) notes.push_back(writeCertificates(certificates, all));
+  if (certificates.wanted())
+    notes.push_back(writeCertificates(certificates, all, verifierArguments(o.world) + planArguments(o, all)));
   if (o.views.wanted()) notes.push_back(writePlanViews(o, of_mended, world, *manager, all));
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
   if (!o.csv.empty()) files::write(o.csv, csvReport(report));

@@ -45,6 +45,14 @@ struct CheckVerb {
   ClearanceRequest clearance_request;
 };
 
+/// The motion as fcl_artic_verify takes it, each word after a space; empty where it does not.
+std::string motionArguments(const CheckVerb& options) {
+  if (options.interpolation != "linear" || options.shortest) return "";
+  if (!options.trajectory.empty()) return " --plan " + shellWord(options.trajectory);
+  const auto joined = [](const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); };
+  return " --from " + shellWord(joined(options.from)) + " --to " + shellWord(joined(options.to));
+}
+
 int runCheck(CheckVerb& options) {
   if (!options.views.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
@@ -142,8 +150,9 @@ int runCheck(CheckVerb& options) {
   const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
   if (result.first() && result.t_lower <= begin) notes.insert(notes.begin(), startHint(*result.first()));
   if (result.certificate) {
-    notes.push_back(certificates.add(*result.certificate));
-    certificates.write();
+    const std::string missing = certificates.add(*result.certificate);
+    const std::string written = certificates.write(verifierArguments(options.world) + motionArguments(options));
+    notes.push_back(missing.empty() ? written : missing);
   }
   Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
   if (trajectory) report.pieces = trajectory->numPieces();

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
@@ -46,16 +47,15 @@ void makeSolids(Bodies& bodies, const NamesOf& namesOf, std::set<std::string>& n
   for (const std::string& name : found) names.erase(name);
 }
 
-/// A word of a shell's command.
-std::string quoted(const std::string& word) {
+}  // namespace
+
+std::string shellWord(const std::string& word) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || std::strchr("_-+=.,:/@%", c); };
   if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
   std::string out = "'";
   for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
 }
-
-}  // namespace
 
 void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_names) {
   CLI::Option* srdf = addRobotOptions(verb, o.robot, robot_names);
@@ -102,9 +102,9 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
 }
 
 std::string shellArguments(const WorldOptions& o) {
-  std::string text = quoted(o.robot.robot);
+  std::string text = shellWord(o.robot.robot);
   const auto add = [&](const char* option, const std::string& value) {
-    if (!value.empty()) text += fmt::format(" {} {}", option, quoted(value));
+    if (!value.empty()) text += fmt::format(" {} {}", option, shellWord(value));
   };
   const auto addAll = [&](const char* option, const std::vector<std::string>& values) {
     for (const std::string& value : values) add(option, value);
@@ -118,7 +118,7 @@ std::string shellArguments(const WorldOptions& o) {
   } else {
     add("--srdf", o.robot.srdf);
   }
-  if (!o.robot.base.empty()) text += " --base=" + quoted(o.robot.base);  // may begin with a minus
+  if (!o.robot.base.empty()) text += " --base=" + shellWord(o.robot.base);  // may begin with a minus
   addFlag("--floating-base", o.robot.floating_base);
   addAll("--scene", o.scenes);
   if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
@@ -134,6 +134,30 @@ std::string shellArguments(const WorldOptions& o) {
   add("--margins", o.pairs.margins);
   addAll("--allow", o.pairs.allowed);
   if (o.proof_work != WorldOptions().proof_work) add("--proof-work", fmt::format("{}", o.proof_work));
+  return text;
+}
+
+static bool isVerifiersScene(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".urdf" || ending == ".stl" || ending == ".obj";
+}
+
+std::string verifierArguments(const WorldOptions& o) {
+  std::string text = " --urdf " + shellWord(o.robot.robot);
+  const auto addAll = [&](const char* option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) text += fmt::format(" {} {}", option, shellWord(value));
+  };
+  const std::string& srdf = o.robot.srdf.empty() ? o.auto_srdf : o.robot.srdf;
+  if (!srdf.empty() && o.pairs.allowed.empty()) addAll("--srdf", {srdf});
+  if (std::all_of(o.scenes.begin(), o.scenes.end(), isVerifiersScene)) {
+    addAll("--scene", o.scenes);
+    if (o.scale != 1 && !o.scenes.empty()) text += fmt::format(" --scale {}", o.scale);
+  }
+  if (!o.robot.base.empty()) addAll("--base", {o.robot.base});
+  addAll("--package", o.robot.packages);
+  if (o.robot.solid_meshes) text += " --solid-meshes";
+  addAll("--solid", o.solids);
   return text;
 }
 

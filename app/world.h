@@ -38,6 +38,12 @@ void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& r
 /// check found again (--auto-srdf /dev/null).
 std::string shellArguments(const WorldOptions& options);
 
+/// The files that the options name as fcl_artic_verify takes them, each word after a space. (Of what links carry it
+/// takes none, and scenes only where it reads all of them.)
+std::string verifierArguments(const WorldOptions& options);
+/// A word of a shell's command.
+std::string shellWord(const std::string& word);
+
 /// Reads and sets up what the options name. The steps are separate, so that a verb can read its own input or measure
 /// time between them; they are to be called in this order.
 class World {

@@ -1,160 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is shown at one time: that bodies meet (witnesses), and that no surface lies in the other body (SOLID).
+// Witnesses: that bodies do meet at one time.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <map>
 
+#include "places.h"
 #include "proof.h"
 
 namespace verify {
 namespace {
-
-Fix up(const Tm& a) {
-  return a.c0 + abs(a.c1) + abs(a.c2) + a.r;
-}
-Fix down(const Tm& a) {
-  return a.c0 - abs(a.c1) - abs(a.c2) - a.r;
-}
-/// 1 or -1 where certain, else 0.
-int sign(const Tm& a) {
-  return down(a) > Fix{0} ? 1 : up(a) < Fix{0} ? -1 : 0;
-}
-bool atMost(const Tm& a, const Tm& b) {
-  return up(a) <= down(b);
-}
-Tm square(const Tm& a) {
-  return a * a;
-}
-Tm exactly(double x) {
-  return constant(enclose(x));
-}
-Vec pointOf(const double* x) {
-  return {exactly(x[0]), exactly(x[1]), exactly(x[2])};
-}
-
-/// det(a, b, c)
-Tm determinant(const Vec& a, const Vec& b, const Vec& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
-/// Takes points of body A to coordinates of body B's geometry: row k is the functional "coordinate k there" in A's.
-class Relative {
- public:
-  Relative(const World& world, Poses& poses, const Span& span, int a, int b) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      Functional::Value f;
-      f.v[k] = constant(integer(1));
-      const Functional::Value in_frame = toParent(f, world.bodies[b].pose);
-      rows_[k] = Functional(world, poses, span, world.bodies[b].frame, in_frame.v, in_frame.d).inBody(a);
-    }
-  }
-  Vec operator()(const Vec& x) const {
-    Vec y;
-    for (std::size_t k = 0; k < 3; ++k) y[k] = dot(rows_[k].v, x) + rows_[k].d;
-    return y;
-  }
-
- private:
-  Functional::Value rows_[3];
-};
-
-const Geometry& geometryOf(const World& world, int body) {
-  return world.geometries[world.bodies[body].geometry];
-}
-
-Vec corner(const Geometry& g, std::uint32_t vertex) {
-  return pointOf(&g.vertices[3 * static_cast<std::size_t>(vertex)]);
-}
-
-/// The winding number of a closed mesh around x: its crossings with the half-line from x along coordinate axis k, each
-/// counted by the side that it is crossed from. In the plane of the two other coordinates, relative to x, a triangle
-/// (a, b, c) is crossed where the areas [a b], [b c], [c a] have one sign, at the height
-/// ([b c] a_k + [c a] b_k + [a b] c_k) / ([a b] + [b c] + [c a]). @return false where a sign is not certain.
-bool windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bool backwards, Budget& budget,
-                   std::int64_t& number) {
-  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-  Fix low[3], high[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    low[c] = down(x[c]) - ulps(2);
-    high[c] = up(x[c]) + ulps(2);
-  }
-  number = 0;
-  budget.spend(mesh.triangles.size());
-  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-    const Fix* const p[3] = {mesh.points[mesh.triangles[t]].x, mesh.points[mesh.triangles[t + 1]].x,
-                             mesh.points[mesh.triangles[t + 2]].x};
-    const auto beside = [&](std::size_t c) {  // certainly apart from x's line in coordinate c
-      return (p[0][c] > high[c] && p[1][c] > high[c] && p[2][c] > high[c]) ||
-             (p[0][c] < low[c] && p[1][c] < low[c] && p[2][c] < low[c]);
-    };
-    if (beside(i) || beside(j)) continue;
-    budget.spend(50);
-    Vec q[3];
-    for (std::size_t c = 0; c < 3; ++c) q[c] = corner(mesh, mesh.triangles[t + c]) - x;
-    Tm area[3];
-    int plus = 0, minus = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Vec &a = q[c], &b = q[(c + 1) % 3];
-      area[c] = a[i] * b[j] - a[j] * b[i];
-      plus += sign(area[c]) > 0;
-      minus += sign(area[c]) < 0;
-    }
-    if (plus > 0 && minus > 0) continue;
-    if (plus < 3 && minus < 3) return false;
-    const int height = sign(area[1] * q[0][k] + area[2] * q[1][k] + area[0] * q[2][k]) * (plus == 3 ? 1 : -1);
-    if (height == 0) return false;
-    if ((height > 0) != backwards) number += plus == 3 ? 1 : -1;
-  }
-  return true;
-}
-
-/// Whether each part of A's surface, or each piece of another geometry, has a point outside of the solid B.
-void checkOutside(const World& world, Poses& poses, int a, int b, const Span& span, Budget& budget) {
-  const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
-  // What is without bounds is not inside of what has them. (B's surface is closed: readWorld() has seen to it.)
-  if (!B.solid || A.unbounded()) return;
-  const Relative toB(world, poses, span, a, b);
-  // A point is tried along six half-lines; of a mesh several points are, for corners and edges may be met exactly.
-  const auto outside = [&](const Vec& p) {
-    const Vec x = toB(p);
-    std::int64_t number = 0;
-    for (std::size_t k = 0; k < 6; ++k) {
-      if (!windingNumber(B, x, k % 3, k > 2, budget, number)) continue;
-      if (number != 0) throw NotProven("a part of " + world.describe(a) + " is inside of " + world.describe(b));
-      return true;
-    }
-    return false;
-  };
-  const auto unsure = [&]() {
-    throw NotProven("SOLID finds no point of " + world.describe(a) + " that is certainly outside of " +
-                    world.describe(b));
-  };
-  if (A.kind == Geometry::mesh) {
-    std::map<std::uint32_t, int> tried;  // per part; -1: shown
-    for (std::size_t t = 0; t < A.pieces(); ++t) {
-      int& tries = tried[A.part[t]];
-      if (tries < 0 || tries > 12) continue;
-      Vec p;  // (5 c0 + 7 c1 + 4 c2) / 16
-      const Vec c[3] = {corner(A, A.triangles[3 * t]), corner(A, A.triangles[3 * t + 1]),
-                        corner(A, A.triangles[3 * t + 2])};
-      for (std::size_t k = 0; k < 3; ++k)
-        p[k] = divided(c[0][k] * constant(integer(5)) + c[1][k] * constant(integer(7)) + c[2][k] * constant(integer(4)),
-                       16);
-      tries = outside(p) ? -1 : tries + 1;
-    }
-    for (const auto& part : tried)
-      if (part.second >= 0) unsure();
-    return;
-  }
-  for (std::uint32_t k = 0; k < A.pieces(); ++k) {
-    Vec p{};
-    if (A.kind == Geometry::boxes) p = pointOf(&A.cells[6 * static_cast<std::size_t>(k)]);
-    if (A.kind == Geometry::hull) p = corner(A, 0);
-    if (!outside(p)) unsure();
-  }
-}
 
 /// A point of a body as a witness names it.
 Vec readPoint(const Geometry& g, Bytes& bytes);
@@ -270,11 +125,6 @@ Vec readPoint(const Geometry& g, Bytes& bytes) {
 }
 
 }  // namespace
-
-void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& budget) {
-  checkOutside(world, poses, a, b, {t, t}, budget);
-  checkOutside(world, poses, b, a, {t, t}, budget);
-}
 
 Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Budget& budget) {
   bytes.byte();

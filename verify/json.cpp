@@ -55,8 +55,13 @@ std::string node(Bytes& bytes, int depth) {
       return cut("own");
     case kOther:
       return cut("other");
-    case kSolid:
-      return "{\"solid\": " + node(bytes, depth + 1) + "}";
+    case kSolid: {
+      static const char* const kSides[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
+      std::string points;
+      for (const OutsidePoint& point : bytes.outsidePoints())
+        points += (points.empty() ? "[" : ", [") + std::to_string(point.piece) + ", \"" + kSides[point.side] + "\"]";
+      return "{\"outside\": [" + points + "], \"solid\": " + node(bytes, depth + 1) + "}";
+    }
     default:
       throw BadInput("there is no node of kind " + std::to_string(kind));
   }

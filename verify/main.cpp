@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fcl_artic_verify: proves the claims of certificates again. See doc/CERTIFICATES.md.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
 #include "readers.h"
 #include "report.h"
+#include "xml.h"
 
 namespace {
 
@@ -19,10 +21,18 @@ is claimed, and how it is proven.
   CERTIFICATES     files of records
 
   --urdf FILE      compare the world with a URDF: frames, joints, collision geometry (shapes, STL, OBJ)
-  --package N=DIR  the folder of "package://N/" in the URDF
-  --solid-meshes   meshes of the URDF are meant as solids; without, as surfaces or solids
-  --solid LINK     those of this link are
+  --base POSE      where the URDF's root stands: x,y,z or x,y,z,roll,pitch,yaw (m, rad or 90deg); else, where --scene is
+                   given, at the world's origin
   --srdf FILE      compare pairs that the world does not check with an SRDF
+  --scene FILE     compare the obstacles with a scene: URDF, STL, OBJ; once for each file, all that there are
+  --scale FACTOR   all lengths of the scenes are multiplied by it
+  --package N=DIR  the folder of "package://N/" in URDF files
+  --solid-meshes   meshes of these files are meant as solids; without, as surfaces or solids
+  --solid NAME     those of this link or obstacle are
+  --plan FILE      compare each motion with the waypoints of a plan (CSV, columns by joints' names); one for each
+  --from Q, --to Q compare the motion with this one: "0, 1.57, -90deg", or "NAME=VALUE ..." with all others at 0
+  --state Q        values of what the plans have no column for: "NAME=VALUE ..."; of others 0
+  --interpolation KIND   of the plans: linear, cubic, quintic; else by their columns, as `fcl_artic certify` has it
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
   --quiet          print no line for what is verified, and none about the world
@@ -31,14 +41,17 @@ is claimed, and how it is proven.
 
 Prints what the world says beside its numbers, and for each record VERIFIED, with the number of pairs that were checked
 and of those that were not, by reason, then what the motion says; or NOT VERIFIED, with what could not be proven: bodies
-and interval of time. A claim about no pair is not verified, nor one about a world that differs from --urdf or --srdf.
+and interval of time. A claim about no pair is not verified, nor one about a world or a motion that differs from a file.
+What no file is given for is named as "not compared".
 Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input, or no record.
 )";
 
 /// Prints what the program says, in text or as JSON: a document a line or more, one after the other.
 class Printer {
  public:
-  Printer(bool json, bool quiet) : json_(json), quiet_(quiet) {}
+  /// @param not_compared  what no file says.
+  Printer(bool json, bool quiet, std::vector<std::string> not_compared)
+      : json_(json), quiet_(quiet), not_compared_(std::move(not_compared)) {}
 
   void comparison(const char* path, const verify::Comparison& c) const {
     if (json_) {
@@ -57,10 +70,12 @@ class Printer {
     if (json_ || quiet_) return;
     for (const std::string& text : lines) line(path, text);
   }
+  /// @param notes  of the comparison with plans.
   void record(const verify::World& world, const char* path, std::size_t number, const verify::Record& record,
-              const verify::Verdict& verdict) const {
+              const verify::Verdict& verdict, const std::vector<std::string>& notes) const {
     std::vector<std::string> lines;
     if (verdict.verified) lines = verify::linesOf(world, verify::readMotion(record.motion, world), verdict);
+    lines.insert(lines.end(), notes.begin(), notes.end());
     if (json_) {
       std::string statement = "null";
       try {
@@ -73,110 +88,254 @@ class Printer {
       return;
     }
     if (quiet_ && verdict.verified) return;
-    std::printf("%s:%zu: %s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str());
+    std::printf("%s:%zu: %s%s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str(),
+                verdict.verified ? shortly().c_str() : "");
     for (const std::string& text : lines) std::printf("  %s\n", verify::shown(text).c_str());
   }
   void sum(std::size_t verified, std::size_t all) const {
-    std::printf(json_ ? "{\"verified\": %zu, \"records\": %zu}\n" : "%zu of %zu records verified\n", verified, all);
+    if (json_)
+      std::printf("{\"verified\": %zu, \"records\": %zu, \"not_compared\": %s}\n", verified, all,
+                  verify::listAsJson(not_compared_).c_str());
+    else
+      std::printf("%zu of %zu records verified%s\n", verified, all, shortly().c_str());
   }
 
  private:
+  /// "; not compared: robot, motion"
+  std::string shortly() const {
+    std::string text;
+    for (const std::string& what : not_compared_) text += (text.empty() ? "; not compared: " : ", ") + what;
+    return verify::shown(text);
+  }
   static void line(const char* path, const std::string& text) {
     std::printf("%s: %s\n", verify::shown(path).c_str(), verify::shown(text).c_str());
   }
   const bool json_, quiet_;
+  const std::vector<std::string> not_compared_;
+};
+
+/// What the command says.
+struct Asked {
+  bool json = false, quiet = false, compare_only = false, help = false, version = false;
+  verify::Options options;
+  verify::Packages packages;
+  verify::Solids solids;
+  double scale = 1;
+  std::vector<const char*> files;
+  std::vector<std::string> urdf, srdf, scenes, plans, from, to, state, interpolation, base;
+};
+
+/// @throws BadInput
+Asked readCommand(int argc, char** argv) {
+  Asked asked;
+  const std::map<std::string, bool*> flags{{"--json", &asked.json},
+                                           {"--solid-meshes", &asked.solids.all},
+                                           {"--compare-only", &asked.compare_only},
+                                           {"--quiet", &asked.quiet},
+                                           {"--help", &asked.help},
+                                           {"--version", &asked.version}};
+  std::vector<std::string> packages, solids, scale, work;
+  const std::map<std::string, std::vector<std::string>*> lists{{"--urdf", &asked.urdf},
+                                                               {"--srdf", &asked.srdf},
+                                                               {"--scene", &asked.scenes},
+                                                               {"--plan", &asked.plans},
+                                                               {"--from", &asked.from},
+                                                               {"--to", &asked.to},
+                                                               {"--state", &asked.state},
+                                                               {"--package", &packages},
+                                                               {"--solid", &solids},
+                                                               {"--base", &asked.base},
+                                                               {"--scale", &scale},
+                                                               {"--work", &work},
+                                                               {"--interpolation", &asked.interpolation}};
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    const std::size_t equals = word.find('=');
+    if (equals != std::string::npos && lists.count(word.substr(0, equals)) > 0) {
+      lists.at(word.substr(0, equals))->push_back(word.substr(equals + 1));
+    } else if (flags.count(word) > 0) {
+      *flags.at(word) = true;
+    } else if (lists.count(word) > 0) {
+      if (++k == argc) throw verify::BadInput(word + " takes a value");
+      lists.at(word)->push_back(argv[k]);
+    } else if (word.size() > 1 && word[0] == '-') {
+      throw verify::BadInput("unknown option '" + word + "' (see --help)");
+    } else {
+      asked.files.push_back(argv[k]);
+    }
+  }
+  for (const std::string& both : packages) {
+    const std::size_t equals = both.find('=');
+    if (equals == std::string::npos) throw verify::BadInput("--package takes NAME=FOLDER");
+    asked.packages[both.substr(0, equals)] = both.substr(equals + 1);
+  }
+  asked.solids.names.insert(solids.begin(), solids.end());
+  for (const std::string& number : scale) asked.scale = verify::decimal(number);
+  if (!(asked.scale > 0)) throw verify::BadInput("--scale takes a number above 0");
+  for (const std::string& number : work) asked.options.work = std::strtoull(number.c_str(), nullptr, 10);
+  return asked;
+}
+
+/// What is wrong with a command; empty: nothing.
+std::string faultOf(const Asked& asked) {
+  const bool with_files = !asked.urdf.empty() || !asked.srdf.empty() || !asked.scenes.empty(),
+             with_plans = !asked.plans.empty() || !asked.from.empty();
+  if (asked.compare_only && (asked.files.size() != 1 || !with_files || with_plans))
+    return "--compare-only takes a world, no certificates or plans, and --urdf, --srdf or --scene";
+  if (!asked.compare_only && asked.files.size() < 2) return "a world and certificates are needed (see --help)";
+  if ((asked.solids.all || !asked.solids.names.empty()) && asked.urdf.empty() && asked.scenes.empty())
+    return "--solid and --solid-meshes say how --urdf and --scene are meant";
+  if (asked.scale != 1 && asked.scenes.empty()) return "--scale says how --scene is meant";
+  if (!asked.base.empty() && asked.urdf.empty()) return "--base says how --urdf is meant";
+  if (asked.from.size() != asked.to.size() || asked.from.size() > 1) return "--from and --to are given together, once";
+  if (!with_plans && (!asked.state.empty() || !asked.interpolation.empty()))
+    return "--state and --interpolation say how --plan is meant";
+  return "";
+}
+
+std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& world) {
+  static const std::map<std::string, verify::Interpolation> kKinds{{"linear", verify::Interpolation::linear},
+                                                                   {"cubic", verify::Interpolation::cubic},
+                                                                   {"quintic", verify::Interpolation::quintic}};
+  std::vector<verify::Plan> plans;
+  for (const std::string& path : asked.plans) {
+    plans.push_back(verify::readPlan(path));
+    for (const std::string& kind : asked.interpolation) {
+      if (kKinds.count(kind) == 0) throw verify::BadInput("--interpolation takes linear, cubic or quintic");
+      plans.back().interpolation = kKinds.at(kind);
+    }
+  }
+  if (!asked.from.empty()) plans.push_back(verify::planBetween(world, asked.from[0], asked.to[0]));
+  for (verify::Plan& plan : plans)
+    for (const std::string& text : asked.state) {
+      if (text.find('=') == std::string::npos) throw verify::BadInput("--state takes NAME=VALUE");
+      for (const auto& [name, value] : verify::readConfiguration(world, text)) plan.state[name] = value;
+    }
+  return plans;
+}
+
+/// What the world and the motions say, and no file that was given.
+std::vector<std::string> notCompared(const Asked& asked, const verify::World& world) {
+  const auto names = [&](verify::Role role) {
+    std::set<std::string> all;
+    for (const verify::Body& body : world.bodies)
+      if (body.role == role) all.insert(verify::inQuotes(body.name));
+    std::string text;
+    for (const std::string& name : all) text += (text.empty() ? "" : ", ") + name;
+    return text;
+  };
+  std::vector<std::string> list;
+  const std::string obstacles = names(verify::Role::obstacle), carried = names(verify::Role::carried);
+  if (asked.urdf.empty()) list.push_back("robot (--urdf)");
+  const auto allowed = [](const auto& pair) { return pair.second == verify::Reason::allowed; };
+  if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), allowed))
+    list.push_back("allowed pairs (--srdf)");
+  if (asked.scenes.empty() && !obstacles.empty()) list.push_back("obstacles " + obstacles + " (--scene)");
+  if (!carried.empty()) list.push_back("what links carry: " + carried);
+  if (asked.plans.empty() && asked.from.empty() && !asked.compare_only) list.push_back("motion (--plan)");
+  return list;
+}
+
+class Run {
+ public:
+  Run(const Asked& asked, const verify::World& world)
+      : asked_(asked),
+        world_(world),
+        plans_(readPlans(asked, world)),
+        used_(plans_.size(), false),
+        printer_(asked.json, asked.quiet, notCompared(asked, world)) {}
+
+  int run() {
+    compare();
+    printer_.world(asked_.files[0], world_);
+    for (std::size_t f = 1; f < asked_.files.size(); ++f) file(asked_.files[f]);
+    for (std::size_t p = 0; p < plans_.size(); ++p)
+      if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}});
+    if (!asked_.compare_only) printer_.sum(verified_, all_);
+    return bad_ ? 2 : verified_ == all_ && same_ ? 0 : 1;
+  }
+
+ private:
+  void report(const std::string& path, const verify::Comparison& comparison) {
+    printer_.comparison(path.c_str(), comparison);
+    same_ = same_ && comparison.differences.empty();
+    for (const std::string& name : comparison.solids) solids_met_.insert(name);
+  }
+
+  void compare() {
+    std::vector<double> base;
+    if (!asked_.scenes.empty()) base.assign(6, 0);
+    for (const std::string& pose : asked_.base) base = verify::readBase(pose);
+    for (const std::string& path : asked_.urdf)
+      report(path, verify::compareWithUrdf(world_, path, asked_.packages, asked_.solids, base));
+    for (const std::string& path : asked_.srdf) report(path, verify::compareWithSrdf(world_, path));
+    if (!asked_.scenes.empty())
+      report("--scene", verify::compareWithScenes(world_, asked_.scenes, asked_.packages, asked_.solids, asked_.scale));
+    for (const std::string& name : asked_.solids.names)
+      if (solids_met_.count(name) == 0)
+        report("--solid", {{"no link or obstacle of the files that has a mesh is " + verify::inQuotes(name)}, {}, {}});
+  }
+
+  void file(const char* path) {
+    const std::string bytes = verify::readFile(path);
+    const std::vector<verify::Record> records = verify::splitRecords(bytes);
+    if (records.empty()) throw verify::BadInput("'" + std::string(path) + "' has no record: nothing is proven");
+    for (std::size_t number = 0; number < records.size(); ++number) {
+      verify::Verdict verdict = verify::verifyRecord(world_, records[number], asked_.options);
+      std::vector<std::string> notes;
+      if (verdict.verified && !same_) {  // proven of another robot
+        verdict.verified = false;
+        verdict.reason = "it is proven of this world, which is not what the files say (DIFFERENT, above)";
+      }
+      if (verdict.verified && !plans_.empty()) findPlan(records[number], verdict, notes);
+      ++all_;
+      verified_ += verdict.verified;
+      bad_ = bad_ || verdict.bad_input;
+      printer_.record(world_, path, number, records[number], verdict, notes);
+    }
+  }
+
+  void findPlan(const verify::Record& record, verify::Verdict& verdict, std::vector<std::string>& notes) {
+    const verify::Motion motion = verify::readMotion(record.motion, world_);
+    std::string why;
+    for (std::size_t p = 0; p < plans_.size(); ++p) {
+      const verify::Comparison c = verify::compareWithPlan(world_, motion, plans_[p]);
+      if (c.differences.empty()) {
+        used_[p] = true;
+        notes = c.notes;
+        return;
+      }
+      if (why.empty()) why = "'" + plans_[p].title + "': " + c.differences[0];
+    }
+    verdict.verified = false;
+    verdict.reason = "it is proven of a motion that is no plan's: " + why;
+  }
+
+  const Asked& asked_;
+  const verify::World& world_;
+  const std::vector<verify::Plan> plans_;
+  std::vector<bool> used_;
+  const Printer printer_;
+  std::set<std::string> solids_met_;
+  std::size_t verified_ = 0, all_ = 0;
+  bool bad_ = false, same_ = true;
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  bool json = false, quiet = false, compare_only = false;
-  verify::Options options;
-  std::vector<const char*> files, urdf, srdf;
-  std::map<std::string, std::string> packages;
-  verify::Solids solids;
-  for (int k = 1; k < argc; ++k) {
-    const std::string word = argv[k];
-    if (word == "--help") {
-      std::fputs(kHelp, stdout);
-      return 0;
-    } else if (word == "--version") {
-      std::puts("fcl_artic_verify 1");
-      return 0;
-    } else if (word == "--json") {
-      json = true;
-    } else if (word == "--solid-meshes") {
-      solids.all = true;
-    } else if (word == "--solid" && k + 1 < argc) {
-      solids.links.insert(argv[++k]);
-    } else if (word == "--compare-only") {
-      compare_only = true;
-    } else if (word == "--quiet") {
-      quiet = true;
-    } else if (word == "--urdf" && k + 1 < argc) {
-      urdf.push_back(argv[++k]);
-    } else if (word == "--srdf" && k + 1 < argc) {
-      srdf.push_back(argv[++k]);
-    } else if (word == "--package" && k + 1 < argc) {
-      const std::string both = argv[++k];
-      const std::size_t equals = both.find('=');
-      if (equals == std::string::npos) {
-        std::fprintf(stderr, "fcl_artic_verify: --package takes NAME=FOLDER\n");
-        return 2;
-      }
-      packages[both.substr(0, equals)] = both.substr(equals + 1);
-    } else if (word == "--work" && k + 1 < argc) {
-      options.work = std::strtoull(argv[++k], nullptr, 10);
-    } else if (word.size() > 1 && word[0] == '-') {
-      std::fprintf(stderr, "fcl_artic_verify: unknown option '%s' (see --help)\n", argv[k]);
-      return 2;
-    } else {
-      files.push_back(argv[k]);
-    }
-  }
-  if (compare_only ? files.size() != 1 || (urdf.empty() && srdf.empty()) : files.size() < 2) {
-    std::fprintf(stderr, compare_only
-                             ? "fcl_artic_verify: --compare-only takes a world, no certificates, and --urdf or --srdf\n"
-                             : "fcl_artic_verify: a world and certificates are needed (see --help)\n");
-    return 2;
-  }
-  if ((solids.all || !solids.links.empty()) && urdf.empty()) {
-    std::fprintf(stderr, "fcl_artic_verify: --solid and --solid-meshes say how --urdf is meant\n");
-    return 2;
-  }
-  std::size_t verified = 0, all = 0;
-  bool bad = false, same = true;
-  const Printer printer(json, quiet);
   try {
-    const std::string world_text = verify::readFile(files[0]);
-    const verify::World world = verify::readWorld(world_text);
-    const auto report = [&](const char* path, const verify::Comparison& comparison) {
-      printer.comparison(path, comparison);
-      same = same && comparison.differences.empty();
-    };
-    for (const char* path : urdf) report(path, verify::compareWithUrdf(world, path, packages, solids));
-    for (const char* path : srdf) report(path, verify::compareWithSrdf(world, path));
-    printer.world(files[0], world);
-    for (std::size_t f = 1; f < files.size(); ++f) {
-      const std::string bytes = verify::readFile(files[f]);
-      const std::vector<verify::Record> records = verify::splitRecords(bytes);
-      if (records.empty()) throw verify::BadInput("'" + std::string(files[f]) + "' has no record: nothing is proven");
-      for (std::size_t number = 0; number < records.size(); ++number) {
-        verify::Verdict verdict = verify::verifyRecord(world, records[number], options);
-        if (!same && verdict.verified) {  // proven of another robot
-          verdict.verified = false;
-          verdict.reason = "it is proven of this world, which is not what the files say (DIFFERENT, above)";
-        }
-        ++all;
-        verified += verdict.verified;
-        bad = bad || verdict.bad_input;
-        printer.record(world, files[f], number, records[number], verdict);
-      }
+    const Asked asked = readCommand(argc, argv);
+    if (asked.help || asked.version) {
+      std::puts(asked.version ? "fcl_artic_verify 1" : kHelp);
+      return 0;
     }
+    const std::string fault = faultOf(asked);
+    if (!fault.empty()) throw verify::BadInput(fault);
+    const verify::World world = verify::readWorld(verify::readFile(asked.files[0]));
+    return Run(asked, world).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fcl_artic_verify: %s\n", verify::shown(error.what()).c_str());
     return 2;
   }
-  if (!compare_only) printer.sum(verified, all);
-  return bad ? 2 : verified == all && same ? 0 : 1;
 }

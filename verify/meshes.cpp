@@ -370,7 +370,8 @@ const MeshComparison::File& MeshComparison::file(const std::string& path, const 
   if (first) read->second = readMesh(path);
   file.faces = read->second;
   spend(file.faces.corners.size());
-  for (std::size_t k = 0; k < file.faces.points.size(); ++k) file.faces.points[k] *= scale[k % 3];
+  for (std::size_t factor = 0; factor < scale.size(); factor += 3)
+    for (std::size_t k = 0; k < file.faces.points.size(); ++k) file.faces.points[k] *= scale[factor + k % 3];
   std::vector<Triangle> fans;
   std::size_t begin = 0;
   const auto point = [&](std::size_t k) {

@@ -32,6 +32,7 @@ class MeshComparison {
   /// Whether the world's mesh is the file with its coordinates multiplied. Each triangle of either is one of the other,
   /// with the same orientation and as often; a face of more than three corners is cut into triangles at its corners. Of
   /// a surface, triangles without area may be missing that lie on edges of the mesh.
+  /// @param scale  factors of x, y, z; three more are multiplied by what comes out.
   /// @param missing  set to how many are.
   bool same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,
             std::size_t& missing);

@@ -12,52 +12,6 @@
 
 namespace verify {
 
-std::uint8_t Bytes::peek() const {
-  if (empty()) throw BadInput("the proof ends too early");
-  return static_cast<std::uint8_t>(bytes_[at_]);
-}
-std::string_view Bytes::take(std::size_t n) {
-  if (n > left()) throw BadInput("the proof ends too early");
-  at_ += n;
-  return bytes_.substr(at_ - n, n);
-}
-std::uint64_t Bytes::little(int n) {
-  const std::string_view bytes = take(static_cast<std::size_t>(n));
-  std::uint64_t value = 0;
-  for (int k = n; k-- > 0;) value = value << 8 | static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(k)]);
-  return value;
-}
-std::int64_t Bytes::signedLittle(int n) {
-  const std::uint64_t value = little(n), sign = static_cast<std::uint64_t>(1) << (8 * n - 1);
-  return static_cast<std::int64_t>(value & (sign - 1)) - static_cast<std::int64_t>(value & sign);
-}
-std::uint32_t Bytes::varint() {
-  std::uint64_t value = 0;
-  for (int shift = 0; shift < 35; shift += 7) {
-    const std::uint8_t b = byte();
-    value |= static_cast<std::uint64_t>(b & 127) << shift;
-    if ((b & 128) == 0) {
-      if (value >> 32 != 0 || (b == 0 && shift > 0)) break;
-      return static_cast<std::uint32_t>(value);
-    }
-  }
-  throw BadInput("a varint has more than 32 bits or is not in its shortest form");
-}
-
-std::vector<Record> splitRecords(std::string_view file) {
-  std::vector<Record> records;
-  Bytes bytes(file);
-  const auto text = [&]() { return bytes.take(bytes.little(4)); };
-  while (!bytes.empty()) {
-    if (bytes.take(4) != "FAC1") throw BadInput("a record does not begin with FAC1");
-    Record record;
-    record.motion = text();
-    record.proof = text();
-    records.push_back(record);
-  }
-  return records;
-}
-
 // When a piece's part of the claim ends.
 static double endOf(const Motion& motion, std::size_t piece) {
   return piece + 1 == motion.pieces.size() ? motion.until : 1;
@@ -213,14 +167,15 @@ class Walk {
 
   void solid(Task& task) {
     if (task.q - task.p != 1 || !wholeOwn(task) || !wholeOther(task)) fail(task, "SOLID is about two whole bodies");
+    const std::vector<OutsidePoint> points = bytes_.outsidePoints();
     const Opponent& other = partners_[task.p];
-    const Fix at = most(task.span.a, other.from);
-    if (other.from < task.span.b) {  // else the pair is ignored for all of the task's time
-      try {
-        checkSolid(world_, poses_, a_, other.body, at, budget_);
-      } catch (const NotProven& error) {
-        fail(task, error.what());
-      }
+    try {
+      if (other.from < task.span.b)
+        checkSolid(world_, poses_, a_, other.body, most(task.span.a, other.from), points, budget_);
+      else if (!points.empty())  // ignored for all of the task's time
+        throw NotProven("SOLID names points of an ignored pair");
+    } catch (const NotProven& error) {
+      fail(task, error.what());
     }
     task.outside = true;
   }

@@ -43,6 +43,12 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
 
 // Shared by the parts of the verifier.
 
+/// A point of a body, and a side along which another one's surface is counted from it; see SOLID.
+struct OutsidePoint {
+  std::uint32_t piece;
+  std::uint8_t side;
+};
+
 /// The bytes of a proof, each read checked.
 class Bytes {
  public:
@@ -57,6 +63,7 @@ class Bytes {
   std::int64_t signedLittle(int n);
   /// LEB128, at most 32 bits and in its shortest form.
   std::uint32_t varint();
+  std::vector<OutsidePoint> outsidePoints();
 
  private:
   std::string_view bytes_;
@@ -88,8 +95,9 @@ struct Opponent {
 };
 std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body);
 
-/// Whether at time t no part of either surface lies in the other body; see SOLID. @throws NotProven
-void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, Budget& budget);
+/// Whether at time t no part of either surface lies in the other body, as the points show. @throws NotProven
+void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, const std::vector<OutsidePoint>& points,
+                Budget& budget);
 struct Meeting {
   bool near;         // nearer than the margin, and nothing more; else they have a point in common
   std::string text;  // who, and when

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "packages.h"
 #include "statement.h"
 
 namespace verify {
@@ -15,20 +16,47 @@ namespace verify {
 struct Comparison {
   std::vector<std::string> differences;  // none: the world is what the file says
   std::vector<std::string> notes;        // for people
+  std::set<std::string> solids;          // those of Solids::names that were met
 };
 
-/// Links whose meshes are meant as solids.
+/// Links and obstacles whose meshes are meant as solids.
 struct Solids {
   bool all = false;
-  std::set<std::string> links;
+  std::set<std::string> names;
 };
 
-/// Frames, joints and collision geometry of a URDF. @param packages  folders of "package://NAME/".
+/// Frames, joints and collision geometry of a URDF.
+/// @param base  x, y, z, roll, pitch, yaw of the root in the world; empty: it is not compared.
 /// @throws BadInput: unreadable, or with something in it that is not compared.
-Comparison compareWithUrdf(const World& world, const std::string& path,
-                           const std::map<std::string, std::string>& packages, const Solids& solids = {});
+Comparison compareWithUrdf(const World& world, const std::string& path, const Packages& packages,
+                           const Solids& solids = {}, const std::vector<double>& base = {});
+/// "x,y,z" or "x,y,z,roll,pitch,yaw" as six numbers; an angle may be "90deg". @throws BadInput
+std::vector<double> readBase(const std::string& text);
 /// Every pair that the world calls `allowed` or `neighbours` is one that the SRDF disables.
 Comparison compareWithSrdf(const World& world, const std::string& path);
+/// The obstacles of the world are those of the files, none more: STL and OBJ, one each, and URDF, all links with each
+/// joint at 0. @param scale  of all lengths of the files. @throws BadInput
+Comparison compareWithScenes(const World& world, const std::vector<std::string>& paths, const Packages& packages,
+                             const Solids& solids = {}, double scale = 1);
+
+/// What lies between two waypoints.
+enum class Interpolation { automatic, linear, cubic, quintic };
+
+/// Waypoints as a file or a user says them.
+struct Plan {
+  std::string title;                 // for people
+  std::vector<std::string> columns;  // names
+  std::vector<std::vector<double>> rows;
+  std::map<std::string, double> state;                     // values of variables without a column; of others 0
+  Interpolation interpolation = Interpolation::automatic;  // by the columns that there are
+};
+/// Comma separated values, of which the first line names the columns. @throws BadInput
+Plan readPlan(const std::string& path);
+/// "NAME=VALUE" of some variables, or the values of all; an angle may be "90deg". @throws BadInput
+std::map<std::string, double> readConfiguration(const World& world, const std::string& text);
+Plan planBetween(const World& world, const std::string& from, const std::string& to);
+/// The motion goes from waypoint to waypoint of the plan, as its interpolation says, and nothing else moves.
+Comparison compareWithPlan(const World& world, const Motion& motion, const Plan& plan);
 
 std::string readFile(const std::string& path);
 

@@ -105,6 +105,8 @@ struct Motion {
   std::vector<Piece> pieces;
 };
 
+/// Finds what is derived of a world: partners, pairs that are not checked. @throws BadInput
+void derivePairs(World& world);
 /// @throws BadInput, naming the line.
 World readWorld(std::string_view text);
 Motion readMotion(std::string_view text, const World& world);

@@ -6,273 +6,19 @@
 #include <fstream>
 #include <iterator>
 
-#include "meshes.h"
 #include "readers.h"
-#include "xml.h"
+#include "robot.h"
+#include "shapes.h"
 
 namespace verify {
 namespace {
 
-// ---- the robot, as the file has it
-
-/// Rz(yaw) Ry(pitch) Rx(roll), each entry enclosed.
-Mat fromAngles(const std::vector<double>& rpy) {
-  Tm s[3], c[3];
-  for (std::size_t k = 0; k < 3; ++k) sineCosine(constant(enclose(rpy[k])), s[k], c[k]);
-  return {c[2] * c[1],
-          c[2] * s[1] * s[0] - s[2] * c[0],
-          c[2] * s[1] * c[0] + s[2] * s[0],
-          s[2] * c[1],
-          s[2] * s[1] * s[0] + c[2] * c[0],
-          s[2] * s[1] * c[0] - c[2] * s[0],
-          -s[1],
-          c[1] * s[0],
-          c[1] * c[0]};
-}
-
-struct Place {
-  Mat R;
-  std::vector<double> t;
-};
-/// What moves along or about an axis: multiplier * q + offset, q being the variable of that name.
-struct Driver {
-  std::string variable;
-  double multiplier = 1, offset = 0;
-};
 struct Step {
   Element::Kind kind;
   std::array<double, 3> axis;  // of slide and turn
   Driver driver;
   bool rounded = false;  // the axis is computed: within 2^-52 of what is meant
 };
-struct Collision {
-  Place place;
-  Geometry::Kind kind;
-  std::vector<double> numbers;  // of a mesh: its scale
-  std::string path;             // of a mesh
-};
-struct Link {
-  std::string name;
-  std::vector<Collision> collisions;
-};
-struct Joint {
-  std::string name, type, parent, child;
-  Place origin;
-  std::array<double, 3> axis{1, 0, 0};
-  bool mimics = false;
-  Driver mimic;  // its variable: the joint that it follows
-};
-
-class Robot {
- public:
-  Robot(const std::string& path, const std::map<std::string, std::string>& packages)
-      : xml_(path), folder_(std::filesystem::absolute(path).parent_path()), packages_(packages) {
-    const Xml::Element& robot = xml_.robot();
-    xml_.only(robot, {"name", "version", "xmlns", "xsi:schemaLocation"}, {"link", "joint"},
-              {"material", "gazebo", "transmission", "ros2_control", "sensor", "force_element", "frame", "bullet",
-               "drake:collision_filter_group"});
-    for (const Xml::Element* e = robot.FirstChildElement("link"); e; e = e->NextSiblingElement("link")) readLink(*e);
-    for (const Xml::Element* e = robot.FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) readJoint(*e);
-    std::set<std::string> children;
-    for (const Joint& joint : joints) {
-      for (const std::string& link : {joint.parent, joint.child})
-        if (link_of_.count(link) == 0)
-          throw BadInput("URDF: joint " + inQuotes(joint.name) + " names a link that is not there");
-      if (!children.insert(joint.child).second)
-        throw BadInput("URDF: link " + inQuotes(joint.child) + " is the child of two joints");
-    }
-    for (const Link& link : links)
-      if (children.count(link.name) == 0) roots.push_back(link.name);
-    if (roots.size() != 1) throw BadInput("URDF: there are " + std::to_string(roots.size()) + " root links");
-  }
-
-  std::vector<Link> links;
-  std::vector<Joint> joints;
-  std::vector<std::string> roots;
-
-  bool has(const std::string& link) const { return link_of_.count(link) > 0; }
-
-  /// What drives a joint of one variable: its own, or what it follows in the end. A chain's multipliers and offsets are
-  /// put together in doubles, as `m1 (m2 q + c2) + c1 = (m1 m2) q + (m1 c2 + c1)`. Where the joint at the end is fixed,
-  /// it stands at `offset`.
-  struct Driven {
-    Driver driver;
-    bool still = false;
-  };
-  const Driven& drivenBy(std::size_t joint) {
-    std::vector<std::size_t> chain;  // of joints that mimic, and of which it is not known yet
-    std::size_t at = joint;
-    while (joints[at].mimics && known_.count(at) == 0) {
-      const Joint& j = joints[at];
-      chain.push_back(at);
-      if (chain.size() > joints.size()) throw BadInput("URDF: joint " + inQuotes(j.name) + " mimics itself in the end");
-      const auto next = joint_of_.find(j.mimic.variable);
-      if (next == joint_of_.end())
-        throw BadInput("URDF: joint " + inQuotes(j.name) + " mimics " + inQuotes(j.mimic.variable) +
-                       ", which is not there");
-      at = next->second;
-    }
-    if (!chain.empty() && (joints[at].type == "planar" || joints[at].type == "floating"))
-      throw BadInput("URDF: joint " + inQuotes(joints[joint].name) + " mimics one of several variables");
-    Driven driven = known_.try_emplace(at, Driven{{joints[at].name, 1, 0}, joints[at].type == "fixed"}).first->second;
-    for (std::size_t k = chain.size(); k-- > 0;) {  // doubles, each rounded
-      const Driver& mimic = joints[chain[k]].mimic;
-      const volatile double product = mimic.multiplier * driven.driver.multiplier,
-                            moved = mimic.multiplier * driven.driver.offset;
-      driven.driver.multiplier = product;
-      driven.driver.offset = moved + mimic.offset;
-      known_[chain[k]] = driven;
-    }
-    return known_.at(joint);
-  }
-
- private:
-  [[noreturn]] void twice(const Xml::Element& e) const { xml_.refuse(e, "the name is there twice"); }
-
-  Place readPlace(const Xml::Element& parent) const {
-    const Xml::Element* const origin = xml_.one(parent, "origin");
-    if (origin != nullptr) xml_.only(*origin, {"xyz", "rpy"});
-    return {fromAngles(xml_.numbers(origin, "rpy", "0 0 0", 3)), xml_.numbers(origin, "xyz", "0 0 0", 3)};
-  }
-
-  void readLink(const Xml::Element& e) {
-    xml_.only(e, {"name", "type", "concave"}, {"collision"},
-              {"visual", "inertial", "contact", "surface", "gravity", "kinematic", "sensor", "audio_source", "bullet",
-               "self_filter"});
-    Link link;
-    link.name = xml_.attribute(e, "name");
-    if (!link_of_.emplace(link.name, links.size()).second) twice(e);
-    for (const Xml::Element* c = e.FirstChildElement("collision"); c; c = c->NextSiblingElement("collision")) {
-      xml_.only(*c, {"name", "concave", "group", "mask"}, {"origin", "geometry"},
-                {"material", "verbose", "contact_coefficients", "drake:proximity_properties"});
-      Collision collision = readShape(*c);
-      collision.place = readPlace(*c);
-      link.collisions.push_back(std::move(collision));
-    }
-    links.push_back(std::move(link));
-  }
-
-  Collision readShape(const Xml::Element& parent) const {
-    const Xml::Element* const geometry = xml_.one(parent, "geometry");
-    if (geometry == nullptr) xml_.refuse(parent, "it has no <geometry>");
-    xml_.only(*geometry, {}, {"box", "sphere", "cylinder", "capsule", "mesh"});
-    const Xml::Element* const e = geometry->FirstChildElement();
-    if (e == nullptr || e->NextSiblingElement() != nullptr) xml_.refuse(*geometry, "it has not one shape");
-    const std::string kind = e->Name();
-    Collision c;
-    if (kind == "box") {
-      xml_.only(*e, {"size"});
-      c.kind = Geometry::box;
-      c.numbers = xml_.numbers(e, "size", nullptr, 3);
-    } else if (kind == "sphere") {
-      xml_.only(*e, {"radius"});
-      c.kind = Geometry::sphere;
-      c.numbers = xml_.numbers(e, "radius", nullptr, 1);
-    } else if (kind == "mesh") {
-      xml_.only(*e, {"filename", "scale"});
-      c.kind = Geometry::mesh;
-      c.numbers = xml_.numbers(e, "scale", "1 1 1", 3);
-      c.path = find(xml_.attribute(*e, "filename"));
-    } else {
-      xml_.only(*e, {"radius", "length"});
-      c.kind = kind == "capsule" ? Geometry::capsule : Geometry::cylinder;
-      c.numbers = {xml_.numbers(e, "radius", nullptr, 1)[0], xml_.numbers(e, "length", nullptr, 1)[0]};
-    }
-    return c;
-  }
-
-  void readJoint(const Xml::Element& e) {
-    xml_.only(e, {"name", "type", "dont_collapse"}, {"parent", "child", "origin", "axis", "mimic"},
-              {"limit", "dynamics", "safety_controller", "calibration", "controller_gains", "joint_properties",
-               "traits", "hardwareInterface"});
-    static const std::set<std::string> kTypes{"fixed", "revolute", "continuous", "prismatic", "planar", "floating"};
-    Joint joint;
-    joint.name = xml_.attribute(e, "name");
-    joint.type = xml_.attribute(e, "type");
-    if (kTypes.count(joint.type) == 0) xml_.refuse(e, "there is no type " + inQuotes(joint.type));
-    if (!joint_of_.emplace(joint.name, joints.size()).second) twice(e);
-    for (const char* end : {"parent", "child"}) {
-      const Xml::Element* const link = xml_.one(e, end);
-      if (link == nullptr) xml_.refuse(e, std::string("it has no <") + end + ">");
-      xml_.only(*link, {"link"});
-      (end[0] == 'p' ? joint.parent : joint.child) = xml_.attribute(*link, "link");
-    }
-    joint.origin = readPlace(e);
-    if (const Xml::Element* const axis = xml_.one(e, "axis")) {
-      xml_.only(*axis, {"xyz"});
-      const std::vector<double> xyz = xml_.numbers(axis, "xyz", nullptr, 3);
-      std::copy(xyz.begin(), xyz.end(), joint.axis.begin());
-      if (joint.type != "fixed" && joint.type != "floating" && xyz == std::vector<double>(3, 0))
-        xml_.refuse(*axis, "it is zero");
-    }
-    if (const Xml::Element* const mimic = xml_.one(e, "mimic")) {
-      xml_.only(*mimic, {"joint", "multiplier", "offset"});
-      joint.mimic = {xml_.attribute(*mimic, "joint"), xml_.numbers(mimic, "multiplier", "1", 1)[0],
-                     xml_.numbers(mimic, "offset", "0", 1)[0]};
-      joint.mimics = joint.type != "fixed";
-      if (joint.type == "planar" || joint.type == "floating") xml_.refuse(*mimic, "the joint has several variables");
-    }
-    joints.push_back(std::move(joint));
-  }
-
-  /// file:///PATH or file://localhost/PATH, with %20 and the like decoded.
-  static std::string fileOfUrl(const std::string& url) {
-    std::string path = url.substr(7), decoded;
-    if (path.rfind("localhost/", 0) == 0) path.erase(0, 9);
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      if (path[k] != '%') {
-        decoded += path[k];
-        continue;
-      }
-      const std::string digits = path.substr(k + 1, 2);
-      if (digits.size() != 2 || digits.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos ||
-          digits == "00")
-        throw BadInput("'" + url + "': a % stands before two hexadecimal digits");
-      decoded += static_cast<char>(std::stoi(digits, nullptr, 16));
-      k += 2;
-    }
-    if (decoded.empty() || decoded[0] != '/') throw BadInput("'" + url + "' has no absolute path");
-    return decoded;
-  }
-
-  std::string find(std::string name) const {
-    namespace fs = std::filesystem;
-    if (name.rfind("file://", 0) == 0) return fileOfUrl(name);
-    if (name.rfind("package://", 0) != 0) {
-      if (name.find("://") != std::string::npos) throw BadInput("'" + name + "' is neither file:// nor package://");
-      return (folder_ / name).string();
-    }
-    name = name.substr(10);
-    const std::size_t slash = name.find('/');
-    const std::string package = name.substr(0, slash), rest = slash == std::string::npos ? "" : name.substr(slash + 1);
-    const auto given = packages_.find(package);
-    if (given != packages_.end()) return (fs::path(given->second) / rest).string();
-    for (fs::path up = folder_;; up = up.parent_path()) {
-      for (const fs::path& candidate : {up / package / rest, up / rest})
-        if ((candidate != up / rest || up.filename() == package) && fs::exists(candidate)) return candidate.string();
-      if (up == up.parent_path()) break;
-    }
-    throw BadInput("package '" + package + "' is not found; name its folder: --package " + package + "=FOLDER");
-  }
-
-  const Xml xml_;
-  const std::filesystem::path folder_;
-  const std::map<std::string, std::string>& packages_;
-  std::map<std::string, std::size_t> link_of_, joint_of_;
-  std::map<std::size_t, Driven> known_;
-};
-
-// ---- and the world
-
-/// Whether the numbers are that place: the rotation within 2^-49, so that it is among those that the claim is about;
-/// the translation to the very bit.
-bool isAt(const Place& place, const double numbers[12]) {
-  for (std::size_t k = 0; k < 3; ++k)
-    if (place.t[k] != numbers[9 + k]) return false;
-  for (std::size_t k = 0; k < 9; ++k)
-    if (bound(place.R[k] - constant(enclose(numbers[k]))) > Fix{kOne >> 49}) return false;
-  return true;
-}
 
 /// Whether the unit vector along `axis` is one that the element is about: of a coordinate axis this very one, else one
 /// within 2^-50 in each entry of the unit vector along the element's numbers.
@@ -306,8 +52,8 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
 
 class UrdfComparison {
  public:
-  UrdfComparison(const World& world, Robot& robot, const Solids& solids)
-      : world_(world), robot_(robot), solids_(solids), meshes_(world) {}
+  UrdfComparison(const World& world, Robot& robot, const Solids& solids, const std::vector<double>& base)
+      : world_(world), robot_(robot), base_(base), shapes_(world, solids) {}
 
   Comparison run() {
     for (std::size_t v = 0; v < world_.variables.size(); ++v)
@@ -320,8 +66,6 @@ class UrdfComparison {
       if (world_.bodies[b].role == Role::link)
         bodies_[static_cast<std::size_t>(world_.bodies[b].frame)].push_back(static_cast<int>(b));
     for (const Link& link : robot_.links) frameOf(link.name);
-    for (const std::string& link : solids_.links)
-      if (!robot_.has(link)) different("link " + inQuotes(link) + ", whose meshes are solids, is not in the file");
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) joint(j);
     for (const Link& l : robot_.links) link(l);
     nothingLeft();
@@ -329,11 +73,7 @@ class UrdfComparison {
     result_.notes.push_back("the file has " + std::to_string(robot_.links.size()) + " links, " +
                             std::to_string(robot_.joints.size()) + " joints and " + std::to_string(matched_) +
                             " collision geometries, as the world has");
-    if (surfaces_ + solid_meshes_ > 0)
-      result_.notes.push_back(std::to_string(surfaces_) +
-                              " meshes of links are surfaces, of which what lies inside is not " + "checked, and " +
-                              std::to_string(solid_meshes_) + " are solids");
-    result_.notes.push_back("obstacles, and what links carry, are compared with no file");
+    shapes_.note("links", result_);
     return std::move(result_);
   }
 
@@ -421,7 +161,7 @@ class UrdfComparison {
       while (b < bodies.size() && (used[b] || !isBody(l, l.collisions[k], bodies[b]))) ++b;
       if (b == bodies.size())
         different("link " + inQuotes(l.name) + ": no body of the world is its collision geometry " + std::to_string(k) +
-                  why_);
+                  shapes_.why());
       else
         used[b] = 1;
     }
@@ -438,21 +178,7 @@ class UrdfComparison {
     if (++pairs_ > 2000000)
       throw BadInput("URDF: a link has many collision geometries in another order than the world: not compared");
     const Body& b = world_.bodies[static_cast<std::size_t>(body)];
-    const Geometry& g = world_.geometries[static_cast<std::size_t>(b.geometry)];
-    why_.clear();
-    if (b.name != link.name || g.kind != c.kind || !isAt(c.place, b.numbers)) return false;
-    if (c.kind != Geometry::mesh) return g.numbers == c.numbers;
-    if (!g.solid && (solids_.all || solids_.links.count(link.name) > 0)) {
-      why_ = ", as a solid";
-      return false;
-    }
-    std::size_t missing = 0;
-    if (!meshes_.same(g, b.geometry, c.path, c.numbers, missing)) return false;
-    if (missing > 0 && noted_.insert(c.path).second)
-      result_.notes.push_back("'" + c.path + "': " + std::to_string(missing) +
-                              " triangles without area are not in the world, which lie on edges of others");
-    ++(g.solid ? solid_meshes_ : surfaces_);
-    return true;
+    return b.name == link.name && isAt(c.place, b.numbers) && shapes_.same(c, {link.name}, body);
   }
 
   /// Frames that are not the robot's do not move as its joints do, obstacles do not move with it, and no body of a link
@@ -464,7 +190,7 @@ class UrdfComparison {
     for (std::size_t f = 1; f < world_.frames.size(); ++f) {
       const Frame& frame = world_.frames[f];
       below[f] = robots[f] || below[static_cast<std::size_t>(frame.parent)];
-      const bool is_root = robots[f] && frame.name == robot_.roots[0];
+      const bool is_root = robots[f] && frame.name == robot_.root;
       if (robots[f] && !is_root) continue;
       for (const Element& e : frame.elements)
         for (int k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k)
@@ -485,15 +211,20 @@ class UrdfComparison {
   }
 
   void root() {
-    const std::string& name = robot_.roots[0];
+    const std::string& name = robot_.root;
     const int f = frameOf(name);
     if (f < 0) return;
+    static constexpr double kIdentity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     bool identity = true;
     std::set<std::string> variables;
     for (int up = f; up > 0; up = world_.frames[static_cast<std::size_t>(up)].parent) {
       const Frame& frame = world_.frames[static_cast<std::size_t>(up)];
       if (up != f && robot_.has(frame.name)) different("the root link " + inQuotes(name) + " hangs on another link");
-      for (int k = 0; k < 12; ++k) identity = identity && frame.numbers[k] == (k < 9 && k % 4 == 0 ? 1.0 : 0.0);
+      const bool here = std::equal(std::begin(kIdentity), std::end(kIdentity), frame.numbers);
+      identity = identity && here;
+      // A writer puts the base's pose into one frame, the root's own.
+      if (!base_.empty() && !(up == f ? isAt(placeOf(base_), frame.numbers) : here))
+        different("the root link " + inQuotes(name) + " is not where --base says (else at the world's origin)");
       for (const Element& e : frame.elements)
         for (int k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k)
           variables.insert(world_.variables[static_cast<std::size_t>(e.variable + k)]);
@@ -508,30 +239,23 @@ class UrdfComparison {
 
   const World& world_;
   Robot& robot_;
-  const Solids& solids_;
+  const std::vector<double>& base_;
   std::map<std::string, std::vector<int>> frames_;  // of the robot's links
   std::map<std::string, int> variable_of_;
   std::vector<std::vector<int>> bodies_;  // of role link, by frame; those that are matched are taken out
   std::set<int> driven_, owned_;          // variables of joints; of joints that do not mimic
-  std::set<std::string> said_, noted_;
-  std::size_t matched_ = 0, pairs_ = 0, surfaces_ = 0, solid_meshes_ = 0;
-  std::string why_;
-  MeshComparison meshes_;
+  std::set<std::string> said_;
+  std::size_t matched_ = 0, pairs_ = 0;
+  ShapeComparison shapes_;
   Comparison result_;
 };
 
 }  // namespace
 
-std::string readFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path)) throw BadInput("can't open '" + path + "'");
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-Comparison compareWithUrdf(const World& world, const std::string& path,
-                           const std::map<std::string, std::string>& packages, const Solids& solids) {
+Comparison compareWithUrdf(const World& world, const std::string& path, const Packages& packages, const Solids& solids,
+                           const std::vector<double>& base) {
   Robot robot(path, packages);
-  return UrdfComparison(world, robot, solids).run();
+  return UrdfComparison(world, robot, solids, base).run();
 }
 
 }  // namespace verify

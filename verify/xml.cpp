@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "xml.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "readers.h"
 
 namespace verify {
 namespace {
+
+constexpr const char* kBlanks = " \t\r\n";
 
 bool isDigit(char c) {
   return c >= '0' && c <= '9';
@@ -47,7 +53,6 @@ double decimal(const std::string& word) {
   return x;
 }
 std::vector<double> decimals(const std::string& text) {
-  static const char* const kBlanks = " \t\r\n";
   std::vector<double> numbers;
   for (std::size_t at = text.find_first_not_of(kBlanks), end; at != std::string::npos;
        at = text.find_first_not_of(kBlanks, end)) {
@@ -55,6 +60,24 @@ std::vector<double> decimals(const std::string& text) {
     numbers.push_back(decimal(text.substr(at, end - at)));
   }
   return numbers;
+}
+
+std::string readFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path)) throw BadInput("can't open '" + path + "'");
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::string packageName(const std::string& path) {
+  tinyxml2::XMLDocument document;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
+  const std::string text = readFile(path);
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr) return {};
+  const tinyxml2::XMLElement* const name = document.RootElement()->FirstChildElement("name");
+  const std::string all = name == nullptr || name->GetText() == nullptr ? "" : name->GetText();
+  const std::size_t begin = std::min(all.find_first_not_of(kBlanks), all.size());
+  return all.substr(begin, all.find_first_of(kBlanks, begin) - begin);
 }
 
 Xml::Xml(const std::string& path) : path_(path) {

@@ -18,6 +18,9 @@ std::vector<double> decimals(const std::string& text);
 /// One word of a text as such a number. @throws BadInput
 double decimal(const std::string& word);
 
+/// The name that a package.xml gives; empty where there is none that can be read.
+std::string packageName(const std::string& path);
+
 class Xml {
  public:
   using Element = tinyxml2::XMLElement;

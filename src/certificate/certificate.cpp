@@ -19,7 +19,7 @@ std::string lengthBytes(const std::string& text) {
 }  // namespace
 
 std::string Certificate::record() const {
-  return "FAC1" + lengthBytes(motion) + motion + lengthBytes(proof) + proof;
+  return "FAC2" + lengthBytes(motion) + motion + lengthBytes(proof) + proof;
 }
 
 namespace certificate {
@@ -106,7 +106,9 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
   }
   if (!certificate.missing.empty()) return certificate;
   if (!(claim.pieces.back().until > 0)) {
-    certificate.missing = "nothing is claimed: the bodies may touch from the beginning on";
+    certificate.missing =
+        "nothing is claimed: a certificate is about the time before a contact, and bodies may touch from the beginning "
+        "on";
     return certificate;
   }
   if (!claimsAnyPair(world, claim)) {

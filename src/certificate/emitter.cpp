@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "certificate/baseline_vectors.h"
+#include "certificate/outside.h"
 #include "certificate/proof_bytes.h"
 
 #include "numerics/baseline_isa.h"
@@ -395,7 +396,7 @@ class Emitter {
     if (time_left && (leaves || apart)) return cutTime(task);
     if (leaves) return fail(task);
     if (!task.solid && (isSolid(task.body) || isSolid(partner))) {
-      out_.byte(kSolid);
+      if (!putOutside(task)) return;
       task.solid = true;
     }
     const bool cut_own = own >= other;
@@ -410,6 +411,27 @@ class Emitter {
     (cut_own ? second.node : second.partner_node) = n.right();
     solve(task);
     solve(second);
+  }
+  /// SOLID, with the points that show it.
+  bool putOutside(const Task& task) {
+    const int partner = partners_[task.first];
+    double t = task.begin;
+    for (const Motion::Ignored& pair : moving_.motion().ignored) {
+      if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) t = std::max(t, pair.until);
+    }
+    const auto points = findOutside(moving_, task.body, partner, t);
+    if (!points) {
+      missing_ = "no points were found that show that neither of '" + moving_.body(task.body).name + "' and '" +
+                 moving_.body(partner).name + "' is in the other at t = " + std::to_string(t);
+      return false;
+    }
+    out_.byte(kSolid);
+    out_.number(points->size());
+    for (const OutsidePoint& point : *points) {
+      out_.number(point.piece);
+      out_.byte(point.side);
+    }
+    return true;
   }
   void cutTime(const Task& task) {
     out_.byte(kTime);

@@ -42,8 +42,34 @@ TEST_F(CertificateOptionTest, WritesProofAndWorld) {
   ASSERT_EQ(run.status, 0) << run.err;
   const Json answer = Json::parse(run.out);
   EXPECT_EQ(answer.at("certificate").at("proof_bytes"), 39);  // a hash and one direction
-  EXPECT_EQ(read(file).substr(0, 4), "FAC1");
+  EXPECT_EQ(read(file).substr(0, 4), "FAC2");
   EXPECT_EQ(read(file + ".world").substr(0, 18), "fcl_artic world 1\n");
+}
+
+// Counts and sizes are those of the files, and the command says which files the proof is about.
+TEST_F(CertificateOptionTest, SaysWhatItWrote) {
+  const std::string file = path("said"), robot = rail(), scene = wall(),
+                    plan = write("my plan.csv", "time,slide\n0,0\n1,1\n2,0.5\n");
+  const auto noteOf = [](const Outcome& run, const char* key) {
+    const Json answer = Json::parse(run.out);
+    std::string last;
+    for (const Json& note : answer.at(key)) last = note.get<std::string>();
+    return last;
+  };
+  const auto expected = [&](const std::string& files) {
+    return "1 certificate, " + std::to_string(read(file).size()) + " bytes, in " + file + ", what it is about, " +
+           std::to_string(read(file + ".world").size()) + " bytes, in " + file + ".world; fcl_artic_verify " + file +
+           ".world " + file + " --urdf " + robot + " --scene " + scene + files + " proves it again";
+  };
+  const std::string world = robot + " --scene " + scene + " --json --certificate " + file;
+  Outcome run = this->run("check " + world + " --from 0 --to 1");
+  EXPECT_EQ(noteOf(run, "notes"), expected(" --from 0 --to 1")) << run.err;
+  run = this->run("check " + world + " --trajectory '" + plan + "'");
+  EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;
+  run = this->run("check " + world + " --trajectory '" + plan + "' --interpolation cubic");
+  EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
+  run = this->run("certify '" + plan + "' --robot " + world);
+  EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;
 }
 
 TEST_F(CertificateOptionTest, OfManyLinesThereIsARecordEach) {
@@ -64,15 +90,17 @@ TEST_F(CertificateOptionTest, OfManyLinesThereIsARecordEach) {
   EXPECT_EQ(missing, 1u);  // what touches from the beginning on
   const std::string records = read(file);
   std::size_t count = 0;
-  for (std::size_t at = 0; (at = records.find("FAC1", at)) != std::string::npos; ++at) ++count;
+  for (std::size_t at = 0; (at = records.find("FAC2", at)) != std::string::npos; ++at) ++count;
   EXPECT_EQ(count, 3u);
 }
 
 TEST_F(CertificateOptionTest, NoFileIsLeftWithoutAProof) {
-  const std::string file = write("none.fac", "FAC1 of another call");
+  const std::string file = write("none.fac", "FAC2 of another call");
   const Outcome run = this->run("check " + rail() + " --scene " + wall() + " --from 2 --to 3 --certificate " + file);
   EXPECT_EQ(run.status, 1) << run.err;
-  EXPECT_NE(run.out.find("no certificate: nothing is claimed"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("no certificate: nothing is claimed: a certificate is about the time before a contact"),
+            std::string::npos)
+      << run.out;
   EXPECT_FALSE(std::filesystem::exists(file));
   EXPECT_FALSE(std::filesystem::exists(file + ".world"));
 }
@@ -95,8 +123,8 @@ TEST_F(CertificateOptionTest, OfPlansThereIsARecordEach) {
   const Json answer = Json::parse(run.out);
   EXPECT_TRUE(answer.at("plans").at(0).at("certificate").contains("proof_bytes"));
   EXPECT_TRUE(answer.at("plans").at(1).at("certificate").contains("proof_bytes"));  // until shortly before the contact
-  EXPECT_NE(answer.at("notes").dump().find("certificates of 2 of 3 plans"), std::string::npos) << answer.at("notes");
-  EXPECT_EQ(read(file).substr(0, 4), "FAC1");
+  EXPECT_NE(answer.at("notes").dump().find("of 3 plans 2 certificates, "), std::string::npos) << answer.at("notes");
+  EXPECT_EQ(read(file).substr(0, 4), "FAC2");
   EXPECT_EQ(read(file + ".world").substr(0, 18), "fcl_artic world 1\n");
 }
 

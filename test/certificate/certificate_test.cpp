@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Certificates of answers, and what the verifier makes of them.
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include <fcl/geometry/octree/octree.h>
@@ -15,6 +17,7 @@
 #include "certificate/sha256.h"
 #include "fcl_artic/fcl_artic.h"
 #include "proof.h"
+#include "report.h"
 
 namespace fcl_artic {
 namespace certificate_test {
@@ -336,6 +339,58 @@ TEST(CertificatesOfPairs, ASolidIsNotItsSurface) {
   ask(*solid, 0, 0.5);
   EXPECT_FALSE(result.isFree());
   EXPECT_FALSE(*result.certificate);  // they touch from the beginning on
+}
+
+/// In the notch of an L no direction parts a ball from all of the solid: it is cut, and the proof names the points that
+/// show that neither is in the other.
+TEST(CertificatesOfPairs, ASolidThatIsCutNamesItsPoints) {
+  const double outline[6][2] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+  std::vector<Vector3d> corners;
+  for (const double z : {0.0, 1.0}) {
+    for (const auto& p : outline) corners.emplace_back(p[0], p[1], z);
+  }
+  std::vector<fcl::Triangle> triangles;
+  for (const auto& [a, b, c] : {std::array{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    triangles.emplace_back(6 + a, 6 + b, 6 + c);
+    triangles.emplace_back(a, c, b);
+  }
+  for (int i = 0; i < 6; ++i) {
+    const int j = (i + 1) % 6;
+    triangles.emplace_back(i, j, 6 + j);
+    triangles.emplace_back(i, 6 + j, 6 + i);
+  }
+  fcl::BVHModel<fcl::OBBRSSd> surface;
+  surface.beginModel();
+  surface.addSubModel(corners, triangles);
+  surface.endModel();
+  const auto solid = makeSolid(surface);
+  std::vector<Vector3d> small;
+  for (const Vector3d& p : corners) small.push_back(0.05 * p);
+  fcl::BVHModel<fcl::OBBRSSd> small_surface;
+  small_surface.beginModel();
+  small_surface.addSubModel(small, triangles);
+  small_surface.endModel();
+  const auto small_solid = makeSolid(small_surface);
+  const fcl::Sphered ball(0.2);
+  CertifiedPairRequest request;
+  request.certificate = true;
+  for (const fcl::CollisionGeometryd* other :
+       {static_cast<const fcl::CollisionGeometryd*>(&ball), static_cast<const fcl::CollisionGeometryd*>(&small_surface),
+        static_cast<const fcl::CollisionGeometryd*>(small_solid.get())}) {
+    const fcl::Transform3d from(Eigen::Translation3d(1.5, 1.5, 0.5)), to(Eigen::Translation3d(1.6, 1.7, 0.4)),
+        still = fcl::Transform3d::Identity();
+    CertifiedPairResult one, two;
+    continuousCollide(solid.get(), still, still, other, from, to, fcl::CCDM_LINEAR, request, one);
+    continuousCollide(other, from, to, solid.get(), still, still, fcl::CCDM_LINEAR, request, two);
+    for (const CertifiedPairResult& result : {one, two}) {
+      ASSERT_TRUE(result.isFree());
+      expectProven(result.certificate);
+      const std::string record = result.certificate->record();
+      const std::string text =
+          verify::proofAsJson(verify::readWorld(*result.certificate->world), verify::splitRecords(record).at(0));
+      EXPECT_NE(text.find("\"outside\": [["), std::string::npos) << text;
+    }
+  }
 }
 
 #if FCL_HAVE_OCTOMAP

@@ -47,6 +47,16 @@ TEST_F(SceneTest, MeshIsOneObstacleNamedAfterItsFile) {
   EXPECT_EQ(geometryOf<fcl::BVHModel<fcl::OBBRSSd>>(scene.obstacles[0]).num_tris, 1);
 }
 
+TEST_F(SceneTest, PackagesOfAUrdfAreWhereTheOptionsSay) {
+  write("elsewhere/post.obj", kTriangle);
+  const std::string urdf = write("shop.urdf", R"(<robot name="shop"><link name="post"><collision><geometry>
+<mesh filename="package://shop_meshes/post.obj"/></geometry></collision></link></robot>)");
+  EXPECT_THROW(loadScene(urdf), std::runtime_error);
+  SceneOptions options;
+  options.packages["shop_meshes"] = path("elsewhere");
+  EXPECT_EQ(loadScene(urdf, options).obstacles.size(), 1u);
+}
+
 TEST_F(SceneTest, UrdfLinksStandAtTheirZeroPose) {
   const Scene scene = load("shop.urdf", R"(<robot name="shop"><link name="floor"/>
 <link name="table"><collision><origin xyz="0 0 0.5"/><geometry><box size="1 1 1"/></geometry></collision>

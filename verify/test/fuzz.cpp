@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The first byte says what the rest is: 0 records for a fixed world, 1 a world, a motion and a proof with their hashes
-// made to fit, separated by bytes 30, 2 URDF, 3 SRDF, 4 STL, 5 OBJ. Wrong input may throw BadInput or be refused; what
-// is verified and yet wrong at a sample is a fault, as is a crash.
+// made to fit, separated by bytes 30, 2 URDF, 3 SRDF, 4 STL, 5 OBJ, 6 a scene's URDF, 7 a plan. Wrong input may throw
+// BadInput or be refused; what is verified and yet wrong at a sample is a fault, as is a crash.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -112,9 +112,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   static const World fixed = readWorld(kWorld);
   const std::string rest(reinterpret_cast<const char*>(data + 1), size - 1);
-  const std::map<std::string, std::string> packages;
+  static const Motion moved = [] {
+    MotionText text;
+    text.pieces = {"q 0 " + hex(0) + " " + hex(1) + "\n"};
+    return readMotion(text.write(fixed), fixed);
+  }();
+  const Packages packages;
   try {
-    switch (data[0] % 6) {
+    switch (data[0] % 8) {
       case 0:
         for (const Record& record : splitRecords(rest)) verifyAndJudge(fixed, record);
         break;
@@ -136,8 +141,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 3:
         compareWithSrdf(fixed, temporaryFile("robot.srdf", rest));
         break;
+      case 6:
+        compareWithScenes(fixed, {temporaryFile("scene.urdf", rest)}, packages);
+        break;
+      case 7:
+        compareWithPlan(fixed, moved, readPlan(temporaryFile("plan.csv", rest)));
+        break;
       default:
-        readMesh(temporaryFile(data[0] % 6 == 4 ? "mesh.stl" : "mesh.obj", rest));
+        readMesh(temporaryFile(data[0] % 8 == 4 ? "mesh.stl" : "mesh.obj", rest));
     }
   } catch (const BadInput&) {
   }

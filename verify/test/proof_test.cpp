@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "../report.h"
 #include "worlds.h"
 
 namespace verify::test {
@@ -168,7 +169,7 @@ TEST(VerifyProof, HashesBindTheThreeTexts) {
   expectVerified(judge(world, good));
   expectRefused(judge(other, good), "another world");
   const std::string proof = hashBytes(motion) + sep({-1, 0, 0});
-  expectRefused(judge(world, "FAC1" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof),
+  expectRefused(judge(world, "FAC2" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof),
                 "another motion");
 }
 
@@ -254,6 +255,12 @@ World hollow(bool solid, double radius = 0.1) {
                    " " + hex(0) + "\n" + boxMesh({1, 1, 1}, solid) + "geometry sphere " + hex(radius) +
                    "\nbody obstacle box 0 0 " + hex(kHere) + "\nbody link ball 1 1 " + hex(kHere) + "\n");
 }
+/// A SOLID node's own bytes. @param points  numbers of pieces and sides
+std::string solidNode(const std::vector<std::pair<std::uint32_t, int>>& points) {
+  std::string s = "\x14" + varint(static_cast<std::uint32_t>(points.size()));
+  for (const auto& [piece, side] : points) s += varint(piece) + static_cast<char>(side);
+  return s;
+}
 std::string others(const std::vector<std::string>& leaves, std::size_t from = 0) {
   if (from + 1 == leaves.size()) return leaves[from];
   return cutNode(kOther, 1, leaves[from], others(leaves, from + 1));
@@ -268,16 +275,65 @@ TEST(VerifyProof, InsideOfASurfaceIsFreeAndOfASolidIsNot) {
   const World surface = hollow(false), solid = hollow(true);
   expectVerified(judge(surface, m.write(surface), others(leaves)));
   expectRefused(judge(solid, m.write(solid), others(leaves)), "without SOLID");
-  expectRefused(judge(solid, m.write(solid), "\x14" + others(leaves)), "inside of");
+  expectRefused(judge(solid, m.write(solid), solidNode({{0, 1}}) + others(leaves)), "inside of");
   expectRefused(judge(surface, moving({-0.5, 1.5}).write(surface), others(leaves)), "apart");
   // Outside: SOLID holds, and the faces are seen from outside.
   std::vector<std::string> outside(12, sep({1, 0, 0}));
   const MotionText away = moving({1.5, 1});
   expectVerified(judge(solid, away.write(solid), sep({1, 0, 0})));
-  expectVerified(judge(solid, away.write(solid), "\x14" + others(outside)));
+  expectVerified(judge(solid, away.write(solid), solidNode({{0, 1}}) + others(outside)));
   expectRefused(judge(solid, away.write(solid), others(outside)), "without SOLID");
   // SOLID is about both as a whole, not about a part of the other.
-  expectRefused(judge(solid, away.write(solid), cutNode(kOther, 1, sep({1, 0, 0}), "\x14" + sep({1, 0, 0}))), "SOLID");
+  expectRefused(
+      judge(solid, away.write(solid), cutNode(kOther, 1, sep({1, 0, 0}), solidNode({{0, 1}}) + sep({1, 0, 0}))),
+      "SOLID");
+}
+
+// A box's mesh, and one within it beside one without: each part is shown by a point of its own.
+TEST(VerifyProof, SolidsPointsAreOfEveryPart) {
+  const auto world = [](double x) {
+    std::vector<V> corners;
+    std::vector<std::array<int, 3>> triangles;
+    for (const double centre : {x, 3.0}) {
+      const auto first = static_cast<int>(corners.size());
+      for (const V& c : {V{-0.1, -0.1, -0.1}, V{0.1, -0.1, -0.1}, V{0, 0.1, -0.1}, V{0, 0, 0.1}})
+        corners.push_back(V{centre, 0.3, 0.1} + c);
+      for (const std::array<int, 3>& t : {std::array<int, 3>{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}})
+        triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                     " " + hex(0) + "\n" + boxMesh({1, 1, 1}, true) + meshText(corners, triangles, false) +
+                     "body obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(kHere) + "\n");
+  };
+  const MotionText still = moving({0});
+  const World in = world(0.2), out = world(6);
+  const auto judgeIt = [&](const World& w, const std::string& node) {
+    return judge(w, still.write(w), node + cutNode(kOwn, 4, sep({1, 0, 0}), sep({1, 0, 0})));
+  };
+  expectVerified(judgeIt(out, solidNode({{0, 1}, {4, 1}})));
+  expectVerified(judgeIt(out, solidNode({{3, 1}, {7, 2}})));
+  const std::string bytes =
+      record(still.write(out), solidNode({{3, 1}, {7, 5}}) + cutNode(kOwn, 4, sep({1, 0, 0}), sep({1, 0, 0})));
+  EXPECT_NE(proofAsJson(out, splitRecords(bytes).at(0)).find(R"({"outside": [[3, "+y"], [7, "-z"]], "solid": {)"),
+            std::string::npos);
+  expectRefused(judgeIt(in, solidNode({{0, 1}, {4, 1}})), "inside of");
+  expectRefused(judgeIt(in, solidNode({{4, 1}, {4, 1}})), "another part");
+  expectRefused(judgeIt(out, solidNode({{0, 1}, {0, 1}})), "another part");
+  expectRefused(judgeIt(out, solidNode({{0, 1}, {8, 1}})), "another part");
+  expectRefused(judgeIt(out, solidNode({{4, 1}})), "another part");
+  expectRefused(judgeIt(out, solidNode({{0, 1}})), "too few points");
+  expectRefused(judgeIt(out, solidNode({})), "too few points");
+  expectRefused(judgeIt(out, solidNode({{0, 1}, {4, 1}, {4, 1}})), "too many points");
+  expectRefused(judgeIt(out, solidNode({{0, 1}, {4, 6}})), "a side that is not there");
+  // A ball's centre, x along the diagonals of the box's faces: no sign is certain.
+  const World ball = hollow(true);
+  const MotionText away = moving({1.5, 1});
+  expectRefused(
+      judge(ball, away.write(ball), solidNode({{0, 0}}) + others(std::vector<std::string>(12, sep({1, 0, 0})))),
+      "not certainly outside");
+  expectRefused(
+      judge(ball, away.write(ball), solidNode({{1, 1}}) + others(std::vector<std::string>(12, sep({1, 0, 0})))),
+      "another part");
 }
 
 TEST(VerifyProof, SolidAroundTheMovingOne) {
@@ -295,7 +351,9 @@ TEST(VerifyProof, SolidAroundTheMovingOne) {
     const std::vector<V> normals{{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {0, 1, 0}, {-1, 0, 0}, {1, 0, 0}};
     for (int k = 10; k >= 0; --k) own = cutNode(kOwn, 1, sep(normals[static_cast<std::size_t>(k / 2)]), own);
     const MotionText still = moving({0.125});
-    expectRefused(judge(world, still.write(world), "\x14" + own), "inside of");
+    std::vector<std::pair<std::uint32_t, int>> points{{0, 1}};
+    if (world.geometries[0].solid) points.insert(points.begin(), {0, 2});
+    expectRefused(judge(world, still.write(world), solidNode(points) + own), "inside of");
     const MotionText far = moving({2});
     expectVerified(judge(world, far.write(world), sep({1, 0, 0})));
   }
@@ -340,14 +398,14 @@ TEST(VerifyProof, NoPlaneGoesThroughASolid) {
   const MotionText m = moving({0, 0.5});
   try {
     const World open = readWorld(world(plates));
-    EXPECT_FALSE(judge(open, m.write(open), "\x14" + cutNode(kOwn, 1, "\x0a", "\x09")).verified);
+    EXPECT_FALSE(judge(open, m.write(open), solidNode({}) + cutNode(kOwn, 1, "\x0a", "\x09")).verified);
   } catch (const BadInput& error) {
     EXPECT_NE(std::string(error.what()).find("not closed"), std::string::npos) << error.what();
   }
   const World two =
       readWorld(world(meshText({{-1, -9, -9}, {-1, 9, -9}, {-1, 0, 9}, {1, -9, -9}, {1, 9, -9}, {1, 0, 9}},
                                {{0, 2, 1}, {0, 1, 2}, {3, 4, 5}, {3, 5, 4}}, true)));  // each plate has two sides
-  expectVerified(judge(two, m.write(two), "\x14" + cutNode(kOwn, 2, "\x0a", "\x09")));
+  expectVerified(judge(two, m.write(two), solidNode({}) + cutNode(kOwn, 2, "\x0a", "\x09")));
 }
 
 TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
@@ -608,11 +666,13 @@ TEST(VerifyProof, HostileProofs) {
   Options small;
   small.work = 100;
   expectRefused(judge(world, record(motion, good), small), "limit of work");
-  EXPECT_THROW(splitRecords("FAC1"), BadInput);
+  EXPECT_THROW(splitRecords("FAC1" + record(motion, good).substr(4)), BadInput);  // format 1: no points at SOLID
+  EXPECT_THROW(splitRecords("FAC2"), BadInput);
   EXPECT_THROW(splitRecords("FAC2aaaaaaaa"), BadInput);
-  EXPECT_THROW(splitRecords(std::string("FAC1\xff\xff\xff\xff", 8)), BadInput);
+  EXPECT_THROW(splitRecords(std::string("FAC2\xff\xff\xff\xff", 8)), BadInput);
   // SOLID nests without cutting anything: the depth is limited.
-  std::string solids(1000, '\x14');
+  std::string solids;
+  for (int k = 0; k < 500; ++k) solids += solidNode({});
   expectRefused(judge(world, motion, solids), "deep");
   MotionText far = moving({0, 1e12});
   expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");

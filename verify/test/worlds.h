@@ -198,7 +198,7 @@ inline std::string hashBytes(const std::string& motion) {
 }
 inline std::string record(const std::string& motion, const std::string& nodes) {
   const std::string proof = hashBytes(motion) + nodes;
-  return "FAC1" + little(motion.size(), 4) + motion + little(proof.size(), 4) + proof;
+  return "FAC2" + little(motion.size(), 4) + motion + little(proof.size(), 4) + proof;
 }
 inline Verdict judge(const World& world, const std::string& bytes, const Options& options = {}) {
   const std::vector<Record> records = splitRecords(bytes);

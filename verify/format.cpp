@@ -1,0 +1,546 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The formats: worlds, motions and records, read strictly. Nothing is proven here.
+#include <algorithm>
+#include <set>
+
+#include "proof.h"
+
+namespace verify {
+namespace {
+
+constexpr std::size_t kMostLines = 200u << 20;  // numbers of lines and entries are 32 bits wide
+
+/// Whether a proper rotation may be within 2^-49 of the numbers: without one, the claim would be about nothing at all.
+/// If R + E is that rotation, |E_ij| <= 2^-49, then |R R^T - I|_ij <= sum over k of |R_ik E_jk| + |E_ik R_jk| + |E_ik
+/// E_jk|
+/// <= 2 sqrt(3) 2^-49 + 3 2^-98 < 2^-47, rows of a rotation being of length 1; and R's determinant is near 1.
+bool mayBeRotation(const double numbers[9]) {
+  for (int k = 0; k < 9; ++k)
+    if (!(std::fabs(numbers[k]) < 2)) return false;
+  Vec row[3];
+  for (std::size_t i = 0; i < 9; ++i) row[i / 3][i % 3] = constant(enclose(numbers[i]));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const Fix product = dot(row[i], row[j]).c0;
+      if (abs(i == j ? product - integer(1) : product) > Fix{kOne >> 47}) return false;
+    }
+  const Vec cross{row[0][1] * row[1][2] - row[0][2] * row[1][1], row[0][2] * row[1][0] - row[0][0] * row[1][2],
+                  row[0][0] * row[1][1] - row[0][1] * row[1][0]};
+  return dot(cross, row[2]).c0 > Fix{0};
+}
+
+/// The lines of a text, each cut into words at single spaces.
+class Lines {
+ public:
+  Lines(std::string_view text, const char* what) : text_(text), what_(what) {}
+
+  /// Goes to the next line that is no comment. @return false at the end.
+  bool next() {
+    while (at_ < text_.size()) {
+      std::size_t end = text_.find('\n', at_);
+      if (end == std::string_view::npos) fail("the last line has no end");
+      line_ = text_.substr(at_, end - at_);
+      at_ = end + 1;
+      ++number_;
+      if (line_.empty() || line_[0] != '#') {
+        rest_ = line_;
+        more_ = true;
+        return true;
+      }
+    }
+    return false;
+  }
+  bool more() const { return more_; }
+  std::string_view word() {
+    if (!more_) fail("a word is missing");
+    const std::size_t space = rest_.find(' ');
+    const std::string_view word = rest_.substr(0, space);
+    more_ = space != std::string_view::npos;
+    rest_ = more_ ? rest_.substr(space + 1) : std::string_view();
+    if (word.empty()) fail("words are separated by one space");
+    return word;
+  }
+  /// Takes back a word of this line.
+  void back(std::string_view word) {
+    const char* const end = line_.data() + line_.size();
+    rest_ = std::string_view(word.data(), static_cast<std::size_t>(end - word.data()));
+    more_ = true;
+  }
+  void end() {
+    if (more_) fail("there are too many words");
+  }
+  /// An integer from 0 to `below` - 1.
+  std::size_t integer(std::size_t below) {
+    const std::string_view text = word();
+    std::size_t value = 0;
+    for (const char c : text) {
+      if (c < '0' || c > '9' || text.size() > 9) fail("'" + std::string(text.substr(0, 40)) + "' is no number here");
+      value = 10 * value + static_cast<std::size_t>(c - '0');
+    }
+    if (value >= below) fail("the number " + std::string(text) + " is not below " + std::to_string(below));
+    return value;
+  }
+  /// A count of lines to come: at least `shortest` bytes each, so that memory is bounded by the text's length.
+  std::size_t count(std::size_t shortest) {
+    const std::size_t n = integer(kMostLines);
+    if (n == 0) fail("the count is 0");
+    if (n > (text_.size() - at_) / shortest) fail("the text has fewer lines than the count says");
+    return n;
+  }
+  /// A hexadecimal floating-point constant that is a double exactly and in the verifier's range.
+  double number() {
+    const std::string_view all = word();
+    std::string_view text = all;
+    const auto wrong = [&]() {
+      fail("'" + std::string(all.substr(0, 60)) + "' is no hexadecimal constant of a double");
+    };
+    const bool negative = !text.empty() && text[0] == '-';
+    if (negative) text.remove_prefix(1);
+    if (text.size() < 3 || text[0] != '0' || text[1] != 'x') wrong();
+    text.remove_prefix(2);
+    std::uint64_t mantissa = 0;
+    int exponent = 0, digits = 0;
+    bool point = false;
+    while (!text.empty() && text[0] != 'p') {
+      const char c = text[0];
+      text.remove_prefix(1);
+      if (c == '.' && !point) {
+        point = true;
+        continue;
+      }
+      const int digit = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+      if (digit < 0 || ++digits > 15) wrong();
+      mantissa = mantissa << 4 | static_cast<std::uint64_t>(digit);
+      if (point) exponent -= 4;
+    }
+    if (digits == 0) wrong();
+    if (!text.empty()) {
+      text.remove_prefix(1);
+      const bool down = !text.empty() && text[0] == '-';
+      if (!text.empty() && (text[0] == '-' || text[0] == '+')) text.remove_prefix(1);
+      if (text.empty() || text.size() > 4) wrong();
+      int p = 0;
+      for (const char c : text) {
+        if (c < '0' || c > '9') wrong();
+        p = 10 * p + (c - '0');
+      }
+      exponent += down ? -p : p;
+    }
+    while (mantissa != 0 && (mantissa & 1) == 0) {
+      mantissa >>= 1;
+      ++exponent;
+    }
+    if (mantissa >= std::uint64_t{1} << 53) wrong();
+    const double value = std::ldexp(static_cast<double>(mantissa), exponent);
+    if (std::ldexp(value, -exponent) != static_cast<double>(mantissa)) wrong();  // it left the doubles
+    if (value > 1099511627776.0) fail("the number " + std::string(all.substr(0, 40)) + " is beyond 2^40");
+    return negative ? -value : value;
+  }
+  /// Nine numbers near a rotation.
+  void rotation(double numbers[9]) {
+    for (int k = 0; k < 9; ++k) numbers[k] = number();
+    if (!mayBeRotation(numbers)) fail("no rotation is within 2^-49 of the nine numbers");
+  }
+  double notNegative() {
+    const double value = number();
+    if (value < 0) fail("a number is negative");
+    return value;
+  }
+  /// A name, with its escapes resolved.
+  std::string name() {
+    const std::string_view text = word();
+    std::string name;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+      const auto c = static_cast<unsigned char>(text[k]);
+      if (c < 33 || c > 126) fail("a name has a byte that is not escaped");
+      if (c != '%') {
+        name += static_cast<char>(c);
+        continue;
+      }
+      const auto digit = [&](std::size_t at) {
+        const char h = at < text.size() ? text[at] : 0;
+        if (h >= '0' && h <= '9') return h - '0';
+        if (h >= 'a' && h <= 'f') return h - 'a' + 10;
+        if (h >= 'A' && h <= 'F') return h - 'A' + 10;
+        fail("a name has a % without two digits after it");
+      };
+      name += static_cast<char>(16 * digit(k + 1) + digit(k + 2));
+      k += 2;
+    }
+    return name;
+  }
+  [[noreturn]] void fail(const std::string& why) const {
+    throw BadInput(std::string(what_) + ", line " + std::to_string(number_) + ": " + why);
+  }
+
+ private:
+  std::string_view text_, line_, rest_;
+  const char* what_;
+  std::size_t at_ = 0, number_ = 0;
+  bool more_ = false;
+};
+
+void readGeometry(Lines& lines, Geometry& g) {
+  const std::string_view kind = lines.word();
+  const auto numbers = [&](Geometry::Kind k, int n, bool sizes) {
+    g.kind = k;
+    for (int i = 0; i < n; ++i) g.numbers.push_back(sizes ? lines.notNegative() : lines.number());
+  };
+  if (kind == "mesh") {
+    g.kind = Geometry::mesh;
+    const std::string_view what = lines.word();
+    if (what != "surface" && what != "solid") lines.fail("a mesh is 'surface' or 'solid'");
+    g.solid = what == "solid";
+  } else if (kind == "boxes") {
+    g.kind = Geometry::boxes;
+  } else if (kind == "hull") {
+    g.kind = Geometry::hull;
+  } else if (kind == "box") {
+    numbers(Geometry::box, 3, true);
+  } else if (kind == "sphere") {
+    numbers(Geometry::sphere, 1, true);
+  } else if (kind == "ellipsoid") {
+    numbers(Geometry::ellipsoid, 3, true);
+  } else if (kind == "capsule") {
+    numbers(Geometry::capsule, 2, true);
+  } else if (kind == "cylinder") {
+    numbers(Geometry::cylinder, 2, true);
+  } else if (kind == "cone") {
+    numbers(Geometry::cone, 2, true);
+  } else if (kind == "halfspace" || kind == "plane") {
+    numbers(kind == "plane" ? Geometry::plane : Geometry::halfspace, 4, false);
+    if (g.numbers[0] == 0 && g.numbers[1] == 0 && g.numbers[2] == 0) lines.fail("the normal is the zero vector");
+  } else {
+    lines.fail("there is no geometry '" + std::string(kind.substr(0, 40)) + "'");
+  }
+  lines.end();
+  const auto list = [&](const char* what, std::size_t shortest) {
+    if (!lines.next() || lines.word() != what) lines.fail(std::string("'") + what + "' is missing");
+    const std::size_t n = lines.count(shortest);
+    lines.end();
+    return n;
+  };
+  const auto rows = [&](std::size_t n, std::size_t width, std::vector<double>& into) {
+    into.reserve(n * width);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!lines.next()) lines.fail("a line is missing");
+      for (std::size_t k = 0; k < width; ++k) into.push_back(k < 3 ? lines.number() : lines.notNegative());
+      lines.end();
+    }
+  };
+  if (g.kind == Geometry::mesh || g.kind == Geometry::hull) rows(list("vertices", 12), 3, g.vertices);
+  if (g.kind == Geometry::mesh) {
+    const std::size_t n = list("triangles", 6);
+    g.triangles.reserve(3 * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!lines.next()) lines.fail("a line is missing");
+      for (int k = 0; k < 3; ++k)
+        g.triangles.push_back(static_cast<std::uint32_t>(lines.integer(g.vertices.size() / 3)));
+      lines.end();
+    }
+    std::vector<char> used(g.vertices.size() / 3, 0);
+    for (const std::uint32_t v : g.triangles) used[v] = 1;
+    if (std::count(used.begin(), used.end(), 0) > 0) lines.fail("a vertex of this mesh is that of no triangle");
+  }
+  if (g.kind == Geometry::boxes) rows(list("cells", 24), 6, g.cells);
+  g.prepare();
+  if (g.solid && !g.joinSurfaces())
+    lines.fail("the surface of this 'mesh solid' is not closed, or its triangles do not face the same way");
+}
+
+void readElement(Lines& lines, std::string_view kind, std::size_t variables, Frame& frame) {
+  Element e{};
+  if (kind == "rotate") {
+    e.kind = Element::rotate;
+    e.variable = static_cast<int>(lines.integer(variables));
+    if (static_cast<std::size_t>(e.variable) + 2 >= variables) lines.fail("'rotate' takes three variables");
+  } else {
+    e.kind = kind == "turn" ? Element::turn : Element::slide;
+    for (double& x : e.axis) x = lines.number();
+    e.variable = static_cast<int>(lines.integer(variables));
+    e.multiplier = lines.number();
+    e.offset = lines.number();
+    Fix unit[3];
+    unitVector(e.axis, unit);
+    const bool coordinate = isCoordinateAxis(e.axis);
+    for (int k = 0; k < 3; ++k)
+      e.unit[k] = coordinate ? constant(integer((e.axis[k] > 0) - (e.axis[k] < 0)))
+                             : constant(unit[k], ulps(2) + Fix{kOne >> kAxisBits});
+    for (int k = 0; k < 9; ++k) e.products[k] = e.unit[k / 3] * e.unit[k % 3];
+  }
+  lines.end();
+  frame.elements.push_back(e);
+}
+
+World readWorldText(std::string_view text) {
+  World world;
+  world.hash = sha256(text.data(), text.size());
+  Lines lines(text, "world");
+  if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n")
+    lines.fail("the first line is not 'fcl_artic world 1'");
+  Frame ground{};
+  ground.name = "world";
+  world.frames.push_back(ground);
+  std::map<std::string, int> ids;
+  const auto idOf = [&](std::string name) {
+    const auto added = ids.emplace(std::move(name), static_cast<int>(world.names.size()));
+    if (added.second) world.names.push_back(added.first->first);
+    return added.first->second;
+  };
+  while (lines.next()) {
+    const std::string_view kind = lines.word();
+    if (kind == "variable") {
+      world.variables.push_back(lines.name());
+    } else if (kind == "frame") {
+      Frame frame{};
+      frame.name = lines.name();
+      frame.parent = static_cast<int>(lines.integer(world.frames.size()));
+      frame.depth = world.frames[frame.parent].depth + 1;
+      if (frame.depth > 1000) lines.fail("a chain of more than 1000 frames is not read");
+      lines.rotation(frame.numbers);
+      for (int k = 9; k < 12; ++k) frame.numbers[k] = lines.number();
+      frame.origin = statedPose(frame.numbers);
+      world.frames.push_back(std::move(frame));
+    } else if (kind == "turn" || kind == "slide" || kind == "rotate") {
+      if (world.frames.size() == 1) lines.fail("an element comes after its frame");
+      readElement(lines, kind, world.variables.size(), world.frames.back());
+      continue;
+    } else if (kind == "geometry") {
+      world.geometries.emplace_back();
+      readGeometry(lines, world.geometries.back());
+      continue;
+    } else if (kind == "body") {
+      Body body{};
+      const std::string_view role = lines.word();
+      if (role == "link") {
+        body.role = Role::link;
+      } else if (role == "carried") {
+        body.role = Role::carried;
+      } else if (role == "obstacle") {
+        body.role = Role::obstacle;
+      } else {
+        lines.fail("a body's role is link, carried or obstacle");
+      }
+      body.name = lines.name();
+      body.name_id = idOf(body.name);
+      body.frame = static_cast<int>(lines.integer(world.frames.size()));
+      body.geometry = static_cast<int>(lines.integer(world.geometries.size()));
+      lines.rotation(body.numbers);
+      for (int k = 9; k < 12; ++k) body.numbers[k] = lines.number();
+      body.pose = statedPose(body.numbers);
+      world.bodies.push_back(std::move(body));
+    } else if (kind == "margin") {
+      const int a = idOf(lines.name());
+      std::string_view second = lines.word();
+      if (lines.more()) {
+        lines.back(second);
+        const int b = idOf(lines.name());
+        if (!world.pair_margins.emplace(std::minmax(a, b), lines.notNegative()).second)
+          lines.fail("the pair has a margin already");
+      } else {
+        lines.back(second);
+        if (!world.margins.emplace(a, lines.notNegative()).second) lines.fail("the name has a margin already");
+      }
+    } else if (kind == "unchecked") {
+      const std::string_view reason = lines.word();
+      Reason why = Reason::allowed;
+      if (reason == "neighbours") {
+        why = Reason::neighbours;
+      } else if (reason == "touch-link") {
+        why = Reason::touch_link;
+      } else if (reason != "allowed") {
+        lines.fail("the reason is neighbours, allowed or touch-link");
+      }
+      const int a = idOf(lines.name()), b = idOf(lines.name());
+      if (!world.unchecked.emplace(std::minmax(a, b), why).second) lines.fail("the pair is listed already");
+    } else {
+      lines.fail("there is no item '" + std::string(kind.substr(0, 40)) + "'");
+    }
+    lines.end();
+  }
+  world.moves.assign(world.variables.size(), 0);
+  world.turns = world.moves;
+  for (const Frame& frame : world.frames)
+    for (const Element& e : frame.elements) {
+      const auto v = static_cast<std::size_t>(e.variable);
+      for (std::size_t k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k) world.moves[v + k] = 1;
+      if (e.kind == Element::rotate) world.turns[v] = 1;
+    }
+  const auto solid = [](const Geometry& g) { return g.solid; };
+  if (std::any_of(world.geometries.begin(), world.geometries.end(), solid))
+    for (Geometry& g : world.geometries)
+      if (!g.solid) g.joinSurfaces();
+  derivePairs(world);
+  return world;
+}
+
+}  // namespace
+
+World readWorld(std::string_view text) {
+  try {
+    return readWorldText(text);
+  } catch (const NotProven& error) {  // a sum that leaves the range
+    throw BadInput(std::string("world: ") + error.what());
+  }
+}
+
+Motion readMotion(std::string_view text, const World& world) {
+  Motion motion;
+  motion.hash = sha256(text.data(), text.size());
+  Lines lines(text, "motion");
+  if (!lines.next() || text.substr(0, 19) != "fcl_artic motion 1\n")
+    lines.fail("the first line is not 'fcl_artic motion 1'");
+  bool seen[6] = {};
+  const auto once = [&](int item) {
+    if (seen[item]) lines.fail("the item is there already");
+    if (!motion.pieces.empty()) lines.fail("the item comes before the first piece");
+    seen[item] = true;
+  };
+  while (lines.next()) {
+    const std::string_view kind = lines.word();
+    if (kind == "world") {
+      once(0);
+      motion.world = std::string(lines.word());
+    } else if (kind == "margin") {
+      once(1);
+      motion.margin = lines.notNegative();
+    } else if (kind == "added") {
+      once(2);
+      motion.added = lines.notNegative();
+    } else if (kind == "scope") {
+      once(3);
+      while (lines.more()) {
+        const std::string_view what = lines.word();
+        bool* const flag = what == "self" ? &motion.self : what == "scene" ? &motion.scene : nullptr;
+        if (flag == nullptr || *flag) lines.fail("the scope is self, scene or both");
+        *flag = true;
+      }
+    } else if (kind == "duration") {
+      once(4);
+      motion.duration = lines.number();
+    } else if (kind == "until") {
+      once(5);
+      motion.until = lines.number();
+      if (!(motion.until >= 0 && motion.until <= 1)) lines.fail("'until' is in [0, 1]");
+    } else if (kind == "piece") {
+      motion.pieces.emplace_back();
+    } else if (kind == "q" || kind == "orientation" || kind == "ignored") {
+      if (motion.pieces.empty()) lines.fail("a 'piece' comes first");
+      Piece& piece = motion.pieces.back();
+      if (kind == "ignored") {
+        Ignored ignored{};
+        ignored.a = static_cast<int>(lines.integer(world.bodies.size()));
+        ignored.b = static_cast<int>(lines.integer(world.bodies.size()));
+        ignored.until = lines.number();
+        lines.end();
+        if (ignored.a >= ignored.b) lines.fail("of an ignored pair the lower number comes first");
+        if (!(ignored.until >= 0 && ignored.until <= 1)) lines.fail("the time is in [0, 1]");
+        piece.ignored.push_back(ignored);
+        continue;
+      }
+      const int variable = static_cast<int>(lines.integer(world.variables.size()));
+      if (kind == "q") {
+        Polynomial q{variable, {}};
+        while (lines.more()) q.coefficients.push_back(lines.number());
+        if (q.coefficients.empty() || q.coefficients.size() > 6) lines.fail("a polynomial has 1 to 6 coefficients");
+        piece.polynomials.push_back(std::move(q));
+      } else {
+        Orientation orientation{variable, {}};
+        lines.rotation(orientation.numbers);
+        piece.orientations.push_back(orientation);
+      }
+    } else {
+      lines.fail("there is no item '" + std::string(kind.substr(0, 40)) + "'");
+    }
+    lines.end();
+  }
+  for (const int item : {0, 1, 3, 5})
+    if (!seen[item]) lines.fail("one of world, margin, scope, until is missing");
+  if (!motion.self && !motion.scene) lines.fail("the scope is empty: nothing is claimed");
+  if (motion.pieces.empty()) lines.fail("there is no piece");
+  const auto before = [](const auto& x, const auto& y) { return x.variable < y.variable; };
+  const auto twice = [&](auto& list) {
+    std::sort(list.begin(), list.end(), before);
+    return std::adjacent_find(list.begin(), list.end(),
+                              [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
+  };
+  for (Piece& piece : motion.pieces) {
+    if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");
+    for (const Polynomial& q : piece.polynomials)
+      if (!world.moves[static_cast<std::size_t>(q.variable)])
+        lines.fail("'q' of the variable " + std::to_string(q.variable) + ", which moves nothing");
+    for (const Orientation& o : piece.orientations)
+      if (!world.turns[static_cast<std::size_t>(o.variable)])
+        lines.fail("'orientation' of the variable " + std::to_string(o.variable) + ", which is not that of a 'rotate'");
+    for (const Ignored& i : piece.ignored) {
+      const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(i.b)];
+      const auto at =
+          std::lower_bound(list.begin(), list.end(), i.a, [](const Partner& p, int b) { return p.body < b; });
+      if (at == list.end() || at->body != i.a || !(at->self ? motion.self : motion.scene))
+        lines.fail("'ignored' of bodies " + std::to_string(i.a) + " and " + std::to_string(i.b) +
+                   ", which are not checked anyway");
+    }
+  }
+  return motion;
+}
+
+std::uint8_t Bytes::peek() const {
+  if (empty()) throw BadInput("the proof ends too early");
+  return static_cast<std::uint8_t>(bytes_[at_]);
+}
+std::string_view Bytes::take(std::size_t n) {
+  if (n > left()) throw BadInput("the proof ends too early");
+  at_ += n;
+  return bytes_.substr(at_ - n, n);
+}
+std::uint64_t Bytes::little(int n) {
+  const std::string_view bytes = take(static_cast<std::size_t>(n));
+  std::uint64_t value = 0;
+  for (int k = n; k-- > 0;) value = value << 8 | static_cast<std::uint8_t>(bytes[static_cast<std::size_t>(k)]);
+  return value;
+}
+std::int64_t Bytes::signedLittle(int n) {
+  const std::uint64_t value = little(n), sign = static_cast<std::uint64_t>(1) << (8 * n - 1);
+  return static_cast<std::int64_t>(value & (sign - 1)) - static_cast<std::int64_t>(value & sign);
+}
+std::uint32_t Bytes::varint() {
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 35; shift += 7) {
+    const std::uint8_t b = byte();
+    value |= static_cast<std::uint64_t>(b & 127) << shift;
+    if ((b & 128) == 0) {
+      if (value >> 32 != 0 || (b == 0 && shift > 0)) break;
+      return static_cast<std::uint32_t>(value);
+    }
+  }
+  throw BadInput("a varint has more than 32 bits or is not in its shortest form");
+}
+
+std::vector<OutsidePoint> Bytes::outsidePoints() {
+  std::vector<OutsidePoint> points;
+  for (std::uint32_t n = varint(); n > 0; --n) {
+    const std::uint32_t piece = varint();
+    points.push_back({piece, byte()});
+    if (points.back().side > 5) throw BadInput("SOLID names a side that is not there");
+  }
+  return points;
+}
+
+std::vector<Record> splitRecords(std::string_view file) {
+  std::vector<Record> records;
+  Bytes bytes(file);
+  const auto text = [&]() { return bytes.take(bytes.little(4)); };
+  while (!bytes.empty()) {
+    const std::string_view version = bytes.take(4);
+    if (version == "FAC1")
+      throw BadInput("a record is of format 1, which this verifier does not read: ask for it anew");
+    if (version != "FAC2") throw BadInput("a record does not begin with FAC2");
+    Record record;
+    record.motion = text();
+    record.proof = text();
+    records.push_back(record);
+  }
+  return records;
+}
+
+}  // namespace verify

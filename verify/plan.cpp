@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "readers.h"
+#include "xml.h"
+
+namespace verify {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+
+std::string shortDecimal(double x) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
+/// Words of a text, separated by any of these.
+std::vector<std::string> wordsOf(const std::string& text, const char* separators) {
+  std::vector<std::string> words;
+  for (std::size_t at = text.find_first_not_of(separators), end; at != text.npos;
+       at = text.find_first_not_of(separators, end)) {
+    end = std::min(text.find_first_of(separators, at), text.size());
+    words.push_back(text.substr(at, end - at));
+  }
+  return words;
+}
+
+/// A number, or an angle as 90deg.
+double numberOf(std::string word) {
+  const bool degrees = word.size() > 3 && word.substr(word.size() - 3) == "deg";
+  if (degrees) word.resize(word.size() - 3);
+  const double number = decimal(word);
+  return degrees ? number * kRadiansPerDegree : number;
+}
+
+/// Fields of a line, separated by commas; blanks and quotes around them are no part of them.
+std::vector<std::string> fieldsOf(const std::string& line) {
+  std::vector<std::string> fields;
+  for (std::size_t at = 0;;) {
+    const std::size_t end = std::min(line.find(',', at), line.size());
+    const std::string field = line.substr(at, end - at);
+    const std::size_t begin = std::min(field.find_first_not_of(" \t\r\""), field.size());
+    fields.push_back(field.substr(begin, field.find_last_not_of(" \t\r\"") + 1 - begin));
+    if (end == line.size()) return fields;
+    at = end + 1;
+  }
+}
+
+/// Which column of a plan says what.
+struct Columns {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::size_t time = kNone;
+  struct Of {
+    std::size_t position = kNone, velocity = kNone, acceleration = kNone;
+  };
+  std::map<std::string, Of> variables;
+  bool velocities = false, accelerations = false;  // there are any
+};
+
+Columns columnsOf(const World& world, const Plan& plan) {
+  static const char* const kVelocity[] = {"/velocity", ".velocity", "_velocity", "_vel"};
+  static const char* const kAcceleration[] = {"/acceleration", ".acceleration", "_acceleration", "_acc"};
+  const std::set<std::string> known(world.variables.begin(), world.variables.end());
+  if (known.size() < world.variables.size()) throw BadInput("the world has two variables of one name");
+  Columns columns;
+  const auto set = [&](std::size_t& column, std::size_t k) {
+    if (column != Columns::kNone)
+      throw BadInput("'" + plan.title + "': two columns say what " + inQuotes(plan.columns[k]) + " does");
+    column = k;
+  };
+  for (std::size_t k = 0; k < plan.columns.size(); ++k) {
+    const std::string& name = plan.columns[k];
+    const auto without = [&](const char* const(&endings)[4]) {
+      for (const std::string ending : endings) {
+        const std::size_t left = name.size() - std::min(ending.size(), name.size());
+        if (name.substr(left) == ending && known.count(name.substr(0, left)) > 0) return name.substr(0, left);
+      }
+      return std::string();
+    };
+    const std::string v = without(kVelocity), a = without(kAcceleration);
+    if (known.count(name) > 0) {
+      set(columns.variables[name].position, k);
+    } else if (name == "time" || name == "t" || name == "time_from_start") {
+      set(columns.time, k);
+    } else if (!v.empty()) {
+      set(columns.variables[v].velocity, k);
+      columns.velocities = true;
+    } else if (!a.empty()) {
+      set(columns.variables[a].acceleration, k);
+      columns.accelerations = true;
+    } else {
+      throw BadInput("'" + plan.title + "': the column " + inQuotes(name) + " is no variable of the world");
+    }
+  }
+  for (const auto& [name, of] : columns.variables)
+    if (of.position == Columns::kNone || (columns.velocities && of.velocity == Columns::kNone) ||
+        (columns.accelerations && of.acceleration == Columns::kNone))
+      throw BadInput("'" + plan.title + "': " + inQuotes(name) +
+                     " has not all of the columns of position, velocity and acceleration that others have");
+  for (const auto& [name, value] : plan.state)
+    if (known.count(name) == 0) throw BadInput("the world has no variable " + inQuotes(name));
+  if (columns.accelerations && !columns.velocities)
+    throw BadInput("'" + plan.title + "' has accelerations and no velocities");
+  return columns;
+}
+
+Interpolation interpolationOf(const Plan& plan, const Columns& columns) {
+  Interpolation kind = plan.interpolation;
+  if (kind == Interpolation::automatic)
+    kind = columns.accelerations ? Interpolation::quintic
+           : columns.velocities  ? Interpolation::cubic
+                                 : Interpolation::linear;
+  const bool lacks = (kind != Interpolation::linear && (!columns.velocities || columns.time == Columns::kNone)) ||
+                     (kind == Interpolation::quintic && !columns.accelerations);
+  if (lacks) throw BadInput("'" + plan.title + "' has not the times, velocities and accelerations of such a spline");
+  return kind;
+}
+
+class PlanComparison {
+ public:
+  PlanComparison(const World& world, const Motion& motion, const Plan& plan)
+      : world_(world),
+        motion_(motion),
+        plan_(plan),
+        columns_(columnsOf(world, plan)),
+        kind_(interpolationOf(plan, columns_)) {}
+
+  Comparison run() {
+    count();
+    for (std::size_t k = 1; columns_.time != Columns::kNone && k < plan_.rows.size(); ++k)
+      if (!(time(k) > time(k - 1))) different("its time does not increase at waypoint " + std::to_string(k));
+    for (std::size_t v = 0; v < world_.variables.size(); ++v) variable(v);
+    if (result_.differences.empty()) note();
+    return std::move(result_);
+  }
+
+ private:
+  double time(std::size_t k) const { return plan_.rows[k][columns_.time]; }
+  void different(const std::string& what) {
+    if (result_.differences.size() < 1000) result_.differences.push_back(what);
+  }
+
+  void count() {
+    const std::size_t pieces = motion_.pieces.size(), all = plan_.rows.size() - 1;
+    if (pieces > all)
+      different("the motion has " + std::to_string(pieces) + " pieces, the plan " + std::to_string(all));
+    else if (pieces < all && motion_.until >= 1)
+      different("the motion ends at waypoint " + std::to_string(pieces) + " of " + std::to_string(all));
+  }
+
+  /// Coefficients of a variable in a piece, without zeros at the end but for the first.
+  std::vector<double> coefficients(std::size_t piece, std::size_t v) const {
+    for (const Polynomial& q : motion_.pieces[piece].polynomials) {
+      if (q.variable != static_cast<int>(v)) continue;
+      std::vector<double> c = q.coefficients;
+      while (c.size() > 1 && c.back() == 0) c.pop_back();
+      return c;
+    }
+    return {0};
+  }
+
+  void variable(std::size_t v) {
+    if (!world_.moves[v]) return;
+    const std::string& name = world_.variables[v];
+    const auto wrong = [&](std::size_t piece, const std::string& what) {
+      different(inQuotes(name) + " " + what + " piece " + std::to_string(piece) + " of the motion");
+    };
+    if (turns(v)) return different(inQuotes(name) + " turns by three variables, which are not compared with plans");
+    const auto column = columns_.variables.find(name);
+    if (column == columns_.variables.end()) return standing(v);
+    const Columns::Of& of = column->second;
+    const std::size_t pieces = std::min(motion_.pieces.size(), plan_.rows.size() - 1);
+    for (std::size_t k = 0; k < pieces; ++k) {
+      const std::vector<double> c = coefficients(k, v);
+      const double from = plan_.rows[k][of.position], to = plan_.rows[k + 1][of.position];
+      if (c[0] != from) return wrong(k, "is not at waypoint " + std::to_string(k) + " at the beginning of");
+      if (kind_ != Interpolation::linear) {
+        if (!isSpline(c, of, k)) return wrong(k, "does not go as the plan's velocities say in");
+      } else if (c.size() > 2) {
+        return wrong(k, "does not go straight in");
+      } else if ((c.size() > 1 ? c[1] : 0) != to - from) {
+        return wrong(k, "does not go to waypoint " + std::to_string(k + 1) + " in");
+      }
+    }
+  }
+
+  /// Whether an obstacle goes elsewhere in some piece.
+  bool obstaclesMove() const {
+    for (const Body& body : world_.bodies)
+      for (int f = body.role == Role::obstacle ? body.frame : 0; f > 0;
+           f = world_.frames[static_cast<std::size_t>(f)].parent)
+        for (const Element& e : world_.frames[static_cast<std::size_t>(f)].elements)
+          for (std::size_t k = 0; k < motion_.pieces.size(); ++k)
+            if (coefficients(k, static_cast<std::size_t>(e.variable)).size() > 1) return true;
+    return false;
+  }
+
+  /// Whether it is one of the three of a `rotate`.
+  bool turns(std::size_t v) const {
+    for (std::size_t k = v < 2 ? 0 : v - 2; k <= v; ++k)
+      if (world_.turns[k]) return true;
+    return false;
+  }
+
+  void standing(std::size_t v) {
+    const std::string& name = world_.variables[v];
+    const auto given = plan_.state.find(name);
+    const double value = given == plan_.state.end() ? 0 : given->second;
+    for (std::size_t k = 0; k < motion_.pieces.size(); ++k) {
+      const std::vector<double> c = coefficients(k, v);
+      if (c.size() > 1) return different(inQuotes(name) + " moves, and the plan has no column for it");
+      if (c[0] != value)
+        return different(inQuotes(name) + " stands at " + shortDecimal(c[0]) +
+                         ", and the plan has no column for it: 0, or as " + "--state says");
+    }
+    standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
+  }
+
+  // With s = (t - t_k) / h the only polynomials of these degrees that have the waypoints' values, velocities v and
+  // accelerations a at both ends: q0 + h v0 s + (3 d - 2 h v0 - h v1) s^2 + (h v0 + h v1 - 2 d) s^3, d = q1 - q0, and
+  // likewise of degree 5. A writer rounds their coefficients: by less than 2^-41 of the largest of |q|, h |v|, h^2 |a|
+  // (doc/NUMERICS.md, section 12: 2e-13).
+  bool isSpline(const std::vector<double>& c, const Columns::Of& of, std::size_t k) const {
+    using Long = long double;
+    const std::vector<double>&from = plan_.rows[k], &to = plan_.rows[k + 1];
+    const Long h = static_cast<Long>(time(k + 1)) - time(k), d = static_cast<Long>(to[of.position]) - from[of.position];
+    const Long v0 = h * from[of.velocity], v1 = h * to[of.velocity];
+    Long a0 = 0, a1 = 0, e[6] = {from[of.position], v0, 3 * d - 2 * v0 - v1, v0 + v1 - 2 * d, 0, 0};
+    if (kind_ == Interpolation::quintic) {
+      a0 = h * h * from[of.acceleration];
+      a1 = h * h * to[of.acceleration];
+      e[2] = a0 / 2;
+      e[3] = 10 * d - 6 * v0 - 4 * v1 - (3 * a0 - a1) / 2;
+      e[4] = -15 * d + 8 * v0 + 7 * v1 + (3 * a0) / 2 - a1;
+      e[5] = 6 * d - 3 * (v0 + v1) - (a0 - a1) / 2;
+    }
+    const Long size = std::max({std::fabs(e[0]), std::fabs(static_cast<Long>(to[of.position])), std::fabs(v0),
+                                std::fabs(v1), std::fabs(a0), std::fabs(a1)});
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!(std::fabs((i < c.size() ? c[i] : 0) - e[i]) <= std::ldexp(size, -41))) return false;
+    return true;
+  }
+
+  void note() {
+    const std::size_t pieces = motion_.pieces.size();
+    std::string text = "the motion is that of '" + plan_.title + "': waypoints 0 to " + std::to_string(pieces);
+    if (pieces < plan_.rows.size() - 1) text += " of " + std::to_string(plan_.rows.size() - 1);
+    if (motion_.until < 1) text += ", up to the time that the claim ends";
+    text += kind_ == Interpolation::linear  ? ", straight from one to the next"
+            : kind_ == Interpolation::cubic ? ", cubic splines"
+                                            : ", splines of degree 5";
+    result_.notes.push_back(text);
+    if (!standing_.empty()) result_.notes.push_back("not in the plan, standing still: " + standing_);
+    const double length = columns_.time == Columns::kNone ? motion_.duration : time(plan_.rows.size() - 1) - time(0);
+    const bool retimed = motion_.duration != 0 && pieces == plan_.rows.size() - 1 && motion_.until == 1 &&
+                         std::fabs(length - motion_.duration) > 1e-9 * std::fabs(motion_.duration);
+    if (retimed)
+      result_.notes.push_back("the plan is retimed: it takes " + shortDecimal(length) +
+                              " s, the certificate's motion " + shortDecimal(motion_.duration) + " s");
+    result_.notes.push_back(
+        obstaclesMove() ? "obstacles move, too: this is proven of one timing, in which they are where the plan has them"
+        : kind_ == Interpolation::linear ? "nothing else moves: this is proven of every timing of these straight lines"
+                                         : "nothing else moves: this is proven of every timing of these very curves "
+                                           "(splines of other times differ)");
+  }
+
+  const World& world_;
+  const Motion& motion_;
+  const Plan& plan_;
+  const Columns columns_;
+  const Interpolation kind_;
+  std::string standing_;
+  Comparison result_;
+};
+
+}  // namespace
+
+Plan readPlan(const std::string& path) {
+  Plan plan;
+  plan.title = path;
+  std::string text = readFile(path);
+  if (text.rfind("\xEF\xBB\xBF", 0) == 0) text.erase(0, 3);  // a byte order mark
+  if (text.empty() || text.back() != '\n')
+    throw BadInput("'" + path + "': the last line has no line end: the file may be cut short");
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    const std::string line = text.substr(at, end - at);
+    at = end + 1;
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r\"");
+    if (first == line.npos || line[first] == '#') continue;
+    const std::vector<std::string> fields = fieldsOf(line);
+    const std::string where = "'" + path + "', line " + std::to_string(number) + ": ";
+    if (plan.columns.empty()) {
+      plan.columns = fields;
+      continue;
+    }
+    if (fields.size() != plan.columns.size()) throw BadInput(where + "it has another number of columns than the first");
+    std::vector<double>& row = plan.rows.emplace_back();
+    try {
+      for (const std::string& field : fields) row.push_back(decimal(field));
+    } catch (const BadInput& error) {
+      throw BadInput(where + error.what());
+    }
+  }
+  if (plan.rows.size() < 2) throw BadInput("'" + path + "' has not two waypoints");
+  return plan;
+}
+
+std::map<std::string, double> readConfiguration(const World& world, const std::string& text) {
+  std::map<std::string, double> values;
+  const std::vector<std::string> words = wordsOf(text, ", \t\r\n");
+  const bool named = !words.empty() && words[0].find('=') != std::string::npos;
+  if (!named && words.size() != world.variables.size())
+    throw BadInput("'" + text + "' has " + std::to_string(words.size()) + " values, the world " +
+                   std::to_string(world.variables.size()) + " variables");
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const std::size_t equals = words[k].find('=');
+    if ((equals != std::string::npos) != named)
+      throw BadInput("'" + text + "': either all values carry a name or none does");
+    const std::string name = named ? words[k].substr(0, equals) : world.variables[k];
+    const double value = numberOf(named ? words[k].substr(equals + 1) : words[k]);
+    if (std::find(world.variables.begin(), world.variables.end(), name) == world.variables.end())
+      throw BadInput("the world has no variable " + inQuotes(name));
+    if (!values.emplace(name, value).second) throw BadInput("'" + text + "': " + inQuotes(name) + " is given twice");
+  }
+  return values;
+}
+
+std::vector<double> readBase(const std::string& text) {
+  const std::vector<std::string> fields = fieldsOf(text);
+  if (fields.size() != 3 && fields.size() != 6)
+    throw BadInput("'" + text + "' is no pose x,y,z or x,y,z,roll,pitch,yaw");
+  std::vector<double> base;
+  for (const std::string& field : fields) base.push_back(base.size() < 3 ? decimal(field) : numberOf(field));
+  base.resize(6, 0);
+  return base;
+}
+
+Plan planBetween(const World& world, const std::string& from, const std::string& to) {
+  Plan plan;
+  plan.title = "--from, --to";
+  plan.interpolation = Interpolation::linear;
+  plan.columns = world.variables;
+  for (const std::string& text : {from, to}) {
+    const std::map<std::string, double> values = readConfiguration(world, text);
+    std::vector<double>& row = plan.rows.emplace_back();
+    for (const std::string& name : world.variables) {
+      const auto value = values.find(name);
+      row.push_back(value == values.end() ? 0 : value->second);
+    }
+  }
+  return plan;
+}
+
+Comparison compareWithPlan(const World& world, const Motion& motion, const Plan& plan) {
+  return PlanComparison(world, motion, plan).run();
+}
+
+}  // namespace verify

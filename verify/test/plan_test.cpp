@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whom a proof is about: the motion of the plan.
+#include "files.h"
+
+namespace verify::test {
+namespace {
+
+class VerifyPlan : public VerifyFiles {
+ protected:
+  World world_ = readWorld(kHead + "variable a\nvariable b\nvariable door\nframe f 0 " + hex(M{}) + "\nturn " +
+                           hex(V{0, 0, 1}) + " 0 " + hex(1) + " " + hex(0) + "\nslide " + hex(V{0, 0, 1}) + " 1 " +
+                           hex(1) + " " + hex(0) + "\nframe g 0 " + hex(M{}) + "\nslide " + hex(V{0, 0, 1}) + " 2 " +
+                           hex(1) + " " + hex(0) + "\ngeometry sphere " + hex(1) + "\nbody link f 1 0 " + hex(M{}) +
+                           "\nbody obstacle door 2 0 " + hex(M{}) + "\n");
+  Motion motion(std::vector<std::string> pieces, double until = 1) {
+    MotionText m;
+    m.pieces = std::move(pieces);
+    m.until = until;
+    return readMotion(m.write(world_), world_);
+  }
+  static std::string q(int v, const std::vector<double>& c) {
+    std::string text = "q " + std::to_string(v);
+    for (const double x : c) text += " " + hex(x);
+    return text + "\n";
+  }
+  /// "same", the first difference, or why they are not compared.
+  std::string said(const Motion& motion, const std::string& csv, Interpolation kind = Interpolation::automatic,
+                   const std::string& state = "") {
+    try {
+      Plan plan = readPlan(write("plan.csv", csv));
+      plan.interpolation = kind;
+      if (!state.empty()) plan.state = readConfiguration(world_, state);
+      return said(motion, plan);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+  }
+  std::string said(const Motion& motion, const Plan& plan) {
+    last_ = compareWithPlan(world_, motion, plan);
+    return last_.differences.empty() ? "same" : last_.differences[0];
+  }
+  bool noted(const std::string& words) const {
+    for (const std::string& note : last_.notes)
+      if (note.find(words) != std::string::npos) return true;
+    return false;
+  }
+  Comparison last_;
+};
+
+const double kStep = 0.7 - 0.1;
+
+TEST_F(VerifyPlan, WaypointsAreThoseOfTheMotion) {
+  const std::string csv = "# a plan\ntime,b,a\n0,1,0.1\n2,1,0.7\n\n3,1.5,0.7\n";
+  const std::string first = q(0, {0.1, kStep}) + q(1, {1}), second = q(0, {0.7}) + q(1, {1, 0.5});
+  const Motion good = motion({first, second});
+  EXPECT_EQ(said(good, csv), "same");
+  EXPECT_TRUE(noted("waypoints 0 to 2, straight"));
+  EXPECT_TRUE(noted("every timing of these straight lines"));
+  EXPECT_TRUE(noted("not in the plan, standing still: 'door' 0"));
+  EXPECT_EQ(said(motion({q(0, {0.1, kStep, 0}) + q(1, {1}), second}), csv), "same");
+  for (const char* wrong : {"time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.70000000000000007\n",
+                            "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.6,0.7\n", "time,b,a\n0,1,0.2\n2,1,0.7\n3,1.5,0.7\n",
+                            "time,a,b\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n", "time,b,a\n0,2,0.1\n2,2,0.7\n3,2.5,0.7\n",
+                            "time,b,a\n0,1,0.1\n3,1.5,0.7\n", "time,b,a\n0,1,0.1\n2,1,0.7\n3,1.5,0.7\n4,1.5,0.8\n",
+                            "time,b,a\n0,1,0.1\n2,1,0.7\n2,1.5,0.7\n", "time,b\n0,1\n2,1\n3,1.5\n"})
+    EXPECT_NE(said(good, wrong), "same") << wrong;
+  // A motion that bends, stops elsewhere, or that something else joins.
+  EXPECT_NE(said(motion({q(0, {0.1, 0, kStep}) + q(1, {1}), second}), csv), "same");
+  EXPECT_NE(said(motion({first, q(0, {0.7}) + q(1, {1, std::nextafter(0.5, 1)})}), csv), "same");
+  EXPECT_NE(said(motion({first}), csv).find("ends at waypoint 1 of 2"), std::string::npos)
+      << said(motion({first}), csv);
+  EXPECT_EQ(said(motion({first}, 0.5), csv), "same");  // VERIFIED says until when
+  EXPECT_TRUE(noted("waypoints 0 to 1 of 2, up to the time that the claim ends"));
+  EXPECT_NE(said(motion({first + q(2, {0, 1}), second + q(2, {1})}), csv).find("'door' moves"), std::string::npos);
+}
+
+TEST_F(VerifyPlan, WhatHasNoColumnStandsAsTheStateSays) {
+  const std::string csv = "a\n0.1\n0.7\n";
+  const Motion moved = motion({q(0, {0.1, kStep}) + q(1, {0.25})});
+  EXPECT_EQ(said(motion({q(0, {0.1, kStep})}), csv), "same");
+  EXPECT_NE(said(moved, csv), "same");
+  EXPECT_EQ(said(moved, csv, Interpolation::automatic, "b=0.25"), "same");
+  EXPECT_NE(said(moved, csv, Interpolation::automatic, "b=0.26"), "same");
+  EXPECT_NE(said(moved, csv, Interpolation::automatic, "c=0.25").find("no variable 'c'"), std::string::npos);
+}
+
+// A retimed plan needs no new proof where it goes straight and nothing else moves.
+TEST_F(VerifyPlan, TimesDoNotCountOnStraightLines) {
+  Motion m = motion({q(0, {0.1, kStep}), q(0, {0.7, 0.7 - 0.7}), q(0, {0.7, 1 - 0.7})});
+  m.duration = 3;
+  EXPECT_EQ(said(m, "t,a\n0,0.1\n1,0.7\n2,0.7\n3,1\n"), "same");
+  EXPECT_FALSE(noted("retimed"));
+  EXPECT_EQ(said(m, "t,a\n0,0.1\n0.25,0.7\n5,0.7\n5.5,1\n"), "same");
+  EXPECT_TRUE(noted("retimed: it takes 5.5 s, the certificate's motion 3 s"));
+  // Where an obstacle moves, the proof is of one timing.
+  EXPECT_EQ(said(motion({q(0, {0.1, kStep}) + q(2, {0, 1})}), "t,a,door\n0,0.1,0\n7,0.7,1\n"), "same");
+  EXPECT_TRUE(noted("of one timing"));
+}
+
+// Splines go where velocities and times say: what only meets the same waypoints is another motion.
+TEST_F(VerifyPlan, SplinesAreThoseOfTheVelocities) {
+  const std::string csv = "t,a,a/velocity\n0,0,0\n2,1,0.5\n", slower = "t,a,a/velocity\n0,0,0\n4,1,0.25\n";
+  const Motion cubic = motion({q(0, {0, 0, 3 - 1, 1 - 2})});
+  EXPECT_EQ(said(cubic, csv), "same");
+  EXPECT_TRUE(noted("these very curves"));
+  EXPECT_EQ(said(cubic, slower), "same");  // the same curve, twice as slow
+  EXPECT_EQ(said(motion({q(0, {0, 1e-14, 2, -1})}), csv), "same");
+  EXPECT_NE(said(motion({q(0, {0, 1e-11, 2, -1})}), csv), "same");
+  EXPECT_NE(said(cubic, "t,a,a/velocity\n0,0,0\n3,1,0.5\n"), "same");
+  EXPECT_NE(said(cubic, "t,a\n0,0\n2,1\n").find("does not go straight"), std::string::npos);
+  EXPECT_NE(said(cubic, "t,a\n0,0\n2,1\n", Interpolation::cubic).find("has not the times, velocities"),
+            std::string::npos);
+  EXPECT_NE(said(motion({q(0, {0, 1})}), csv), "same");
+  EXPECT_EQ(said(motion({q(0, {0, 1})}), csv, Interpolation::linear), "same");
+  // From rest to rest: 10 s^3 - 15 s^4 + 6 s^5.
+  const std::string rest = "t,a,a_vel,a_acc\n0,0,0,0\n2,1,0,0\n";
+  EXPECT_EQ(said(motion({q(0, {0, 0, 0, 10, -15, 6})}), rest), "same");
+  EXPECT_NE(said(motion({q(0, {0, 0, 0, 10, -14, 5})}), rest), "same");
+  EXPECT_NE(said(motion({q(0, {0, 0, 0, 10, -15, 6})}), "t,a,a_vel,a_acc\n0,0,0,0\n2,1,0,0.001\n"), "same");
+}
+
+TEST_F(VerifyPlan, FromAndTo) {
+  const double right = 90 * (3.14159265358979323846 / 180);
+  const Motion m = motion({q(0, {0.1, right - 0.1}) + q(1, {-1})});
+  EXPECT_EQ(said(m, planBetween(world_, "0.1 -1 0", "90deg, -1, 0")), "same");
+  EXPECT_EQ(said(m, planBetween(world_, "a=0.1 b=-1", "b=-1,a=90deg")), "same");
+  EXPECT_NE(said(m, planBetween(world_, "a=0.1 b=-1", "a=90deg")), "same");
+  EXPECT_THROW(planBetween(world_, "0.1 -1", "90deg -1 0"), BadInput);
+  EXPECT_THROW(planBetween(world_, "a=0.1 -1", "a=0"), BadInput);
+  EXPECT_THROW(planBetween(world_, "a=0.1 a=1", "a=0"), BadInput);
+  EXPECT_THROW(planBetween(world_, "a=0,1", "a=0"), BadInput);
+}
+
+TEST_F(VerifyPlan, WhatIsNotInAPlanIsRefused) {
+  const Motion m = motion({q(0, {0.1, kStep})});
+  EXPECT_NE(said(m, "a,c\n0.1,0\n0.7,0\n").find("'c' is no variable"), std::string::npos);
+  EXPECT_NE(said(m, "a\n0.1\n0.7").find("no line end"), std::string::npos);
+  EXPECT_NE(said(m, "a\n0.1\n0x1p-1\n").find("no decimal number"), std::string::npos);
+  EXPECT_NE(said(m, "a\n0.1\n0,7\n").find("another number of columns"), std::string::npos);
+  EXPECT_NE(said(m, "a\n0.1\nnan\n").find("no decimal number"), std::string::npos);
+  EXPECT_NE(said(m, "a,a\n0.1,0.1\n0.7,0.7\n").find("two columns"), std::string::npos);
+  EXPECT_NE(said(m, "a,b_vel\n0.1,0\n0.7,0\n").find("has not all of the columns"), std::string::npos);
+  EXPECT_NE(said(m, "a\n0.1\n").find("two waypoints"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace verify::test
