@@ -86,8 +86,7 @@ void addPipeOptions(CLI::App& verb, PipeOptions& o) {
   verb.add_option("--closeness", o.closeness, "Free steps come within this of a pipe, in m")
       ->check(requirePositive)
       ->capture_default_str();
-  verb.add_flag("--self", o.self,
-                "Links against links too, but for neighbours; else, as in the paper, against the pipes only");
+  verb.add_flag("--self", o.self, "Links against links too; else, as in the paper, against the pipes only");
   verb.add_option("--triangles", o.triangles, "Triangles of the pipes")
       ->check(CLI::Range(generator::kMinPipeTriangles, generator::kMaxPipeTriangles))
       ->capture_default_str();
@@ -109,9 +108,6 @@ PumaInPipes pumaInPipes(const PipeOptions& o) {
   s.robot.addTo(*s.manager);
   s.pipes.addTo(*s.manager);
   s.manager->prepareFor(Method::redon2004);
-  s.manager->setup();
-  // As in the paper, links that a joint connects are not checked.
-  for (const LinkPairFinding& found : s.manager->neighbours()) s.manager->allow(found.link1, found.link2);
   s.manager->setup();
   return s;
 }

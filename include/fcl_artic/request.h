@@ -58,9 +58,10 @@ struct Tolerances {
 
 /// How a query is solved, and how much work it may take.
 struct Effort {
-  /// The method. Method::redon2004 solves pairs of meshes and boxes without a margin; it leaves other pairs, and those
-  /// that touch at t = 0, to Method::standard, pair by pair (RedonStatistics::pairs_by_standard), and answers
-  /// ContactMode::any with the first contact.
+  /// The method. Method::redon2004 solves pairs of meshes and boxes without a margin; it leaves other pairs, those that
+  /// have a margin of their own (also 0, as neighbours that are checked for touching), and those that touch at t = 0,
+  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard), and answers ContactMode::any with the
+  /// first contact.
   Method method = Method::standard;
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
