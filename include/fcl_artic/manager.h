@@ -269,7 +269,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                                                   const CertifiedRequest& request = {}) const;
   /// Whether the straight way from q0 to q1 in joint space is proven free: the fastest question. False also if contact
   /// can't be excluded within the tolerances, and if the work budget ran out. True says nothing of pairs that are not
-  /// checked: allowed ones and neighbours without a proof, and with ignore_initial_contact those that part nowhere
+  /// checked: allowed ones and neighbours without a proof, and with ignore_initial_contact those that never come apart
   /// (exceptionsOf() a full answer).
   /// @param q0, q1  tree().dof() joint values each, rad or m.
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
@@ -278,7 +278,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                             const CertifiedRequest& request = {}) const;
   /// Whether a motion is proven free: the fastest question. False also if contact can't be excluded within the
   /// tolerances, and if the work budget ran out. True says nothing of pairs that are not checked: allowed ones, and
-  /// with ignore_initial_contact those that part nowhere (exceptionsOf() a full answer).
+  /// with ignore_initial_contact those that never come apart (exceptionsOf() a full answer).
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
   /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
