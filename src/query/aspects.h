@@ -1,16 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "fcl_artic/manager.h"
+#include "fcl_artic/trajectory.h"
 #include "model/advisor.h"
 #include "model/answer.h"
 #include "motion/part_of_motion.h"
 
 namespace fcl_artic {
+
+/// Part of the whole trajectory's time that a piece takes.
+inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
+  const double begin = trajectory.beginTime(), duration = trajectory.endTime() - begin;
+  const auto at = [&](std::size_t k) {
+    return k == trajectory.numPieces() ? 1 : std::min(1.0, (trajectory.times()[k] - begin) / duration);
+  };
+  return {at(piece), at(piece + 1)};
+}
 
 /// What queries of other kinds ask of one motion, beyond the request.
 struct ArticulatedCollisionManager::Aspects {
@@ -29,6 +41,14 @@ struct ArticulatedCollisionManager::Aspects {
   Details* details = nullptr;  ///< out
   /// Advises the solver in place of the request's stage 2, with Method::standard; null: the request's.
   const engine::Advisor* stage2 = nullptr;
+
+  /// A query of clearance(): no pair has a margin of its own, but neighbours.
+  static Aspects ofClearance(const std::vector<engine::PairId>& left_out) {
+    Aspects aspects;
+    aspects.own_margins = false;
+    aspects.left_out = &left_out;
+    return aspects;
+  }
 };
 
 }  // namespace fcl_artic

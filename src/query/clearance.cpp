@@ -31,19 +31,32 @@ void require(bool good, const char* name, double value, const char* what) {
   if (!good) throw std::invalid_argument(std::string("request.") + name + " is " + shown(value) + ", not " + what);
 }
 
-std::vector<engine::PairId> pairsOf(const std::vector<engine::Ignored>& ignored) {
-  std::vector<engine::PairId> pairs;
-  for (const engine::Ignored& pair : ignored) pairs.push_back(pair.pair);
+using Pairs = std::vector<engine::PairId>;
+
+/// The pairs that a query ignores.
+/// @param time  that the query takes.
+/// @param collide  asks it.
+template <class Aspects, class Collide>
+Pairs pairsIgnored(const TimePart& time, const Collide& collide) {
+  typename Aspects::Details details;
+  Aspects aspects;
+  aspects.time = time;
+  aspects.details = &details;
+  collide(aspects);
+  Pairs pairs;
+  for (const engine::Ignored& pair : details.ignored) pairs.push_back(pair.pair);
   return pairs;
 }
 
 class Search {
  public:
-  using Ask = std::function<void(const CertifiedRequest& request, CertifiedResult& result)>;
+  using Ask = std::function<void(const CertifiedRequest& request, const Pairs& left_out, CertifiedResult& result)>;
+  using AskBegin = std::function<Pairs(const CertifiedRequest& request, CertifiedResult& result)>;
   /// @param duration  of the motion, in the unit that its times are in.
-  /// @param ask  a query without the pairs' own margins; those of `askBegin` are left out of it.
-  /// @param askBegin  a query, with the pairs' own margins, in which initial contacts are ignored.
-  Search(const ClearanceRequest& request, double duration, Ask ask, Ask askBegin)
+  /// @param ask  a query without the pairs' own margins.
+  /// @param askBegin  a query, with the pairs' own margins, in which initial contacts are ignored. @return these pairs:
+  ///   they are left out of the others.
+  Search(const ClearanceRequest& request, double duration, Ask ask, AskBegin askBegin)
       : request_(request), duration_(duration), ask_(std::move(ask)), ask_begin_(std::move(askBegin)) {
     require(request.tolerance_relative >= 0 && request.tolerance_relative < 1, "tolerance_relative",
             request.tolerance_relative, "a number from 0 to below 1");
@@ -78,7 +91,8 @@ class Search {
   }
 
   /// Asks, with what is left of the budget. Sets spent_ where nothing is, and the answer is none.
-  void answer(const Ask& ask, CertifiedRequest& request) {
+  template <class Asked>
+  void answer(CertifiedRequest& request, const Asked& ask) {
     static_cast<Scope&>(request) = request_;
     if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     if (request_.work_budget) {
@@ -87,7 +101,7 @@ class Search {
       if (spent_) return;
       request.work_budget = request_.work_budget - used;
     }
-    ask(request, result_);
+    ask();
     found_.statistics.pairs = result_.statistics.pairs;
     found_.statistics.pairs_after_culling += result_.statistics.pairs_after_culling;
     addWork(result_.statistics, found_.statistics);
@@ -101,7 +115,7 @@ class Search {
     request.margin = request_.ignored_margin;
     request.ignore_initial_contact = true;
     request.max_contacts = 0;
-    answer(ask_begin_, request);
+    answer(request, [&] { left_out_ = ask_begin_(request, result_); });
     found_.ignored_initial_contacts = result_.ignored_initial_contacts;
   }
 
@@ -112,7 +126,7 @@ class Search {
     request.tolerance_time *= duration_;
     request.mode = ContactMode::any;
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
-    answer(ask_, request);
+    answer(request, [&] { ask_(request, left_out_, result_); });
     if (spent_) return Found::open;
     if (result_.isFree()) {
       found_.lower = std::max(found_.lower, margin);
@@ -131,7 +145,9 @@ class Search {
 
   ClearanceRequest request_;
   double duration_;
-  Ask ask_, ask_begin_;
+  Ask ask_;
+  AskBegin ask_begin_;
+  Pairs left_out_;
   CertifiedResult result_;
   Clearance found_;
   bool spent_ = false;
@@ -140,19 +156,12 @@ class Search {
 }  // namespace
 
 Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, const ClearanceRequest& request) const {
-  std::vector<engine::PairId> ignored;
-  Aspects aspects;
-  aspects.own_margins = false;
-  aspects.left_out = &ignored;
-  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    collideMotion(motion, asked, aspects, result);
+  const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
+    collideMotion(motion, asked, Aspects::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    Aspects::Details details;
-    Aspects begin;
-    begin.details = &details;
-    collideMotion(motion, asked, begin, result);
-    ignored = pairsOf(details.ignored);
+    return pairsIgnored<Aspects>(TimePart(),
+                                 [&](const Aspects& aspects) { collideMotion(motion, asked, aspects, result); });
   };
   return Search(request, 1, ask, ask_begin).run();
 }
@@ -160,19 +169,13 @@ Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, cons
 Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajectory,
                                                  const ClearanceRequest& request) const {
   trajectory.requireOf(tree());
-  std::vector<engine::PairId> ignored;
-  Aspects aspects;
-  aspects.own_margins = false;
-  aspects.left_out = &ignored;
-  const auto ask = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    collideTrajectory(trajectory, asked, aspects, result);
+  const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
+    collideTrajectory(trajectory, asked, Aspects::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    Aspects::Details details;
-    Aspects begin;
-    begin.details = &details;
-    collideMotion(trajectory.piece(0), asked, begin, result);
-    ignored = pairsOf(details.ignored);
+    return pairsIgnored<Aspects>(partOfTime(trajectory, 0), [&](const Aspects& aspects) {
+      collideMotion(trajectory.piece(0), asked, aspects, result);
+    });
   };
   return Search(request, trajectory.endTime() - trajectory.beginTime(), ask, ask_begin).run();
 }

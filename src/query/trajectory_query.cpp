@@ -30,15 +30,6 @@
 namespace fcl_artic {
 namespace {
 
-/// Part of the whole trajectory's time that a piece takes.
-TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
-  const double begin = trajectory.beginTime(), duration = trajectory.endTime() - begin;
-  const auto at = [&](std::size_t k) {
-    return k == trajectory.numPieces() ? 1 : std::min(1.0, (trajectory.times()[k] - begin) / duration);
-  };
-  return {at(piece), at(piece + 1)};
-}
-
 /// A piece's answer in the trajectory's time: what is free is free to the end, as far as is known; a contact that is
 /// not proven may be as late as that.
 Bracket inTrajectoryTime(const Bracket& part, const PieceTime& clock, double end) {

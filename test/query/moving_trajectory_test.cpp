@@ -175,4 +175,29 @@ TEST(MovingTrajectory, CutIntoPiecesItIsTheSame) {
   EXPECT_GT(free, 50);
 }
 
+// What touches at the begin, which a clearance leaves out, is found along the first piece: an obstacle that moves has a
+// hundredth of its motion there.
+TEST(MovingTrajectory, ClearancesLookAtTheBeginInTheFirstPiecesTime) {
+  struct Asked : Falling {
+    State state(double t) const override {
+      latest = std::max(latest, t);
+      return Falling::state(t);
+    }
+    mutable double latest = 0;
+  };
+  Cart cart;
+  const auto motion = std::make_shared<Asked>();
+  Moving bowl(std::make_shared<fcl::Sphered>(0.2), motion);
+  cart.manager->registerObject(&bowl, "bowl");
+  cart.manager->setup();
+  ClearanceRequest request;
+  request.ignore_initial_contact = true;
+  request.work_budget = 1;  // for no more than this look
+  motion->latest = 0;
+  const Clearance c = cart.manager->clearance(drive(cart, {0, 1, 100}, {0.9, 0.8, 0.7}), request);
+  EXPECT_EQ(c.lower, 0);
+  EXPECT_GT(motion->latest, 0);
+  EXPECT_LE(motion->latest, 0.01);
+}
+
 }  // namespace moving_trajectory_test
