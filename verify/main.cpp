@@ -30,8 +30,10 @@ is claimed, and how it is proven.
   --solid-meshes   meshes of these files are meant as solids; without, as surfaces or solids
   --solid NAME     those of this link or obstacle are
   --plan FILE      compare each motion with the waypoints of a plan (CSV, columns by joints' names); one for each
-  --from Q, --to Q compare the motion with this one: "0, 1.57, -90deg", or "NAME=VALUE ..." with all others at 0
-  --state Q        values of what the plans have no column for: "NAME=VALUE ..."; of others 0
+  --from Q, --to Q compare the motion with this one: "0, 1.57, -90deg" in the order of the URDF's joints, or
+                   "NAME=VALUE ..."
+  --state Q        values of what the plans have no column for, or --from and --to do not name: "NAME=VALUE ..."; of
+                   others 0
   --interpolation KIND   of the plans: linear, cubic, quintic; else by their columns, as `fcl_artic certify` has it
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
@@ -172,7 +174,11 @@ Asked readCommand(int argc, char** argv) {
   asked.solids.names.insert(solids.begin(), solids.end());
   for (const std::string& number : scale) asked.scale = verify::decimal(number);
   if (!(asked.scale > 0)) throw verify::BadInput("--scale takes a number above 0");
-  for (const std::string& number : work) asked.options.work = std::strtoull(number.c_str(), nullptr, 10);
+  for (const std::string& number : work) {
+    if (number.empty() || number.size() > 18 || number.find_first_not_of("0123456789") != number.npos)
+      throw verify::BadInput("--work takes a number of steps");
+    asked.options.work = std::strtoull(number.c_str(), nullptr, 10);
+  }
   return asked;
 }
 
@@ -193,7 +199,9 @@ std::string faultOf(const Asked& asked) {
   return "";
 }
 
-std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& world) {
+/// @param robot  variables of the URDF's joints, in its order; none: no URDF is given.
+std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& world,
+                                    const std::vector<std::string>& robot) {
   static const std::map<std::string, verify::Interpolation> kKinds{{"linear", verify::Interpolation::linear},
                                                                    {"cubic", verify::Interpolation::cubic},
                                                                    {"quintic", verify::Interpolation::quintic}};
@@ -205,12 +213,23 @@ std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& wor
       plans.back().interpolation = kKinds.at(kind);
     }
   }
-  if (!asked.from.empty()) plans.push_back(verify::planBetween(world, asked.from[0], asked.to[0]));
-  for (verify::Plan& plan : plans)
-    for (const std::string& text : asked.state) {
-      if (text.find('=') == std::string::npos) throw verify::BadInput("--state takes NAME=VALUE");
-      for (const auto& [name, value] : verify::readConfiguration(world, text)) plan.state[name] = value;
-    }
+  std::map<std::string, double> state;
+  for (const std::string& text : asked.state) {
+    if (text.find('=') == std::string::npos) throw verify::BadInput("--state takes NAME=VALUE");
+    for (const auto& [name, value] : verify::readConfiguration(world, {}, text))
+      if (!state.emplace(name, value).second)
+        throw verify::BadInput("--state says twice where " + verify::inQuotes(name) + " stands");
+  }
+  if (!asked.from.empty()) {
+    plans.push_back(verify::planBetween(world, robot, asked.from[0], asked.to[0]));
+    for (const std::string& name : plans.back().columns)
+      if (state.count(name) > 0)
+        throw verify::BadInput("both --state and --from, --to say where " + verify::inQuotes(name) + " is");
+  }
+  for (verify::Plan& plan : plans) {
+    plan.robot = robot;
+    plan.state = state;
+  }
   return plans;
 }
 
@@ -239,18 +258,14 @@ std::vector<std::string> notCompared(const Asked& asked, const verify::World& wo
 class Run {
  public:
   Run(const Asked& asked, const verify::World& world)
-      : asked_(asked),
-        world_(world),
-        plans_(readPlans(asked, world)),
-        used_(plans_.size(), false),
-        printer_(asked.json, asked.quiet, notCompared(asked, world)) {}
+      : asked_(asked), world_(world), printer_(asked.json, asked.quiet, notCompared(asked, world)) {}
 
   int run() {
     compare();
     printer_.world(asked_.files[0], world_);
     for (std::size_t f = 1; f < asked_.files.size(); ++f) file(asked_.files[f]);
     for (std::size_t p = 0; p < plans_.size(); ++p)
-      if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}});
+      if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}, {}});
     if (!asked_.compare_only) printer_.sum(verified_, all_);
     return bad_ ? 2 : verified_ == all_ && same_ ? 0 : 1;
   }
@@ -266,14 +281,21 @@ class Run {
     std::vector<double> base;
     if (!asked_.scenes.empty()) base.assign(6, 0);
     for (const std::string& pose : asked_.base) base = verify::readBase(pose);
-    for (const std::string& path : asked_.urdf)
-      report(path, verify::compareWithUrdf(world_, path, asked_.packages, asked_.solids, base));
+    std::vector<std::string> robot;
+    for (const std::string& path : asked_.urdf) {
+      const verify::Comparison comparison = verify::compareWithUrdf(world_, path, asked_.packages, asked_.solids, base);
+      robot = comparison.variables;
+      report(path, comparison);
+    }
+    plans_ = readPlans(asked_, world_, robot);
+    used_.assign(plans_.size(), false);
     for (const std::string& path : asked_.srdf) report(path, verify::compareWithSrdf(world_, path));
     if (!asked_.scenes.empty())
       report("--scene", verify::compareWithScenes(world_, asked_.scenes, asked_.packages, asked_.solids, asked_.scale));
     for (const std::string& name : asked_.solids.names)
       if (solids_met_.count(name) == 0)
-        report("--solid", {{"no link or obstacle of the files that has a mesh is " + verify::inQuotes(name)}, {}, {}});
+        report("--solid",
+               {{"no link or obstacle of the files that has a mesh is " + verify::inQuotes(name)}, {}, {}, {}});
   }
 
   void file(const char* path) {
@@ -313,7 +335,7 @@ class Run {
 
   const Asked& asked_;
   const verify::World& world_;
-  const std::vector<verify::Plan> plans_;
+  std::vector<verify::Plan> plans_;
   std::vector<bool> used_;
   const Printer printer_;
   std::set<std::string> solids_met_;

@@ -202,6 +202,7 @@ class Walk {
     for (int k = 0; k < 6; ++k)
       n[k / 3][static_cast<std::size_t>(k % 3)] =
           Fix{static_cast<Int>(integers[kind < kTurn ? k % 3 : k]) * (kOne >> shift)};
+    budget_.spend(task.q - task.p);
     std::vector<std::uint32_t> all;
     for (std::uint32_t k = task.p; k < task.q; ++k) {
       const Fix from = partners_[k].from;
