@@ -37,7 +37,7 @@ is claimed, and how it is proven.
   --interpolation KIND   of the plans: linear, cubic, quintic; else by their columns, as `fcl_artic certify` has it
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
-  --quiet          print no line for what is verified, and none about the world
+  --quiet          print no line for what is verified of all pairs to the motion's end, and none about the world
   --work N         limit of work per record, in steps of roughly 20 ns (default 2000000000)
   --help, --version
 
@@ -89,17 +89,21 @@ class Printer {
                   verify::listAsJson(lines).c_str(), statement.c_str());
       return;
     }
-    if (quiet_ && verdict.verified) return;
+    if (quiet_ && verdict.verified && !verify::isInPart(verdict)) return;
     std::printf("%s:%zu: %s%s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str(),
                 verdict.verified ? shortly().c_str() : "");
     for (const std::string& text : lines) std::printf("  %s\n", verify::shown(text).c_str());
   }
-  void sum(std::size_t verified, std::size_t all) const {
-    if (json_)
-      std::printf("{\"verified\": %zu, \"records\": %zu, \"not_compared\": %s}\n", verified, all,
-                  verify::listAsJson(not_compared_).c_str());
-    else
-      std::printf("%zu of %zu records verified%s\n", verified, all, shortly().c_str());
+  /// @param in_part  of those that are verified.
+  void sum(std::size_t verified, std::size_t in_part, std::size_t all) const {
+    if (json_) {
+      std::printf("{\"verified\": %zu, \"in_part\": %zu, \"records\": %zu, \"not_compared\": %s}\n", verified, in_part,
+                  all, verify::listAsJson(not_compared_).c_str());
+      return;
+    }
+    const std::string part =
+        in_part > 0 ? ", " + std::to_string(in_part) + " of them not to the motion's end or not of all pairs" : "";
+    std::printf("%zu of %zu records verified%s%s\n", verified, all, part.c_str(), shortly().c_str());
   }
 
  private:
@@ -246,9 +250,11 @@ std::vector<std::string> notCompared(const Asked& asked, const verify::World& wo
   std::vector<std::string> list;
   const std::string obstacles = names(verify::Role::obstacle), carried = names(verify::Role::carried);
   if (asked.urdf.empty()) list.push_back("robot (--urdf)");
-  const auto allowed = [](const auto& pair) { return pair.second == verify::Reason::allowed; };
-  if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), allowed))
-    list.push_back("allowed pairs (--srdf)");
+  for (const auto& [reason, what] : {std::pair(verify::Reason::allowed, "allowed pairs (--srdf)"),
+                                     std::pair(verify::Reason::neighbours, "neighbours (--srdf)")}) {
+    const auto is = [why = reason](const auto& pair) { return pair.second == why; };
+    if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), is)) list.push_back(what);
+  }
   if (asked.scenes.empty() && !obstacles.empty()) list.push_back("obstacles " + obstacles + " (--scene)");
   if (!carried.empty()) list.push_back("what links carry: " + carried);
   if (asked.plans.empty() && asked.from.empty() && !asked.compare_only) list.push_back("motion (--plan)");
@@ -266,7 +272,7 @@ class Run {
     for (std::size_t f = 1; f < asked_.files.size(); ++f) file(asked_.files[f]);
     for (std::size_t p = 0; p < plans_.size(); ++p)
       if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}, {}});
-    if (!asked_.compare_only) printer_.sum(verified_, all_);
+    if (!asked_.compare_only) printer_.sum(verified_, in_part_, all_);
     return bad_ ? 2 : verified_ == all_ && same_ ? 0 : 1;
   }
 
@@ -312,6 +318,7 @@ class Run {
       if (verdict.verified && !plans_.empty()) findPlan(records[number], verdict, notes);
       ++all_;
       verified_ += verdict.verified;
+      in_part_ += verdict.verified && verify::isInPart(verdict);
       bad_ = bad_ || verdict.bad_input;
       printer_.record(world_, path, number, records[number], verdict, notes);
     }
@@ -339,7 +346,7 @@ class Run {
   std::vector<bool> used_;
   const Printer printer_;
   std::set<std::string> solids_met_;
-  std::size_t verified_ = 0, all_ = 0;
+  std::size_t verified_ = 0, in_part_ = 0, all_ = 0;
   bool bad_ = false, same_ = true;
 };
 
