@@ -327,17 +327,19 @@ class Run {
   void findPlan(const verify::Record& record, verify::Verdict& verdict, std::vector<std::string>& notes) {
     const verify::Motion motion = verify::readMotion(record.motion, world_);
     std::string why;
-    for (std::size_t p = 0; p < plans_.size(); ++p) {
+    bool found = false;
+    for (std::size_t p = 0; p < plans_.size(); ++p) {  // it may be that of several, which differ in their times
       const verify::Comparison c = verify::compareWithPlan(world_, motion, plans_[p]);
       if (c.differences.empty()) {
         used_[p] = true;
-        notes = c.notes;
-        return;
+        if (!found) notes = c.notes;
+        found = true;
+      } else if (why.empty()) {
+        why = "'" + plans_[p].title + "': " + c.differences[0];
       }
-      if (why.empty()) why = "'" + plans_[p].title + "': " + c.differences[0];
     }
-    verdict.verified = false;
-    verdict.reason = "it is proven of a motion that is no plan's: " + why;
+    verdict.verified = found;
+    if (!found) verdict.reason = "it is proven of a motion that is no plan's: " + why;
   }
 
   const Asked& asked_;
@@ -362,7 +364,9 @@ int main(int argc, char** argv) {
     const std::string fault = faultOf(asked);
     if (!fault.empty()) throw verify::BadInput(fault);
     const verify::World world = verify::readWorld(verify::readFile(asked.files[0]));
-    return Run(asked, world).run();
+    const int status = Run(asked, world).run();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw verify::BadInput("the output can't be written");
+    return status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fcl_artic_verify: %s\n", verify::shown(error.what()).c_str());
     return 2;
