@@ -351,8 +351,9 @@ class MeshFinder {
 
   std::string inPackage(const std::string& where, const std::string& uri, const std::string& path) {
     const auto begin = std::min(path.find_first_not_of('/'), path.size()), slash = path.find('/', begin);
-    if (slash == std::string::npos || slash + 1 == path.size()) fail(where, "mesh '" + uri + "': names no file");
-    const std::string name = path.substr(begin, slash - begin), rest = path.substr(slash + 1);
+    const auto file = path.find_first_not_of('/', slash);
+    if (file == std::string::npos) fail(where, "mesh '" + uri + "': names no file");
+    const std::string name = path.substr(begin, slash - begin), rest = path.substr(file);
     const std::vector<fs::path>& folders = foldersOfPackage(name);
     std::vector<std::string> there;
     for (const fs::path& folder : folders) {
