@@ -82,10 +82,8 @@ Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) 
 }
 
 Document readDocument(const std::string& where, const std::string& file) {
-  if (file.find('\0') != std::string::npos) fail(where, "has a byte 0, where XML would end");
   tinyxml2::XMLDocument xml;
-  if (xml.Parse(file.c_str(), file.size()) != tinyxml2::XML_SUCCESS) fail(where, xml.ErrorStr());
-  tinyxml2::XMLElement& robot = detail::requireUnderstood(where, xml);
+  tinyxml2::XMLElement& robot = detail::parseUnderstood(where, file, detail::Vocabulary::urdf, xml);
   Document document;
   for (auto* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string kind = e->Name();
