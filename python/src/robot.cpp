@@ -86,7 +86,8 @@ Robot robotOfState(const py::tuple& s) {
   }
   robot.allowed = matrixOfPairs(s[3], "allowed");
   robot.allowed.setComplete(py::cast<bool>(s[5]));
-  for (const auto& [a, b] : matrixOfPairs(s[6], "disallowed").pairs()) robot.allowed.disallow(a, b);
+  const AllowedCollisionMatrix disallowed = matrixOfPairs(s[6], "disallowed");
+  for (const auto& [a, b] : disallowed.pairs()) robot.allowed.disallow(a, b);
   robot.notes = py::cast<std::vector<std::string>>(s[4]);
   return robot;
 }

@@ -7,7 +7,7 @@
 
 #include <string_view>
 
-#include "query/arms.h"
+#include "arms.h"
 
 namespace references_test {
 

@@ -147,7 +147,7 @@ struct Scene {
     std::string name;                               ///< Unique in the scene.
     std::shared_ptr<fcl::CollisionObjectd> object;  ///< Geometry, at its pose in the world.
     /// Of a shape of an object that has several: the name of the object, which is that of its first shape; else empty.
-    std::string shape_of;
+    std::string shape_of = {};
   };
   std::vector<Obstacle> obstacles;  ///< The obstacles, in the order of the file.
   std::vector<std::string> notes;   ///< What was accepted though unusual, one line each.
