@@ -130,8 +130,11 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
       switch (factor.kind) {
         case JointFactor::Kind::revolute:
         case JointFactor::Kind::prismatic: {
-          const double m = joint.mimics ? joint.mimic.multiplier : 1, offset = joint.mimics ? joint.mimic.offset : 0;
-          addStep(factor.axis, factor.kind == JointFactor::Kind::prismatic, m * q[0] + offset, m * q[1]);
+          const bool prismatic = factor.kind == JointFactor::Kind::prismatic;
+          const double m = joint.mimics ? joint.mimic.multiplier : 1;
+          addStep(factor.axis, prismatic, m * q[0], m * q[1]);
+          // A step of its own: the error of a sum that cancels would be far larger than the sum tells.
+          if (joint.mimics && joint.mimic.offset != 0) addStep(factor.axis, prismatic, joint.mimic.offset, 0);
           break;
         }
         case JointFactor::Kind::slide:
