@@ -33,7 +33,7 @@ endforeach()
 configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/fcl_articConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" INSTALL_DESTINATION "${fcl_artic_cmake_dir}")
 # Before 1.0 a new minor version may break callers.
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake" COMPATIBILITY SameMajorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/fcl_articConfig.cmake" "${PROJECT_BINARY_DIR}/fcl_articConfigVersion.cmake"
   DESTINATION "${fcl_artic_cmake_dir}" COMPONENT development)
 

@@ -11,7 +11,7 @@ foreach(target fcl_artic_urdf fcl_artic_visibility fcl_artic_ompl fcl_artic_prog
   endif()
 endforeach()
 
-set(fcl_artic_library_package libfcl-artic${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(fcl_artic_library_package libfcl-artic${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${fcl_artic_library_package})
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfcl-artic-dev)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME fcl-artic)
@@ -49,7 +49,7 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
 # Who links the libraries depends on this package; ld.so's cache is renewed. (CPack's own shlibs leave components out.)
 set(fcl_artic_shlibs)
 foreach(part "" _urdf _visibility _ompl)
-  string(APPEND fcl_artic_shlibs "libfcl_artic${part} ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} "
+  string(APPEND fcl_artic_shlibs "libfcl_artic${part} ${PROJECT_VERSION_MAJOR} "
     "${fcl_artic_library_package} (>= ${PROJECT_VERSION})\n")
 endforeach()
 file(WRITE "${PROJECT_BINARY_DIR}/packages/shlibs" "${fcl_artic_shlibs}")

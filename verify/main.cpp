@@ -30,12 +30,14 @@ is claimed, and how it is proven.
   --solid-meshes   meshes of these files are meant as solids; without, as surfaces or solids
   --solid NAME     those of this link or obstacle are
   --plan FILE      compare each motion with the waypoints of a plan (CSV, columns by joints' names); one for each
-  --from Q, --to Q compare the motion with this one: "0, 1.57, -90deg", or "NAME=VALUE ..." with all others at 0
-  --state Q        values of what the plans have no column for: "NAME=VALUE ..."; of others 0
+  --from Q, --to Q compare the motion with this one: "0, 1.57, -90deg" in the order of the URDF's joints, or
+                   "NAME=VALUE ..."
+  --state Q        values of what the plans have no column for, or --from and --to do not name: "NAME=VALUE ..."; of
+                   others 0
   --interpolation KIND   of the plans: linear, cubic, quintic; else by their columns, as `fcl_artic certify` has it
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
-  --quiet          print no line for what is verified, and none about the world
+  --quiet          print no line for what is verified of all pairs to the motion's end, and none about the world
   --work N         limit of work per record, in steps of roughly 20 ns (default 2000000000)
   --help, --version
 
@@ -87,17 +89,21 @@ class Printer {
                   verify::listAsJson(lines).c_str(), statement.c_str());
       return;
     }
-    if (quiet_ && verdict.verified) return;
+    if (quiet_ && verdict.verified && !verify::isInPart(verdict)) return;
     std::printf("%s:%zu: %s%s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str(),
                 verdict.verified ? shortly().c_str() : "");
     for (const std::string& text : lines) std::printf("  %s\n", verify::shown(text).c_str());
   }
-  void sum(std::size_t verified, std::size_t all) const {
-    if (json_)
-      std::printf("{\"verified\": %zu, \"records\": %zu, \"not_compared\": %s}\n", verified, all,
-                  verify::listAsJson(not_compared_).c_str());
-    else
-      std::printf("%zu of %zu records verified%s\n", verified, all, shortly().c_str());
+  /// @param in_part  of those that are verified.
+  void sum(std::size_t verified, std::size_t in_part, std::size_t all) const {
+    if (json_) {
+      std::printf("{\"verified\": %zu, \"in_part\": %zu, \"records\": %zu, \"not_compared\": %s}\n", verified, in_part,
+                  all, verify::listAsJson(not_compared_).c_str());
+      return;
+    }
+    const std::string part =
+        in_part > 0 ? ", " + std::to_string(in_part) + " of them not to the motion's end or not of all pairs" : "";
+    std::printf("%zu of %zu records verified%s%s\n", verified, all, part.c_str(), shortly().c_str());
   }
 
  private:
@@ -172,7 +178,11 @@ Asked readCommand(int argc, char** argv) {
   asked.solids.names.insert(solids.begin(), solids.end());
   for (const std::string& number : scale) asked.scale = verify::decimal(number);
   if (!(asked.scale > 0)) throw verify::BadInput("--scale takes a number above 0");
-  for (const std::string& number : work) asked.options.work = std::strtoull(number.c_str(), nullptr, 10);
+  for (const std::string& number : work) {
+    if (number.empty() || number.size() > 18 || number.find_first_not_of("0123456789") != number.npos)
+      throw verify::BadInput("--work takes a number of steps");
+    asked.options.work = std::strtoull(number.c_str(), nullptr, 10);
+  }
   return asked;
 }
 
@@ -193,7 +203,9 @@ std::string faultOf(const Asked& asked) {
   return "";
 }
 
-std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& world) {
+/// @param robot  variables of the URDF's joints, in its order; none: no URDF is given.
+std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& world,
+                                    const std::vector<std::string>& robot) {
   static const std::map<std::string, verify::Interpolation> kKinds{{"linear", verify::Interpolation::linear},
                                                                    {"cubic", verify::Interpolation::cubic},
                                                                    {"quintic", verify::Interpolation::quintic}};
@@ -205,12 +217,23 @@ std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& wor
       plans.back().interpolation = kKinds.at(kind);
     }
   }
-  if (!asked.from.empty()) plans.push_back(verify::planBetween(world, asked.from[0], asked.to[0]));
-  for (verify::Plan& plan : plans)
-    for (const std::string& text : asked.state) {
-      if (text.find('=') == std::string::npos) throw verify::BadInput("--state takes NAME=VALUE");
-      for (const auto& [name, value] : verify::readConfiguration(world, text)) plan.state[name] = value;
-    }
+  std::map<std::string, double> state;
+  for (const std::string& text : asked.state) {
+    if (text.find('=') == std::string::npos) throw verify::BadInput("--state takes NAME=VALUE");
+    for (const auto& [name, value] : verify::readConfiguration(world, {}, text))
+      if (!state.emplace(name, value).second)
+        throw verify::BadInput("--state says twice where " + verify::inQuotes(name) + " stands");
+  }
+  if (!asked.from.empty()) {
+    plans.push_back(verify::planBetween(world, robot, asked.from[0], asked.to[0]));
+    for (const std::string& name : plans.back().columns)
+      if (state.count(name) > 0)
+        throw verify::BadInput("both --state and --from, --to say where " + verify::inQuotes(name) + " is");
+  }
+  for (verify::Plan& plan : plans) {
+    plan.robot = robot;
+    plan.state = state;
+  }
   return plans;
 }
 
@@ -227,9 +250,11 @@ std::vector<std::string> notCompared(const Asked& asked, const verify::World& wo
   std::vector<std::string> list;
   const std::string obstacles = names(verify::Role::obstacle), carried = names(verify::Role::carried);
   if (asked.urdf.empty()) list.push_back("robot (--urdf)");
-  const auto allowed = [](const auto& pair) { return pair.second == verify::Reason::allowed; };
-  if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), allowed))
-    list.push_back("allowed pairs (--srdf)");
+  for (const auto& [reason, what] : {std::pair(verify::Reason::allowed, "allowed pairs (--srdf)"),
+                                     std::pair(verify::Reason::neighbours, "neighbours (--srdf)")}) {
+    const auto is = [why = reason](const auto& pair) { return pair.second == why; };
+    if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), is)) list.push_back(what);
+  }
   if (asked.scenes.empty() && !obstacles.empty()) list.push_back("obstacles " + obstacles + " (--scene)");
   if (!carried.empty()) list.push_back("what links carry: " + carried);
   if (asked.plans.empty() && asked.from.empty() && !asked.compare_only) list.push_back("motion (--plan)");
@@ -239,19 +264,15 @@ std::vector<std::string> notCompared(const Asked& asked, const verify::World& wo
 class Run {
  public:
   Run(const Asked& asked, const verify::World& world)
-      : asked_(asked),
-        world_(world),
-        plans_(readPlans(asked, world)),
-        used_(plans_.size(), false),
-        printer_(asked.json, asked.quiet, notCompared(asked, world)) {}
+      : asked_(asked), world_(world), printer_(asked.json, asked.quiet, notCompared(asked, world)) {}
 
   int run() {
     compare();
     printer_.world(asked_.files[0], world_);
     for (std::size_t f = 1; f < asked_.files.size(); ++f) file(asked_.files[f]);
     for (std::size_t p = 0; p < plans_.size(); ++p)
-      if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}});
-    if (!asked_.compare_only) printer_.sum(verified_, all_);
+      if (!used_[p]) report(plans_[p].title, {{"no record that is verified is about it"}, {}, {}, {}});
+    if (!asked_.compare_only) printer_.sum(verified_, in_part_, all_);
     return bad_ ? 2 : verified_ == all_ && same_ ? 0 : 1;
   }
 
@@ -266,14 +287,21 @@ class Run {
     std::vector<double> base;
     if (!asked_.scenes.empty()) base.assign(6, 0);
     for (const std::string& pose : asked_.base) base = verify::readBase(pose);
-    for (const std::string& path : asked_.urdf)
-      report(path, verify::compareWithUrdf(world_, path, asked_.packages, asked_.solids, base));
+    std::vector<std::string> robot;
+    for (const std::string& path : asked_.urdf) {
+      const verify::Comparison comparison = verify::compareWithUrdf(world_, path, asked_.packages, asked_.solids, base);
+      robot = comparison.variables;
+      report(path, comparison);
+    }
+    plans_ = readPlans(asked_, world_, robot);
+    used_.assign(plans_.size(), false);
     for (const std::string& path : asked_.srdf) report(path, verify::compareWithSrdf(world_, path));
     if (!asked_.scenes.empty())
       report("--scene", verify::compareWithScenes(world_, asked_.scenes, asked_.packages, asked_.solids, asked_.scale));
     for (const std::string& name : asked_.solids.names)
       if (solids_met_.count(name) == 0)
-        report("--solid", {{"no link or obstacle of the files that has a mesh is " + verify::inQuotes(name)}, {}, {}});
+        report("--solid",
+               {{"no link or obstacle of the files that has a mesh is " + verify::inQuotes(name)}, {}, {}, {}});
   }
 
   void file(const char* path) {
@@ -290,6 +318,7 @@ class Run {
       if (verdict.verified && !plans_.empty()) findPlan(records[number], verdict, notes);
       ++all_;
       verified_ += verdict.verified;
+      in_part_ += verdict.verified && verify::isInPart(verdict);
       bad_ = bad_ || verdict.bad_input;
       printer_.record(world_, path, number, records[number], verdict, notes);
     }
@@ -298,26 +327,28 @@ class Run {
   void findPlan(const verify::Record& record, verify::Verdict& verdict, std::vector<std::string>& notes) {
     const verify::Motion motion = verify::readMotion(record.motion, world_);
     std::string why;
-    for (std::size_t p = 0; p < plans_.size(); ++p) {
+    bool found = false;
+    for (std::size_t p = 0; p < plans_.size(); ++p) {  // it may be that of several, which differ in their times
       const verify::Comparison c = verify::compareWithPlan(world_, motion, plans_[p]);
       if (c.differences.empty()) {
         used_[p] = true;
-        notes = c.notes;
-        return;
+        if (!found) notes = c.notes;
+        found = true;
+      } else if (why.empty()) {
+        why = "'" + plans_[p].title + "': " + c.differences[0];
       }
-      if (why.empty()) why = "'" + plans_[p].title + "': " + c.differences[0];
     }
-    verdict.verified = false;
-    verdict.reason = "it is proven of a motion that is no plan's: " + why;
+    verdict.verified = found;
+    if (!found) verdict.reason = "it is proven of a motion that is no plan's: " + why;
   }
 
   const Asked& asked_;
   const verify::World& world_;
-  const std::vector<verify::Plan> plans_;
+  std::vector<verify::Plan> plans_;
   std::vector<bool> used_;
   const Printer printer_;
   std::set<std::string> solids_met_;
-  std::size_t verified_ = 0, all_ = 0;
+  std::size_t verified_ = 0, in_part_ = 0, all_ = 0;
   bool bad_ = false, same_ = true;
 };
 
@@ -333,7 +364,9 @@ int main(int argc, char** argv) {
     const std::string fault = faultOf(asked);
     if (!fault.empty()) throw verify::BadInput(fault);
     const verify::World world = verify::readWorld(verify::readFile(asked.files[0]));
-    return Run(asked, world).run();
+    const int status = Run(asked, world).run();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw verify::BadInput("the output can't be written");
+    return status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fcl_artic_verify: %s\n", verify::shown(error.what()).c_str());
     return 2;

@@ -140,7 +140,12 @@ class ObjLines {
     std::string line = take();
     while (goesOn(line)) {
       line.resize(line.find_last_of('\\'));
-      line += ' ' + take();
+      const std::string more = take(), blanks = " \t\r\\";
+      const std::size_t k = std::min(more.find_first_not_of(blanks), more.size());
+      // Readers differ on whether a vertex or a face goes on with the name before it, or is one.
+      if ((more[k] == 'v' || more[k] == 'f') && k + 1 < more.size() && blanks.find(more[k + 1]) != blanks.npos)
+        throw BadInput(where() + "it goes on a line that ends in a backslash, and may be one by itself");
+      line += ' ' + more;
     }
     line.resize(std::min(line.find('#'), line.size()));
     for (std::size_t k = line.find_first_not_of(" \t\r"), to; k != line.npos; k = line.find_first_not_of(" \t\r", to)) {

@@ -75,6 +75,13 @@ std::string fileOfUrl(const std::string& url) {
   return decoded;
 }
 
+/// The same folder by a path that can be gone up: what ".." is above a link, only the disk knows.
+fs::path withoutDots(const fs::path& folder) {
+  std::error_code error;
+  const fs::path there = fs::canonical(folder, error);
+  return error || std::find(folder.begin(), folder.end(), "..") == folder.end() ? folder.lexically_normal() : there;
+}
+
 /// Paths of an environment variable, separated by colons.
 std::vector<fs::path> listed(const char* variable) {
   std::vector<fs::path> paths;
@@ -91,7 +98,7 @@ std::vector<fs::path> listed(const char* variable) {
 }  // namespace
 
 FileFinder::FileFinder(const std::string& urdf, const Packages& packages)
-    : folder_(fs::absolute(urdf).parent_path().lexically_normal()), packages_(packages) {}
+    : folder_(fs::absolute(urdf).parent_path()), packages_(packages) {}
 
 std::string FileFinder::find(const std::string& name) {
   const std::string package = "package://";
@@ -101,9 +108,9 @@ std::string FileFinder::find(const std::string& name) {
     return (folder_ / name).string();
   }
   const std::size_t begin = std::min(name.find_first_not_of('/', package.size()), name.size()),
-                    slash = name.find('/', begin);
-  if (slash == std::string::npos || slash + 1 == name.size()) throw BadInput("'" + name + "' names no file");
-  const std::string of = name.substr(begin, slash - begin), rest = name.substr(slash + 1);
+                    slash = name.find('/', begin), file = name.find_first_not_of('/', slash);
+  if (file == std::string::npos) throw BadInput("'" + name + "' names no file");
+  const std::string of = name.substr(begin, slash - begin), rest = name.substr(file);
   for (const fs::path& folder : foldersOf(of))
     if (isThere(folder / rest)) return (folder / rest).string();
   if (packages_.count(of) > 0) throw BadInput("'" + name + "' is not in '" + packages_.at(of) + "'");
@@ -116,7 +123,7 @@ const std::vector<fs::path>& FileFinder::foldersOf(const std::string& package) {
   Folders folders(package);
   const auto given = packages_.find(package);
   if (given != packages_.end()) return entry->second = {given->second};
-  for (fs::path up = folder_;; up = up.parent_path()) {
+  for (fs::path up = withoutDots(folder_);; up = up.parent_path()) {
     folders.searchAt(up);
     if (up == up.parent_path()) break;
   }

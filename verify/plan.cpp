@@ -70,31 +70,31 @@ Columns columnsOf(const World& world, const Plan& plan) {
     if (column != Columns::kNone)
       throw BadInput("'" + plan.title + "': two columns say what " + inQuotes(plan.columns[k]) + " does");
     column = k;
+    return true;
   };
-  for (std::size_t k = 0; k < plan.columns.size(); ++k) {
+  /// Whether column k is about one of these variables, or time.
+  const auto isOf = [&](const std::set<std::string>& names, std::size_t k) {
     const std::string& name = plan.columns[k];
     const auto without = [&](const char* const(&endings)[4]) {
       for (const std::string ending : endings) {
         const std::size_t left = name.size() - std::min(ending.size(), name.size());
-        if (name.substr(left) == ending && known.count(name.substr(0, left)) > 0) return name.substr(0, left);
+        if (name.substr(left) == ending && names.count(name.substr(0, left)) > 0) return name.substr(0, left);
       }
       return std::string();
     };
+    if (names.count(name) > 0) return set(columns.variables[name].position, k);
+    if (name == "time" || name == "t" || name == "time_from_start") return set(columns.time, k);
     const std::string v = without(kVelocity), a = without(kAcceleration);
-    if (known.count(name) > 0) {
-      set(columns.variables[name].position, k);
-    } else if (name == "time" || name == "t" || name == "time_from_start") {
-      set(columns.time, k);
-    } else if (!v.empty()) {
-      set(columns.variables[v].velocity, k);
-      columns.velocities = true;
-    } else if (!a.empty()) {
-      set(columns.variables[a].acceleration, k);
-      columns.accelerations = true;
-    } else {
-      throw BadInput("'" + plan.title + "': the column " + inQuotes(name) + " is no variable of the world");
-    }
-  }
+    columns.velocities = columns.velocities || !v.empty();
+    if (!v.empty()) return set(columns.variables[v].velocity, k);
+    columns.accelerations = columns.accelerations || !a.empty();
+    return !a.empty() && set(columns.variables[a].acceleration, k);
+  };
+  // The robot's variables come first, so that no name that a world adds changes what a column means.
+  const std::set<std::string> robot = plan.robot.empty() ? known : std::set(plan.robot.begin(), plan.robot.end());
+  for (std::size_t k = 0; k < plan.columns.size(); ++k)
+    if (!isOf(robot, k) && !isOf(known, k))
+      throw BadInput("'" + plan.title + "': the column " + inQuotes(plan.columns[k]) + " is no variable of the world");
   for (const auto& [name, of] : columns.variables)
     if (of.position == Columns::kNone || (columns.velocities && of.velocity == Columns::kNone) ||
         (columns.accelerations && of.acceleration == Columns::kNone))
@@ -213,8 +213,8 @@ class PlanComparison {
       const std::vector<double> c = coefficients(k, v);
       if (c.size() > 1) return different(inQuotes(name) + " moves, and the plan has no column for it");
       if (c[0] != value)
-        return different(inQuotes(name) + " stands at " + shortDecimal(c[0]) +
-                         ", and the plan has no column for it: 0, or as " + "--state says");
+        return different(inQuotes(name) + " stands at " + shortDecimal(c[0]) + ", not at " + shortDecimal(value) +
+                         ": the plan has no column for it, so 0, or as --state says");
     }
     standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
   }
@@ -311,18 +311,19 @@ Plan readPlan(const std::string& path) {
   return plan;
 }
 
-std::map<std::string, double> readConfiguration(const World& world, const std::string& text) {
+std::map<std::string, double> readConfiguration(const World& world, const std::vector<std::string>& order,
+                                                const std::string& text) {
   std::map<std::string, double> values;
   const std::vector<std::string> words = wordsOf(text, ", \t\r\n");
   const bool named = !words.empty() && words[0].find('=') != std::string::npos;
-  if (!named && words.size() != world.variables.size())
-    throw BadInput("'" + text + "' has " + std::to_string(words.size()) + " values, the world " +
-                   std::to_string(world.variables.size()) + " variables");
+  if (!named && words.size() != order.size())
+    throw BadInput("'" + text + "' has " + std::to_string(words.size()) + " values for " +
+                   std::to_string(order.size()) + " variables");
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::size_t equals = words[k].find('=');
     if ((equals != std::string::npos) != named)
       throw BadInput("'" + text + "': either all values carry a name or none does");
-    const std::string name = named ? words[k].substr(0, equals) : world.variables[k];
+    const std::string name = named ? words[k].substr(0, equals) : order[k];
     const double value = numberOf(named ? words[k].substr(equals + 1) : words[k]);
     if (std::find(world.variables.begin(), world.variables.end(), name) == world.variables.end())
       throw BadInput("the world has no variable " + inQuotes(name));
@@ -341,18 +342,20 @@ std::vector<double> readBase(const std::string& text) {
   return base;
 }
 
-Plan planBetween(const World& world, const std::string& from, const std::string& to) {
+Plan planBetween(const World& world, const std::vector<std::string>& robot, const std::string& from,
+                 const std::string& to) {
   Plan plan;
   plan.title = "--from, --to";
   plan.interpolation = Interpolation::linear;
-  plan.columns = world.variables;
-  for (const std::string& text : {from, to}) {
-    const std::map<std::string, double> values = readConfiguration(world, text);
-    std::vector<double>& row = plan.rows.emplace_back();
-    for (const std::string& name : world.variables) {
-      const auto value = values.find(name);
-      row.push_back(value == values.end() ? 0 : value->second);
-    }
+  plan.robot = robot;
+  const std::vector<std::string>& order = robot.empty() ? world.variables : robot;
+  std::map<std::string, double> ends[2] = {readConfiguration(world, order, from), readConfiguration(world, order, to)};
+  std::map<std::string, double> either = ends[0];
+  either.insert(ends[1].begin(), ends[1].end());
+  plan.rows.resize(2);
+  for (const auto& [name, unused] : either) {
+    plan.columns.push_back(name);
+    for (std::size_t k = 0; k < 2; ++k) plan.rows[k].push_back(ends[k][name]);  // 0 where only the other end names it
   }
   return plan;
 }

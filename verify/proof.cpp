@@ -43,8 +43,6 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
 
 namespace {
 
-using Direction = std::array<Fix, 3>;
-
 /// Says already which bodies, pieces and time it is about.
 struct Located : NotProven {
   using NotProven::NotProven;
@@ -180,79 +178,122 @@ class Walk {
     task.outside = true;
   }
 
+  /// f(x) = v.x + d in the coordinates of a frame, by which the task's bodies are told apart: v is linear in s, d is
+  /// constant.
+  struct Line {
+    int frame = 0, wall = -1;  // wall: the one body without bounds, on all of which f or -f is at most 0
+    Vec v{};
+    Tm d{};
+    /// The same over the part [u, w] of its interval, 0 <= u <= w <= 1. (Where v changes it is rounded, and is another
+    /// direction then, the same one for both sides.)
+    Line part(Fix u, Fix w) const {
+      Line line = *this;
+      for (Tm& x : line.v) {
+        x.c0 += x.c1 * (u + w - Fix{kOne});
+        x.c1 = x.c1 * (w - u);
+      }
+      return line;
+    }
+  };
+
   void leaf(const Task& task, std::uint8_t kind) {
     ++verdict_.leaves;
-    Direction n[2];
-    int frame = 0;
-    if (kind == kWall || kind == kWallOther) {
-      wall(task, kind == kWallOther);
-      return;
+    if (kind > kWallOther) fail(task, "there is no node of kind " + std::to_string(kind));
+    const Line line = kind < kWall ? direction(task, kind) : wall(task, kind == kWallOther);
+    budget_.spend(task.q - task.p);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t k = task.p; k < task.q; ++k) {
+      const Fix from = partners_[k].from, a = task.span.a, b = task.span.b;
+      if (from >= b) continue;  // ignored all the time
+      if (from <= a) {
+        all.push_back(k);
+      } else {  // from then on; the direction of a TURN moves along
+        const double part = static_cast<double>((from - a).v) / static_cast<double>((b - a).v);  // a hint
+        separated(task, {k}, line.part(enclose(std::min(1.0, part)).x, Fix{kOne}), {from, b}, 0);
+      }
     }
-    if (kind >= kWall) fail(task, "there is no node of kind " + std::to_string(kind));
-    const int where = kind % 3, width = kind < kSepFine ? 2 : 4;
-    frame = where == 0 ? 0 : world_.bodies[where == 1 ? a_ : partners_[task.p].body].frame;
+    separated(task, all, line, task.span, 0);
+  }
+
+  Line direction(const Task& task, std::uint8_t kind) {
+    const int where = kind % 3, width = kind < kSepFine ? 2 : 4, n = kind < kTurn ? 3 : 6;
     // A power of two scales n to about 1; which n it is has no influence on what is proven.
     std::int64_t integers[6] = {}, largest = 0;
-    for (int k = 0; k < (kind < kTurn ? 3 : 6); ++k) {
+    for (int k = 0; k < n; ++k) {
       integers[k] = bytes_.signedLittle(width);
       largest = std::max(largest, std::abs(integers[k]));
     }
-    int shift = 0;
-    while (largest >> shift > 0) ++shift;
-    for (int k = 0; k < 6; ++k)
-      n[k / 3][static_cast<std::size_t>(k % 3)] =
-          Fix{static_cast<Int>(integers[kind < kTurn ? k % 3 : k]) * (kOne >> shift)};
-    std::vector<std::uint32_t> all;
-    for (std::uint32_t k = task.p; k < task.q; ++k) {
-      const Fix from = partners_[k].from;
-      if (from >= task.span.b) continue;  // ignored all the time
-      if (from <= task.span.a) {
-        all.push_back(k);
-      } else {  // from then on; the direction of a TURN moves along
-        const Fix m = checked((from - task.span.a).v);
-        const Fix length = task.span.b - task.span.a;
-        const double part = length.v == 0 ? 0 : static_cast<double>(m.v) / static_cast<double>(length.v);  // a hint
-        const Fix f = enclose(std::min(1.0, std::max(0.0, part))).x;
-        Direction from_n;
-        for (std::size_t c = 0; c < 3; ++c) from_n[c] = n[0][c] + (n[1][c] - n[0][c]) * f;
-        separated(task, {k}, frame, {from, task.span.b}, from_n, n[1], 0);
-      }
+    int shift = 1;
+    while (largest >> (shift - 1) > 0) ++shift;
+    Line line;
+    if (where > 0) line.frame = world_.bodies[where == 1 ? a_ : partners_[task.p].body].frame;
+    for (std::size_t k = 0; k < 3; ++k) {  // n(s) = (n0 + n1)/2 + s (n1 - n0)/2, exactly
+      const std::int64_t n0 = integers[k], n1 = n == 3 ? n0 : integers[3 + k];
+      line.v[k].c0 = Fix{static_cast<Int>(n0 + n1) * (kOne >> shift)};
+      line.v[k].c1 = Fix{static_cast<Int>(n1 - n0) * (kOne >> shift)};
     }
-    separated(task, all, frame, task.span, n[0], n[1], 0);
+    return line;
   }
 
-  static Fix lengthUp(const Direction& n) { return sqrtUp(mulUp(n[0], n[0]) + mulUp(n[1], n[1]) + mulUp(n[2], n[2])); }
+  // f = d - n.x of the halfspace n.x <= d, or of either side of a plane: it is not below 0 where the wall is, and is to
+  // be below it where the other body is. Where the wall is the partner, -f.
+  Line wall(const Task& task, bool turned) const {
+    if (task.q - task.p != 1) fail(task, "WALL has more than one partner");
+    const int partner = partners_[task.p].body;
+    const bool own = geometry(a_).unbounded();
+    if (own == geometry(partner).unbounded()) fail(task, "WALL of two bodies with bounds, or two without");
+    Line line;
+    line.wall = own ? a_ : partner;
+    line.frame = world_.bodies[line.wall].frame;
+    const Geometry& g = geometry(line.wall);
+    if (turned && g.kind != Geometry::plane) fail(task, "WALL from the other side of a halfspace");
+    int exponent = 0;
+    std::frexp(std::max({std::fabs(g.numbers[0]), std::fabs(g.numbers[1]), std::fabs(g.numbers[2])}), &exponent);
+    const double sign = own != turned ? 1 : -1;
+    const auto scaled = [&](std::size_t k) { return constant(enclose(std::ldexp(sign * g.numbers[k], -exponent))); };
+    const Functional::Value f =
+        toParent({{-scaled(0), -scaled(1), -scaled(2)}, scaled(3)}, world_.bodies[line.wall].pose);
+    line.v = f.v;
+    line.d = f.d;
+    return line;
+  }
 
-  // For all t in the span: max over A of -n.x + max over a partner of n.y + margin |n| < 0, by the Bernstein
-  // coefficients of each sum (support.cpp). n(s) = (n0 + n1)/2 + s (n1 - n0)/2; |n(s)| <= max(|n0|, |n1|), since a
-  // length is convex. (n is halved with a rounding: the same rounded n is used for both sides.) Partners that are not
-  // shown to be apart over the whole span are looked at again over its halves.
-  void separated(const Task& task, const std::vector<std::uint32_t>& partners, int frame, const Span& span,
-                 const Direction& n0, const Direction& n1, int halvings) {
+  /// Above |v(s)| for all s, of a v that is linear in s: each entry is at most |l| + r with l linear, so this is a
+  /// convex length, and at most that at one of both ends.
+  static Fix lengthUp(const Vec& v) {
+    Fix squares[2];
+    for (const Tm& x : v)
+      for (int end = 0; end < 2; ++end) {
+        const Fix most = abs(end == 0 ? x.c0 - x.c1 : x.c0 + x.c1) + x.r;
+        squares[end] += mulUp(most, most);
+      }
+    return sqrtUp(most(squares[0], squares[1]));
+  }
+
+  // For all t in the span: max over A of -f + max over a partner of f + margin |v| < 0, by the Bernstein coefficients
+  // of each sum (support.cpp). Partners that are not shown to be apart over the whole span are looked at again over its
+  // halves.
+  void separated(const Task& task, const std::vector<std::uint32_t>& partners, const Line& line, const Span& span,
+                 int halvings) {
     if (partners.empty()) return;
-    Vec n;
-    for (std::size_t k = 0; k < 3; ++k) n[k] = {shifted(n0[k] + n1[k], 1), shifted(n1[k] - n0[k], 1), {}, {}};
-    // Halving takes n(-1), n(0) and n(1) to be at most half an ulp of each term away from n0 and n1.
-    const Fix length = most(lengthUp(n0), lengthUp(n1)) + ulps(4);
     std::vector<std::uint32_t> again;
     try {
-      Functional f(world_, poses_, span, frame, n, Tm{});
-      Functional::Value own = f.inBody(a_);
-      own.v = {-own.v[0], -own.v[1], -own.v[2]};
-      own.d = -own.d;
-      if (geometry(a_).unbounded()) fail(task, "SEP of a body without bounds");
-      budget_.spend(50);
-      const Geometry::Reach a = geometry(a_).reach(task.from, task.to, own.v, own.d, length, budget_);
+      Functional f(world_, poses_, span, line.frame, line.v, line.d);
+      const Fix length = lengthUp(line.v);
+      const auto reach = [&](int body, std::uint32_t i, std::uint32_t j, bool negative) {
+        if (body == line.wall) return Geometry::Reach{};
+        if (geometry(body).unbounded()) fail(task, "SEP of a body without bounds");
+        Functional::Value value = f.inBody(body);
+        if (negative) value = {{-value.v[0], -value.v[1], -value.v[2]}, -value.d};
+        budget_.spend(50);
+        return geometry(body).reach(i, j, value.v, value.d, length, budget_);
+      };
+      const Geometry::Reach a = reach(a_, task.from, task.to, true);
       const bool single = task.q - task.p == 1;
       for (const std::uint32_t k : partners) {
-        const Geometry& g = geometry(partners_[k].body);
-        if (g.unbounded()) fail(task, "SEP of a body without bounds");
-        const Functional::Value other = f.inBody(partners_[k].body);
-        budget_.spend(50);
-        const Geometry::Reach b =
-            g.reach(single ? task.k : 0, single ? task.l : g.pieces(), other.v, other.d, length, budget_);
-        if (apart(task, a, b, mulUp(partners_[k].margin, length))) continue;
-        again.push_back(k);
+        const int body = partners_[k].body;
+        const Geometry::Reach b = reach(body, single ? task.k : 0, single ? task.l : geometry(body).pieces(), false);
+        if (!apart(task, a, b, mulUp(partners_[k].margin, length))) again.push_back(k);
       }
     } catch (const Located&) {
       throw;
@@ -264,10 +305,9 @@ class Walk {
     }
     if (again.empty()) return;
     if (halvings == options_.halvings || span.b.v - span.a.v < 4) fail(task, "not shown to be apart");
-    Direction middle;
-    for (std::size_t k = 0; k < 3; ++k) middle[k] = shifted(n0[k] + n1[k], 1);
-    separated(task, again, frame, {span.a, span.middle()}, n0, middle, halvings + 1);
-    separated(task, again, frame, {span.middle(), span.b}, middle, n1, halvings + 1);
+    constexpr Fix kHalf{kOne / 2};
+    separated(task, again, line.part(Fix{0}, kHalf), {span.a, span.middle()}, halvings + 1);
+    separated(task, again, line.part(kHalf, Fix{kOne}), {span.middle(), span.b}, halvings + 1);
   }
 
   /// @throws where halving the time can't help: in its middle the two are not apart even without the remainder.
@@ -277,54 +317,6 @@ class Walk {
     if (!all && a.centre + b.centre + margin - a.slack - a.slack - b.slack - b.slack > Fix{0})
       fail(task, "not apart along the direction");
     return all;
-  }
-
-  // Halfspace n.y <= d: apart when the least n.x of the other body is above d + margin |n|. Plane: on either side.
-  void wall(const Task& task, bool turned) {
-    if (task.q - task.p != 1) fail(task, "WALL has more than one partner");
-    const Opponent& opponent = partners_[task.p];
-    const bool own = geometry(a_).unbounded();
-    const int wall = own ? a_ : opponent.body, other = own ? opponent.body : a_;
-    const Geometry& g = geometry(wall);
-    if (!g.unbounded() || geometry(other).unbounded()) fail(task, "WALL of two bodies with bounds, or two without");
-    if (turned && g.kind != Geometry::plane) fail(task, "WALL from the other side of a halfspace");
-    int exponent = 0;
-    std::frexp(std::max({std::fabs(g.numbers[0]), std::fabs(g.numbers[1]), std::fabs(g.numbers[2])}), &exponent);
-    Functional::Value f;  // of a point x in the wall's coordinates: d - n.x, scaled by a power of two
-    Direction high;       // |n_k| at most
-    const double sign = turned ? -1 : 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Enclosed e = enclose(std::ldexp(sign * g.numbers[k], -exponent));
-      f.v[k] = -constant(e);
-      high[k] = abs(e.x) + e.error;
-    }
-    f.d = constant(enclose(std::ldexp(sign * g.numbers[3], -exponent)));
-    const Span span{most(task.span.a, opponent.from), task.span.b};
-    if (opponent.from >= task.span.b) return;
-    const Fix length = lengthUp(high);
-    walled(task, wall, other, toParent(f, world_.bodies[wall].pose), length, mulUp(opponent.margin, length), span, 0);
-  }
-  void walled(const Task& task, int wall, int other, const Functional::Value& f, Fix length, Fix margin,
-              const Span& span, int halvings) {
-    bool all = false;
-    try {
-      budget_.spend(50);
-      Functional::Value at = Functional(world_, poses_, span, world_.bodies[wall].frame, f.v, f.d).inBody(other);
-      const Geometry& g = geometry(other);
-      const std::uint32_t i = other == a_ ? task.from : task.k, j = other == a_ ? task.to : task.l;
-      Geometry::Reach none{};
-      all = apart(task, g.reach(i, j, at.v, at.d, length, budget_), none, margin);
-    } catch (const Located&) {
-      throw;
-    } catch (const OutOfRange& error) {
-      if (halvings == options_.halvings) fail(task, error.what());
-    } catch (const NotProven& error) {
-      fail(task, error.what());
-    }
-    if (all) return;
-    if (halvings == options_.halvings || span.b.v - span.a.v < 4) fail(task, "not shown to be apart from the wall");
-    walled(task, wall, other, f, length, margin, {span.a, span.middle()}, halvings + 1);
-    walled(task, wall, other, f, length, margin, {span.middle(), span.b}, halvings + 1);
   }
 
   const World& world_;

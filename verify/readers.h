@@ -17,6 +17,7 @@ struct Comparison {
   std::vector<std::string> differences;  // none: the world is what the file says
   std::vector<std::string> notes;        // for people
   std::set<std::string> solids;          // those of Solids::names that were met
+  std::vector<std::string> variables;    // of the robot's joints, in the file's order
 };
 
 /// Links and obstacles whose meshes are meant as solids.
@@ -47,14 +48,20 @@ struct Plan {
   std::string title;                 // for people
   std::vector<std::string> columns;  // names
   std::vector<std::vector<double>> rows;
+  std::vector<std::string> robot;                          // variables of its joints; none: all of the world's
   std::map<std::string, double> state;                     // values of variables without a column; of others 0
   Interpolation interpolation = Interpolation::automatic;  // by the columns that there are
 };
 /// Comma separated values, of which the first line names the columns. @throws BadInput
 Plan readPlan(const std::string& path);
-/// "NAME=VALUE" of some variables, or the values of all; an angle may be "90deg". @throws BadInput
-std::map<std::string, double> readConfiguration(const World& world, const std::string& text);
-Plan planBetween(const World& world, const std::string& from, const std::string& to);
+/// "NAME=VALUE" of some of the world's variables, or the values of all in `order`; an angle may be "90deg".
+/// @throws BadInput
+std::map<std::string, double> readConfiguration(const World& world, const std::vector<std::string>& order,
+                                                const std::string& text);
+/// The straight way between two configurations, of which all that neither names stands still.
+/// @param robot  variables of the robot's joints, in their order; none: all of the world's.
+Plan planBetween(const World& world, const std::vector<std::string>& robot, const std::string& from,
+                 const std::string& to);
 /// The motion goes from waypoint to waypoint of the plan, as its interpolation says, and nothing else moves.
 Comparison compareWithPlan(const World& world, const Motion& motion, const Plan& plan);
 

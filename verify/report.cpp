@@ -111,6 +111,11 @@ std::vector<std::string> linesOf(const World& world, const Motion& motion, const
   return lines;
 }
 
+bool isInPart(const Verdict& v) {
+  return v.until < 1 || v.late > 0 || v.not_checked[static_cast<int>(Reason::scope)] > 0 ||
+         v.not_checked[static_cast<int>(Reason::ignored)] > 0;
+}
+
 std::string lineOf(const Verdict& v) {
   if (!v.verified) return "NOT VERIFIED: " + shown(v.reason);
   std::string line = "VERIFIED " + std::to_string(v.checked) + " pairs";

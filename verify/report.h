@@ -15,6 +15,9 @@ namespace verify {
 std::vector<std::string> linesOf(const World& world);
 /// What the motion says: what is checked, margin, start and goal, pairs that are ignored up to a time.
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict);
+/// Whether a verified claim leaves something out that files do not: it ends early, or a pair is not checked for all of
+/// its time, or at all, by the motion's own word.
+bool isInPart(const Verdict& verdict);
 /// "VERIFIED 3 pairs; ..." or "NOT VERIFIED: ...".
 std::string lineOf(const Verdict& verdict);
 

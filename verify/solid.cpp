@@ -60,6 +60,7 @@ void checkOutside(const World& world, Poses& poses, int a, int b, const Span& sp
   if (!B.solid || A.unbounded()) return;
   const Relative toB(world, poses, span, a, b);
   const bool mesh = A.kind == Geometry::mesh;
+  budget.spend(A.pieces());
   std::set<std::uint32_t> shown;  // parts of a mesh
   for (std::uint32_t k = 0; k < A.pieces(); ++k) {
     if (mesh && shown.count(A.part[k]) > 0) continue;

@@ -26,6 +26,17 @@ void sineCosine(const Tm& angle, Tm& sine, Tm& cosine) {
   cosine = c * cos_d - s * sin_d;
 }
 
+/// Adds diagonal I + a [k], where entry (i, i+1) of [k] is -k_(i+2) and entry (i+1, i) is +k_(i+2).
+static void finish(Mat& R, const Tm& diagonal, const Tm& a, const Vec& k) {
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, l = (i + 2) % 3;
+    const Tm turn = a * k[l];
+    R[4 * i] = R[4 * i] + diagonal;
+    R[3 * i + j] = R[3 * i + j] - turn;
+    R[3 * j + i] = R[3 * j + i] + turn;
+  }
+}
+
 // Rodrigues: R = cos I + sin [k] + (1 - cos) k k^T.
 Mat rotation(const Vec& k, const Mat& kk, const Tm& angle) {
   Tm sine, cosine;
@@ -33,13 +44,7 @@ Mat rotation(const Vec& k, const Mat& kk, const Tm& angle) {
   const Tm rest = constant(integer(1)) - cosine;
   Mat R;
   for (int i = 0; i < 9; ++i) R[i] = rest * kk[i];
-  for (int i = 0; i < 3; ++i) R[4 * i] = R[4 * i] + cosine;
-  for (int i = 0; i < 3; ++i) {  // [k]: entry (i, i+1) is -k_(i+2), entry (i+1, i) is +k_(i+2)
-    const int j = (i + 1) % 3, l = (i + 2) % 3;
-    const Tm turn = sine * k[l];
-    R[3 * i + j] = R[3 * i + j] - turn;
-    R[3 * j + i] = R[3 * j + i] + turn;
-  }
+  finish(R, cosine, sine, k);
   return R;
 }
 
@@ -70,14 +75,7 @@ Mat rotation(const Vec& w) {
   Mat R;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) R[3 * i + j] = B * (w[i] * w[j]);
-  const Tm diagonal = one - B * z;
-  for (int i = 0; i < 3; ++i) R[4 * i] = R[4 * i] + diagonal;
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, l = (i + 2) % 3;
-    const Tm turn = A * w[l];
-    R[3 * i + j] = R[3 * i + j] - turn;
-    R[3 * j + i] = R[3 * j + i] + turn;
-  }
+  finish(R, one - B * z, A, w);
   return R;
 }
 

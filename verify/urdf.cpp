@@ -50,6 +50,22 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
   return {{{d(c + k * x * x), d(k * x * y), d(-y)}, {d(k * x * y), d(c + k * y * y), d(x)}}};
 }
 
+/// What a joint adds to the names of its variables.
+std::vector<const char*> endingsOf(const Joint& j) {
+  if (j.type == "fixed" || j.mimics) return {};
+  if (j.type == "planar") return {"/x", "/y", "/theta"};
+  if (j.type != "floating") return {""};
+  return {"/trans_x", "/trans_y", "/trans_z", "/rot_x", "/rot_y", "/rot_z", "/rot_w"};
+}
+
+/// How a floating joint of that name moves.
+std::vector<Step> freely(const std::string& joint) {
+  return {{Element::slide, {1, 0, 0}, {joint + "/trans_x", 1, 0}},
+          {Element::slide, {0, 1, 0}, {joint + "/trans_y", 1, 0}},
+          {Element::slide, {0, 0, 1}, {joint + "/trans_z", 1, 0}},
+          {Element::rotate, {}, {joint + "/rot_x", 1, 0}}};
+}
+
 class UrdfComparison {
  public:
   UrdfComparison(const World& world, Robot& robot, const Solids& solids, const std::vector<double>& base)
@@ -65,6 +81,8 @@ class UrdfComparison {
     for (std::size_t b = 0; b < world_.bodies.size(); ++b)
       if (world_.bodies[b].role == Role::link)
         bodies_[static_cast<std::size_t>(world_.bodies[b].frame)].push_back(static_cast<int>(b));
+    for (const Joint& j : robot_.joints)
+      for (const char* ending : endingsOf(j)) result_.variables.push_back(j.name + ending);
     for (const Link& link : robot_.links) frameOf(link.name);
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) joint(j);
     for (const Link& l : robot_.links) link(l);
@@ -102,13 +120,7 @@ class UrdfComparison {
     if (!isAt(j.origin, frame.numbers)) wrong("another origin");
     std::vector<Step> steps;
     if (j.type == "floating") {
-      const char* const names[] = {"/trans_x", "/trans_y", "/trans_z"};
-      for (std::size_t k = 0; k < 3; ++k) {
-        std::array<double, 3> axis{};
-        axis[k] = 1;
-        steps.push_back({Element::slide, axis, {j.name + names[k], 1, 0}});
-      }
-      steps.push_back({Element::rotate, {}, {j.name + "/rot_x", 1, 0}});
+      steps = freely(j.name);
     } else if (j.type == "planar") {
       const auto plane = planeOf(j.axis);
       steps = {{Element::slide, plane[0], {j.name + "/x", 1, 0}, true},
@@ -125,8 +137,13 @@ class UrdfComparison {
       else if (driven.driver.offset != 0)
         return wrong("it mimics a fixed joint and stands at another place than 0: that is not compared");
     }
+    compareSteps(steps, frame, j.mimics, wrong);
+  }
+
+  template <class Wrong>
+  void compareSteps(const std::vector<Step>& steps, const Frame& frame, bool mimics, const Wrong& wrong) {
     if (frame.elements.size() != steps.size()) return wrong("another kind of motion");
-    for (std::size_t k = 0; k < steps.size(); ++k) step(steps[k], frame.elements[k], j.mimics, wrong);
+    for (std::size_t k = 0; k < steps.size(); ++k) step(steps[k], frame.elements[k], mimics, wrong);
   }
 
   template <class Wrong>
@@ -217,6 +234,9 @@ class UrdfComparison {
     static constexpr double kIdentity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
     bool identity = true;
     std::set<std::string> variables;
+    const auto wrong = [&](const std::string& why) {
+      different("the root link " + inQuotes(name) + " moves, which neither the file nor --base says (" + why + ")");
+    };
     for (int up = f; up > 0; up = world_.frames[static_cast<std::size_t>(up)].parent) {
       const Frame& frame = world_.frames[static_cast<std::size_t>(up)];
       if (up != f && robot_.has(frame.name)) different("the root link " + inQuotes(name) + " hangs on another link");
@@ -225,9 +245,14 @@ class UrdfComparison {
       // A writer puts the base's pose into one frame, the root's own.
       if (!base_.empty() && !(up == f ? isAt(placeOf(base_), frame.numbers) : here))
         different("the root link " + inQuotes(name) + " is not where --base says (else at the world's origin)");
-      for (const Element& e : frame.elements)
+      // Where it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
+      if (!base_.empty() && !frame.elements.empty())
+        compareSteps(up == f ? freely("floating_base") : std::vector<Step>(), frame, false, wrong);
+      for (const Element& e : frame.elements) {
+        identity = identity && (e.kind == Element::rotate || e.offset == 0);
         for (int k = 0; k < (e.kind == Element::rotate ? 3 : 1); ++k)
           variables.insert(world_.variables[static_cast<std::size_t>(e.variable + k)]);
+      }
     }
     std::string text =
         "root link " + inQuotes(name) + (variables.empty() ? " stands still" : " moves") + " in the world";

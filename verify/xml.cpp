@@ -15,6 +15,18 @@ namespace {
 
 constexpr const char* kBlanks = " \t\r\n";
 
+/// Whether a number stands for no character of Unicode: tinyxml2 may end an attribute there, and drops what follows.
+bool namesNoCharacter(const std::string& text) {
+  for (std::size_t at = text.find("&#"); at != std::string::npos; at = text.find("&#", at + 1)) {
+    const bool hexadecimal = text.compare(at + 2, 1, "x") == 0;
+    const char* const digits = text.c_str() + at + (hexadecimal ? 3 : 2);
+    char* end = nullptr;
+    const unsigned long value = std::strtoul(digits, &end, hexadecimal ? 16 : 10);
+    if (end != digits && (value == 0 || value > 0x10ffff)) return true;
+  }
+  return false;
+}
+
 bool isDigit(char c) {
   return c >= '0' && c <= '9';
 }
@@ -85,6 +97,7 @@ Xml::Xml(const std::string& path) : path_(path) {
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     throw BadInput("'" + path + "' is no XML that can be read");
   if (text.find('\0') != std::string::npos) throw BadInput("'" + path + "' has a byte 0");
+  if (namesNoCharacter(text)) throw BadInput("'" + path + "' has a number (&#...;) that is no character");
   for (const tinyxml2::XMLNode* node = document_.FirstChild(); node != nullptr; node = node->NextSibling()) {
     if (node->ToUnknown() != nullptr) throw BadInput("'" + path + "' has a document type, which is not read");
     if (node->ToText() != nullptr) throw BadInput("'" + path + "' has text outside of <robot>");

@@ -381,7 +381,7 @@ void printSummary(const RunFolder& folder, const Json& summary, bool json) {
   }
   const std::pair<const char*, const char*> exceptions[] = {
       {"free_with_ignored_initial_contacts", "the initial contact of some pair"},
-      {"free_with_never_apart_pairs", "pairs that part nowhere"},
+      {"free_with_never_apart_pairs", "pairs that never come apart"},
       {"free_with_unproven_allowed_pairs", "allowed pairs not proven apart"}};
   for (const auto& [key, what] : exceptions) {
     if (const auto rows = summary.at(key).get<std::uint64_t>(); rows > 0)

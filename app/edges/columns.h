@@ -94,7 +94,7 @@ std::string hashOf(const Columns& columns);
 struct Counts {
   std::uint64_t of[kNumRowStatuses] = {};
   std::uint64_t uncertain = 0;  ///< contacts that are not proven
-  /// Free rows that leave something out: initial contacts that end, pairs that part nowhere, allowed pairs.
+  /// Free rows that leave something out: initial contacts that end, pairs that never come apart, allowed pairs.
   std::uint64_t with_ignored = 0, with_never_apart = 0, with_unproven = 0;
   void add(const Columns& columns);
   void add(const Counts& other);

@@ -18,6 +18,8 @@
 #include "fcl_artic/manager.h"
 #include "fcl_artic/pair_result.h"
 #include "fcl_artic/point_cloud.h"
+#include "fcl_artic/redon2004.h"
+#include "fcl_artic/references.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/solid_mesh.h"

@@ -9,6 +9,7 @@
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/link_pairs.h"
+#include "fcl_artic/references.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/trajectory.h"
@@ -24,7 +25,7 @@ namespace fcl_artic {
 /// std::logic_error asks for the setup() that is missing. What a query finds never throws: it is a Status.
 ///
 /// Objects and geometries stay the caller's and are never written to; they must stay alive while they are registered or
-/// bound (overloads that take a shared_ptr see to that). Geometry is read by registerObject() and bind(), and again by
+/// bound (a shared_ptr sees to that: ObjectRef). Geometry is read by registerObject() and bind(), and again by
 /// setup() and update() if it has changed, also in place: a shape's sizes, a mesh's vertices, an OcTree's cells or
 /// threshold. Queries use what was read last.
 ///
@@ -48,27 +49,19 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::shared_ptr<const KinematicTree> sharedTree() const;
 
   /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup().
-  /// @param object  kept as a pointer; must stay alive until it is unregistered.
+  /// @param object  a pointer, or a shared_ptr that keeps it alive until it is unregistered.
   /// @param name    unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
   /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has,
   ///   geometry of a type that is not known, without a triangle (an FCL model of points: use PointCloud) or vertex, or
   ///   not finite, a transform that is not rigid to 1e-6 or farther than 1e9 m away.
-  void registerObject(const fcl::CollisionObjectd* object, const std::string& name = {});
-  /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup(). The manager keeps
-  /// the object alive as long as it is registered or attached.
-  /// @param name  unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
-  /// @throws std::invalid_argument as registerObject() of a pointer.
-  void registerObject(std::shared_ptr<const fcl::CollisionObjectd> object, const std::string& name = {});
+  void registerObject(const ObjectRef<fcl::CollisionObjectd>& object, const std::string& name = {});
   /// Adds obstacles that stand still, named "obstacle<N>": all of them or, if this throws, none. Needs setup().
   /// @throws std::invalid_argument as registerObject().
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
   /// Removes an obstacle that stands still, also one that is attached to a link, with its allowed pairs and margins:
   /// the next obstacle of its name has none. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
-  void unregisterObject(const fcl::CollisionObjectd* object);
-  /// Removes an obstacle that stands still, as the form with a pointer does. Needs setup().
-  /// @throws std::invalid_argument if it is not registered.
-  void unregisterObject(const std::shared_ptr<const fcl::CollisionObjectd>& object) { unregisterObject(object.get()); }
+  void unregisterObject(const ObjectRef<fcl::CollisionObjectd>& object);
 
   /// Swaps the scene: takes these obstacles that stand still in place of all that there are, and makes that effective
   /// without setup(): all or, if this throws, nothing. What was made of the robot stays as it is, and is not looked at
@@ -94,99 +87,43 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// whatever the robot does. Links are checked against it as against any obstacle (CertifiedRequest::check_scene);
   /// obstacles are not checked against each other. The geometry may be unbounded. Needs setup().
   ///
-  /// Object, geometry and motion must stay alive until it is unregistered. The motion is read by registerObject(),
-  /// setup() and update(); a BoundedMotion is asked during queries too.
+  /// Object, geometry and motion must stay alive until it is unregistered; a shared_ptr sees to that. The motion is
+  /// read by registerObject(), setup() and update(); a BoundedMotion is asked during queries too.
   /// @throws std::invalid_argument as for an obstacle that stands still, and for a motion that
   ///   fcl_artic::continuousCollide() refuses.
-  void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name = {});
-  /// Adds an obstacle that moves, as the form with a pointer does. The manager keeps the object, and with it its
-  /// geometry and motion, alive as long as it is registered. Needs setup().
-  /// @throws std::invalid_argument as registerObject() of a pointer.
-  void registerObject(std::shared_ptr<const fcl::ContinuousCollisionObjectd> object, const std::string& name = {});
+  void registerObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object, const std::string& name = {});
   /// Removes an obstacle that moves, with its allowed pairs and margins. Needs setup().
   /// @throws std::invalid_argument if it is not registered.
-  void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
-  /// Removes an obstacle that moves, as the form with a pointer does. Needs setup().
-  /// @throws std::invalid_argument if it is not registered.
-  void unregisterObject(const std::shared_ptr<const fcl::ContinuousCollisionObjectd>& object) {
-    unregisterObject(object.get());
-  }
+  void unregisterObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object);
 
   /// Fixes a geometry to a link; the object's own transform is not used. Needs setup().
-  /// @param object  kept as a pointer; must stay alive until it is unbound.
+  /// @param link    its LinkId, or its name.
+  /// @param object  a pointer, or a shared_ptr that keeps it alive until it is unbound.
   /// @param offset  pose of the geometry's frame in the link's frame.
   /// @throws std::invalid_argument as registerObject(), and for an unknown link, unbounded geometry (Halfspace, Plane)
   ///   or an offset that is not rigid to 1e-6.
-  void bind(LinkId link, const fcl::CollisionObjectd* object,
-            const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup().
-  /// @param object  kept as a pointer; must stay alive until it is unbound.
-  /// @param offset  pose of the geometry's frame in the link's frame.
-  /// @throws std::invalid_argument as bind() to a LinkId.
-  void bind(const std::string& link, const fcl::CollisionObjectd* object,
-            const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to a link; the object's own transform is not used. Needs setup(). The manager keeps the object
-  /// alive as long as it is bound.
-  /// @param offset  pose of the geometry's frame in the link's frame.
-  /// @throws std::invalid_argument as bind() of a pointer.
-  void bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
-            const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
-  /// Fixes a geometry to the link of this name; the object's own transform is not used. Needs setup(). The manager
-  /// keeps the object alive as long as it is bound.
-  /// @param offset  pose of the geometry's frame in the link's frame.
-  /// @throws std::invalid_argument as bind() of a pointer.
-  void bind(const std::string& link, std::shared_ptr<const fcl::CollisionObjectd> object,
+  void bind(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object,
             const Eigen::Isometry3d& offset = Eigen::Isometry3d::Identity());
   /// Removes a geometry from its link. Needs setup().
   /// @throws std::invalid_argument if it is bound to no link, or attached (use detach()).
-  void unbind(const fcl::CollisionObjectd* object);
-  /// Removes a geometry from its link, as the form with a pointer does. Needs setup().
-  /// @throws std::invalid_argument if it is bound to no link, or attached (use detach()).
-  void unbind(const std::shared_ptr<const fcl::CollisionObjectd>& object) { unbind(object.get()); }
+  void unbind(const ObjectRef<fcl::CollisionObjectd>& object);
 
   /// Attaches a registered obstacle to a link, as a gripper picks it up: after the next setup() the link carries it. It
   /// keeps its name, and with it its allowed pairs and margins. It is checked against the rest of the scene and against
   /// all links, neighbours too, except the link that carries it and `touch_links`. Meanwhile it is no obstacle:
   /// getObjects() and size() leave it out, boundObjects() contains it.
+  /// @param link    its LinkId, or its name.
   /// @param object  an obstacle that stands still.
   /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
   /// @param touch_links  names of further links that it may touch.
   /// @throws std::invalid_argument: not an obstacle that stands still, unbounded geometry, an unknown link, an offset
   ///   that is not rigid to 1e-6.
-  void attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+  void attach(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links = {});
-  /// Attaches a registered obstacle to the link of this name: does what attach() to a LinkId does.
-  /// @param object  an obstacle that stands still.
-  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
-  /// @param touch_links  names of further links that it may touch.
-  /// @throws std::invalid_argument as attach() to a LinkId.
-  void attach(const std::string& link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
-              const std::vector<std::string>& touch_links = {});
-  /// Attaches a registered obstacle to a link: does what attach() of a pointer does.
-  /// @param object  an obstacle that stands still.
-  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
-  /// @param touch_links  names of further links that it may touch.
-  /// @throws std::invalid_argument as attach() of a pointer.
-  void attach(LinkId link, const std::shared_ptr<const fcl::CollisionObjectd>& object, const Eigen::Isometry3d& offset,
-              const std::vector<std::string>& touch_links = {}) {
-    attach(link, object.get(), offset, touch_links);
-  }
-  /// Attaches a registered obstacle to the link of this name: does what attach() to a LinkId does.
-  /// @param object  an obstacle that stands still.
-  /// @param offset  pose of the geometry's frame in the link's frame; the object's own transform is not used.
-  /// @param touch_links  names of further links that it may touch.
-  /// @throws std::invalid_argument as attach() to a LinkId.
-  void attach(const std::string& link, const std::shared_ptr<const fcl::CollisionObjectd>& object,
-              const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links = {}) {
-    attach(link, object.get(), offset, touch_links);
-  }
   /// Puts an attached object down: it is an obstacle again, at the object's own transform. Needs setup().
   /// (unregisterObject() removes it altogether.)
   /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
-  void detach(const fcl::CollisionObjectd* object);
-  /// Puts an attached object down, as the form with a pointer does. Needs setup().
-  /// @throws std::invalid_argument if it is not attached, or for a transform or geometry that registerObject() refuses.
-  void detach(const std::shared_ptr<const fcl::CollisionObjectd>& object) { detach(object.get()); }
+  void detach(const ObjectRef<fcl::CollisionObjectd>& object);
 
   /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup(). A pair
   /// goes with its obstacle or attached object (unregisterObject()); one of two links stays.
@@ -277,19 +214,13 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void update();
   /// Reads one object again, an obstacle or one that a link carries, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
-  void update(const fcl::CollisionObjectd* object);
-  /// Reads one object again, as the form with a pointer does, and makes all changes effective.
-  /// @throws std::invalid_argument as setup(), and if the object is neither registered nor bound.
-  void update(const std::shared_ptr<const fcl::CollisionObjectd>& object) { update(object.get()); }
+  void update(const ObjectRef<fcl::CollisionObjectd>& object);
   /// Reads these objects again, obstacles or those that links carry, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and for an object that is neither registered nor bound.
   void update(const std::vector<fcl::CollisionObjectd*>& objects);
   /// Reads one obstacle that moves again, and makes all changes effective.
   /// @throws std::invalid_argument as setup(), and if the object is not registered.
-  void update(const fcl::ContinuousCollisionObjectd* object);
-  /// Reads one obstacle that moves again, as the form with a pointer does, and makes all changes effective.
-  /// @throws std::invalid_argument as setup(), and if the object is not registered.
-  void update(const std::shared_ptr<const fcl::ContinuousCollisionObjectd>& object) { update(object.get()); }
+  void update(const ObjectRef<fcl::ContinuousCollisionObjectd>& object);
   /// Removes all obstacles, bindings and attached objects. Allowed pairs and margins of links are kept. Needs setup().
   void clear();
 
@@ -308,7 +239,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::vector<std::pair<std::string, std::string>> checkedLinkPairs() const;
   /// Returns the pose of a bound or attached geometry's frame in its link's frame.
   /// @throws std::invalid_argument if no link carries the object.
-  Eigen::Isometry3d boundOffset(const fcl::CollisionObjectd* object) const;
+  Eigen::Isometry3d boundOffset(const ObjectRef<fcl::CollisionObjectd>& object) const;
   /// Number of obstacles, moving ones included; attached objects are not.
   std::size_t size() const;
   /// Whether there is no obstacle.
@@ -338,7 +269,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                                                   const CertifiedRequest& request = {}) const;
   /// Whether the straight way from q0 to q1 in joint space is proven free: the fastest question. False also if contact
   /// can't be excluded within the tolerances, and if the work budget ran out. True says nothing of pairs that are not
-  /// checked: allowed ones and neighbours without a proof, and with ignore_initial_contact those that part nowhere
+  /// checked: allowed ones and neighbours without a proof, and with ignore_initial_contact those that never come apart
   /// (exceptionsOf() a full answer).
   /// @param q0, q1  tree().dof() joint values each, rad or m.
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
@@ -347,7 +278,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
                             const CertifiedRequest& request = {}) const;
   /// Whether a motion is proven free: the fastest question. False also if contact can't be excluded within the
   /// tolerances, and if the work budget ran out. True says nothing of pairs that are not checked: allowed ones, and
-  /// with ignore_initial_contact those that part nowhere (exceptionsOf() a full answer).
+  /// with ignore_initial_contact those that never come apart (exceptionsOf() a full answer).
   /// @param request  its mode is not used: any contact ends the search (ContactMode::any).
   /// @throws std::invalid_argument, std::logic_error as continuousCollide().
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace fcl_artic::python {
 
@@ -27,6 +28,13 @@ namespace py = pybind11;
 [[noreturn]] inline void fileNotFound(const std::string& message, const std::string& path) {
   PyErr_SetObject(PyExc_FileNotFoundError, py::make_tuple(ENOENT, message, path).ptr());
   throw py::error_already_set();
+}
+
+/// A UserWarning of each note, where no object keeps them.
+inline void warn(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) {
+    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+  }
 }
 
 /// Name of a value's type, for messages.

@@ -240,10 +240,13 @@ void bindRobot(py::module_& module) {
       [](py::handle srdf, py::handle tree) {
         const Input file(srdf, "srdf");
         const auto of = finishedTreeOf(tree);
-        return pairsOf(file.read([&] { return loadSrdf(file.path(), *of); }));
+        std::vector<std::string> notes;
+        const AllowedCollisionMatrix pairs = file.read([&] { return loadSrdf(file.path(), *of, &notes); });
+        warn(notes);
+        return pairsOf(pairs);
       },
       "Reads the pairs of links that need no check from an SRDF file, as MoveIt does: for Robot.allowed. They are all\n"
-      "that may touch: Robot.allowed_complete says so.",
+      "that may touch: Robot.allowed_complete says so. What was passed over is a UserWarning.",
       py::arg("srdf"), py::arg("tree"));
   module.def(
       "read_srdf",
@@ -251,7 +254,10 @@ void bindRobot(py::module_& module) {
         const Input file(srdf, "srdf");
         const auto of = finishedTreeOf(tree);
         py::list pairs;
-        for (const SrdfPair& p : file.read([&] { return readSrdf(file.path(), *of); })) {
+        std::vector<std::string> notes;
+        const std::vector<SrdfPair> all = file.read([&] { return readSrdf(file.path(), *of, &notes); });
+        warn(notes);
+        for (const SrdfPair& p : all) {
           pairs.append(py::make_tuple(p.link1, p.link2, p.reason));
         }
         return pairs;

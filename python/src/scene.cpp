@@ -26,13 +26,6 @@ Scene load(py::handle path, bool unknown_cells, bool solid_meshes, bool collada_
   return guardFiles(file, [&] { return loadScene(file, options); });
 }
 
-/// A UserWarning of each note, where no object keeps them.
-void warn(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) {
-    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
-  }
-}
-
 /// @throws py::value_error naming what is not there.
 std::vector<Scene::Obstacle>::iterator find(Scene& scene, const std::string& name) {
   const auto at = std::find_if(scene.obstacles.begin(), scene.obstacles.end(),

@@ -27,7 +27,7 @@ def test_what_a_free_says_nothing_of_is_said():
     inside, out = fcl_artic.Motion.translation([0, 0, 0], [0.1, 0, 0]), fcl_artic.Motion.translation([0, 0, 0], [5, 0, 0])
     bodies = fcl_artic.Bodies()
     bodies.add("wall", wall, np.eye(4))
-    for motion, never, text in ((inside, 1, "but for 1 pair that parts nowhere"), (out, 0, "but for the initial contact of 1 pair")):
+    for motion, never, text in ((inside, 1, "but for 1 pair that never comes apart"), (out, 0, "but for the initial contact of 1 pair")):
         pair = fcl_artic.continuous_collide(ball, motion, wall, np.eye(4), ignore_initial_contact=True)
         assert pair.free and pair.ignored_initial_contact and pair.never_apart == bool(never)
         assert repr(pair) == f"<PairResult: free: proven, {text}>" and text in str(pair)

@@ -321,7 +321,7 @@ def test_what_a_free_says_nothing_of_is_said():
     world.add("wall", fcl_artic.box([1, 4, 4]), fcl_artic.pose([2.5, 0, 0]))
     deeper = world.check([2.2], [2.3], ignore_initial_contact=True)
     assert deeper.free and deeper.never_apart_pairs == 1
-    assert "but for 1 pair that parts nowhere" in repr(deeper)
+    assert "but for 1 pair that never comes apart" in repr(deeper)
     leaves = world.check([2.2], [0], ignore_initial_contact=True)
     assert leaves.free and leaves.never_apart_pairs == 0 and len(leaves.ignored_initial_contacts) == 1
     near = world.check([1.7], [2.5], margin=0.3, ignore_initial_contact=True)  # within the margin, then into the wall

@@ -29,12 +29,9 @@ std::string word(const std::string& name) {
   std::string text;
   for (const char c : name) {
     const auto byte = static_cast<unsigned char>(c);
-    if (byte > 32 && byte < 127 && c != '%') {
-      text += c;
-      continue;
-    }
+    const bool plain = byte > 32 && byte < 127 && c != '%';
     char digits[4];
-    std::snprintf(digits, sizeof digits, "%%%02x", byte);
+    std::snprintf(digits, sizeof digits, plain ? "%c" : "%%%02x", byte);
     text += digits;
   }
   return text;
@@ -67,11 +64,8 @@ Frame frameOf(const KinematicTree& tree, LinkId link, const std::vector<int>& fr
     element.axis = factor.axis;
     switch (factor.kind) {
       case JointFactor::Kind::revolute:
-        element.kind = Element::Kind::turn;
-        frame.elements.push_back(element);
-        break;
       case JointFactor::Kind::prismatic:
-        element.kind = Element::Kind::slide;
+        element.kind = factor.kind == JointFactor::Kind::revolute ? Element::Kind::turn : Element::Kind::slide;
         frame.elements.push_back(element);
         break;
       case JointFactor::Kind::slide:

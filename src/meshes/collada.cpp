@@ -11,6 +11,7 @@
 #include "meshes/parts.h"
 #include "meshes/readers.h"
 #include "meshes/text.h"
+#include "text/xml_root.h"
 
 namespace fcl_artic::meshes {
 namespace {
@@ -20,12 +21,9 @@ using Xml = tinyxml2::XMLElement;
 class Collada {
  public:
   Collada(const Source& source, bool turn) : source_(source) {
-    if (xml_.Parse(withoutMark(source).data(), withoutMark(source).size()) != tinyxml2::XML_SUCCESS) {
-      source.refuse(xml_.ErrorStr());
-    }
+    const std::string wrong = text::parseXml(withoutMark(source), "COLLADA", "a COLLADA file", xml_);
+    if (!wrong.empty()) source.refuse(wrong);
     root_ = xml_.RootElement();
-    if (!root_ || std::strcmp(root_->Name(), "COLLADA") != 0)
-      source.refuse("is no COLLADA file: its root is not <COLLADA>");
     keepIds(*root_);
     const Asset asset = assetOf(*root_, {});
     if (asset.up != 'z') noteUpAxis(asset.up, asset.says_up, "COLLADA", turn, source);
@@ -199,6 +197,10 @@ class Collada {
       const char* metre = unit->Attribute("meter");
       if (metre && (!toNumber(metre, out.metre) || !(out.metre > 0))) {
         refuse(*unit, "has meter=" + shown(metre) + ", which is no length");
+      }
+      const char* name = unit->Attribute("name");
+      if (!metre && name && !isOneOf(name, {"meter", "metre", "m"})) {
+        refuse(*unit, "is called " + shown(name) + ", and does not say how many metres (meter=) that is");
       }
     }
     if (up) {

@@ -7,18 +7,17 @@
 #include <map>
 #include <set>
 
-#include <nlohmann/json.hpp>
-
 #include "files/files.h"
 #include "meshes/parts.h"
 #include "meshes/readers.h"
 #include "meshes/scalar.h"
 #include "meshes/text.h"
+#include "text/document.h"
 
 namespace fcl_artic::meshes {
 namespace {
 
-using Json = nlohmann::json;
+using text::Json;
 using Keys = std::initializer_list<std::string_view>;
 
 /// Materials, textures, lights and texts: no part of the surface.
@@ -99,19 +98,11 @@ class Gltf {
     return json;
   }
 
-  void parse(std::string_view text) {
-    std::vector<std::set<std::string>> keys;  // of the objects that are open
-    const auto event = [&](int, Json::parse_event_t kind, Json& value) {
-      if (kind == Json::parse_event_t::object_start) keys.emplace_back();
-      if (kind == Json::parse_event_t::object_end) keys.pop_back();
-      if (kind == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) {
-        source_.refuse("has the key " + shown(value.get<std::string>()) + " twice in one object");
-      }
-      return true;
-    };
+  void parse(std::string_view json) {
+    const std::size_t end = std::min(json.find_last_not_of('\0') + 1, json.size());  // some writers pad with zeros
     try {
-      root_ = Json::parse(text, event);
-    } catch (const nlohmann::json::exception& error) {
+      root_ = text::parseJson(json.substr(0, end));
+    } catch (const std::invalid_argument& error) {
       source_.refuse(std::string("is no glTF: ") + error.what());
     }
     if (!root_.is_object()) source_.refuse("is no glTF: it is no JSON object");

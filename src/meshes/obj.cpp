@@ -82,6 +82,9 @@ TriangleSoup readObj(const Source& source) {
       lines.refuse(shown(key) + " refers to another file or program: put all in one file");
     } else if (!isFace(key) && !isOneOf(key, kUnused)) {
       lines.refuse(shown(key) + " begins a line of no kind that OBJ files have");
+    } else if (!isFace(key) && lines.joined()) {
+      // Of a name, as that of a folder: readers differ on whether the next line belongs to it.
+      lines.refuse("a line of " + shown(key) + " ends in a backslash, which would take in the next line");
     }
     found += isFace(key);
     first = false;
@@ -103,9 +106,7 @@ TriangleSoup readObj(const Source& source) {
     if (corners.empty()) lines.refuse("has a face without a corner");
     soup.addFace(corners.data(), corners.size(), source);
   }
-  if (!text.empty() && !isLineEnd(text.back())) {
-    source.note("its last line has no line end: the file may be cut short");
-  }
+  noteOpenEnd(source);
   return soup;
 }
 

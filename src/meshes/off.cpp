@@ -78,6 +78,7 @@ TriangleSoup readOff(const Source& source) {
     soup.addFace(corners.data(), corners.size(), source);
   }
   if (lines.next()) lines.refuse("goes on after its last face: " + shown(lines.rest()));
+  noteOpenEnd(source);
   return soup;
 }
 

@@ -6,9 +6,12 @@
 namespace fcl_artic::meshes {
 
 void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, TriangleSoup& soup) {
-  constexpr std::size_t kMostVertices = 100000000;
+  constexpr std::size_t kMostVertices = 100000000, kMostTriangles = 100000000;
   const std::size_t first = soup.vertices.size();
   if (part.vertices.size() > kMostVertices - first) source.refuse("has more than 100 million vertices");
+  if (part.corners.size() > kMostTriangles - std::min(soup.triangles.size(), kMostTriangles)) {
+    source.refuse("has more than 100 million triangles");
+  }
   for (const Eigen::Vector3d& x : part.vertices) soup.vertices.push_back(M * x);
   const bool mirrored = M.linear().determinant() < 0;
   std::vector<std::size_t> corners;

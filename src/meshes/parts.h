@@ -25,7 +25,8 @@ struct Part {
 
 /// Adds a part at a place. Where that mirrors it, the corners of faces change their sense, so that what is outside
 /// stays so.
-/// @throws std::runtime_error as TriangleSoup::addFace(); for more vertices than 10^8: places may refer to places.
+/// @throws std::runtime_error as TriangleSoup::addFace(); for more vertices or triangles than 10^8: places may refer to
+/// places.
 void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, TriangleSoup& soup);
 
 /// Notes which axis a file says is up, unless a file of the same notes said it before, as a robot may have many.

@@ -208,6 +208,7 @@ class Pcd {
       source_.refuse("is cut short: " + std::to_string(points.size()) + " of " + std::to_string(num_points_) +
                      " points");
     }
+    noteOpenEnd(source_);
     return points;
   }
 

@@ -289,6 +289,7 @@ class Ply {
       }
     }
     if (ascii_ ? lines.next() : !body_.empty()) source_.refuse("goes on after its last element");
+    if (ascii_) noteOpenEnd(source_);
   }
 
   double takeBinary(const Scalar& scalar, const PlyElement& e, std::uint64_t i) {

@@ -2,6 +2,7 @@
 #include "meshes/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <limits>
 
@@ -117,10 +118,36 @@ std::string_view withoutMark(const Source& source) {
   return source.content.substr(source.content.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0);
 }
 
+void noteOpenEnd(const Source& source) {
+  if (source.content.empty() || isLineEnd(source.content.back())) return;
+  source.note("its last line has no line end: the file may be cut short");
+}
+
+void noteUnits(const Source& source) {
+  for (std::string_view text = source.content; !text.empty();) {
+    const std::string_view line = text.substr(0, std::min(text.find_first_of("\n\r"), text.size()));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    Words first(line);
+    const std::string_view key = first.next();
+    if (key.substr(0, 1) != "#" && !isOneOf(key, {"comment", "obj_info", "solid"})) continue;
+    std::string letters;
+    for (const char c : line) letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (letters.find("unit") == letters.npos) continue;
+    std::replace_if(
+        letters.begin(), letters.end(), [](unsigned char c) { return !std::isalnum(c); }, ' ');
+    Words words(letters);
+    bool metres = false;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next())
+      metres = metres || isOneOf(word, {"m", "meter", "meters", "metre", "metres"});
+    if (!metres) return source.note("says " + shown(line) + ": lengths are taken for metres, unless a scale says else");
+  }
+}
+
 bool Lines::next() {
   while (!text_.empty()) {
     line_ = take();
-    if (goesOn(line_)) {
+    is_joined_ = goesOn(line_);
+    if (is_joined_) {
       joined_.clear();
       std::string_view part = line_;
       for (; goesOn(part); part = take()) joined_.append(part.substr(0, part.find_last_of('\\'))).push_back(' ');

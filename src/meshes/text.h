@@ -33,6 +33,11 @@ bool toCount(std::string_view word, std::uint64_t& count);
 /// The text without a byte order mark of UTF-8. @throws std::runtime_error for marks of UTF-16.
 std::string_view withoutMark(const Source& source);
 
+/// Notes that a text does not end with a line: its last number may have lost digits.
+void noteOpenEnd(const Source& source);
+/// Notes a comment that speaks of units other than metres.
+void noteUnits(const Source& source);
+
 /// The words of a text, over its line ends.
 class Words {
  public:
@@ -77,6 +82,8 @@ class Lines {
   std::uint64_t count(const std::string& what);
   /// @throws std::runtime_error unless the line is at its end.
   void end();
+  /// Whether the line went on in the next one.
+  bool joined() const { return is_joined_; }
   /// What is left of the line.
   std::string_view rest() const { return line_; }
   /// @throws std::runtime_error naming file and line.
@@ -92,6 +99,7 @@ class Lines {
   const char comment_;
   const Continued continued_;
   std::string joined_;
+  bool is_joined_ = false;
   std::size_t number_ = 0;
 };
 

@@ -45,7 +45,7 @@ static inline bool comesBefore(const LeafContact& x, const LeafContact& y) {
   return x.certain ? x.t_upper < y.t_upper : x.t_lower < y.t_lower;
 }
 
-/// A pair in contact at t = 0 and the time from which it is watched again; kNever: it parts nowhere, and nothing is
+/// A pair in contact at t = 0 and the time from which it is watched again; kNever: it never comes apart, and nothing is
 /// claimed of it.
 struct Ignored {
   PairId pair;

@@ -38,6 +38,11 @@ class Margins {
     const double* own = pairs_.in(scene_, link_, pair);
     return ofOwn(own ? *own : -1);
   }
+  /// Whether the pair has a margin of its own, 0 included.
+  [[gnu::always_inline]] bool isOwn(PairId pair) const {
+    const double* own = pairs_.in(scene_, link_, pair);
+    return own && *own >= 0;
+  }
   /// Of a pair that the problem leaves out, by its own; below 0: none.
   [[gnu::always_inline]] double ofOwn(double own) const { return own >= 0 ? own + added_ : requested_; }
   /// No pair of the problem has a larger one.

@@ -254,6 +254,14 @@ bool rises(const Table& table, std::size_t column) {
 std::vector<std::optional<Meaning>> givenMeanings(const KinematicTree& tree, const Table& table,
                                                   const ColumnOptions& options) {
   const std::size_t width = table.degrees.size();
+  // A first line with a number in it is no line of names: a waypoint would be lost.
+  bool degrees = false;
+  for (const std::string& name : table.columns) {
+    if (!cellOf(name, degrees) || isVariable(tree, name)) continue;
+    throw std::invalid_argument(
+        fmt::format("line {} neither names columns nor is a row of numbers: it has '{}', and others that are none",
+                    table.header_line, name));
+  }
   if (options.columns.size() != width) {
     throw std::invalid_argument(
         fmt::format("line {} has {} columns, --columns names {}", table.header_line, width, options.columns.size()));
@@ -330,6 +338,16 @@ std::vector<std::optional<Meaning>> meaningsByName(const KinematicTree& tree, co
   return meanings;
 }
 
+/// The names in the last comment before rows without names, as NumPy's savetxt() writes them; none unless it has as
+/// many words as there are columns, and one of them is a variable's name.
+std::vector<std::string> namesInComment(const KinematicTree& tree, const Table& table) {
+  std::vector<std::string> names;
+  for (const std::string_view name : splitLine(table.comment, separatorOf(table.comment))) names.emplace_back(name);
+  const bool named = std::any_of(names.begin(), names.end(), [&](const auto& name) { return isVariable(tree, name); });
+  if (!named || names.size() != table.degrees.size()) names.clear();
+  return names;
+}
+
 /// "time = Time, hinge = q1; left out: gripper": what is not in the robot's own words.
 std::string takenText(const KinematicTree& tree, const Table& table,
                       const std::vector<std::optional<Meaning>>& meanings) {
@@ -366,7 +384,11 @@ Table parseTable(std::string_view content, const std::string& file) {
     std::string_view line = content.substr(0, end);
     content.remove_prefix(std::min(end + 1, content.size()));
     if (number == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);  // a byte order mark
-    if (trimmed(line).empty() || trimmed(line)[0] == '#') continue;
+    if (trimmed(line).empty()) continue;
+    if (trimmed(line)[0] == '#') {
+      if (out.header_line == 0) out.comment = trimmed(trimmed(line).substr(1));
+      continue;
+    }
     const std::string where = fmt::format("{}line {}", file, number);
     if (out.header_line == 0) separator = separatorOf(line);
     const std::vector<std::string_view> fields = splitLine(line, separator);
@@ -375,8 +397,9 @@ Table parseTable(std::string_view content, const std::string& file) {
       width = fields.size();
       out.degrees.assign(width, false);
       if (!isRowOfNumbers(fields)) {
+        std::set<std::string_view> names;
         for (const std::string_view field : fields) {
-          if (std::find(out.columns.begin(), out.columns.end(), field) != out.columns.end()) {
+          if (!names.insert(field).second) {
             throw std::invalid_argument(fmt::format("{}: column '{}' is there twice", where, field));
           }
           out.columns.emplace_back(field);
@@ -403,8 +426,9 @@ Table parseTable(std::string_view content, const std::string& file) {
 }
 
 Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnOptions& options) {
-  const Table table = parseTable(content, "");
+  Table table = parseTable(content, "");
   if (table.header_line == 0) throw std::invalid_argument("it is empty: no line names the columns");
+  if (table.columns.empty() && options.columns.empty()) table.columns = namesInComment(tree, table);
   const std::vector<std::optional<Meaning>> meanings = !options.columns.empty() ? givenMeanings(tree, table, options)
                                                        : table.columns.empty()  ? meaningsByPlace(tree, table, options)
                                                                                 : meaningsByName(tree, table, options);
@@ -459,7 +483,6 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
     for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]]);
   }
   if (const std::string taken = takenText(tree, table, meanings); !taken.empty()) plan.notes.push_back(taken);
-  if (table.open_end) plan.notes.emplace_back("the last line has no line end: the file may be cut short");
   return plan;
 }
 

@@ -14,6 +14,7 @@ namespace fcl_artic::plans {
 /// number may end with deg: it is in degrees, and is turned into rad.
 struct Table {
   std::vector<std::string> columns;  ///< empty: they have no names
+  std::string comment;               ///< the last one before the first line, without #
   std::vector<bool> degrees;         ///< columns with such a number
   std::vector<std::vector<double>> rows;
   int header_line = 0;     ///< the first line, counted from 1
@@ -34,8 +35,8 @@ Table parseTable(std::string_view content, const std::string& file);
 ///
 /// Other layouts that are usual are taken too, and a note says what was taken for what: `Time`, `timestamp`, `__time`;
 /// /joint_states/JOINT/position, as PlotJuggler has it; numbered columns, from 0 or 1 on, `q1`, `j0`, `joint_1`,
-/// `actual_q_0` and, of velocities, `qd1`, `actual_qd_0`, as many as there are joints, in their order; no first line of
-/// names, and as many columns as joints, or a column of times before them.
+/// `actual_q_0` and, of velocities, `qd1`, `actual_qd_0`, as many as there are joints, in their order; names in a
+/// comment before the first row; no names, and as many columns as joints, or a column of times before them.
 /// @param options  where all of this is not so.
 Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnOptions& options = {});
 

@@ -63,6 +63,25 @@ double numberOf(const Json& value, const std::string& where) {
   refuse(fmt::format("{}: {} is not a number", where, shown(value)));
 }
 
+/// Refuses keys that are neither read nor surely no place or motion: a slip, a unit, another message's.
+/// @param known  both of them.
+void requireKnown(const Json& object, const std::string& where, const std::vector<std::string_view>& known) {
+  for (const auto& item : object.items()) {
+    if (std::find(known.begin(), known.end(), item.key()) != known.end()) continue;
+    refuse(fmt::format("{}{}the key '{}' is not known", where, where.empty() ? "" : ": ", item.key()));
+  }
+}
+
+/// Keys that say the same: whoever gives two of them means one.
+void refuseTwo(const Json& value, std::initializer_list<const char*> keys) {
+  const char* first = nullptr;
+  for (const char* key : keys) {
+    if (!value.contains(key)) continue;
+    if (first) refuse(fmt::format("has both '{}' and '{}'", first, key));
+    first = key;
+  }
+}
+
 std::vector<double> numbersOf(const Json& list, const std::string& where) {
   if (list.is_null()) return {};
   if (!list.is_array()) refuse(fmt::format("{}: {} is no list of numbers", where, shown(list)));
@@ -85,7 +104,8 @@ std::vector<std::string> textsOf(const Json& list, const std::string& where) {
 double secondsOf(const Json& duration, const std::string& where) {
   if (!duration.is_object()) return numberOf(duration, where);
   const Json *whole = find(duration, {"sec", "secs"}), *part = find(duration, {"nanosec", "nsecs"});
-  if (!whole || !part) refuse(fmt::format("{}: {} has no sec and nanosec", where, shown(duration)));
+  if (!whole || !part || duration.size() != 2)
+    refuse(fmt::format("{}: {} is not sec and nanosec", where, shown(duration)));
   const double nanoseconds = numberOf(*part, where);
   if (!(std::abs(nanoseconds) < 1e9)) refuse(fmt::format("{}: {} nanoseconds", where, shown(*part)));
   return numberOf(*whole, where) + 1e-9 * nanoseconds;
@@ -103,6 +123,7 @@ std::vector<double> poseOf(const Json& transform, const std::string& where) {
     }
   };
   std::vector<double> pose;
+  if (transform.is_object()) requireKnown(transform, where, {"translation", "rotation"});
   part("translation", {"x", "y", "z"}, pose);
   part("rotation", {"x", "y", "z", "w"}, pose);
   return pose;
@@ -182,23 +203,28 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
   Start start;
   const std::string where = "trajectory_start";
   if (!robot_state.is_object()) refuse(where + " is no object");
+  requireKnown(robot_state, where, {"joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff"});
   if (const Json* joints = find(robot_state, {"joint_state"}); joints && joints->is_object()) {
+    requireKnown(*joints, where, {"header", "name", "position", "velocity", "effort"});
     const std::vector<std::string> names = textsOf(listOf(*joints, "name", where), where);
     const std::vector<double> values = numbersOf(listOf(*joints, "position", where), where + ", position");
     if (names.size() != values.size()) {
       refuse(fmt::format("{}: {} positions of {} joints", where, values.size(), names.size()));
     }
     std::map<std::string, double> followers;
+    std::set<std::string> seen;
     for (std::size_t i = 0; i < names.size(); ++i) {
+      if (!seen.insert(names[i]).second) refuse(fmt::format("{}: joint '{}' is there twice", where, names[i]));
       if (isVariable(tree, names[i])) start.state[names[i]] = values[i];
       if (isMimic(tree, names[i])) followers[names[i]] = values[i];
-      if (!isJoint(tree, names[i])) {
+      if (!isJoint(tree, names[i]) && !isVariable(tree, names[i])) {
         start.notes.push_back(fmt::format("{} has a joint '{}', which the robot lacks", where, names[i]));
       }
     }
     requireFollowing(tree, followers, start, where);
   }
   if (const Json* poses = find(robot_state, {"multi_dof_joint_state"}); poses && poses->is_object()) {
+    requireKnown(*poses, where, {"header", "joint_names", "transforms", "twist", "wrench"});
     const std::vector<std::string> names = textsOf(listOf(*poses, "joint_names", where), where);
     const Json& transforms = listOf(*poses, "transforms", where);
     if (names.size() != transforms.size()) {
@@ -258,14 +284,19 @@ double timeAt(const Json& point, std::size_t k) {
   return secondsOf(*time, fmt::format("waypoint {}, time_from_start", k));
 }
 
+/// Keys of both kinds of trajectory, and those that may stand beside them where it is a plan itself.
+const std::vector<std::string_view> kTrajectory{"header", "joint_names", "points", "name", "id", "state"};
+
 /// trajectory_msgs/JointTrajectory.
 void addJoints(const Json& message, Plan& plan) {
+  requireKnown(message, "joint_trajectory", kTrajectory);
   const Json& points = listOf(message, "points", "joint_trajectory");
   plan.joints = textsOf(listOf(message, "joint_names", "joint_trajectory"), "joint_names");
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Json& point = pointAt(points, k);
     plan.times.push_back(timeAt(point, k));
     const std::string where = fmt::format("waypoint {}", k);
+    requireKnown(point, where, {"positions", "velocities", "accelerations", "effort", "time_from_start"});
     plan.positions.push_back(numbersOf(listOf(point, "positions", where), where + ", positions"));
     addRates(point, "velocities", k, plan.joints.size(), plan.velocities);
     addRates(point, "accelerations", k, plan.joints.size(), plan.accelerations);
@@ -274,6 +305,7 @@ void addJoints(const Json& message, Plan& plan) {
 
 /// trajectory_msgs/MultiDOFJointTrajectory, beside what the plan has.
 void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
+  requireKnown(message, "multi_dof_joint_trajectory", kTrajectory);
   const Json& points = listOf(message, "points", "multi_dof_joint_trajectory");
   const std::vector<std::string> names =
       textsOf(listOf(message, "joint_names", "multi_dof_joint_trajectory"), "joint_names");
@@ -292,6 +324,7 @@ void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     const Json& point = pointAt(points, k);
     const std::string where = fmt::format("waypoint {}", k);
+    requireKnown(point, where, {"transforms", "velocities", "accelerations", "time_from_start"});
     const double time = timeAt(point, k);
     if (first) {
       plan.times.push_back(time);
@@ -332,23 +365,21 @@ class Reader {
     if (depth > kDeepestMessage) return fail(label, "too many messages within messages");
     if (value.is_array()) return readList(value, label, start, depth);
     if (!value.is_object()) return fail(label, fmt::format("{} is no plan", shown(value)));
-    if (const Json* plans = find(value, {"plans"})) return read(*plans, label, start, depth + 1);
-    if (find(value, {"joint_trajectory", "multi_dof_joint_trajectory"}) || find(value, {"points"})) {
-      return add(label, start, [&](Plan& plan) { readMessage(value, plan); });
-    }
-    if (const Json* inner = find(value, {"trajectory", "planned_trajectory", "goal", "msg"})) {
-      Start own = start;
-      if (const Json* state = find(value, {"trajectory_start", "start_state"})) {
-        try {
-          own = startOf(tree_, *state);
-        } catch (const std::invalid_argument& error) {
-          return fail(label, error.what());
-        }
-      }
-      return readParts(*inner, label, own, depth + 1);
-    }
     if (find(value, {"waypoints", "from", "start"})) {
       return add(label, start, [&](Plan& plan) { readPlan(value, plan); });
+    }
+    try {
+      if (const Json* plans = find(value, {"plans"})) {
+        requireKnown(value, "", {"plans", "name", "id"});
+        return read(*plans, label, start, depth + 1);
+      }
+      if (find(value, {"joint_trajectory", "multi_dof_joint_trajectory", "points"})) {
+        return add(label, start, [&](Plan& plan) { readMessage(value, plan); });
+      }
+      if (find(value, {"trajectory", "planned_trajectory", "goal", "msg"}))
+        return readOuter(value, label, start, depth);
+    } catch (const std::invalid_argument& error) {
+      return fail(label, error.what());
     }
     std::string keys;
     for (const auto& item : value.items()) keys += (keys.empty() ? "" : ", ") + item.key();
@@ -362,6 +393,46 @@ class Reader {
     Plan& plan = out_.emplace_back();
     plan.name = label;
     plan.error = error;
+  }
+
+  /// A message that holds one with a motion. Beside it may stand what is no place and no motion of this plan.
+  void readOuter(const Json& value, const std::string& label, const Start& start, int depth) {
+    refuseTwo(value, {"trajectory", "planned_trajectory", "goal", "msg"});
+    refuseTwo(value, {"trajectory_start", "start_state"});
+    requireKnown(value, "",
+                 {"trajectory",
+                  "planned_trajectory",
+                  "goal",
+                  "msg",
+                  "trajectory_start",
+                  "start_state",
+                  "multi_dof_trajectory",  // read below
+                  "header",
+                  "model_id",
+                  "group_name",
+                  "planning_time",
+                  "error_code",
+                  "executed_trajectory",
+                  "goal_id",
+                  "controller_names",
+                  "path_tolerance",
+                  "goal_tolerance",
+                  "component_path_tolerance",
+                  "component_goal_tolerance",
+                  "goal_time_tolerance",
+                  "topic",
+                  "timestamp",
+                  "type",
+                  "name",
+                  "id"});
+    const Json& inner = *find(value, {"trajectory", "planned_trajectory", "goal", "msg"});
+    Start own = start;
+    if (const Json* state = find(value, {"trajectory_start", "start_state"})) own = startOf(tree_, *state);
+    const Json* poses = find(value, {"multi_dof_trajectory"});
+    if (!poses) return readParts(inner, label, own, depth + 1);
+    // A goal of FollowJointTrajectory has the two trajectories of a RobotTrajectory.
+    const Json both{{"joint_trajectory", inner}, {"multi_dof_joint_trajectory", *poses}};
+    add(label, own, [&](Plan& plan) { readMessage(both, plan); });
   }
 
   template <class Fill>
@@ -381,7 +452,7 @@ class Reader {
   void readList(const Json& list, const std::string& label, const Start& start, int depth) {
     const bool rows = !list.empty() && list[0].is_array() && !list[0].empty() && list[0][0].is_number();
     if (rows) {
-      return add(label, start, [&](Plan& plan) { addWaypoints(list, "", plan.positions, plan.joints); });
+      return add(label, start, [&](Plan& plan) { Rows(plan).add(list, "", plan.positions); });
     }
     if (list.empty()) return fail(label, "an empty list");
     for (std::size_t i = 0; i < list.size(); ++i) read(list[i], fmt::format("{}[{}]", label, i), start, depth + 1);
@@ -414,6 +485,9 @@ class Reader {
       const bool transforms = !points.empty() && points[0].is_object() && find(points[0], {"transforms"});
       (transforms ? poses : joints) = &message;
     }
+    if (joints != &message && poses != &message) {
+      requireKnown(message, "", {"joint_trajectory", "multi_dof_joint_trajectory", "header", "name", "id", "state"});
+    }
     for (const Json* part : {joints, poses}) {
       if (part && !part->is_object()) refuse(fmt::format("{} is no trajectory", shown(*part)));
     }
@@ -432,66 +506,69 @@ class Reader {
     plan.name += (plan.name.empty() ? "" : " ") + text;
   }
 
-  /// Waypoints as lists or as objects by name.
-  static void addWaypoints(const Json& list, const std::string& what, Plan::Rows& rows,
-                           std::vector<std::string>& joints) {
-    if (!list.is_array()) refuse(fmt::format("'{}' is no list: {}", what, shown(list)));
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      const std::string where = fmt::format("waypoint {}{}{}", k, what.empty() ? "" : ", ", what);
-      if (!list[k].is_object()) {
-        rows.push_back(numbersOf(list[k], where));
-        continue;
-      }
-      if (joints.empty()) {
-        for (const auto& item : list[k].items()) joints.push_back(item.key());
-      }
-      std::vector<double>& row = rows.emplace_back();
-      for (const std::string& joint : joints) {
-        const Json* value = find(list[k], {joint.c_str()});
-        if (!value) refuse(fmt::format("{} has no value of joint '{}'", where, joint));
-        row.push_back(numberOf(*value, fmt::format("{}, joint '{}'", where, joint)));
-      }
-      for (const auto& item : list[k].items()) {
-        if (std::find(joints.begin(), joints.end(), item.key()) != joints.end()) continue;
-        refuse(fmt::format("{} has a value of joint '{}', which others lack", where, item.key()));
-      }
-    }
-  }
+  /// Reads rows of a plan: lists, or objects by name. Lists are in the order of the plan's joints; where it names none,
+  /// in the robot's, and nobody knows in which one beside objects.
+  class Rows {
+   public:
+    explicit Rows(Plan& plan) : plan_(plan), ordered_(!plan.joints.empty()) {}
 
-  /// Keys that say the same: whoever gives two of them means one.
-  static void refuseTwo(const Json& value, std::initializer_list<const char*> keys) {
-    const char* first = nullptr;
-    for (const char* key : keys) {
-      if (!value.contains(key)) continue;
-      if (first) refuse(fmt::format("has both '{}' and '{}'", first, key));
-      first = key;
+    void add(const Json& list, const std::string& what, Plan::Rows& rows) {
+      if (!list.is_array()) refuse(fmt::format("'{}' is no list: {}", what, shown(list)));
+      for (std::size_t k = 0; k < list.size(); ++k) {
+        const std::string where = fmt::format("waypoint {}{}{}", k, what.empty() ? "" : ", ", what);
+        (list[k].is_object() ? named_ : listed_) = true;
+        if (named_ && listed_ && !ordered_) {
+          refuse(fmt::format("{}: some rows go by name and others do not: 'joints' says what the order of these is",
+                             where));
+        }
+        rows.push_back(list[k].is_object() ? rowOf(list[k], where) : numbersOf(list[k], where));
+      }
     }
-  }
+
+   private:
+    std::vector<double> rowOf(const Json& object, const std::string& where) {
+      std::map<std::string_view, const Json*> values;
+      for (const auto& item : object.items()) values.emplace(item.key(), &item.value());
+      std::vector<std::string>& joints = plan_.joints;
+      if (joints.empty()) {
+        for (const auto& item : object.items()) joints.push_back(item.key());
+      }
+      std::vector<double> row;
+      for (const std::string& joint : joints) {
+        const auto value = values.find(joint);
+        if (value == values.end()) refuse(fmt::format("{} has no value of joint '{}'", where, joint));
+        row.push_back(numberOf(*value->second, fmt::format("{}, joint '{}'", where, joint)));
+      }
+      for (const std::string& joint : joints) values.erase(joint);
+      if (values.empty()) return row;
+      refuse(fmt::format("{} has a value of joint '{}', which others lack", where, values.begin()->first));
+    }
+
+    Plan& plan_;
+    const bool ordered_;  ///< whether the plan says which joints lists are of
+    bool named_ = false, listed_ = false;
+  };
 
   static void readPlan(const Json& value, Plan& plan) {
-    static const std::set<std::string> known{"name",      "id",    "joints",     "joint_names",   "times",
-                                             "waypoints", "state", "velocities", "accelerations", "from",
-                                             "to",        "start", "goal"};
-    for (const auto& item : value.items()) {
-      if (!known.count(item.key())) refuse(fmt::format("the key '{}' is not known", item.key()));
-    }
+    requireKnown(value, "",
+                 {"name", "id", "joints", "joint_names", "times", "waypoints", "state", "velocities", "accelerations",
+                  "from", "to", "start", "goal"});
+    refuseTwo(value, {"joints", "joint_names"});
     readName(value, plan);
     if (const Json* joints = find(value, {"joints", "joint_names"})) plan.joints = textsOf(*joints, "joints");
     refuseTwo(value, {"waypoints", "from", "start"});
     refuseTwo(value, {"waypoints", "to", "goal"});
+    Rows rows(plan);
     if (const Json* waypoints = find(value, {"waypoints"})) {
-      addWaypoints(*waypoints, "", plan.positions, plan.joints);
+      rows.add(*waypoints, "", plan.positions);
     } else {
       const Json *from = find(value, {"from", "start"}), *to = find(value, {"to", "goal"});
       if (!from || !to) refuse("no 'waypoints', and not both of 'from' and 'to'");
-      addWaypoints(Json::array({*from, *to}), "", plan.positions, plan.joints);
+      rows.add(Json::array({*from, *to}), "", plan.positions);
     }
     if (const Json* times = find(value, {"times"})) plan.times = numbersOf(*times, "times");
-    if (const Json* rates = find(value, {"velocities"}))
-      addWaypoints(*rates, "velocities", plan.velocities, plan.joints);
-    if (const Json* rates = find(value, {"accelerations"})) {
-      addWaypoints(*rates, "accelerations", plan.accelerations, plan.joints);
-    }
+    if (const Json* rates = find(value, {"velocities"})) rows.add(*rates, "velocities", plan.velocities);
+    if (const Json* rates = find(value, {"accelerations"})) rows.add(*rates, "accelerations", plan.accelerations);
     readState(value, plan);
   }
 

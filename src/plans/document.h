@@ -7,13 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "plans/plan.h"
+#include "text/document.h"
 
 namespace fcl_artic::plans {
 
-using Json = nlohmann::ordered_json;
+using Json = text::Json;
 
 /// A JSON document. NaN, Infinity and -Infinity, which JSON lacks and programs write, become texts of that name.
 /// @throws std::invalid_argument for what is no JSON, and for a key that an object has twice.
@@ -26,10 +25,12 @@ std::vector<Json> parseYaml(std::string_view content);
 
 /// The plans of a document, which may be
 /// - trajectory_msgs/JointTrajectory, MultiDOFJointTrajectory, moveit_msgs/RobotTrajectory, DisplayTrajectory, and
-///   messages that hold one of these as `trajectory`, `planned_trajectory`, `goal` or `msg`, with `trajectory_start`;
+///   messages that hold one of these as `trajectory`, `planned_trajectory`, `goal` or `msg`, with `trajectory_start`,
+///   or `multi_dof_trajectory` beside `trajectory`;
 /// - a plan: {"name", "joints": [..], "times": [..], "waypoints": [[..], ..], "velocities", "accelerations"}, or with
 ///   "from" and "to"; a waypoint may be an object from names to values;
 /// - {"plans": [..]}, or a list of any of these.
+/// Keys that are neither read nor on a list of what is no place and no motion make the plan one with an error.
 /// @param label  begins the plans' names, as "line 3"; may be empty.
 /// @param[in,out] out  gets them.
 void readDocument(const KinematicTree& tree, const Json& document, const std::string& label, std::vector<Plan>& out);

@@ -4,6 +4,7 @@
 #include "plans/numpy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
@@ -233,8 +234,8 @@ std::vector<Plan> plansOf(const Arrays& arrays) {
     std::size_t length = waypoints;
     if (arrays.lengths) {
       const double wanted = at(*arrays.lengths, {p});
-      if (!(wanted >= 0 && wanted <= static_cast<double>(waypoints))) {
-        plan.error = fmt::format("its length {} is not from 0 to {}", wanted, waypoints);
+      if (!(wanted >= 0 && wanted <= static_cast<double>(waypoints)) || wanted != std::floor(wanted)) {
+        plan.error = fmt::format("its length {} is no whole number from 0 to {}", wanted, waypoints);
         continue;
       }
       length = static_cast<std::size_t>(wanted);

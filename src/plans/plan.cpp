@@ -105,6 +105,11 @@ std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content
       out = content.substr(0, 2) == "PK" ? parseArchive(content) : parseArray(content);
       break;
   }
+  // Of these a part may be whole: the last number may have lost digits.
+  const bool text = format == Format::csv || format == Format::yaml || format == Format::ompl;
+  if (text && !content.empty() && std::string_view("\n]}").find(content.back()) == std::string_view::npos) {
+    for (Plan& plan : out) plan.notes.emplace_back("the last line has no line end: the file may be cut short");
+  }
   if (out.empty()) throw std::invalid_argument("there is no plan in it");
   return out;
 }

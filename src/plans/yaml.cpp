@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -16,8 +17,6 @@
 namespace fcl_artic::plans {
 namespace {
 
-constexpr std::size_t kDeepestYaml = 100;  // no message is deeper
-
 Json valueOf(const std::string& text) {
   if (text.empty() || text == "~" || text == "null") return nullptr;
   if (text == "true" || text == "false") return text == "true";
@@ -27,6 +26,8 @@ Json valueOf(const std::string& text) {
     return (text[0] == '-' ? -1 : 1) * std::numeric_limits<double>::infinity();
   }
   if (bare == ".nan" || bare == ".NaN" || bare == ".NAN") return std::numeric_limits<double>::quiet_NaN();
+  // 010 is 8 in YAML 1.1, and 10 in 1.2.
+  if (bare.size() > 1 && bare[0] == '0' && bare[1] >= '0' && bare[1] <= '9') return text;
   double value = 0;
   const char* begin = text.data() + (text[0] == '+' ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
@@ -34,76 +35,80 @@ Json valueOf(const std::string& text) {
   return number ? Json(value) : Json(text);
 }
 
-/// Builds a document from the parser's events.
+/// Builds documents from the parser's events.
 class Builder : public YAML::EventHandler {
  public:
   std::vector<Json> documents;
 
-  void OnDocumentStart(const YAML::Mark&) override {}
-  void OnDocumentEnd() override {}
+  void OnDocumentStart(const YAML::Mark&) override { document_ = text::DocumentBuilder(); }
+  void OnDocumentEnd() override { documents.push_back(document_.take()); }
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(mark, nullptr); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark, "an alias, which is not read"); }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
     add(mark, tag == "!" || expectsKey() ? Json(value) : valueOf(value));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    open(mark, Json::array());
+    open(mark, false);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-    open(mark, Json::object());
+    open(mark, true);
   }
   void OnMapEnd() override { close(); }
 
  private:
   struct Level {
-    Json value;
-    std::string key;  ///< of the value to come
-    bool has_key = false;
+    bool is_object, has_key;
   };
 
   [[noreturn]] static void refuse(const YAML::Mark& mark, const std::string& what) {
     throw std::invalid_argument(fmt::format("line {}, column {}: {}", mark.line + 1, mark.column + 1, what));
   }
-  bool expectsKey() const { return !levels_.empty() && levels_.back().value.is_object() && !levels_.back().has_key; }
-  void open(const YAML::Mark& mark, Json value) {
+  bool expectsKey() const { return !levels_.empty() && levels_.back().is_object && !levels_.back().has_key; }
+  /// Calls the document's builder, whose errors get the place.
+  template <class F>
+  static void at(const YAML::Mark& mark, const F& call) {
+    try {
+      call();
+    } catch (const std::invalid_argument& error) {
+      refuse(mark, error.what());
+    }
+  }
+  void open(const YAML::Mark& mark, bool is_object) {
     if (expectsKey()) refuse(mark, "a key that is no text");
-    if (levels_.size() >= kDeepestYaml) refuse(mark, fmt::format("more than {} levels", kDeepestYaml));
-    levels_.push_back({std::move(value), {}, false});
+    at(mark, [&] { is_object ? document_.start_object(0) : document_.start_array(0); });
+    if (!levels_.empty()) levels_.back().has_key = false;
+    levels_.push_back({is_object, false});
   }
   void close() {
-    Json value = std::move(levels_.back().value);
+    levels_.back().is_object ? document_.end_object() : document_.end_array();
     levels_.pop_back();
-    put(std::move(value));
   }
   void add(const YAML::Mark& mark, Json value) {
-    if (!expectsKey()) return put(std::move(value));
-    Level& level = levels_.back();
-    if (!value.is_string()) refuse(mark, "a key that is no text");
-    level.key = value.get<std::string>();
-    if (level.value.contains(level.key)) refuse(mark, fmt::format("the key '{}' is there twice", level.key));
-    level.has_key = true;
-  }
-  void put(Json value) {
-    if (levels_.empty()) {
-      documents.push_back(std::move(value));
+    if (!expectsKey()) {
+      document_.put(std::move(value));
+      if (!levels_.empty()) levels_.back().has_key = false;
       return;
     }
-    Level& level = levels_.back();
-    if (level.value.is_array()) {
-      level.value.push_back(std::move(value));
-    } else {
-      level.value[level.key] = std::move(value);
-      level.has_key = false;
-    }
+    if (!value.is_string()) refuse(mark, "a key that is no text");
+    at(mark, [&] { document_.key(value.get_ref<std::string&>()); });
+    levels_.back().has_key = true;
   }
 
+  text::DocumentBuilder document_;
   std::vector<Level> levels_;
 };
 
 }  // namespace
 
 std::vector<Json> parseYaml(std::string_view content) {
+  // YAML has no such bytes; the parser takes some of them for the end, and would leave out what follows.
+  const auto isControl = [](char c) {
+    return static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r';
+  };
+  if (std::any_of(content.begin(), content.end(), isControl)) {
+    throw std::invalid_argument("it is no YAML: it has a control character");
+  }
   std::istringstream in{std::string(content)};
   Builder builder;
   try {

@@ -5,6 +5,7 @@
 // robot, with less work.
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -379,17 +380,16 @@ std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& regist
     std::vector<PairMaking> made;
     for (const std::size_t number : pair.numbers) made.push_back(makingOf(registry, problem.link_pairs[number]));
     const auto old = before ? before->pairs.find(links) : decltype(before->pairs.end()){};
-    const bool known = before && old != before->pairs.end() &&
-                       std::equal(made.begin(), made.end(), old->second.made.begin(), old->second.made.end(),
-                                  [](const PairMaking& x, const PairMaking& y) { return x.sameAs(y); });
-    if (!known) {
+    if (before && old != before->pairs.end() &&
+        std::equal(made.begin(), made.end(), old->second.made.begin(), old->second.made.end(),
+                   std::mem_fn(&PairMaking::sameAs))) {
+      found->pairs.emplace(*old);
+      for (const PairMaking& of : made) {
+        if (const LinkPairProofs::Proof* proof = before->proofs.find(of, 0)) found->proofs.add(*proof);
+      }
+    } else {
       open.push_back(std::move(pair));
       made_of_open.push_back(std::move(made));
-      continue;
-    }
-    found->pairs.emplace(*old);
-    for (const PairMaking& of : old->second.made) {
-      if (const LinkPairProofs::Proof* proof = before->proofs.find(of, 0)) found->proofs.add(*proof);
     }
   }
   LinkPairOptions options;
@@ -433,15 +433,12 @@ std::vector<std::string> ArticulatedCollisionManager::notes() const {
     if (found.undecided()) undecided += (undecided.empty() ? "" : ", ") + names;
   }
   std::vector<std::string> notes;
-  if (!throughout.empty())
-    notes.push_back(
-        "neighbours that touch at all tried values of the joint between them, as housings that overlap in " +
-        ("it, are not checked: " + throughout));
-  if (!undecided.empty())
-    notes.push_back(
-        "neighbours of which it can't be decided whether they touch are not checked, and each answer counts "
-        "them: " +
-        undecided);
+  const auto note = [&](const std::string& said, const std::string& of) {
+    if (!of.empty()) notes.push_back("neighbours " + said + ": " + of);
+  };
+  note("that touch at all tried values of the joint between them, as housings that overlap in it, are not checked",
+       throughout);
+  note("of which it can't be decided whether they touch are not checked, and each answer counts them", undecided);
   return notes;
 }
 
@@ -459,13 +456,10 @@ LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOpti
   Setup setup;
   setup.buildPairs(registry, [](const ManagedBody&, const ManagedBody&) { return true; });
   const engine::Problem problem = setup.problem();
-  std::vector<Pair> pairs = pairsOf(registry, problem);
-  if (options.only) {
-    pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
-                               [&](const Pair& pair) {
-                                 return !options.only->allowed(tree.linkName(pair.link1), tree.linkName(pair.link2));
-                               }),
-                pairs.end());
+  std::vector<Pair> pairs;
+  for (Pair& pair : pairsOf(registry, problem)) {
+    const bool asked = !options.only || options.only->allowed(tree.linkName(pair.link1), tree.linkName(pair.link2));
+    if (asked) pairs.push_back(std::move(pair));
   }
 
   LinkPairReport report;

@@ -24,28 +24,15 @@ std::shared_ptr<const KinematicTree> ArticulatedCollisionManager::sharedTree() c
   return impl_->registry.tree();
 }
 
-void ArticulatedCollisionManager::registerObject(const fcl::CollisionObjectd* object, const std::string& name) {
-  impl_->registry.registerObject(object, name);
-  impl_->setup.obstaclesChanged();
-}
-
-void ArticulatedCollisionManager::registerObject(std::shared_ptr<const fcl::CollisionObjectd> object,
-                                                 const std::string& name) {
-  const fcl::CollisionObjectd* const plain = object.get();
-  impl_->registry.registerObject(plain, name, std::move(object));
-  impl_->setup.obstaclesChanged();
-}
-
-void ArticulatedCollisionManager::registerObject(const fcl::ContinuousCollisionObjectd* object,
+void ArticulatedCollisionManager::registerObject(const ObjectRef<fcl::CollisionObjectd>& object,
                                                  const std::string& name) {
   impl_->registry.registerObject(object, name);
   impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::registerObject(std::shared_ptr<const fcl::ContinuousCollisionObjectd> object,
+void ArticulatedCollisionManager::registerObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object,
                                                  const std::string& name) {
-  const fcl::ContinuousCollisionObjectd* const plain = object.get();
-  impl_->registry.registerObject(plain, name, std::move(object));
+  impl_->registry.registerObject(object, name);
   impl_->setup.obstaclesChanged();
 }
 
@@ -71,57 +58,35 @@ ArticulatedCollisionManager ArticulatedCollisionManager::shareRobot() const {
   return other;
 }
 
-void ArticulatedCollisionManager::unregisterObject(const fcl::CollisionObjectd* object) {
-  const bool carried = impl_->registry.unregisterObject(object);
+void ArticulatedCollisionManager::unregisterObject(const ObjectRef<fcl::CollisionObjectd>& object) {
+  const bool carried = impl_->registry.unregisterObject(object.get());
   carried ? impl_->setup.robotChanged() : impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::unregisterObject(const fcl::ContinuousCollisionObjectd* object) {
-  impl_->registry.unregisterObject(object);
+void ArticulatedCollisionManager::unregisterObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object) {
+  impl_->registry.unregisterObject(object.get());
   impl_->setup.obstaclesChanged();
 }
 
-void ArticulatedCollisionManager::bind(LinkId link, const fcl::CollisionObjectd* object,
+void ArticulatedCollisionManager::bind(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object,
                                        const Eigen::Isometry3d& offset) {
   impl_->registry.bind(link, object, offset);
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::bind(const std::string& link, const fcl::CollisionObjectd* object,
-                                       const Eigen::Isometry3d& offset) {
-  bind(impl_->registry.requireLink(link, "bind"), object, offset);
-}
-
-void ArticulatedCollisionManager::bind(LinkId link, std::shared_ptr<const fcl::CollisionObjectd> object,
-                                       const Eigen::Isometry3d& offset) {
-  const fcl::CollisionObjectd* const plain = object.get();
-  impl_->registry.bind(link, plain, offset, std::move(object));
+void ArticulatedCollisionManager::unbind(const ObjectRef<fcl::CollisionObjectd>& object) {
+  impl_->registry.unbind(object.get());
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::bind(const std::string& link, std::shared_ptr<const fcl::CollisionObjectd> object,
-                                       const Eigen::Isometry3d& offset) {
-  bind(impl_->registry.requireLink(link, "bind"), std::move(object), offset);
-}
-
-void ArticulatedCollisionManager::unbind(const fcl::CollisionObjectd* object) {
-  impl_->registry.unbind(object);
-  impl_->setup.robotChanged();
-}
-
-void ArticulatedCollisionManager::attach(LinkId link, const fcl::CollisionObjectd* object,
+void ArticulatedCollisionManager::attach(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object,
                                          const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links) {
-  impl_->registry.attach(link, object, offset, touch_links);
+  impl_->registry.attach(link, object.get(), offset, touch_links);
   impl_->setup.robotChanged();
 }
 
-void ArticulatedCollisionManager::attach(const std::string& link, const fcl::CollisionObjectd* object,
-                                         const Eigen::Isometry3d& offset, const std::vector<std::string>& touch_links) {
-  attach(impl_->registry.requireLink(link, "attach"), object, offset, touch_links);
-}
-
-void ArticulatedCollisionManager::detach(const fcl::CollisionObjectd* object) {
-  impl_->registry.detach(object);
+void ArticulatedCollisionManager::detach(const ObjectRef<fcl::CollisionObjectd>& object) {
+  impl_->registry.detach(object.get());
   impl_->setup.robotChanged();
 }
 
@@ -180,16 +145,16 @@ void ArticulatedCollisionManager::update() {
   impl_->use(impl_->registry.readAgain());
 }
 
-void ArticulatedCollisionManager::update(const fcl::CollisionObjectd* object) {
-  impl_->use(impl_->registry.readAgain(std::vector<const fcl::CollisionObjectd*>{object}));
+void ArticulatedCollisionManager::update(const ObjectRef<fcl::CollisionObjectd>& object) {
+  impl_->use(impl_->registry.readAgain(std::vector<const fcl::CollisionObjectd*>{object.get()}));
 }
 
 void ArticulatedCollisionManager::update(const std::vector<fcl::CollisionObjectd*>& objects) {
   impl_->use(impl_->registry.readAgain(std::vector<const fcl::CollisionObjectd*>(objects.begin(), objects.end())));
 }
 
-void ArticulatedCollisionManager::update(const fcl::ContinuousCollisionObjectd* object) {
-  impl_->use(impl_->registry.readAgain(object));
+void ArticulatedCollisionManager::update(const ObjectRef<fcl::ContinuousCollisionObjectd>& object) {
+  impl_->use(impl_->registry.readAgain(object.get()));
 }
 
 void ArticulatedCollisionManager::clear() {
@@ -224,9 +189,9 @@ std::vector<std::pair<std::string, std::string>> ArticulatedCollisionManager::ch
   return {pairs.begin(), pairs.end()};
 }
 
-Eigen::Isometry3d ArticulatedCollisionManager::boundOffset(const fcl::CollisionObjectd* object) const {
+Eigen::Isometry3d ArticulatedCollisionManager::boundOffset(const ObjectRef<fcl::CollisionObjectd>& object) const {
   for (const ManagedBody& b : impl_->registry.links()) {
-    if (b.object == object) return b.offset;
+    if (b.object == object.get()) return b.offset;
   }
   throw std::invalid_argument("boundOffset: the object is bound to no link");
 }

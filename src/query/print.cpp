@@ -76,7 +76,7 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
 
 namespace {
 
-/// What a free answer does not speak of. @param ignored  number of pairs, those that part nowhere included.
+/// What a free answer does not speak of. @param ignored  number of pairs, those that never come apart included.
 std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::size_t ignored, std::size_t never,
                            const std::vector<std::pair<std::string, std::string>>* neighbours = nullptr) {
   std::string text;
@@ -92,7 +92,7 @@ std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::siz
     for (const auto& [a, b] : *neighbours) text += (&a == &neighbours->front().first ? "" : "; ") + a + ", " + b;
   }
   if (ignored > never) add("the initial contact of " + pairs(ignored - never, ""));
-  if (never > 0) add(pairs(never, "") + (never == 1 ? " that parts nowhere" : " that part nowhere"));
+  if (never > 0) add(pairs(never, "") + (never == 1 ? " that never comes apart" : " that never come apart"));
   return text;
 }
 

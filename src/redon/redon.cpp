@@ -124,10 +124,12 @@ bool Run::asked(PairId pair) const {
   return (problem_.isScenePair(pair) ? query_.check_scene : query_.check_self) && !problem_.isAllowed(pair);
 }
 
-/// Triangles on both sides, no margin, and a motion by joints.
+/// Triangles on both sides, no margin, and a motion by joints. Nor has the pair a margin of its own, as neighbours have
+/// that are checked for touching: the paper checks none, and its boxes are apart at no time where a joint holds two
+/// links together.
 bool Run::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
-  if (query_.margins.of(pair) > 0) return false;
+  if (query_.margins.of(pair) > 0 || query_.margins.isOwn(pair)) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
   return treeOf_(parts.a) && treeOf_(parts.b);
 }

@@ -111,6 +111,10 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     ++allowed_self_;
   }
   undecided_ = undecided.empty() ? nullptr : std::make_shared<const Names>(undecided.begin(), undecided.end());
+  summarize();
+}
+
+void ProvenPairs::summarize() {
   std::set<int> used;
   for (const auto* pairs : {&checked_, &allowed_}) {
     for (const Pair& pair : *pairs) used.insert(pair.variables.begin(), pair.variables.end());

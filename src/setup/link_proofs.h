@@ -73,6 +73,8 @@ class ProvenPairs {
     std::vector<int> variables;
     double own = -1;  ///< margin of an allowed pair of names, as NamedMargins::of()
   };
+  /// Fills in what follows from the lists of pairs.
+  void summarize();
   bool within(const std::vector<int>& variables, const JointMotion& motion) const;
 
   std::vector<Pair> checked_, allowed_;

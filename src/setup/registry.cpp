@@ -77,12 +77,12 @@ void Registry::requireNew(const void* object, const std::string& what) const {
   }
 }
 
-void Registry::requireLink(LinkId link, const std::string& what) const {
-  if (link >= 0 && link < tree_->numLinks()) return;
-  throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link " + std::to_string(link));
-}
-
-LinkId Registry::requireLink(const std::string& name, const std::string& what) const {
+LinkId Registry::requireLink(const LinkRef& link, const std::string& what) const {
+  if (!link.byName()) {
+    if (link.id() >= 0 && link.id() < tree_->numLinks()) return link.id();
+    throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link " + std::to_string(link.id()));
+  }
+  const std::string name(link.name());
   if (tree_->hasLink(name)) return tree_->linkId(name);
   throw std::invalid_argument(what + ": robot '" + tree_->name() + "' has no link '" + name + "'" +
                               text::didYouMean(name, linkNames(*tree_)));
@@ -212,21 +212,20 @@ void Registry::disallow(const std::string& a, const std::string& b) {
   allowed_.disallow(a, b);
 }
 
-void Registry::registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner) {
+void Registry::registerObject(const ObjectRef<fcl::CollisionObjectd>& object, const std::string& name) {
   const std::string shown = obstacleName(name);
-  ManagedBody body = newBody(object, "obstacle '" + shown + "'");
+  ManagedBody body = newBody(object.get(), "obstacle '" + shown + "'");
   body.name = shown;
-  body.owner = std::move(owner);
+  body.owner = object.share();
   addObstacle(obstacles_, std::move(body));
 }
 
-void Registry::registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name,
-                              std::shared_ptr<const void> owner) {
+void Registry::registerObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object, const std::string& name) {
   ManagedBody body;
   body.name = obstacleName(name);
-  requireNew(object, "obstacle '" + body.name + "'");
-  body.moving = object;
-  body.owner = std::move(owner);
+  requireNew(object.get(), "obstacle '" + body.name + "'");
+  body.moving = object.get();
+  body.owner = object.share();
   addObstacle(moving_, std::move(body));
 }
 
@@ -241,7 +240,8 @@ void Registry::registerObjects(const std::vector<fcl::CollisionObjectd*>& object
   }
 }
 
-void Registry::replaceObstacles(const std::vector<Owner>& objects, const std::vector<std::string>& names) {
+void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects,
+                                const std::vector<std::string>& names) {
   if (!names.empty() && names.size() != objects.size()) {
     throw std::invalid_argument("replaceObstacles: there are " + std::to_string(names.size()) + " names for " +
                                 std::to_string(objects.size()) + " objects");
@@ -339,16 +339,17 @@ void Registry::unregisterObject(const fcl::ContinuousCollisionObjectd* object) {
   forget(moving_, require(moving_, object, "unregisterObject: the object is not registered"));
 }
 
-void Registry::bind(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset, Owner owner) {
-  requireLink(link, "bind");
-  const std::string what = "geometry of link '" + tree_->linkName(link) + "'";
-  ManagedBody body = newBody(object, what);
-  body.owner = std::move(owner);
-  body.link = link;
-  body.name = tree_->linkName(link);
+void Registry::bind(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object,
+                    const Eigen::Isometry3d& offset) {
+  const LinkId id = requireLink(link, "bind");
+  const std::string what = "geometry of link '" + tree_->linkName(id) + "'";
+  ManagedBody body = newBody(object.get(), what);
+  body.owner = object.share();
+  body.link = id;
+  body.name = tree_->linkName(id);
   body.offset = requireRigid(offset, what);
   body.readCarried(what);
-  objects_.insert(object);
+  objects_.insert(object.get());
   links_.push_back(std::move(body));
 }
 
@@ -358,9 +359,9 @@ void Registry::unbind(const fcl::CollisionObjectd* object) {
   forget(links_, body);
 }
 
-void Registry::attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+void Registry::attach(const LinkRef& carrier, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
                       const std::vector<std::string>& touch_links) {
-  requireLink(link, "attach");
+  const LinkId link = requireLink(carrier, "attach");
   const auto carried = std::find_if(links_.begin(), links_.end(),
                                     [&](const ManagedBody& body) { return body.attached && body.object == object; });
   if (carried != links_.end()) {

@@ -73,21 +73,19 @@ class Registry {
   }
 
   // The public manager's functions of the same names say what they throw.
-  using Owner = std::shared_ptr<const fcl::CollisionObjectd>;
-  /// @param owner  keeps the object alive as long as it is here; null: the caller does.
-  void registerObject(const fcl::CollisionObjectd* object, const std::string& name, Owner owner = nullptr);
-  void registerObject(const fcl::ContinuousCollisionObjectd* object, const std::string& name,
-                      std::shared_ptr<const void> owner = nullptr);
+  void registerObject(const ObjectRef<fcl::CollisionObjectd>& object, const std::string& name);
+  void registerObject(const ObjectRef<fcl::ContinuousCollisionObjectd>& object, const std::string& name);
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
-  void replaceObstacles(const std::vector<Owner>& objects, const std::vector<std::string>& names);
+  void replaceObstacles(const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects,
+                        const std::vector<std::string>& names);
   /// A copy with the robot only. Allowed pairs and margins of obstacles' names stay behind.
   Registry withoutObstacles() const;
   /// @return whether a link carried it.
   bool unregisterObject(const fcl::CollisionObjectd* object);
   void unregisterObject(const fcl::ContinuousCollisionObjectd* object);
-  void bind(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset, Owner owner = nullptr);
+  void bind(const LinkRef& link, const ObjectRef<fcl::CollisionObjectd>& object, const Eigen::Isometry3d& offset);
   void unbind(const fcl::CollisionObjectd* object);
-  void attach(LinkId link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
+  void attach(const LinkRef& link, const fcl::CollisionObjectd* object, const Eigen::Isometry3d& offset,
               const std::vector<std::string>& touch_links);
   void detach(const fcl::CollisionObjectd* object);
   void clear();
@@ -112,7 +110,7 @@ class Registry {
   NamedMargins marginsOfNeighbours() const;
 
   /// @throws std::invalid_argument beginning with `what` where the robot has no such link.
-  LinkId requireLink(const std::string& name, const std::string& what) const;
+  LinkId requireLink(const LinkRef& link, const std::string& what) const;
 
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.
   void setAllowed(AllowedCollisionMatrix matrix);
@@ -128,7 +126,6 @@ class Registry {
     return a < links_.size() && b < links_.size() && links_[a].link == links_[b].link;
   }
   void requireNew(const void* object, const std::string& what) const;
-  void requireLink(LinkId link, const std::string& what) const;
   void requireLinks() const;
   void requireBody(const std::string& name, const std::string& what) const;
   std::string obstacleName(const std::string& name) const;

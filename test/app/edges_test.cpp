@@ -186,7 +186,7 @@ TEST_F(EdgesTest, RowsSayWhatFreeDoesNotSpeakOf) {
   const Outcome done = run(command("run", "--ignore-limits --ignore-initial-contact"));
   ASSERT_EQ(done.status, 0) << done.err;
   EXPECT_NE(
-      done.out.find("; 1 free but for the initial contact of some pair; 1 free but for pairs that part nowhere\n"),
+      done.out.find("; 1 free but for the initial contact of some pair; 1 free but for pairs that never come apart\n"),
       std::string::npos)
       << done.out;
   const File table(path("run/table.h5"));

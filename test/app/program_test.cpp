@@ -153,7 +153,7 @@ TEST_F(ProgramTest, InitialContactMayBeIgnored) {
 }
 
 TEST_F(ProgramTest, NoShortAnswerLeavesOutWhatFreeDoesNotSpeakOf) {
-  // The arm begins in the ball: once it goes deeper and parts nowhere, once it leaves.
+  // The arm begins in the ball: once it goes deeper and never comes apart, once it leaves.
   const double in = kContactAngle + 0.01;
   const std::string deeper = std::to_string(in + 0.01), begin = std::to_string(in);
   const std::string arguments = armAndBall() + " --ignore-initial-contact ";

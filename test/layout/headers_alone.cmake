@@ -2,8 +2,8 @@
 # Fails for a header that does not compile by itself: whoever includes it would have to know what else to include. Public
 # ones also without a warning of conversions that may change a value or a sign. Those of the components LEFT_OUT, whose
 # dependencies are not found, are not looked at.
-#   cmake -D SOURCE_DIR=... -D COMPILER=... -D PARTS=...|... -D LEFT_OUT=...|... -D INCLUDES=...|... -D SYSTEM_INCLUDES=...|...
-#         -P headers_alone.cmake
+#   cmake -D SOURCE_DIR=... -D COMPILER=... -D PARTS=...|... -D AT_LEAST=N -D LEFT_OUT=...|... -D INCLUDES=...|...
+#         -D SYSTEM_INCLUDES=...|... -P headers_alone.cmake
 cmake_policy(VERSION 3.25)
 foreach(list PARTS LEFT_OUT INCLUDES SYSTEM_INCLUDES)
   string(REPLACE "|" ";" ${list} "${${list}}")
@@ -63,7 +63,7 @@ foreach(header IN LISTS headers)
     string(APPEND faults "  ${header}: ${first}\n")
   endif()
 endforeach()
-if(looked_at LESS 60)
+if(looked_at LESS AT_LEAST)
   string(APPEND faults "  only ${looked_at} headers were found\n")
 endif()
 if(faults)

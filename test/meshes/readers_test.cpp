@@ -128,6 +128,14 @@ TEST(Obj, MarksLineEndsAndWordsThatWouldShiftVertices) {
   expectContains(errorOf(readObj, kObj + "f 1 2 3 x/1\n"), "'x/1' names no vertex");
 }
 
+// Of a name that ends in a backslash some readers take the next line for a part, a face or a vertex.
+TEST(Obj, LinesThatMayTakeInTheNextOneAreRefused) {
+  for (const char* line : {"g part\\\n", "usemtl C:\\mat\\ \n", "o a \\\n", "vn 0 0 \\\n", "l 1 2\\\n"}) {
+    expectContains(errorOf(readObj, kObj + line + "f 1 2 3\nf 1 2 3\n"), "line 4: a line of '");
+  }
+  EXPECT_EQ(read(readObj, "# c:\\\n" + kObj + "f 1\\\n 2 3\n").triangles.size(), 1u);
+}
+
 TEST(Obj, PointsLinesAndFacesThatAreNotFlatAreNoted) {
   read(readObj, kObj + "v 1 1 0.3\nf 1 2 4 3\np 1\nl 1 2\nf 1 2\nf 3\n");
   ASSERT_EQ(notes.size(), 3u);
@@ -197,6 +205,47 @@ TEST(Ply, ElementsThatMayBeGeometryAreReadOrRefused) {
   expectContains(notes[1], "its lines, 1,");
 }
 
+// The last number of a text that is cut short is another one.
+TEST(TextFiles, WithoutALastLineEndAreNoted) {
+  const std::string off = "OFF 12 1 0\n" + [] {
+    std::string vertices;
+    for (int k = 0; k < 12; ++k) vertices += std::to_string(k) + " " + std::to_string(k * k) + " 1\n";
+    return vertices;
+  }() + "3 0 1 1";
+  const std::string head = "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n";
+  const auto ofCloud = [](Points (*reader)(const Source&)) {
+    return [reader](const Source& source) {
+      reader(source);
+      return TriangleSoup();
+    };
+  };
+  for (const auto& [reader, content] : {std::pair<Reader, std::string>{readObj, kObj + "f 1 2 3"},
+                                        {readOff, off},
+                                        {readPly, ply(kFaces, "3 0 1 2")},
+                                        {ofCloud(readXyz), "0 0 1.2"},
+                                        {ofCloud(readPcd), head + "0 0 1.2"}}) {
+    read(reader, content);
+    ASSERT_EQ(notes.size(), 1u) << content;
+    expectContains(notes[0], "has no line end: the file may be cut short");
+    read(reader, content + "\r");
+    EXPECT_TRUE(notes.empty()) << content;
+  }
+}
+
+TEST(TextFiles, UnitsOfACommentAreNoted) {
+  const auto notesOf = [](const std::string& content) {
+    notes.clear();
+    noteUnits({"file", content, "file", &notes});
+    return notes.size();
+  };
+  EXPECT_EQ(notesOf("v 0 0 0\n  # File units = centimeters\n"), 1u);
+  expectContains(notes.at(0), "'  # File units = centimeters': lengths are taken for metres");
+  EXPECT_EQ(notesOf("ply\r\ncomment Unit: mm\r\n"), 1u);
+  EXPECT_EQ(notesOf("solid part UNITS=mm\n"), 1u);
+  EXPECT_EQ(notesOf("# Units: meters\n# made at the unit of robots\n"), 1u) << "the second one";
+  EXPECT_EQ(notesOf("# Units: m\nusemtl unit\n# untied\n"), 0u);
+}
+
 // ---- COLLADA
 
 /// @param more  into the mesh. @param node  of the scene. @param libraries  beside the geometry.
@@ -235,6 +284,12 @@ TEST(ColladaFile, WhatIsNotReadIsRefused) {
   expectContains(error(kTriangles, "<instance_controller url=\"#c\"/>" + kHere), "bends a mesh");
   expectContains(error(kTriangles, kHere, "<library_animations><animation><channel/></animation></library_animations>"),
                  "without animations");
+  const std::string other = collada(kTriangles, "<translate>9 0 0</translate>" + kHere);
+  expectContains(errorOf(readDae, collada(kTriangles, kHere) + other), "<COLLADA> is a second root element");
+  expectContains(errorOf(readDae, collada(kTriangles, kHere) + std::string(1, '\0') + other), "byte 0");
+  std::string unit = collada(kTriangles, kHere);
+  unit.replace(unit.find("meter=\"0.5\""), 11, "name=\"inch\"");
+  expectContains(errorOf(readDae, unit), "<unit> is called 'inch', and does not say how many metres");
   expectContains(error(kTriangles + "<trianglos/>", kHere), "<trianglos> is not read");
   expectContains(error(kTriangles, kHere + "<instance_geometri url=\"#g\"/>"), "<instance_geometri> is not read");
   expectContains(error("<triangles>" + kInput + "<p>0 1 2</p></triangles>", kHere), "has no count");
@@ -312,7 +367,9 @@ TEST(GltfFile, WhatIsNotReadIsRefused) {
   expectContains(error(gltf(",\"scale\":[1,1]")), "no list of 3 numbers");
   expectContains(error(gltf(",\"rotation\":[0,0,0,0.5]")), "no quaternion of length 1");
   expectContains(error(gltf(",\"children\":[0]")), "below");
-  expectContains(error(gltf(",\"mesh\":0")), "the key 'mesh' twice");
+  expectContains(error(gltf(",\"mesh\":0")), "the key 'mesh' is there twice in one object");
+  expectContains(error(gltf("") + std::string("\0{}", 3)), "byte 0");
+  EXPECT_EQ(read(readAsItStands, gltf("") + std::string(3, '\0')).triangles.size(), 1u) << "as some writers pad it";
   expectContains(error(gltf("", ",\"indices\":0")), "not of type SCALAR");
   std::string content = gltf("");
   content.replace(content.find("\"count\":3"), 9, "\"count\":4");

@@ -102,6 +102,23 @@ TEST(PlanLogsTest, ColumnsMayBeSaid) {
   expectContains(refusedWith(tree, log, all), "did you mean 'hinge'");
 }
 
+// A first row that is broken is no line of names, and the names that NumPy writes in a comment count.
+TEST(PlanLogsTest, NoRowAndNoNameIsLost) {
+  const KinematicTree tree = armTree();
+  ColumnOptions all;
+  all.columns = {"hinge", "rail"};
+  for (const char* first : {"0.5,0.1x\n", "0.5,\n", "1e-400,0.1\n", "0.5,--\n"}) {
+    expectContains(refusedWith(tree, first + std::string("0.25,0\n1,0.5\n"), all),
+                   "line 1 neither names columns nor is a row of numbers");
+  }
+  EXPECT_EQ(read(tree, "a,b\n0.25,0\n1,0.5\n", all).waypoints.size(), 2u);
+  for (const char* names : {"# rail,hinge\n", "#rail hinge\n", "# made by hand\n# rail;hinge \n"}) {
+    EXPECT_EQ(read(tree, names + std::string("0.25,0\n0.5,1\n")).waypoints[1], Eigen::Vector2d(1, 0.5)) << names;
+  }
+  EXPECT_EQ(read(tree, "# 2 columns\n0.25,0\n1,0.5\n").waypoints[1], Eigen::Vector2d(1, 0.5));
+  expectContains(refusedWith(tree, "# rail elbow\n0.25,0\n1,0.5\n"), "no joint 'elbow'");
+}
+
 // A hand whose rail stays, given once for all logs.
 TEST(PlanLogsTest, JointsThatStayNeedNoColumn) {
   const KinematicTree tree = armTree();

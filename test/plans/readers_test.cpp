@@ -157,7 +157,7 @@ TEST(PlanReadersTest, YamlAsRosPrintsIt) {
   expectContains(refusalOf(tree, "a: [1\n", Format::yaml), "no YAML");
   std::string deep;
   for (int i = 0; i < 5000; ++i) deep += "- ";
-  expectContains(refusalOf(tree, deep + "1\n", Format::yaml), "levels");
+  expectContains(refusalOf(tree, deep + "1\n", Format::yaml), "nested more than 100 deep");
   EXPECT_NE(refusalOf(tree, std::string(100000, '['), Format::yaml), "");
   EXPECT_NE(refusalOf(tree, std::string(100000, '['), Format::json), "");
   EXPECT_NE(refusalOf(tree, std::string(10000, '[') + std::string(10000, ']'), Format::json), "");
@@ -378,7 +378,7 @@ TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
   json("\"velocities\": []", "\"velocities\": [0, 0]", "waypoint 1 has no velocities, the one before has");
   json("\"velocities\": []", "\"velocities\": [0]", "waypoint 0 has 1 velocities for 2 joints");
   json("\"points\"", "\"dots\"", "no plan in it");
-  json("\"points\": [", "\"points\": [], \"others\": [", "it has 0 waypoints, a plan needs two");
+  json("\"points\": [", "\"points\": [], \"others\": [", "the key 'others' is not known");
   json("\"joint_names\"", "\"points\": [], \"joint_names\"", "the key 'points' is there twice");
   json("{\"header\"", "{{\"header\"", "no JSON");
   expectContains(refusalOf(tree, R"({"joints": ["hinge", "rail"], "waypoints": [[0, 0]]})", Format::json),
@@ -447,6 +447,92 @@ TEST(PlanReadersTest, WhatIsWrittenIsReadAgain) {
   EXPECT_EQ(parsePlans(tree, writePlans({plan, plan}, Format::json), Format::json).at(1).positions, plan.positions);
   expectContains(refusal([&] { (void)writePlans({plan, plan}, Format::csv); }), "2 plans");
   expectContains(refusal([&] { (void)writePlans({plan}, Format::numpy); }), "not written");
+}
+
+// Parts of a file that say a place, an order or a motion, and were once passed over: the way of another plan was
+// proven.
+TEST(PlanReadersTest, NothingOfADocumentIsPassedOver) {
+  const KinematicTree tree = armTree();
+  const auto json = [&](const std::string& text, const std::string& reason) {
+    expectContains(refusalOf(tree, text, Format::json), reason);
+  };
+  json(R"({"joints": ["rail", "hinge"], "plans": [{"waypoints": [[0, 0], [0.5, 0.5]]}]})",
+       "the key 'joints' is not known");
+  const std::string order = "some rows go by name and others do not";
+  json(R"({"waypoints": [[0, 0.1], {"rail": 0.1, "hinge": 0.5}]})", "waypoint 1: " + order);
+  json(R"({"waypoints": [{"rail": 0.1, "hinge": 0.5}, [0, 0.1]]})", "waypoint 1: " + order);
+  json(R"({"from": [0, 0.1], "to": {"rail": 0.1, "hinge": 0.5}})", "waypoint 1: " + order);
+  json(R"([[0, 0.1], {"rail": 0.1, "hinge": 0.5}])", "waypoint 1: " + order);
+  json(R"({"waypoints": [[0, 0], [1, 1]], "times": [0, 1], "velocities": [{"rail": 1, "hinge": 2}]})",
+       "waypoint 0, velocities: " + order);
+  const PlanMotion ordered =
+      only(tree, R"({"joints": ["rail", "hinge"], "waypoints": [[0, 0.5], {"hinge": 1, "rail": 0.25}]})", Format::json);
+  EXPECT_EQ(ordered.waypoints[0], Eigen::Vector2d(0.5, 0));
+  EXPECT_EQ(ordered.waypoints[1], Eigen::Vector2d(1, 0.25));
+  EXPECT_EQ(only(tree, R"({"start": [0, 0], "goal": [1, 0.5]})", Format::json).waypoints[1], Eigen::Vector2d(1, 0.5));
+  json(R"({"waypoints": [[0, 0], [1, 1]], "joints": ["hinge", "rail"], "joint_names": ["rail", "hinge"]})",
+       "has both 'joints' and 'joint_names'");
+
+  const std::string joints = jointTrajectory();
+  const std::string base = R"({"joint_names": ["drive"], "points": []})";
+  json("{\"trajectory\": " + joints + ", \"multi_dof_trajectory\": " + base + "}",
+       "no planar or floating joint 'drive'");
+  json("{\"trajectory\": " + joints + ", \"planned_trajectory\": " + joints + "}",
+       "has both 'trajectory' and 'planned_trajectory'");
+  json("{\"trajectory\": " + joints + ", \"offset\": 1}", "the key 'offset' is not known");
+  json("{\"joint_trajectory\": " + joints + ", \"points\": []}", "the key 'points' is not known");
+  json("{\"units\": \"deg\", " + joints.substr(1), "the key 'units' is not known");
+  const auto start = [&](const std::string& state) {
+    return "{\"trajectory\": " + joints + ", \"trajectory_start\": " + state + "}";
+  };
+  json(start(R"({"joint_state": {"name": ["rail", "rail"], "position": [0, 1]}})"), "joint 'rail' is there twice");
+  json(start(R"({"joint_states": {}})"), "trajectory_start: the key 'joint_states' is not known");
+  const std::string scaled = R"({"positions": [0, 0], "scale": 2, )";
+  std::string point = joints;
+  json(point.replace(point.find("{\"positions\": [0, 0], "), 22, scaled), "waypoint 0: the key 'scale' is not known");
+  json(kPlain + std::string(1, '\0'), "byte 0");
+  expectThePlan(only(tree, "{\"error_code\": {\"val\": 1}, \"trajectory\": " + joints + "}", Format::json),
+                "a response");
+}
+
+TEST(PlanReadersTest, BasesOfAGoalMove) {
+  const KinematicTree tree = cartTree();
+  const std::string pose = R"({"translation": {"x": 1, "y": 2, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}})";
+  const std::string text = R"({"goal": {"trajectory": {"joint_names": ["wheel"], "points": [
+      {"positions": [0], "time_from_start": 0}, {"positions": [1], "time_from_start": 1}]},
+    "multi_dof_trajectory": {"joint_names": ["drive"], "points": [
+      {"transforms": [)" + pose +
+                           R"(], "time_from_start": 0}, {"transforms": [)" + pose + R"(], "time_from_start": 1}]}}})";
+  const Plan plan = parsePlans(tree, text, Format::json).at(0);
+  EXPECT_EQ(plan.error, "");
+  EXPECT_EQ(plan.joints, (std::vector<std::string>{"wheel", "drive/x", "drive/y", "drive/theta"}));
+  ASSERT_EQ(plan.positions.size(), 2u);
+  EXPECT_EQ(plan.positions[1], (std::vector<double>{1, 1, 2, 0}));
+}
+
+TEST(PlanReadersTest, TextsThatAreCutShortAreSaid) {
+  const KinematicTree tree = armTree();
+  const std::string note = "the last line has no line end: the file may be cut short";
+  const auto notes = [&](const std::string& text, Format format) { return only(tree, text, format).notes; };
+  for (const auto& [text, format] : {std::pair<std::string, Format>{"0 0\n0.5 0.2", Format::ompl},
+                                     {"waypoints:\n- [0, 0]\n- - 0.5\n  - 0.2", Format::yaml},
+                                     {"hinge,rail\n0,0\n0.5,0.2", Format::csv}}) {
+    EXPECT_EQ(notes(text, format), std::vector<std::string>{note}) << text;
+    EXPECT_EQ(notes(text + "\n", format), std::vector<std::string>{}) << text;
+  }
+  const std::string states = "RealVectorState [0 0]\nRealVectorState [0.25 0]\n";
+  expectContains(refusalOf(tree, "Geometric path with 3 states\n" + states, Format::ompl),
+                 "its first line says 3 states, it has 2");
+  expectContains(refusalOf(tree, "Geometric path with x states\n" + states, Format::ompl), "does not say how many");
+  expectContains(refusalOf(tree, "Geometric path with 2 states\n" + states + "Geometric path with 2 states\n" + states,
+                           Format::ompl),
+                 "line 4: a second path begins");
+  expectContains(refusalOf(tree, "RealVectorState [0]\nDiscreteState [1]\n", Format::ompl),
+                 "line 2: 'DiscreteState' is no state of joints");
+  // Its parser takes this byte for the end.
+  expectContains(refusalOf(tree, "waypoints:\n- [0, 0]\n- [0, 1]\n\x04\n- [1, 1]\n", Format::yaml),
+                 "control character");
+  expectContains(refusalOf(tree, "waypoints: [[0, 0], [010, 0]]\n", Format::yaml), "\"010\" is not a number");
 }
 
 /// Whatever the bytes: plans, or an error that says something.

@@ -72,7 +72,7 @@ TEST(IgnoredMargin, PairsThatPartNowhereAreCounted) {
       const CertifiedResult r = lane.run(way.from, way.to, ignoring(way.margin, mode));
       EXPECT_TRUE(r.isFree());
       EXPECT_EQ(r.never_apart_pairs, 1u);
-      EXPECT_EQ(textOf(r), "free: proven, but for 1 pair that parts nowhere");
+      EXPECT_EQ(textOf(r), "free: proven, but for 1 pair that never comes apart");
     }
   }
   // Without the margin the third is what it is.

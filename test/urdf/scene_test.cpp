@@ -427,6 +427,39 @@ TEST_F(SceneTest, OctoMapHoldsWhatItsHeadSays) {
   EXPECT_TRUE(load("none.bt", octomap("Octomap OcTree binary file", 0, "")).obstacles.empty());
 }
 
+TEST_F(SceneTest, OctoMapHeadsAreReadAsAWhole) {
+  const auto with = [](const std::string& from, const std::string& to) {
+    std::string text = kBinary;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  expectContains(errorOf("mm.bt", with("125\n", "125mm\n")),
+                 "a line 'res 0.000030517578125mm' in its head that OctoMap");
+  expectContains(errorOf("two.bt", with("data\n", "res 2\ndata\n")), "two lines 'res' in its head");
+  expectContains(errorOf("scale.bt", with("data\n", "scale 2\ndata\n")), "a line 'scale 2' in its head");
+  EXPECT_EQ(load("comment.bt", with("data\n", "# scale 2\n\ndata\n")).obstacles.size(), 2u);
+}
+
+// Such a node of a binary tree says that something is known of its cells, and not what.
+TEST_F(SceneTest, OctoMapNodesHaveChildrenOrAState) {
+  const std::string empty = octomap("Octomap OcTree binary file", 2, std::string("\x03\0\0\0", 4));
+  expectContains(errorOf("empty.bt", empty), "neither children nor a word on whether it is occupied");
+  expectContains(errorOf("root.bt", octomap("Octomap OcTree binary file", 1, std::string(2, '\0'))),
+                 "neither children");
+}
+
+TEST_F(SceneTest, MoveItTextWithoutObjectsIsNoted) {
+  const Scene scene = load("none.scene", "(name)\n.\n");
+  EXPECT_TRUE(scene.obstacles.empty());
+  ASSERT_EQ(scene.notes.size(), 1u);
+  expectContains(scene.notes[0], "has no object with a shape");
+}
+
+TEST_F(SceneTest, UnitsOfACommentAreNoted) {
+  const Scene scene = load("cm.obj", "# File units = centimeters\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_EQ(scene.notes.size(), 1u);
+  expectContains(scene.notes[0], "cm.obj': says '# File units = centimeters': lengths are taken for metres");
+}
+
 /// Whatever is missing at the end of a file is missed, at whatever byte it ends.
 TEST_F(SceneTest, FilesCutShortAnywhereAreRefused) {
   const std::string v = "0 0 0\n1 0 0\n0 1 0\n", facet =

@@ -97,6 +97,49 @@ TEST_F(SrdfTest, PairsComeWithTheirReasons) {
   EXPECT_EQ(all, "ab=Never ad=disable_default_collisions bd=disable_default_collisions cd= ");
 }
 
+// An enabled pair that is passed over goes unchecked.
+TEST_F(SrdfTest, WhatMaySayWhichPairsAreCheckedIsReadOrRefused) {
+  const std::string defaults = "<disable_default_collisions link='a'/>",
+                    enabled = "<enable_collisions link1='a' link2='b'/>";
+  const auto error = [&](const std::string& body) { return messageOf([&] { load(body); }); };
+  expectContains(
+      error(defaults + "<enable_collision link1='a' link2='b'/>"),
+      "line 1, <enable_collision>: in <robot> it is not understood, and may say which pairs are checked; did "
+      "you mean 'enable_collisions'?");
+  expectContains(error("<Disable_Collisions link1='a' link2='b'/>"), "did you mean 'disable_collisions'?");
+  expectContains(error(defaults + "<xacro:if value='1'>" + enabled + "</xacro:if>"), "left of xacro");
+  expectContains(error("<disable_default_collisions link='a'>" + enabled + "</disable_default_collisions>"),
+                 "<enable_collisions>");
+  expectContains(error("<disable_collisions link1='a' link2='b' margin='0.1'/>"), "'margin' is not understood");
+  expectContains(error("<collision_margins default_margin='0.01'/>"), "<collision_margins>");
+  expectContains(error(defaults + "</robot><robot>" + enabled), "a second root element");
+  expectContains(error(defaults + "</robot><!-- --><!DOCTYPE x><robot>" + enabled), "document types are not read");
+  const std::string text = "<robot name='r'>" + defaults + "</robot>" + std::string(1, '\0') + enabled;
+  expectContains(messageOf([&] { loadSrdf(write("r.srdf", text), tree_); }), "byte 0");
+  EXPECT_NO_THROW(
+      load("<group name='g'><chain base_link='a' tip_link='b'/></group><group_state name='s' group='g'/>"
+           "<end_effector name='e'/><passive_joint name='p'/><joint_property joint_name='j'/>"
+           "\\ <gripper name=\'g\'/><specificities><feet/></specificities><link_sphere_approximation link='a'><sphere "
+           "center='0 0 0' radius='1'/></link_sphere_approximation>"));
+}
+
+TEST_F(SrdfTest, ABaseThatMovesByTheFileIsNoted) {
+  const auto virtualJoint = [](const std::string& type) {
+    return "<virtual_joint name='v' type='" + type + "' parent_frame='odom' child_link='a'/>";
+  };
+  load(virtualJoint("fixed"));
+  EXPECT_TRUE(notes_.empty());
+  load(virtualJoint("planar"));
+  ASSERT_EQ(notes_.size(), 1u);
+  expectContains(notes_[0], "line 1: the robot's base is planar by its virtual_joint, and stands still here");
+  tree_.addLink("world");
+  Joint joint = Joint::fixed("floating_base", "world", "a", Eigen::Isometry3d::Identity());
+  joint.type = JointType::floating;
+  tree_.addJoint(joint);
+  load(virtualJoint("floating"));
+  EXPECT_TRUE(notes_.empty());
+}
+
 TEST_F(SrdfTest, ErrorsNameFileAndReason) {
   const auto error = [&](const std::string& body) { return messageOf([&] { load(body); }); };
   expectContains(error("<disable_collisions link1='a'/>"), "no attribute 'link2'");

@@ -168,6 +168,7 @@ TEST_F(UrdfTest, FindsMeshesByEveryKindOfPath) {
   UrdfOptions named;
   named.packages["my_robot"] = path("elsewhere");
   EXPECT_EQ(loadWith("package://my_robot/t.obj", named).geometry.at(0).source, other);
+  EXPECT_EQ(loadWith("package://my_robot//t.obj", named).geometry.at(0).source, other);  // not /t.obj
   // A package beside one of the parents.
   EXPECT_TRUE(std::filesystem::equivalent(loadWith("package://elsewhere/t.obj").geometry.at(0).source, other));
 
@@ -177,6 +178,8 @@ TEST_F(UrdfTest, FindsMeshesByEveryKindOfPath) {
   expectContains(error("package://not_here/t.obj"), "there is no package 'not_here': ");
   expectContains(error("package:///"), "names no file");
   expectContains(error("package://my_robot/"), "names no file");
+  expectContains(error("package://my_robot//"), "names no file");
+  expectContains(error("package://my_robot/" + file), "t.obj': no such file in '" + path("ws/my_robot") + "'");
   expectContains(error("../meshes"), "meshes': is a directory, not a file");
   expectContains(error("https://example.org/t.obj"), "only file:// and package:// are read");
   expectContains(error("../meshes/none.obj"), "r.urdf': link 'a'");

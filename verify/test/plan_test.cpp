@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whom a proof is about: the motion of the plan.
+#include <algorithm>
+
 #include "files.h"
 
 namespace verify::test {
@@ -29,7 +31,7 @@ class VerifyPlan : public VerifyFiles {
     try {
       Plan plan = readPlan(write("plan.csv", csv));
       plan.interpolation = kind;
-      if (!state.empty()) plan.state = readConfiguration(world_, state);
+      if (!state.empty()) plan.state = readConfiguration(world_, {}, state);
       return said(motion, plan);
     } catch (const BadInput& error) {
       return error.what();
@@ -122,13 +124,44 @@ TEST_F(VerifyPlan, SplinesAreThoseOfTheVelocities) {
 TEST_F(VerifyPlan, FromAndTo) {
   const double right = 90 * (3.14159265358979323846 / 180);
   const Motion m = motion({q(0, {0.1, right - 0.1}) + q(1, {-1})});
-  EXPECT_EQ(said(m, planBetween(world_, "0.1 -1 0", "90deg, -1, 0")), "same");
-  EXPECT_EQ(said(m, planBetween(world_, "a=0.1 b=-1", "b=-1,a=90deg")), "same");
-  EXPECT_NE(said(m, planBetween(world_, "a=0.1 b=-1", "a=90deg")), "same");
-  EXPECT_THROW(planBetween(world_, "0.1 -1", "90deg -1 0"), BadInput);
-  EXPECT_THROW(planBetween(world_, "a=0.1 -1", "a=0"), BadInput);
-  EXPECT_THROW(planBetween(world_, "a=0.1 a=1", "a=0"), BadInput);
-  EXPECT_THROW(planBetween(world_, "a=0,1", "a=0"), BadInput);
+  EXPECT_EQ(said(m, planBetween(world_, {}, "0.1 -1 0", "90deg, -1, 0")), "same");
+  EXPECT_EQ(said(m, planBetween(world_, {}, "a=0.1 b=-1", "b=-1,a=90deg")), "same");
+  EXPECT_NE(said(m, planBetween(world_, {}, "a=0.1 b=-1", "a=90deg")), "same");
+  EXPECT_THROW(planBetween(world_, {}, "0.1 -1", "90deg -1 0"), BadInput);
+  EXPECT_THROW(planBetween(world_, {}, "a=0.1 -1", "a=0"), BadInput);
+  EXPECT_THROW(planBetween(world_, {}, "a=0.1 a=1", "a=0"), BadInput);
+  EXPECT_THROW(planBetween(world_, {}, "a=0,1", "a=0"), BadInput);
+}
+
+// Values without names are those of the robot's joints, in its file's order: a world may have its variables in another.
+TEST_F(VerifyPlan, ValuesWithoutNamesAreInTheRobotsOrder) {
+  const Motion m = motion({q(0, {0.1, kStep}) + q(1, {-1})});
+  EXPECT_EQ(said(m, planBetween(world_, {"b", "a"}, "-1, 0.1", "-1, 0.7")), "same");
+  EXPECT_NE(said(m, planBetween(world_, {"b", "a"}, "0.1, -1", "0.7, -1")), "same");
+  EXPECT_EQ(said(m, planBetween(world_, {"a", "b"}, "0.1, -1", "0.7, -1")), "same");
+  EXPECT_TRUE(noted("not in the plan, standing still: 'door' 0"));
+  EXPECT_THROW(planBetween(world_, {"a", "b"}, "0.1, -1, 0", "0.7, -1, 0"), BadInput);
+  EXPECT_EQ(said(m, planBetween(world_, {"b", "a"}, "b=-1, a=0.1", "a=0.7, b=-1, door=0")), "same");
+}
+
+// No name that a world adds changes what a column means.
+TEST_F(VerifyPlan, NamesOfAWorldChangeNoColumn) {
+  World other = world_;
+  for (const auto& [from, to] : {std::pair("b", "a/velocity"), std::pair("door", "time")})
+    *std::find(other.variables.begin(), other.variables.end(), from) = to;
+  Plan plan = readPlan(write("plan.csv", "time,a,a/velocity\n0,0,0\n2,1,0.5\n"));
+  const auto same = [&](const std::string& pieces) {
+    MotionText text;
+    text.pieces = {pieces};
+    return compareWithPlan(other, readMotion(text.write(other), other), plan).differences.empty();
+  };
+  const std::string straight = q(0, {0, 1}) + q(1, {0, 0.5}) + q(2, {0, 2}), cubic = q(0, {0, 0, 2, -1});
+  plan.robot = {"a"};
+  EXPECT_TRUE(same(cubic));
+  EXPECT_FALSE(same(straight));
+  // Of a world that is no file's, names are its own.
+  plan.robot.clear();
+  EXPECT_TRUE(same(straight));
 }
 
 TEST_F(VerifyPlan, WhatIsNotInAPlanIsRefused) {

@@ -678,6 +678,36 @@ TEST(VerifyProof, HostileProofs) {
   expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");
 }
 
+// What a node looks at is counted, also where it proves nothing: partners that are ignored, triangles that hang
+// together.
+TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
+  std::string text = kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
+                     " " + hex(0) + "\ngeometry sphere " + hex(0.1) + "\n";
+  constexpr int kObstacles = 2000, kCuts = 200;
+  for (int k = 0; k < kObstacles; ++k) text += "body obstacle o 0 0 " + hex(k == 0 ? at(-1, 0, 0) : kHere) + "\n";
+  const World crowd = readWorld(text + "body link l 1 0 " + hex(kHere) + "\n");
+  MotionText m = moving({0, 1});
+  for (int k = 1; k < kObstacles; ++k)
+    m.ignored += "ignored " + std::to_string(k) + " " + std::to_string(kObstacles) + " " + hex(1) + "\n";
+  std::string nodes = sep({1, 0, 0});
+  for (int k = 0; k < 50; ++k) nodes = node(kTime, nodes, sep({1, 0, 0}));
+  const Verdict v = judge(crowd, m.write(crowd), nodes);
+  expectVerified(v);
+  EXPECT_GT(v.steps, 51u * kObstacles);
+
+  std::vector<V> points{{0, 0, 0}, {0, 0, 1}};
+  std::vector<std::array<int, 3>> fan;
+  for (int k = 0; k < 1000; ++k, points.push_back({1, 1e-3 * k, 0})) fan.push_back({0, 1, k + 2});
+  const World sheet = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
+                                hex(1) + " " + hex(0) + "\n" + meshText(points, fan, false) + boxMesh({1, 1, 1}, true) +
+                                "body obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(at(3, 0, 0)) + "\n");
+  std::string solids;
+  for (int k = 0; k < kCuts; ++k) solids += solidNode({{0, 3}});
+  const Verdict w = judge(sheet, moving({0, 1}).write(sheet), solids + sep({1, 0, 0}));
+  expectVerified(w);
+  EXPECT_GT(w.steps, 1000u * kCuts);
+}
+
 TEST(VerifyStatement, RotationsAreRotations) {
   const auto with = [](const M& m) { return kHead + "frame f 0 " + hex(m) + "\n"; };
   M mirror, stretched, sheared, nothing;

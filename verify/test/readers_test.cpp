@@ -104,6 +104,25 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
   EXPECT_THROW(compare(g, replaced(kUrdf, "0 0 0.333", "0 0 x")), BadInput);
 }
 
+// A mesh is that of its package, however many slashes there are, and that beside the file that is read: ".." after a
+// link leads where the disk says.
+TEST_F(VerifyReaders, MeshesAreWhereTheFileSays) {
+  writeMeshes([&](const std::string& name, const std::string& text) { return write(name, text); });
+  const std::string tri = "robot_pkg/meshes/tri.stl";
+  EXPECT_EQ(said(goodWorld(), replaced(kUrdf, tri, "robot_pkg//meshes/tri.stl")), "same");
+  EXPECT_THROW(compare(goodWorld(), replaced(kUrdf, tri, "robot_pkg/" + folder_ + "/" + tri)), BadInput);
+  EXPECT_THROW(compare(goodWorld(), replaced(kUrdf, tri, "robot_pkg///")), BadInput);
+  const std::string here = replaced(kUrdf, "package://elsewhere/quad.obj", "quad.obj");
+  write("real/robot.urdf", here);
+  write("real/quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1.5 0\nv 0 1 0\nf 1 2 3 4\n");
+  write("real/inside/none", "");
+  write("links/quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  std::filesystem::create_symlink("../real/inside", folder_ + "/links/inside");
+  EXPECT_TRUE(compareWithUrdf(readWorld(goodWorld()), folder_ + "/links/inside/../robot.urdf",
+                              {{"robot_pkg", folder_ + "/robot_pkg"}})
+                  .differences.empty());
+}
+
 TEST_F(VerifyReaders, VariablesOfTheWorldAreThoseOfTheJoints) {
   const std::string ball = "<collision><geometry><sphere radius='0.5'/></geometry></collision>";
   const auto urdf = [&](const std::string& type) {

@@ -162,6 +162,51 @@ TEST_F(VerifyUrdf, NothingElseMovesAsTheRobotDoes) {
   EXPECT_NE(said(world("variable j\nvariable p\nvariable q\n", "rotate 0\n", "", ""), urdf), "same");
 }
 
+// A root that must stand somewhere stands there: no element takes it elsewhere, but those of a floating base.
+TEST_F(VerifyUrdf, ARootWithABaseStandsStill) {
+  const std::string path = write("robot.urdf", axisUrdf("revolute", "0 0 1"));
+  std::string variables = "variable j\nvariable p\n";
+  for (const char* v : {"trans_x", "trans_y", "trans_z", "rot_x", "rot_y", "rot_z"})
+    variables += std::string("variable floating_base/") + v + "\n";
+  const auto said = [&](const std::string& above, const std::string& root, const std::vector<double>& base) {
+    const Comparison c = compareWithUrdf(
+        readWorld(kHead + variables + frame("mount", 0, above) + frame("a", 1, root) +
+                  frame("b", 2, element("turn", Z, 0)) + kSphere + body("link", "a", 2) + body("link", "b", 3)),
+        path, {}, {}, base);
+    return c.differences.empty() ? c.notes.at(0) : c.differences[0];
+  };
+  const std::vector<double> origin(6, 0);
+  const std::string lifted = element("slide", Z, 1, 0, 5), stands = "root link 'a' stands still in the world",
+                    freely = element("slide", X, 2) + element("slide", {0, 1, 0}, 3) + element("slide", Z, 4);
+  EXPECT_EQ(said("", "", origin), stands);
+  for (const std::string& moved : {lifted, element("slide", Z, 1), element("turn", Z, 1)}) {
+    EXPECT_NE(said(moved, "", origin).find("which neither the file nor --base says"), std::string::npos);
+    EXPECT_NE(said("", moved, origin).find("which neither the file nor --base says"), std::string::npos);
+  }
+  EXPECT_EQ(said("", lifted, {}), "root link 'a' moves in the world, not at the world's origin, by 'p'");
+  EXPECT_NE(said("", freely + "rotate 5\n", origin).find("moves in the world, by 'floating_base/"), std::string::npos);
+  EXPECT_NE(said(freely + "rotate 5\n", "", origin).find("neither"), std::string::npos);
+  EXPECT_NE(said("", freely, origin).find("neither"), std::string::npos);
+  EXPECT_NE(
+      said("", element("slide", Z, 2) + element("slide", {0, 1, 0}, 3) + element("slide", Z, 4) + "rotate 5\n", origin)
+          .find("another axis"),
+      std::string::npos);
+}
+
+// They are those of a list of values without names.
+TEST_F(VerifyUrdf, VariablesAreInTheFilesOrder) {
+  const std::string urdf =
+      robot(link("a") + link("b") + link("c") + link("d") + link("e") +
+            joint("last", "revolute", "c", "d", "<axis xyz='0 0 1'/>") + joint("none", "fixed", "a", "b") +
+            joint("flat", "planar", "b", "c", "<axis xyz='0 0 1'/>") +
+            joint("same", "revolute", "d", "e", "<axis xyz='0 0 1'/><mimic joint='last'/>"));
+  const std::string world = axisWorld("turn", Z);  // another robot's
+  EXPECT_EQ(compare(world, urdf).variables, (std::vector<std::string>{"last", "flat/x", "flat/y", "flat/theta"}));
+  EXPECT_EQ(compare(world, replaced(urdf, "planar", "floating")).variables,
+            (std::vector<std::string>{"last", "flat/trans_x", "flat/trans_y", "flat/trans_z", "flat/rot_x",
+                                      "flat/rot_y", "flat/rot_z", "flat/rot_w"}));
+}
+
 TEST_F(VerifyUrdf, NoBodyIsLeftOver) {
   const std::string urdf = axisUrdf("revolute", "0 0 1"), good = axisWorld("turn", Z);
   EXPECT_EQ(said(good + body("obstacle", "o", 0) + body("carried", "c", 2), urdf), "same");
@@ -241,6 +286,19 @@ TEST_F(VerifyMeshes, TrianglesCountWithOrientationAndMultiplicity) {
     EXPECT_NE(saidOf(meshText(two, twice, solid), "m.obj", file), "same");
   }
   EXPECT_NE(saidOf(meshText(two, with(inner), false), "m.obj", file, "1 1 1.0000000000000002"), "same");
+}
+
+// Where a line goes on, it is one: what readers may take for a vertex or a face by itself is refused.
+TEST_F(VerifyMeshes, FacesDoNotHideInNames) {
+  using T = std::vector<std::array<int, 3>>;
+  const std::vector<V> four{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::string mesh = meshText({four[0], four[1], four[2]}, T{{0, 1, 2}}, false);
+  const std::vector<V> three(four.begin(), four.begin() + 3);
+  EXPECT_EQ(saidOf(mesh, "t.obj", obj(three, "f 1 \\\n 2 3\no name \\\n of two lines\n")), "same");
+  for (const char* hidden : {"o name \\\nf 1 3 2\n", "o name\\\n\tf 1 3 2\n", "o a \\\n b \\\nv 0 0 1\n"})
+    EXPECT_NE(saidOf(mesh, "t.obj", obj(three, std::string("f 1 2 3\n") + hidden)).find("may be one by itself"),
+              std::string::npos)
+        << hidden;
 }
 
 TEST_F(VerifyMeshes, FacesOfManyCorners) {
@@ -422,6 +480,13 @@ TEST_F(VerifyUrdf, WhatIsNotKnownIsRefused) {
   }
   EXPECT_NE(said(world, urdf + "<robot name='other'/>"), "same");
   EXPECT_NE(said(world, urdf + "text"), "same");
+  // Numbers that are no character: what follows one in an attribute would not be seen.
+  for (const char* number : {"&#0;", "&#x0;", "&#0000;", "&#x100000000;", "&#x110000;"})
+    EXPECT_NE(
+        said(world, replaced(urdf, "rpy='0 0 0'", std::string("rpy='0 0 0") + number + "5'")).find("no character"),
+        std::string::npos)
+        << number;
+  EXPECT_EQ(said(world, replaced(urdf, "rpy='0 0 0'", "rpy='&#48; &#x30; 0'")), "same");
   EXPECT_NE(said(world, urdf + std::string(1, '\0') + "<robot name='other'/>"), "same");
   EXPECT_EQ(said(world, "<?xml version='1.0'?><!-- for people -->\n" + urdf + "\n"), "same");
 }

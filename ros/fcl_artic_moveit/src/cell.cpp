@@ -86,7 +86,7 @@ Cell::Cell(moveit::core::RobotModelConstPtr model) : model_(std::move(model)) {
 }
 
 void Cell::readRobot() {
-  robot_ = toTree(*model_, mounts_);
+  robot_ = toTree(*model_, mounts_, standing_);
   manager_ = std::make_unique<fcl_artic::ArticulatedCollisionManager>(robot_.tree);
   registered_.clear();
   body_margins_.clear();
@@ -118,6 +118,11 @@ std::shared_ptr<fcl::CollisionGeometryd> Cell::geometryOf(const shapes::ShapeCon
     }
   }
   return known.second;
+}
+
+double Cell::paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const {
+  if (a.link >= 0 && b.link >= 0) return 0;
+  return std::max(names_.at(a.name).second, names_.at(b.name).second);  // an object has none
 }
 
 std::string Cell::unused(const std::string& name) {
@@ -305,7 +310,13 @@ void Cell::update(const CollisionEnv& env, const AllowedCollisionMatrix& acm, co
   }
   std::vector<Body> bodies = linkBodies(env, group);
   addAttached(env, state, group, bodies);
-  if (separate(bodies, acm)) readRobot();
+  std::set<std::string> standing;
+  for (const moveit::core::JointModel* joint : model_->getJointModels()) {
+    if (joint->getMimic() && !movesWith(group, *joint)) standing.insert(joint->getName());
+  }
+  const bool stand = standing == standing_;
+  standing_ = std::move(standing);
+  if (separate(bodies, acm) || !stand) readRobot();
 
   // Links whose shapes are apart become as many bodies; names in the manager are given in a fixed order.
   std::vector<Body> all;
@@ -332,7 +343,7 @@ void Cell::update(const CollisionEnv& env, const AllowedCollisionMatrix& acm, co
     all.push_back(std::move(body));
   }
   names_.clear();
-  for (const Body& body : all) names_[body.name] = body.moveit;
+  for (const Body& body : all) names_[body.name] = {body.moveit, body.padding};
 
   registerBodies(all);
   setPairs(all, acm);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl_artic_moveit/certifier.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include <geometric_shapes/shapes.h>
+#include <moveit/robot_state/attached_body.hpp>
 
 namespace fcl_artic_moveit {
 namespace {
@@ -73,6 +78,20 @@ std::ostream& operator<<(std::ostream& out, const BodyName& body) {
   return out << kind[body.kind] << " '" << body.id << '\'';
 }
 
+/// A contact's pair, and what became of it.
+void tell(std::ostream& out, const Verdict& verdict, const Verdict::Contact& contact) {
+  out << contact.body1 << " and " << contact.body2;
+  if (contact.padding + verdict.margin == 0) {
+    out << (contact.certain ? " touch" : " come so near that contact can't be excluded");
+    return;
+  }
+  out << (contact.certain ? " come nearer than " : " come so near that it can't be excluded that they are nearer than ")
+      << contact.padding + verdict.margin << " m";
+  if (contact.padding > 0) out << " (padding " << contact.padding << " m";
+  if (verdict.margin > 0) out << (contact.padding > 0 ? ", margin " : " (margin ") << verdict.margin << " m";
+  out << ')';
+}
+
 std::string messageOf(const Verdict& verdict, const std::string& frame) {
   std::ostringstream out;
   out.precision(6);
@@ -84,49 +103,142 @@ std::string messageOf(const Verdict& verdict, const std::string& frame) {
       if (verdict.pairs == 0) out << "; no pair of bodies was to be checked";
       break;
     case Status::contact: {
-      const Verdict::Contact& contact = verdict.contact;
-      out << contact.body1 << " and " << contact.body2;
-      if (verdict.certain) {
-        out << " touch";
-      } else {
-        out << " come so near that contact can't be excluded";
-      }
-      out << " at t = " << verdict.t_lower << unit << ", after waypoint " << contact.waypoint << " of "
+      const Verdict::Contact& contact = verdict.contacts.at(0);
+      tell(out, verdict, contact);
+      out << " at t = " << verdict.t_lower << unit << ", after waypoint " << verdict.waypoint << " of "
           << verdict.waypoints << " (counted from 0; " << toString(verdict.interpolation) << " between them), at "
-          << contact.point.transpose() << " in '" << frame << "', normal " << contact.normal.transpose()
-          << ". The motion is proven free before. Waypoints that are valid exclude no "
-          << "contact between them: plan again with a finer longest_valid_segment_fraction or with padding, or allow "
-          << "the pair in the allowed collision matrix if it may touch.";
+          << contact.point.transpose() << " in '" << frame << "', normal " << contact.normal.transpose() << ", with";
+      for (const auto& [name, value] : verdict.joints) out << ' ' << name << " = " << value;
+      out << ". The motion is proven free before.";
+      for (std::size_t i = 1; i < verdict.contacts.size(); ++i) {
+        out << (i == 1 ? " Until the next waypoint also: " : "; ");
+        tell(out, verdict, verdict.contacts[i]);
+        out << " at t = " << verdict.contacts[i].t;
+        if (i + 1 == verdict.contacts.size()) out << '.';
+      }
+      out << " Waypoints that are valid exclude no contact between them: plan again with a finer "
+          << "longest_valid_segment_fraction or with padding, or allow the pair in the allowed collision matrix if it "
+          << "may touch.";
       break;
     }
     case Status::undecided:
-      out << "undecided: the budget ran out; the motion is proven free until t = " << verdict.t_lower << unit
-          << ". Raise the parameter `budget`; 0 is no limit.";
+      out << "undecided: " << (verdict.out_of_time ? "the time" : "the budget")
+          << " ran out; the motion is proven free until t = " << verdict.t_lower << unit << ". "
+          << (verdict.out_of_time ? "Raise `allowed_planning_time` or the parameter `time_limit`."
+                                  : "Raise the parameter `budget`; 0 is no limit.");
       break;
   }
   return out.str();
 }
 
-}  // namespace
+void requireDistance(const char* what, double value, const char* unit) {
+  if (std::isfinite(value) && value >= 0) return;
+  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(value) + unit + " is not 0 or more");
+}
 
-Certifier::Certifier(CertifierOptions options) : options_(std::move(options)) {
-  if (!std::isfinite(options_.margin) || options_.margin < 0) {
-    throw std::invalid_argument("the margin " + std::to_string(options_.margin) + " m is not 0 or more");
+Verdict::Contact contactOf(const Cell& cell, const fcl_artic::CertifiedContact& from, double t, bool certain) {
+  Verdict::Contact out;
+  out.body1 = cell.nameOf(from.body1);
+  out.body2 = cell.nameOf(from.body2);
+  out.t = t;
+  out.certain = certain;
+  out.point = from.point;
+  out.normal = from.normal;
+  out.padding = cell.paddingBetween(from.body1, from.body2);
+  return out;
+}
+
+bool sameBodies(const Verdict::Contact& a, const Verdict::Contact& b) {
+  const auto is = [](const BodyName& one, const BodyName& other) {
+    return one.kind == other.kind && one.id == other.id;
+  };
+  return (is(a.body1, b.body1) && is(a.body2, b.body2)) || (is(a.body1, b.body2) && is(a.body2, b.body1));
+}
+
+/// The first contacts of the other pairs that touch between the two waypoints of the first one.
+void addOthers(const Cell& cell, const Motion& motion, fcl_artic::CertifiedRequest request, Verdict& verdict) {
+  constexpr std::size_t kMost = 1000;
+  const std::size_t k = std::min(verdict.waypoint, motion.trajectory.numPieces() - 1);
+  request.mode = fcl_artic::ContactMode::firstOfEveryPair;
+  request.max_contacts = kMost;
+  const double begin = motion.trajectory.times()[k], duration = motion.trajectory.times()[k + 1] - begin;
+  const fcl_artic::CertifiedResult result = cell.manager().continuousCollide(motion.trajectory.piece(k), request);
+  for (const fcl_artic::CertifiedContact& one : result.contacts) {
+    Verdict::Contact contact = contactOf(cell, one, begin + one.t_lower * duration, one.certain);
+    const auto known = [&](const Verdict::Contact& other) { return sameBodies(contact, other); };
+    if (std::none_of(verdict.contacts.begin(), verdict.contacts.end(), known)) {
+      verdict.contacts.push_back(std::move(contact));
+    }
   }
 }
 
+Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajectory, const CertifierOptions& options) {
+  using Clock = std::chrono::steady_clock;
+  const Motion motion = toMotion(cell.robot(), trajectory, options.motion);
+  Verdict verdict;
+  fcl_artic::CertifiedRequest request;
+  request.added_margin = options.margin;
+  request.work_budget = options.budget;
+  const Clock::time_point begin = Clock::now();
+  if (options.time_limit > 0) {
+    request.progress = [&](double) {
+      if (Clock::now() - begin <= std::chrono::duration<double>(options.time_limit)) return true;
+      verdict.out_of_time = true;
+      return false;
+    };
+  }
+  const fcl_artic::CertifiedResult result = cell.manager().continuousCollide(motion.trajectory, request);
+  static_cast<fcl_artic::Bracket&>(verdict) = result;
+  verdict.interpolation = motion.interpolation;
+  verdict.timed = motion.timed;
+  verdict.waypoints = trajectory.getWayPointCount();
+  verdict.pairs = result.statistics.pairs;
+  verdict.notes = motion.notes;
+  verdict.margin = options.margin;
+  if (const fcl_artic::CertifiedContact* first = result.first()) {
+    verdict.waypoint = motion.waypointBefore(result.t_lower);
+    verdict.contacts.push_back(contactOf(cell, *first, result.t_lower, result.certain));
+    const fcl_artic::KinematicTree& tree = *cell.robot().tree;
+    const Eigen::VectorXd q = motion.trajectory.configuration(result.t_lower);
+    for (int v = 0; v < tree.dof(); ++v) {
+      const std::string& joint = tree.joint(tree.variableJoint(v)).name;
+      if (!movesWith(trajectory.getGroup(), *trajectory.getRobotModel()->getJointModel(joint))) continue;
+      verdict.joints.emplace_back(tree.variableName(v), q[v]);
+    }
+    addOthers(cell, motion, request, verdict);
+  }
+  verdict.message = messageOf(verdict, trajectory.getRobotModel()->getModelFrame());
+  return verdict;
+}
+
+}  // namespace
+
+void CertifierOptions::check() const {
+  requireDistance("the margin", margin, " m");
+  requireDistance("the mimic tolerance", motion.mimic_tolerance, "");
+  requireDistance("the time limit", time_limit, " s");
+}
+
+Certifier::Certifier() = default;
 Certifier::~Certifier() = default;
+
+Verdict Certifier::certify(const planning_scene::PlanningScene& scene,
+                           const robot_trajectory::RobotTrajectory& trajectory, const CertifierOptions& options) const {
+  return certify(*scene.getCollisionEnv(), scene.getAllowedCollisionMatrix(), trajectory, &scene.getCurrentState(),
+                 options);
+}
 
 Verdict Certifier::certify(const collision_detection::CollisionEnv& env,
                            const collision_detection::AllowedCollisionMatrix& acm,
-                           const robot_trajectory::RobotTrajectory& trajectory,
-                           const moveit::core::RobotState* start) const {
+                           const robot_trajectory::RobotTrajectory& trajectory, const moveit::core::RobotState* start,
+                           const CertifierOptions& options) const {
+  options.check();
   requireSameBodies(trajectory);
   if (start) requireBodiesOf(*start, trajectory.getWayPoint(0));
   std::unique_ptr<Cell> cell = idleCell(trajectory.getRobotModel());
   cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup());  // if this throws, the cell goes
   try {
-    Verdict verdict = answer(*cell, trajectory);
+    Verdict verdict = answer(*cell, trajectory, options);
     giveBack(std::move(cell));
     return verdict;
   } catch (...) {
@@ -150,32 +262,6 @@ std::unique_ptr<Cell> Certifier::idleCell(const moveit::core::RobotModelConstPtr
 void Certifier::giveBack(std::unique_ptr<Cell> cell) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   idle_.push_back(std::move(cell));
-}
-
-Verdict Certifier::answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajectory) const {
-  const Motion motion = toMotion(cell.robot(), trajectory, options_.motion);
-
-  fcl_artic::CertifiedRequest request;
-  request.added_margin = options_.margin;
-  request.work_budget = options_.budget;
-  const fcl_artic::CertifiedResult result = cell.manager().continuousCollide(motion.trajectory, request);
-
-  Verdict verdict;
-  static_cast<fcl_artic::Bracket&>(verdict) = result;
-  verdict.interpolation = motion.interpolation;
-  verdict.timed = motion.timed;
-  verdict.waypoints = trajectory.getWayPointCount();
-  verdict.pairs = result.statistics.pairs;
-  verdict.notes = motion.notes;
-  if (const fcl_artic::CertifiedContact* first = result.first()) {
-    verdict.contact.body1 = cell.nameOf(first->body1);
-    verdict.contact.body2 = cell.nameOf(first->body2);
-    verdict.contact.waypoint = motion.waypointBefore(result.t_lower);
-    verdict.contact.point = first->point;
-    verdict.contact.normal = first->normal;
-  }
-  verdict.message = messageOf(verdict, trajectory.getRobotModel()->getModelFrame());
-  return verdict;
 }
 
 }  // namespace fcl_artic_moveit

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The node part: parameters, the planning scene, error codes, markers. What is decided is decided in certifier.cpp.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <class_loader/class_loader.hpp>
 #include <moveit/planning_interface/planning_response_adapter.hpp>
@@ -18,15 +23,130 @@ namespace fcl_artic_moveit {
 namespace {
 
 constexpr const char* kName = "CertifySolution";
+constexpr double kMostBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
 
-/// The parameter's value, declared by whoever comes first.
-template <class T>
-T parameter(rclcpp::Node& node, const std::string& name, const T& fallback) {
-  if (!node.has_parameter(name)) return node.declare_parameter<T>(name, fallback);
-  T value = fallback;
-  node.get_parameter(name, value);
-  return value;
-}
+/// What the parameters say.
+struct Settings {
+  CertifierOptions certifier;
+  bool refuse_undecided = true;
+};
+
+/// The adapter's parameters on a node, below a prefix. All but the topic may be set while the node runs, and are read
+/// anew for each plan.
+class Parameters {
+ public:
+  /// Declares them, with what the node's YAML files say of them.
+  /// @throws std::invalid_argument, rclcpp's exceptions, naming the parameter.
+  Parameters(rclcpp::Node& node, std::string prefix) : node_(node), prefix_(std::move(prefix)) {
+    declare("interpolation", rclcpp::ParameterValue("auto"),
+            "what lies between two waypoints: auto, linear, cubic, quintic, jtc, jtc-none");
+    declare("turns", rclcpp::ParameterValue("ask"),
+            "steps of half a turn or more of joints that turn forever: ask, given, shortest");
+    declare("margin", rclcpp::ParameterValue(0.0), "m that every pair has to keep beyond the padding", 0);
+    declare("mimic_tolerance", rclcpp::ParameterValue(1e-3),
+            "rad or m by which a mimic joint of the group may be off from where its master has it", 0);
+    declare("budget", rclcpp::ParameterValue(std::int64_t{0}), "tests after which a plan is undecided; 0: no limit", 0);
+    declare("time_limit", rclcpp::ParameterValue(0.0),
+            "s after which a plan is undecided; 0: the request's allowed_planning_time", 0);
+    declare("on_undecided", rclcpp::ParameterValue("refuse"), "refuse, or warn and let the plan pass");
+    declare("display_contacts_topic", rclcpp::ParameterValue("display_contacts"),
+            "topic of the visualization_msgs/MarkerArray; empty: none", -1, true);
+    (void)settings();
+    guard_ = node.add_on_set_parameters_callback([this](const std::vector<rclcpp::Parameter>& changed) {
+      rcl_interfaces::msg::SetParametersResult result;
+      result.successful = true;
+      const auto own = [this](const rclcpp::Parameter& one) { return one.get_name().rfind(prefix_, 0) == 0; };
+      if (std::none_of(changed.begin(), changed.end(), own)) return result;
+      try {
+        (void)settings(changed);
+      } catch (const std::exception& error) {
+        result.successful = false;
+        result.reason = error.what();
+      }
+      return result;
+    });
+  }
+
+  /// @param changed  values that count before the node's.
+  /// @throws std::invalid_argument naming parameter and value.
+  Settings settings(const std::vector<rclcpp::Parameter>& changed = {}) const {
+    Settings out;
+    try {
+      out.certifier.motion.interpolation = interpolationNamed(text("interpolation", changed));
+      out.certifier.motion.turns = turnsNamed(text("turns", changed));
+      out.certifier.margin = number("margin", changed);
+      out.certifier.motion.mimic_tolerance = number("mimic_tolerance", changed);
+      out.certifier.time_limit = number("time_limit", changed);
+      out.certifier.check();
+      const double budget = number("budget", changed);
+      if (!(budget >= 0 && budget <= kMostBudget) || budget != std::floor(budget)) {
+        throw std::invalid_argument("budget is " + std::to_string(budget) + "; it has to be a whole number, 0 or more");
+      }
+      out.certifier.budget = static_cast<std::uint64_t>(budget);
+      const std::string on_undecided = text("on_undecided", changed);
+      if (on_undecided != "refuse" && on_undecided != "warn") {
+        throw std::invalid_argument("'" + on_undecided + "' is no value of on_undecided: refuse, warn are");
+      }
+      out.refuse_undecided = on_undecided == "refuse";
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("parameters " + prefix_ + "*: " + error.what());
+    }
+    return out;
+  }
+  std::string topic() const { return text("display_contacts_topic", {}); }
+
+ private:
+  /// @param least  of a number; below 0: of a text.
+  void declare(const std::string& name, rclcpp::ParameterValue value, const std::string& description, double least = -1,
+               bool read_only = false) {
+    rcl_interfaces::msg::ParameterDescriptor descriptor;
+    descriptor.description = description;
+    descriptor.read_only = read_only;
+    if (value.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE) {
+      descriptor.dynamic_typing = true;  // YAML's `margin: 0` is an integer
+      descriptor.floating_point_range.resize(1);
+      descriptor.floating_point_range[0].from_value = least;
+      descriptor.floating_point_range[0].to_value = std::numeric_limits<double>::max();
+    } else if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) {
+      descriptor.integer_range.resize(1);
+      descriptor.integer_range[0].from_value = static_cast<std::int64_t>(least);
+      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMostBudget);
+    }
+    const std::string full = prefix_ + name;
+    if (!node_.has_parameter(full)) {
+      node_.declare_parameter(full, value, descriptor);
+      return;
+    }
+    // move_group declares all that its YAML files have, without descriptions.
+    const rcl_interfaces::msg::ParameterDescriptor before = node_.describe_parameter(full);
+    if (!before.dynamic_typing || before.read_only) return;
+    value = node_.get_parameter(full).get_parameter_value();
+    node_.undeclare_parameter(full);
+    node_.declare_parameter(full, value, descriptor, true);
+  }
+
+  rclcpp::Parameter parameter(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
+    for (const rclcpp::Parameter& one : changed) {
+      if (one.get_name() == prefix_ + name) return one;
+    }
+    return node_.get_parameter(prefix_ + name);
+  }
+  std::string text(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
+    const rclcpp::Parameter value = parameter(name, changed);
+    if (value.get_type() == rclcpp::ParameterType::PARAMETER_STRING) return value.as_string();
+    throw std::invalid_argument(name + " is " + value.value_to_string() + ", no text");
+  }
+  double number(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
+    const rclcpp::Parameter value = parameter(name, changed);
+    if (value.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE) return value.as_double();
+    if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) return static_cast<double>(value.as_int());
+    throw std::invalid_argument(name + " is " + value.value_to_string() + ", no number");
+  }
+
+  rclcpp::Node& node_;
+  const std::string prefix_;
+  rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr guard_;
+};
 
 geometry_msgs::msg::Point toPoint(const Eigen::Vector3d& p) {
   geometry_msgs::msg::Point out;
@@ -50,88 +170,83 @@ visualization_msgs::msg::Marker redMarker(const std::string& frame, const rclcpp
   return marker;
 }
 
-/// What was shown before goes; of a contact: a ball where it is, an arrow along the normal, the two names.
-visualization_msgs::msg::MarkerArray markersOf(const Verdict& verdict, const std::string& frame,
+/// What was shown before goes; of each contact: a ball where it is, an arrow along the normal, the two names.
+visualization_msgs::msg::MarkerArray markersOf(const std::vector<Verdict::Contact>& contacts, const std::string& frame,
                                                const rclcpp::Time& now) {
   using visualization_msgs::msg::Marker;
   visualization_msgs::msg::MarkerArray out;
   Marker clear;
   clear.action = Marker::DELETEALL;
   out.markers.push_back(clear);
-  if (verdict.status != fcl_artic::Status::contact) return out;
-  const Verdict::Contact& contact = verdict.contact;
-  Marker ball = redMarker(frame, now, 0, Marker::SPHERE);
-  ball.pose.position = toPoint(contact.point);
-  ball.scale.x = ball.scale.y = ball.scale.z = 0.02;
-  Marker arrow = redMarker(frame, now, 1, Marker::ARROW);
-  arrow.points = {toPoint(contact.point), toPoint(contact.point + 0.1 * contact.normal)};
-  arrow.scale.x = 0.008;
-  arrow.scale.y = 0.016;
-  Marker text = redMarker(frame, now, 2, Marker::TEXT_VIEW_FACING);
-  text.pose.position = toPoint(contact.point + Eigen::Vector3d(0, 0, 0.05));
-  text.scale.z = 0.03;
-  text.text = contact.body1.id + " - " + contact.body2.id;
-  out.markers.insert(out.markers.end(), {ball, arrow, text});
+  for (const Verdict::Contact& contact : contacts) {
+    const int id = static_cast<int>(out.markers.size());
+    Marker ball = redMarker(frame, now, id, Marker::SPHERE);
+    ball.pose.position = toPoint(contact.point);
+    ball.scale.x = ball.scale.y = ball.scale.z = 0.02;
+    Marker arrow = redMarker(frame, now, id + 1, Marker::ARROW);
+    arrow.points = {toPoint(contact.point), toPoint(contact.point + 0.1 * contact.normal)};
+    arrow.scale.x = 0.008;
+    arrow.scale.y = 0.016;
+    Marker text = redMarker(frame, now, id + 2, Marker::TEXT_VIEW_FACING);
+    text.pose.position = toPoint(contact.point + Eigen::Vector3d(0, 0, 0.05));
+    text.scale.z = 0.03;
+    text.text = contact.body1.id + " - " + contact.body2.id;
+    out.markers.insert(out.markers.end(), {ball, arrow, text});
+  }
   return out;
 }
 
 }  // namespace
 
-/// Response adapter that refuses solutions that are not certified free of contact, between waypoints too.
-///
-/// Parameters, below the pipeline's namespace, in `certify_solution`: `interpolation` (auto), `turns` (ask), `margin`
-/// (0.0 m), `budget` (0: no limit), `on_undecided` (refuse; warn), `display_contacts_topic` (display_contacts; empty:
-/// none). README.md says what they mean.
+/// Response adapter that refuses solutions that are not certified free of contact, between waypoints too. Its
+/// parameters stand below the pipeline's namespace, in `certify_solution`; README.md says what they mean.
 class CertifySolution : public planning_interface::PlanningResponseAdapter {
  public:
   CertifySolution() : logger_(moveit::getLogger("fcl_artic.certify_solution")) {}
 
-  /// @throws std::invalid_argument naming the parameter's value.
+  /// @throws std::invalid_argument naming the parameter and its value.
   void initialize(const rclcpp::Node::SharedPtr& node, const std::string& parameter_namespace) override {
-    const std::string prefix = (parameter_namespace.empty() ? "" : parameter_namespace + ".") + "certify_solution.";
-    CertifierOptions options;
-    options.motion.interpolation = interpolationNamed(parameter<std::string>(*node, prefix + "interpolation", "auto"));
-    options.motion.turns = turnsNamed(parameter<std::string>(*node, prefix + "turns", "ask"));
-    options.margin = parameter<double>(*node, prefix + "margin", 0.0);
-    const auto budget = parameter<int64_t>(*node, prefix + "budget", 0);
-    if (budget < 0) throw std::invalid_argument(prefix + "budget is " + std::to_string(budget) + ", below 0");
-    options.budget = static_cast<std::uint64_t>(budget);
-    const auto on_undecided = parameter<std::string>(*node, prefix + "on_undecided", "refuse");
-    if (on_undecided != "refuse" && on_undecided != "warn") {
-      throw std::invalid_argument("'" + on_undecided + "' is no value of " + prefix + "on_undecided: refuse, warn are");
-    }
-    refuse_undecided_ = on_undecided == "refuse";
-    const auto topic = parameter<std::string>(*node, prefix + "display_contacts_topic", "display_contacts");
+    parameters_.reset();
+    auto parameters = std::make_unique<Parameters>(
+        *node, (parameter_namespace.empty() ? "" : parameter_namespace + ".") + "certify_solution.");
+    const std::string topic = parameters->topic();
     if (!topic.empty()) {
       publisher_ = node->create_publisher<visualization_msgs::msg::MarkerArray>(topic, rclcpp::SystemDefaultsQoS());
     }
-    clock_ = node->get_clock();
-    certifier_ = std::make_unique<Certifier>(options);
+    node_ = node;
+    parameters_ = std::move(parameters);
   }
 
   [[nodiscard]] std::string getDescription() const override { return kName; }
 
   void adapt(const planning_scene::PlanningSceneConstPtr& scene, const planning_interface::MotionPlanRequest& request,
              planning_interface::MotionPlanResponse& response) const override {
-    if (!certifier_) return refuse(response, "initialize() was not called");
-    if (!scene) return refuse(response, "there is no planning scene");
-    if (!response.trajectory) return refuse(response, "there is no trajectory");
+    std::vector<Verdict::Contact> contacts;
     try {
+      if (!parameters_) throw std::invalid_argument("initialize() was not called");
+      if (!scene) throw std::invalid_argument("there is no planning scene");
+      if (!response.trajectory) throw std::invalid_argument("there is no trajectory");
+      Settings settings = parameters_->settings();
+      if (settings.certifier.time_limit == 0)
+        settings.certifier.time_limit = std::max(0.0, request.allowed_planning_time);
       // As planners begin: the scene's state, and what the request says of it.
       const moveit::core::RobotStatePtr start = scene->getCurrentStateUpdated(request.start_state);
-      const Verdict verdict = certifier_->certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
-                                                  *response.trajectory, start.get());
+      const Verdict verdict = certifier_.certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
+                                                 *response.trajectory, start.get(), settings.certifier);
       for (const std::string& note : verdict.notes) RCLCPP_WARN(logger_, "%s", note.c_str());
-      if (publisher_) publisher_->publish(markersOf(verdict, scene->getPlanningFrame(), clock_->now()));
+      contacts = verdict.contacts;
       if (verdict.isFree()) {
         RCLCPP_INFO(logger_, "%s", verdict.message.c_str());
-      } else if (verdict.status == fcl_artic::Status::undecided && !refuse_undecided_) {
+      } else if (verdict.status == fcl_artic::Status::undecided && !settings.refuse_undecided) {
         RCLCPP_WARN(logger_, "%s", verdict.message.c_str());
       } else {
         refuse(response, verdict.message);
       }
     } catch (const std::exception& error) {
       refuse(response, std::string("the trajectory is not certified: ") + error.what());
+    }
+    if (publisher_) {
+      publisher_->publish(markersOf(contacts, scene ? scene->getPlanningFrame() : "", node_->get_clock()->now()));
     }
   }
 
@@ -144,10 +259,10 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
   }
 
   rclcpp::Logger logger_;
+  rclcpp::Node::SharedPtr node_;
   rclcpp::Publisher<visualization_msgs::msg::MarkerArray>::SharedPtr publisher_;
-  rclcpp::Clock::SharedPtr clock_;
-  std::unique_ptr<const Certifier> certifier_;
-  bool refuse_undecided_ = true;
+  std::unique_ptr<const Parameters> parameters_;
+  Certifier certifier_;
 };
 
 }  // namespace fcl_artic_moveit

@@ -23,10 +23,9 @@ constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kNearHalfTurn = 2e-6;  // cosine of half the angle between quaternions, below which no sense is sure
 constexpr double kSame = 1e-6;          // rad or m: within it a joint outside the group counts as standing still
 
-const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
-                                                                         {"linear", Interpolation::linear},
-                                                                         {"cubic", Interpolation::cubic},
-                                                                         {"quintic", Interpolation::quintic}};
+const std::vector<std::pair<const char*, Interpolation>> kInterpolations{
+    {"auto", Interpolation::automatic},  {"linear", Interpolation::linear}, {"cubic", Interpolation::cubic},
+    {"quintic", Interpolation::quintic}, {"jtc", Interpolation::jtc},       {"jtc-none", Interpolation::jtc_none}};
 const std::vector<std::pair<const char*, Turns>> kTurns{
     {"ask", Turns::ask}, {"given", Turns::given}, {"shortest", Turns::shortest}};
 
@@ -67,17 +66,26 @@ std::vector<bool> variablesOf(const RobotTree& robot, const RobotTrajectory& tra
 }
 
 std::vector<VectorXd> waypointsOf(const RobotTree& robot, const RobotTrajectory& trajectory,
-                                  const std::vector<bool>& in_group) {
+                                  const std::vector<bool>& in_group, double mimic_tolerance,
+                                  std::vector<std::string>& notes) {
+  const moveit::core::RobotModel& model = *trajectory.getRobotModel();
   std::vector<VectorXd> out;
   for (std::size_t k = 0; k < trajectory.getWayPointCount(); ++k) {
     try {
-      out.push_back(robot.configuration(trajectory.getWayPoint(k)));
+      out.push_back(robot.configuration(trajectory.getWayPoint(k), mimic_tolerance));
     } catch (const std::invalid_argument& error) {
       refuse(waypoint(k) + ": " + error.what());
     }
+    const auto [follower, off] = robot.farthestFollower(trajectory.getWayPoint(k));
+    if (off > RobotTree::kFollows && notes.empty()) {
+      notes.push_back(waypoint(k) + ": joint '" + follower->name + "' is " + shown(off) +
+                      " off from where the joint that it mimics has it, and is taken to be there");
+    }
     for (int v = 0; v < robot.tree->dof(); ++v) {
       if (in_group[static_cast<std::size_t>(v)]) continue;
-      if (std::abs(out[k][v] - out[0][v]) > kSame) {
+      // A follower that stands where it was measured is put where its master has it by many a planner.
+      const bool follows = model.getJointModel(robot.tree->joint(robot.tree->variableJoint(v)).name)->getMimic();
+      if (std::abs(out[k][v] - out[0][v]) > (follows ? std::max(kSame, mimic_tolerance) : kSame)) {
         refuse(waypoint(k) + ": '" + robot.tree->variableName(v) + "' moves from " + shown(out[0][v]) + " to " +
                shown(out[k][v]) + " and is not in the group '" + trajectory.getGroupName() +
                "', whose joints alone are sent to a controller");
@@ -121,7 +129,8 @@ bool allHave(const RobotTrajectory& trajectory, const char* what, bool (RobotSta
 
 Interpolation chosen(const RobotTrajectory& trajectory, Interpolation asked, bool timed) {
   Interpolation kind = asked;
-  if (kind == Interpolation::automatic) {
+  if (kind == Interpolation::jtc_none) return Interpolation::linear;
+  if (kind == Interpolation::automatic || kind == Interpolation::jtc) {
     if (!timed) return Interpolation::linear;  // rates say nothing without times
     const bool velocities = allHave(trajectory, "velocities", &RobotState::hasVelocities);
     const bool accelerations = allHave(trajectory, "accelerations", &RobotState::hasAccelerations);
@@ -190,7 +199,7 @@ void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, cons
       refuseFloating(joint);
     }
     if (joint.type == JointType::planar && tree.isAngle(v) && moves(v - 2, 3) &&
-        options.interpolation == Interpolation::automatic) {
+        (options.interpolation == Interpolation::automatic || options.interpolation == Interpolation::jtc)) {
       const auto* planar =
           static_cast<const moveit::core::PlanarJointModel*>(trajectory.getRobotModel()->getJointModel(joint.name));
       if (planar->getMotionModel() == moveit::core::PlanarJointModel::DIFF_DRIVE) {
@@ -241,8 +250,8 @@ Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const
   const std::size_t n = trajectory.getWayPointCount();
   if (n == 0) refuse("the trajectory has no waypoint");
   const std::vector<bool> in_group = variablesOf(robot, trajectory);
-  std::vector<VectorXd> q = waypointsOf(robot, trajectory, in_group);
   std::vector<std::string> notes;
+  std::vector<VectorXd> q = waypointsOf(robot, trajectory, in_group, options.mimic_tolerance, notes);
   std::vector<double> times;
   double t = 0;
   for (std::size_t k = 0; k < n; ++k) times.push_back(t += trajectory.getWayPointDurationFromPrevious(k));
@@ -263,6 +272,11 @@ Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const
   }
   if (timed && times[0] > 0) {
     notes.push_back("the first waypoint is at t = " + shown(times[0]) + ": the way to it is no part of the trajectory");
+  }
+  if (options.interpolation == Interpolation::jtc_none) {
+    notes.emplace_back(
+        "interpolation jtc-none: the controller gives each waypoint at once; that all joints go straight "
+        "to it, and arrive together, is taken for granted");
   }
   const Interpolation kind = chosen(trajectory, options.interpolation, timed);
   judgeJoints(robot, trajectory, q, kind, options);

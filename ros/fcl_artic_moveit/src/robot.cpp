@@ -18,8 +18,6 @@ using fcl_artic::JointType;
 using fcl_artic::KinematicTree;
 using moveit::core::JointModel;
 
-constexpr double kFollows = 1e-6;  // rad or m: states come by way of messages and of floats
-
 JointType typeOf(const JointModel& joint) {
   switch (joint.getType()) {
     case JointModel::REVOLUTE:
@@ -53,7 +51,7 @@ Eigen::Vector3d axisOf(const JointModel& joint) {
 
 /// A joint of the tree. Its child's frame is the joint's at 0, as MoveIt's: getJointOriginTransform() of the child is
 /// the pose of the joint in the parent link's frame.
-Joint jointOf(const JointModel& from, const std::string& parent) {
+Joint jointOf(const JointModel& from, const std::string& parent, bool stands) {
   Joint joint;
   joint.name = from.getName();
   joint.type = typeOf(from);
@@ -68,7 +66,7 @@ Joint jointOf(const JointModel& from, const std::string& parent) {
       joint.upper = bounds.max_position_;
     }
   }
-  if (from.getMimic() && joint.type != JointType::fixed) {  // some URDFs have fixed joints that mimic
+  if (from.getMimic() && !stands && joint.type != JointType::fixed) {  // some URDFs have fixed joints that mimic
     joint.mimics = true;
     joint.mimic = {from.getMimic()->getName(), from.getMimicFactor(), from.getMimicOffset()};
   }
@@ -95,7 +93,8 @@ std::string mountName(const std::string& link) {
   return link + "/mount";
 }
 
-RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::string>& mounts) {
+RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::string>& mounts,
+                 const std::set<std::string>& standing) {
   RobotTree out;
   auto tree = std::make_shared<KinematicTree>(model.getName());
   std::string root;
@@ -105,7 +104,8 @@ RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::stri
   std::deque<Joint> followers;
   for (const JointModel* joint : model.getJointModels()) {
     if (joint == model.getRootJoint() && root.empty()) continue;
-    Joint one = jointOf(*joint, joint->getParentLinkModel() ? joint->getParentLinkModel()->getName() : root);
+    Joint one = jointOf(*joint, joint->getParentLinkModel() ? joint->getParentLinkModel()->getName() : root,
+                        standing.count(joint->getName()) != 0);
     if (one.mimics) {
       out.followers.push_back({one.name, joint->getFirstVariableIndex(), joint->getMimic()->getFirstVariableIndex(),
                                joint->getMimicFactor(), joint->getMimicOffset()});
@@ -135,14 +135,27 @@ RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::stri
   return out;
 }
 
-Eigen::VectorXd RobotTree::configuration(const moveit::core::RobotState& state) const {
+std::pair<const RobotTree::Follower*, double> RobotTree::farthestFollower(const moveit::core::RobotState& state) const {
   const double* values = state.getVariablePositions();
+  std::pair<const Follower*, double> farthest{nullptr, 0};
   for (const Follower& follower : followers) {
-    const double wanted = follower.factor * values[follower.master] + follower.offset;
-    if (std::abs(values[follower.variable] - wanted) <= kFollows) continue;
-    throw std::invalid_argument("joint '" + follower.name + "' is at " + std::to_string(values[follower.variable]) +
-                                ", where the joint that it mimics has it at " + std::to_string(wanted) +
-                                "; RobotState::update() or enforceBounds() sets mimic joints");
+    const double off =
+        std::abs(values[follower.variable] - (follower.factor * values[follower.master] + follower.offset));
+    if (!farthest.first || !(off <= farthest.second)) farthest = {&follower, off};  // NaN is the farthest
+    if (std::isnan(off)) break;
+  }
+  return farthest;
+}
+
+Eigen::VectorXd RobotTree::configuration(const moveit::core::RobotState& state, double mimic_tolerance) const {
+  const double* values = state.getVariablePositions();
+  const auto [follower, off] = farthestFollower(state);
+  if (follower && !(off <= mimic_tolerance)) {
+    throw std::invalid_argument("joint '" + follower->name + "' is at " + std::to_string(values[follower->variable]) +
+                                ", where the joint that it mimics has it at " +
+                                std::to_string(follower->factor * values[follower->master] + follower->offset) +
+                                "; RobotState::update() or enforceBounds() sets mimic joints, `mimic_tolerance` says " +
+                                "how far one may be off");
   }
   Eigen::VectorXd q(static_cast<Eigen::Index>(variables.size()));
   for (std::size_t v = 0; v < variables.size(); ++v) {

@@ -4,9 +4,11 @@
 #include <thread>
 
 #include <class_loader/class_loader.hpp>
+#include <moveit/planning_interface/planning_interface.hpp>
 #include <moveit/planning_interface/planning_response_adapter.hpp>
 #include <moveit/planning_scene/planning_scene.hpp>
 #include <rclcpp/rclcpp.hpp>
+#include <trajectory_msgs/msg/joint_trajectory.hpp>
 #include <visualization_msgs/msg/marker_array.hpp>
 
 #include "models.h"
@@ -87,7 +89,7 @@ TEST_F(CertifySolution, RefusesWithMessageAndMarkers) {
   expectContains(refused.error_code.message, "link 'finger' and object 'wall' touch at t = 0.5");
   EXPECT_EQ(refused.error_code.source, "CertifySolution");
   ASSERT_TRUE(seen(2));
-  ASSERT_EQ(shown[1].markers.size(), 4U);
+  ASSERT_EQ(shown[1].markers.size(), 7U);
   EXPECT_EQ(shown[1].markers[0].action, Marker::DELETEALL);
   EXPECT_EQ(shown[1].markers[1].header.frame_id, scene->getPlanningFrame());
   EXPECT_NEAR(shown[1].markers[1].pose.position.x, 1.65, 1e-5);
@@ -117,11 +119,140 @@ TEST_F(CertifySolution, WrongParametersAreNamed) {
   node->declare_parameter<std::string>("a.certify_solution.interpolation", "straight");
   expectContains(refusal([&] { adapter->initialize(node, "a"); }), "'straight' is no value of interpolation");
   node->declare_parameter<std::string>("b.certify_solution.on_undecided", "accept");
-  expectContains(refusal([&] { adapter->initialize(node, "b"); }), "b.certify_solution.on_undecided");
+  expectContains(refusal([&] { adapter->initialize(node, "b"); }),
+                 "b.certify_solution.*: 'accept' is no value of on_undecided");
   node->declare_parameter<double>("c.certify_solution.margin", -0.1);
   expectContains(refusal([&] { adapter->initialize(node, "c"); }), "margin -0.1");
   node->declare_parameter<int64_t>("d.certify_solution.budget", -1);
   expectContains(refusal([&] { adapter->initialize(node, "d"); }), "budget is -1");
+}
+
+/// As YAML files have them: a whole number is an integer; move_group declares them before the adapter does.
+TEST_F(CertifySolution, WholeNumbersAndParametersThatAreDeclared) {
+  for (const bool declared : {false, true}) {
+    SCOPED_TRACE(declared);
+    rclcpp::NodeOptions options;
+    options.automatically_declare_parameters_from_overrides(declared);
+    options.parameter_overrides({{"ompl.certify_solution.margin", 0}, {"ompl.certify_solution.time_limit", 5}});
+    node = rclcpp::Node::make_shared(declared ? "declared" : "undeclared", options);
+    adapter->initialize(node, "ompl");
+    EXPECT_EQ(adapted().error_code.val, kSuccess);
+    const auto margin = node->describe_parameter("ompl.certify_solution.margin");
+    expectContains(margin.description, "m that every pair has to keep");
+    ASSERT_EQ(margin.floating_point_range.size(), 1U);
+    EXPECT_EQ(margin.floating_point_range[0].from_value, 0);
+  }
+}
+
+TEST_F(CertifySolution, ParametersAreSetWhileItRunsOrNotAtAll) {
+  adapter->initialize(node, "ompl");
+  EXPECT_EQ(adapted().error_code.val, kSuccess);
+  const auto set = [&](const char* name, const rclcpp::ParameterValue& value) {
+    return node->set_parameter(rclcpp::Parameter(std::string("ompl.certify_solution.") + name, value));
+  };
+  EXPECT_TRUE(set("margin", rclcpp::ParameterValue(0.6)).successful);
+  EXPECT_EQ(adapted().error_code.val, kInvalid) << "arm and finger are 0.05 m apart";
+  EXPECT_TRUE(set("margin", rclcpp::ParameterValue(0)).successful);
+  EXPECT_EQ(adapted().error_code.val, kSuccess);
+  EXPECT_FALSE(set("margin", rclcpp::ParameterValue(-1)).successful) << "an integer, of no range";
+  EXPECT_FALSE(set("margin", rclcpp::ParameterValue(-1.0)).successful);
+  EXPECT_FALSE(set("margin", rclcpp::ParameterValue("wide")).successful);
+  const auto refused = set("interpolation", rclcpp::ParameterValue("straight"));
+  EXPECT_FALSE(refused.successful);
+  expectContains(refused.reason, "'straight' is no value of interpolation");
+  EXPECT_FALSE(set("display_contacts_topic", rclcpp::ParameterValue("elsewhere")).successful);
+  EXPECT_EQ(adapted().error_code.val, kSuccess) << "nothing was changed";
+}
+
+TEST_F(CertifySolution, MarkersGoAtEveryRefusal) {
+  adapter->initialize(node, "ompl");
+  addWall();
+  EXPECT_EQ(adapted().error_code.val, kInvalid);
+  ASSERT_TRUE(seen(1));
+  EXPECT_EQ(shown[0].markers.size(), 7U) << "of the finger, and of the arm";
+  scene->getCollisionEnvNonConst()->setLinkScale("arm", 0.9);
+  EXPECT_EQ(adapted().error_code.val, kInvalid);
+  ASSERT_TRUE(seen(2));
+  ASSERT_EQ(shown[1].markers.size(), 1U);
+  EXPECT_EQ(shown[1].markers[0].action, Marker::DELETEALL);
+}
+
+TEST_F(CertifySolution, TheRequestsTimeIsALimit) {
+  adapter->initialize(node, "ompl");
+  MotionPlanResponse out = response();
+  moveit::core::RobotState end(out.trajectory->getLastWayPoint());
+  end.setVariablePosition("rail", 0.9);
+  end.update();
+  out.trajectory->addSuffixWayPoint(end, 1);
+  planning_interface::MotionPlanRequest request;
+  request.allowed_planning_time = 1e-9;
+  MotionPlanResponse refused = out;
+  adapter->adapt(scene, request, refused);
+  EXPECT_EQ(refused.error_code.val, kInvalid);
+  expectContains(refused.error_code.message, "the time ran out");
+  request.allowed_planning_time = 3600;
+  adapter->adapt(scene, request, out);
+  EXPECT_EQ(out.error_code.val, kSuccess);
+}
+
+/// The request's own trajectory as a plan, on the joints that it names.
+TEST_F(CertifySolution, StoredTrajectories) {
+  const auto planner =
+      loader.createUniqueInstance<planning_interface::PlannerManager>("fcl_artic_moveit::StoredTrajectory");
+  ASSERT_TRUE(planner->initialize(scene->getRobotModel(), node, "certify"));
+  adapter->initialize(node, "certify");
+  moveit::core::RobotState& state = scene->getCurrentStateNonConst();
+  state.setVariablePosition("reach", 0.1);
+  state.setVariableVelocity("rail", 0.5);  // as the robot comes to rest
+  state.update();
+  planning_interface::MotionPlanRequest request;
+  request.group_name = "rail_only";
+  EXPECT_FALSE(planner->canServiceRequest(request));
+  const auto solved = [&] {
+    moveit_msgs::msg::MoveItErrorCodes code;
+    const auto context = planner->getPlanningContext(scene, request, code);
+    EXPECT_EQ(code.val, kSuccess);
+    MotionPlanResponse out;
+    context->solve(out);
+    if (out.trajectory) adapter->adapt(scene, request, out);
+    return out;
+  };
+  expectContains(solved().error_code.message, "reference_trajectories has to have one entry");
+  trajectory_msgs::msg::JointTrajectory stored;
+  stored.joint_names = {"rail"};
+  stored.points.resize(2);
+  stored.points[0].positions = {0};
+  stored.points[1].positions = {1};
+  stored.points[1].time_from_start.sec = 2;
+  const auto ask = [&](const trajectory_msgs::msg::JointTrajectory& trajectory) {
+    request.reference_trajectories.resize(1);
+    request.reference_trajectories[0].joint_trajectory = {trajectory};
+    return solved();
+  };
+  MotionPlanResponse out = ask(stored);
+  EXPECT_TRUE(planner->canServiceRequest(request));
+  EXPECT_EQ(out.error_code.val, kSuccess);
+  ASSERT_EQ(out.trajectory->getWayPointCount(), 2U);
+  EXPECT_EQ(out.trajectory->getWayPoint(1).getVariablePosition("reach"), 0.1) << "where the robot has it";
+  EXPECT_FALSE(out.trajectory->getWayPoint(1).hasVelocities()) << "the robot's are none of the trajectory's";
+  addWall();
+  out = ask(stored);
+  EXPECT_EQ(out.error_code.val, kInvalid);
+  expectContains(out.error_code.message, "link 'finger' and object 'wall' touch at t = 0.8");  // the rail at 0.4
+  auto wrong = stored;
+  wrong.joint_names = {"turn"};
+  expectContains(ask(wrong).error_code.message, "joint 'turn' is none of the group 'rail_only'");
+  wrong = stored;
+  wrong.points[1].positions = {1, 2};
+  expectContains(ask(wrong).error_code.message, "point 1 has 2 positions for 1 joints");
+  wrong = stored;
+  wrong.points[1].velocities = {1, 2};
+  expectContains(ask(wrong).error_code.message, "point 1 has 2 velocities for 1 joints");
+  wrong = stored;
+  wrong.joint_names = {"rail", "rail"};
+  expectContains(ask(wrong).error_code.message, "joint 'rail' is named twice");
+  request.group_name = "none";
+  expectContains(ask(stored).error_code.message, "there is no group 'none'");
 }
 
 TEST_F(CertifySolution, UndecidedIsRefusedUnlessAskedOtherwise) {

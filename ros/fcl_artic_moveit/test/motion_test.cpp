@@ -63,6 +63,20 @@ TEST(Motion, AutoTakesTheMostThatTheWaypointsGive) {
             Interpolation::cubic);
 }
 
+TEST(Motion, NamesOfTheController) {
+  const Surroundings all(slider());
+  const RobotTree robot = toTree(*all.model);
+  const auto made = [&](const char* name) {
+    return toMotion(robot, railTrip(all, true, true), {interpolationNamed(name), Turns::ask});
+  };
+  EXPECT_EQ(made("jtc").interpolation, Interpolation::quintic);
+  EXPECT_TRUE(made("jtc").notes.empty());
+  const Motion none = made("jtc-none");
+  EXPECT_EQ(none.interpolation, Interpolation::linear) << "whatever rates the waypoints have";
+  ASSERT_EQ(none.notes.size(), 1U);
+  expectContains(none.notes[0], "the controller gives each waypoint at once");
+}
+
 TEST(Motion, WaypointsWithoutTimesAreNumbered) {
   const Surroundings all(slider());
   const RobotTree robot = toTree(*all.model);
@@ -108,7 +122,8 @@ TEST(Motion, RefusalsNameWaypointAndJoint) {
   auto trip = railTrip(all, true, false);
   trip.getWayPointPtr(1)->setVariableVelocity("turn", std::numeric_limits<double>::quiet_NaN());
   expectContains(why(trip), "waypoint 1: the velocity of 'turn' is nan");
-  expectContains(refusal([] { (void)interpolationNamed("blends"); }), "auto, linear, cubic, quintic are");
+  expectContains(refusal([] { (void)interpolationNamed("blends"); }),
+                 "auto, linear, cubic, quintic, jtc, jtc-none are");
   expectContains(refusal([] { (void)turnsNamed("no"); }), "ask, given, shortest are");
 }
 
@@ -187,13 +202,21 @@ TEST(Certifier, FirstContactWorkedNumber) {
   EXPECT_TRUE(verdict.certain);
   EXPECT_NEAR(verdict.t_lower, 0.5, 1e-5);
   EXPECT_LE(verdict.t_lower, 0.5);
-  EXPECT_EQ(verdict.contact.waypoint, 0U);
-  EXPECT_EQ(verdict.contact.body1.id, "finger");
-  EXPECT_EQ(verdict.contact.body2.id, "wall");
-  EXPECT_NEAR(verdict.contact.point.x(), 1.65, 1e-5);
-  EXPECT_NEAR(verdict.contact.normal.x(), 1, 1e-5);
+  EXPECT_EQ(verdict.waypoint, 0U);
+  ASSERT_EQ(verdict.contacts.size(), 2U);
+  EXPECT_EQ(verdict.contacts[0].body1.id, "finger");
+  EXPECT_EQ(verdict.contacts[0].body2.id, "wall");
+  EXPECT_NEAR(verdict.contacts[0].point.x(), 1.65, 1e-5);
+  EXPECT_NEAR(verdict.contacts[0].normal.x(), 1, 1e-5);
+  EXPECT_EQ(verdict.contacts[1].body1.id, "arm");
+  EXPECT_NEAR(verdict.contacts[1].t, 0.65, 1e-5) << "the arm ends at x = rail + 1";
+  ASSERT_EQ(verdict.joints.size(), 3U);
+  EXPECT_EQ(verdict.joints[0].first, "rail");
+  EXPECT_NEAR(verdict.joints[0].second, 0.5, 1e-5);
   expectContains(verdict.message, "link 'finger' and object 'wall' touch at t = 0.5");
   expectContains(verdict.message, "after waypoint 0 of 3");
+  expectContains(verdict.message, "with rail = 0.5 turn = 0 reach = 0");
+  expectContains(verdict.message, "also: link 'arm' and object 'wall' touch at t = 0.65");
   expectContains(verdict.message, "allow the pair");
   // With a margin of 0.25 when the rail is at 0.25; with padding likewise. (Links of the robot are nearer to each
   // other.)
@@ -201,9 +224,19 @@ TEST(Certifier, FirstContactWorkedNumber) {
   links_may.setEntry("finger", std::vector<std::string>{"arm", "cart"}, true);
   CertifierOptions options;
   options.margin = 0.25;
-  EXPECT_NEAR(Certifier(options).certify(*all.env, links_may, railTrip(all, false, false)).t_lower, 0.25, 1e-5);
+  verdict = certifier.certify(*all.env, links_may, trip, nullptr, options);
+  EXPECT_NEAR(verdict.t_lower, 0.25, 1e-5);
+  expectContains(verdict.message,
+                 "link 'finger' and object 'wall' come nearer than 0.25 m (margin 0.25 m) at t = 0.25");
   all.env->setLinkPadding("finger", 0.25);
-  EXPECT_NEAR(certifier.certify(*all.env, all.acm, trip).t_lower, 0.25, 1e-5);
+  verdict = certifier.certify(*all.env, all.acm, trip);
+  EXPECT_NEAR(verdict.t_lower, 0.25, 1e-5);
+  expectContains(verdict.message,
+                 "link 'finger' and object 'wall' come nearer than 0.25 m (padding 0.25 m) at t = 0.25");
+  options.margin = 0.125;
+  verdict = certifier.certify(*all.env, links_may, trip, nullptr, options);
+  EXPECT_NEAR(verdict.t_lower, 0.125, 1e-5);
+  expectContains(verdict.message, "come nearer than 0.375 m (padding 0.25 m, margin 0.125 m)");
   all.env->setLinkPadding("finger", 0);
   // Every waypoint of this one is free, MoveIt says so; between them the finger goes through a thin pole.
   all.world->removeObject("wall");
@@ -234,12 +267,106 @@ TEST(Certifier, BudgetThatRunsOutIsUndecided) {
   CertifierOptions options;
   options.budget = 1;
   const auto swing = all.trajectory("all", {{0, -1, 0}, {0, 1, 0}});
-  const Verdict verdict = Certifier(options).certify(*all.env, all.acm, swing);
+  const Certifier certifier;
+  Verdict verdict = certifier.certify(*all.env, all.acm, swing, nullptr, options);
   EXPECT_EQ(verdict.status, Status::undecided);
   expectContains(verdict.message, "the budget ran out");
-  EXPECT_TRUE(Certifier().certify(*all.env, all.acm, swing).isFree());
+  EXPECT_FALSE(verdict.out_of_time);
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, swing).isFree());
+  // A limit of time, which is looked at between two waypoints too.
+  options.budget = 0;
+  options.time_limit = 1e-9;
+  const auto way = all.trajectory("all", {{0, -1, 0}, {0, 0, 0}, {0, 1, 0}});
+  verdict = certifier.certify(*all.env, all.acm, way, nullptr, options);
+  EXPECT_EQ(verdict.status, Status::undecided);
+  EXPECT_TRUE(verdict.out_of_time);
+  expectContains(verdict.message, "undecided: the time ran out");
+  options.time_limit = 3600;
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, way, nullptr, options).isFree());
+  const auto why = [&](const CertifierOptions& wrong) {
+    return refusal([&] { (void)certifier.certify(*all.env, all.acm, way, nullptr, wrong); });
+  };
   options.margin = -1;
-  expectContains(refusal([&] { Certifier bad(options); }), "margin -1");
+  expectContains(why(options), "margin -1");
+  options.margin = 0;
+  options.time_limit = -1;
+  expectContains(why(options), "time limit -1");
+  options.time_limit = 0;
+  options.motion.mimic_tolerance = std::numeric_limits<double>::quiet_NaN();
+  expectContains(why(options), "mimic tolerance nan");
+}
+
+/// A jaw that mimics the finger, beside it at y from 0.475 to 0.525. The post's face is at y = 0.5255.
+struct Jaw : Surroundings {
+  Jaw()
+      : Surroundings(
+            slider("<disable_collisions link1='cart' link2='arm'/>",
+                   boxLink("jaw", 0.05, 0.05, 0.05, "0 0.5 0") +
+                       joint("follow", "prismatic", "arm", "jaw",
+                             "<axis xyz='0 1 0'/><mimic joint='reach' multiplier='1' offset='0'/>", "1 0 0"))) {
+    add("post", std::make_shared<shapes::Box>(0.05, 0.1, 0.1), {1.5, 0.5755, 0});
+  }
+  /// The rail goes from 0 to 1, with the jaw at `follow` on the first `measured` waypoints, and at 0 then.
+  robot_trajectory::RobotTrajectory way(const std::string& group, double follow, std::size_t measured) const {
+    robot_trajectory::RobotTrajectory out(model, group);
+    for (std::size_t k = 0; k < 3; ++k) {
+      moveit::core::RobotState at(state);
+      at.setVariablePosition("rail", 0.5 * static_cast<double>(k));
+      at.setVariablePosition("follow", k < measured ? follow : 0);
+      at.update();
+      out.addSuffixWayPoint(at, k ? 1 : 0);
+    }
+    return out;
+  }
+};
+
+/// MoveIt keeps what /joint_states says of fingers: a mimic joint that the group does not move stands there.
+TEST(Certifier, AMimicJointOutsideTheGroupStandsWhereItIs) {
+  const Jaw all;
+  const Certifier certifier;
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, all.way("rail_only", 0, 3)).isFree());
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, all.way("rail_only", 1e-4, 3)).isFree()) << "0.4 mm from the post";
+  Verdict verdict = certifier.certify(*all.env, all.acm, all.way("rail_only", 1e-3, 3));
+  EXPECT_EQ(verdict.status, Status::contact) << "0.5 mm within it, where its master would have it 0.5 mm before it";
+  expectContains(verdict.message, "link 'jaw' and object 'post' touch");
+  EXPECT_EQ(certifier.certify(*all.env, all.acm, all.way("rail_only", 0.1, 3)).status, Status::contact);
+  // Planners that put it where its master has it, from the second waypoint on.
+  EXPECT_EQ(certifier.certify(*all.env, all.acm, all.way("rail_only", 1e-3, 1)).status, Status::contact);
+  expectContains(refusal([&] { (void)certifier.certify(*all.env, all.acm, all.way("rail_only", 2e-3, 1)); }),
+                 "waypoint 1: 'follow' moves from 0.002 to 0");
+}
+
+TEST(Certifier, AMimicJointOfTheGroupHasATolerance) {
+  const Jaw all;
+  const Certifier certifier;
+  EXPECT_TRUE(certifier.certify(*all.env, all.acm, all.way("all", 0, 3)).notes.empty());
+  const Verdict verdict = certifier.certify(*all.env, all.acm, all.way("all", 1e-4, 1));
+  EXPECT_TRUE(verdict.isFree());
+  ASSERT_EQ(verdict.notes.size(), 1U);
+  expectContains(verdict.notes[0], "waypoint 0: joint 'follow' is 0.0001 off");
+  const auto why = [&](double follow, const CertifierOptions& options) {
+    return refusal([&] { (void)certifier.certify(*all.env, all.acm, all.way("all", follow, 1), nullptr, options); });
+  };
+  expectContains(why(2e-3, {}), "waypoint 0: joint 'follow' is at 0.002");
+  expectContains(why(std::numeric_limits<double>::quiet_NaN(), {}), "joint 'follow' is at nan");
+  CertifierOptions exact;
+  exact.motion.mimic_tolerance = 0;
+  expectContains(why(1e-4, exact), "`mimic_tolerance` says how far");
+}
+
+/// As MoveIt Task Constructor has it: a scene, whose state carries what it carries, and a trajectory.
+TEST(Certifier, SceneAndTrajectory) {
+  planning_scene::PlanningScene scene(slider());
+  const Surroundings all(scene.getRobotModel());
+  const auto trip = railTrip(all, false, false);
+  const Certifier certifier;
+  EXPECT_TRUE(certifier.certify(scene, trip).isFree());
+  scene.getWorldNonConst()->addToObject("wall", std::make_shared<shapes::Box>(0.1, 1, 1),
+                                        Eigen::Isometry3d(Eigen::Translation3d(1.7, 0, 0)));
+  EXPECT_NEAR(certifier.certify(scene, trip).t_lower, 0.5, 1e-5);
+  Surroundings::attach(scene.getCurrentStateNonConst(), "tool", "finger", std::make_shared<shapes::Sphere>(0.1),
+                       {0.2, 0, 0}, {"finger"});
+  expectContains(refusal([&] { (void)certifier.certify(scene, trip); }), "the robot starts with 'tool'");
 }
 
 TEST(Certifier, BodiesThatComeAndGoAreRefused) {

@@ -19,6 +19,7 @@
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "meshes/readers.h"
+#include "meshes/text.h"
 
 namespace fcl_artic {
 namespace detail {
@@ -217,6 +218,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   const meshes::Source source{path, content, where, notes};
   meshes::TriangleSoup soup = readMesh(source, collada_up_axis, import_meshes);
   soup.tell(source);
+  meshes::noteUnits(source);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
   return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);
 }

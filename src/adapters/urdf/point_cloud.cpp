@@ -9,6 +9,7 @@
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "meshes/readers.h"
+#include "meshes/text.h"
 
 namespace fcl_artic {
 
@@ -29,6 +30,7 @@ std::shared_ptr<PointCloud> loadPointCloud(const std::string& path, double radiu
   } else {
     source.refuse("its name ends in none of .pcd, .ply and .xyz");
   }
+  meshes::noteUnits(source);
   const std::size_t all = points.size();
   const auto isNear = [](const Eigen::Vector3d& x) {
     return (x.array() == -std::numeric_limits<double>::infinity()).any();

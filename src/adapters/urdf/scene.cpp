@@ -82,6 +82,7 @@ class MoveItSceneReader {
       std::string marker;
       if (!(in_ >> marker)) fail(where_, "ends before the '.' that closes a scene");
       if (marker == ".") {
+        if (builder_.scene.obstacles.empty()) builder_.scene.notes.push_back(where_ + ": has no object with a shape");
         if (in_ >> marker) fail(where_, "goes on after the '.' that closes a scene: " + meshes::shown(marker));
         return;
       }
@@ -250,6 +251,8 @@ class CellCollector {
   std::map<std::array<double, 3>, detail::GeometryPtr> boxes_;  ///< cells of one size share their box
 };
 
+constexpr std::string_view kOctoMapKeys[] = {"id", "size", "res"};
+
 struct OctoMapHeader {
   std::string id;
   std::size_t size = 0;  ///< nodes
@@ -257,19 +260,26 @@ struct OctoMapHeader {
 };
 
 /// Reads up to the line "data", after which the nodes begin.
-OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title) {
+OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title, const std::string& where) {
   OctoMapHeader header;
-  std::string line, key;
+  std::string line;
   std::getline(in, line);
   if (line.rfind(title, 0) != 0) return header;
+  std::set<std::string_view> keys;
+  std::uint64_t size = 0;
   while (std::getline(in, line) && line != "data") {
-    std::istringstream words(line);
-    words.imbue(std::locale::classic());
-    words >> key;
-    if (key == "id") words >> header.id;
-    if (key == "size") words >> header.size;
-    if (key == "res") words >> header.resolution;
+    meshes::Words words(line);
+    const std::string_view key = words.next(), value = words.next();
+    if (key.empty() || key[0] == '#') continue;
+    const std::string_view* known = std::find(std::begin(kOctoMapKeys), std::end(kOctoMapKeys), key);
+    const bool good = known != std::end(kOctoMapKeys) && words.next().empty() &&
+                      (key != "res" || meshes::toNumber(value, header.resolution)) &&
+                      (key != "size" || meshes::toCount(value, size));
+    if (!good) fail(where, "has a line " + meshes::shown(line) + " in its head that OctoMap files have not");
+    if (!keys.insert(*known).second) fail(where, "has two lines '" + std::string(key) + "' in its head");
+    if (key == "id") header.id = value;
   }
+  header.size = size;
   return header;
 }
 
@@ -311,6 +321,9 @@ class OctoMapNodes {
       ++count_;
       inner += child == 3;
     }
+    if (node_bytes_ == 0 && children == 0) {
+      fail(where_, "has a node with neither children nor a word on whether it is occupied");
+    }
     for (; inner > 0; --inner) walk(level + 1);
   }
 
@@ -339,7 +352,7 @@ void readOctoMap(const std::string& path, bool binary, bool unknown_cells, Scene
   // OctoMap's readers go on past the end of a file that is cut short; an exception stops them.
   in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
   try {
-    const auto header = readOctoMapHeader(in, binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file");
+    const auto header = readOctoMapHeader(in, binary ? "# Octomap OcTree binary file" : "# Octomap OcTree file", where);
     if (header.id.empty() || !(header.resolution > 0)) {
       fail(where, std::string("is not an OctoMap file of the kind ") + (binary ? ".bt" : ".ot"));
     }

@@ -9,6 +9,7 @@
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "text/nearest_name.h"
+#include "urdf_elements.h"
 
 namespace fcl_artic {
 namespace {
@@ -19,12 +20,8 @@ using detail::fail;
 class SrdfReader {
  public:
   SrdfReader(const std::string& path, const KinematicTree& tree) : where_("'" + path + "'"), tree_(tree) {
-    const std::string xml = files::read(path);
-    if (document_.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where_, document_.ErrorStr());
-    const tinyxml2::XMLElement* robot = document_.RootElement();
-    if (!robot || std::string(robot->Name()) != "robot") {
-      fail(where_, "is not an SRDF: the root element is not <robot>");
-    }
+    const tinyxml2::XMLElement* robot =
+        &detail::parseUnderstood(where_, files::read(path), detail::Vocabulary::srdf, document_);
     // In MoveIt's order of precedence: a pair that is named wins over a link's default, and disabled wins over enabled.
     forEach(*robot, "disable_default_collisions", [&](const tinyxml2::XMLElement& e) {
       const std::string link = attribute(e, "link");
@@ -47,6 +44,7 @@ class SrdfReader {
       const char* reason = e.Attribute("reason");
       if (count(a, b)) reasons_[key(a, b)] = reason ? reason : "";
     });
+    forEach(*robot, "virtual_joint", [&](const tinyxml2::XMLElement& e) { noteBase(e); });
     if (known_.empty() && !unknown_.empty()) {
       fail(where_, "is of another robot: of the " + std::to_string(unknown_.size()) + " links that it names, " +
                        firstOf(unknown_) + ", robot '" + tree_.name() + "' has none");
@@ -56,22 +54,11 @@ class SrdfReader {
   /// Pairs that need no check, each with its reason.
   const std::map<std::pair<std::string, std::string>, std::string>& reasons() const { return reasons_; }
 
-  /// What was passed over, in one line; empty: nothing.
-  std::string note() const {
-    if (passed_over_ == 0) return {};
-    std::string note = where_ + ": " + std::to_string(passed_over_) + " of " + std::to_string(entries_) +
-                       " entries name links that robot '" + tree_.name() + "' does not have, " + firstOf(unknown_) +
-                       "; they are passed over";
-    // A link that the file names elsewhere is not what a slip stands for.
-    std::vector<std::string> unnamed;
-    for (LinkId link = 0; link < tree_.numLinks(); ++link) {
-      if (!known_.count(tree_.linkName(link))) unnamed.push_back(tree_.linkName(link));
-    }
-    for (const std::string& name : unknown_) {
-      const std::string nearest = text::nearestName(name, unnamed);
-      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + name + "'?";
-    }
-    return note;
+  /// What was passed over, and what of the file is not so here.
+  std::vector<std::string> notes() const {
+    std::vector<std::string> notes = notes_;
+    if (passed_over_ > 0) notes.push_back(passedOver());
+    return notes;
   }
 
  private:
@@ -101,7 +88,7 @@ class SrdfReader {
 
   bool hasLink(const std::string& name) {
     if (tree_.hasLink(name)) return known_.insert(name), true;
-    if (std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end()) unknown_.push_back(name);
+    if (not_there_.insert(name).second) unknown_.push_back(name);
     return false;
   }
   /// Whether the robot has what an entry names; every entry is counted once.
@@ -111,6 +98,31 @@ class SrdfReader {
     ++entries_;
     passed_over_ += missing > 0;
     return missing == 0;
+  }
+
+  std::string passedOver() const {
+    std::string note = where_ + ": " + std::to_string(passed_over_) + " of " + std::to_string(entries_) +
+                       " entries name links that robot '" + tree_.name() + "' does not have, " + firstOf(unknown_) +
+                       "; they are passed over";
+    // A link that the file names elsewhere is not what a slip stands for.
+    std::vector<std::string> unnamed;
+    for (LinkId link = 0; link < tree_.numLinks(); ++link) {
+      if (!known_.count(tree_.linkName(link))) unnamed.push_back(tree_.linkName(link));
+    }
+    for (const std::string& name : unknown_) {
+      const std::string nearest = text::nearestName(name, unnamed);
+      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + name + "'?";
+    }
+    return note;
+  }
+
+  /// A robot whose base moves by its SRDF, and stands still by its tree.
+  void noteBase(const tinyxml2::XMLElement& e) {
+    const char *type = e.Attribute("type"), *child = e.Attribute("child_link");
+    if (!type || std::string(type) == "fixed") return;
+    if (child && tree_.hasLink(child) && tree_.parentJoint(tree_.linkId(child)) >= 0) return;
+    notes_.push_back(lineOf(e) + ": the robot's base is " + type +
+                     " by its virtual_joint, and stands still here (--floating-base)");
   }
 
   [[noreturn]] void refuseEnabled(const tinyxml2::XMLElement& e, const std::string& missing,
@@ -129,6 +141,8 @@ class SrdfReader {
   std::map<std::pair<std::string, std::string>, std::string> reasons_;
   std::set<std::string> by_default_, known_;
   std::vector<std::string> unknown_;  ///< in the order of the file, each once
+  std::set<std::string> not_there_;   ///< the same
+  std::vector<std::string> notes_;
   std::size_t entries_ = 0, passed_over_ = 0;
 };
 
@@ -138,7 +152,9 @@ std::vector<SrdfPair> readSrdf(const std::string& path, const KinematicTree& tre
   const SrdfReader reader(path, tree);
   std::vector<SrdfPair> pairs;
   for (const auto& [names, reason] : reader.reasons()) pairs.push_back({names.first, names.second, reason});
-  if (const std::string note = reader.note(); notes && !note.empty()) notes->push_back(note);
+  for (const std::string& note : reader.notes()) {
+    if (notes) notes->push_back(note);
+  }
   return pairs;
 }
 

@@ -82,10 +82,8 @@ Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) 
 }
 
 Document readDocument(const std::string& where, const std::string& file) {
-  if (file.find('\0') != std::string::npos) fail(where, "has a byte 0, where XML would end");
   tinyxml2::XMLDocument xml;
-  if (xml.Parse(file.c_str(), file.size()) != tinyxml2::XML_SUCCESS) fail(where, xml.ErrorStr());
-  tinyxml2::XMLElement& robot = detail::requireUnderstood(where, xml);
+  tinyxml2::XMLElement& robot = detail::parseUnderstood(where, file, detail::Vocabulary::urdf, xml);
   Document document;
   for (auto* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string kind = e->Name();
@@ -351,8 +349,9 @@ class MeshFinder {
 
   std::string inPackage(const std::string& where, const std::string& uri, const std::string& path) {
     const auto begin = std::min(path.find_first_not_of('/'), path.size()), slash = path.find('/', begin);
-    if (slash == std::string::npos || slash + 1 == path.size()) fail(where, "mesh '" + uri + "': names no file");
-    const std::string name = path.substr(begin, slash - begin), rest = path.substr(slash + 1);
+    const auto file = path.find_first_not_of('/', slash);
+    if (file == std::string::npos) fail(where, "mesh '" + uri + "': names no file");
+    const std::string name = path.substr(begin, slash - begin), rest = path.substr(file);
     const std::vector<fs::path>& folders = foldersOfPackage(name);
     std::vector<std::string> there;
     for (const fs::path& folder : folders) {

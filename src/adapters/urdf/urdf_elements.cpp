@@ -10,6 +10,7 @@
 
 #include "detail.h"
 #include "text/nearest_name.h"
+#include "text/xml_root.h"
 
 namespace fcl_artic::detail {
 namespace {
@@ -30,8 +31,10 @@ struct Grammar {
 };
 
 /// By name of the element. (No name is that of two kinds.)
-const std::map<std::string, Grammar>& grammar() {
-  static const std::map<std::string, Grammar> elements = {
+using Elements = std::map<std::string, Grammar>;
+
+const Elements& urdfElements() {
+  static const Elements elements = {
       {"robot",
        {{{"link", {0, kAny}}, {"joint", {0, kAny}}},
         {"name"},
@@ -78,16 +81,40 @@ const std::map<std::string, Grammar>& grammar() {
   return elements;
 }
 
+/// What is passed over is of planning groups, of the joint to the world, of spheres that stand for links in planners,
+/// of grasps and drives. So is text, of which Baxter's file has some.
+const Elements& srdfElements() {
+  static const Elements elements = {
+      {"robot",
+       {{{"disable_collisions", {0, kAny}},
+         {"enable_collisions", {0, kAny}},
+         {"disable_default_collisions", {0, kAny}}},
+        {},
+        {"group", "group_state", "end_effector", "virtual_joint", "passive_joint", "link_sphere_approximation",
+         "joint_property", "gripper", "rotor_params", "specificities"},
+        {"name", "version"}}},
+      {"disable_collisions", {{}, {"link1", "link2", "reason"}, {}, {}}},
+      {"enable_collisions", {{}, {"link1", "link2"}, {}, {"reason"}}},
+      {"disable_default_collisions", {{}, {"link"}, {}, {"reason"}}}};
+  return elements;
+}
+
 class Strict {
  public:
-  explicit Strict(const std::string& where) : where_(where) {}
+  Strict(const std::string& where, Vocabulary vocabulary)
+      : where_(where),
+        vocabulary_(vocabulary),
+        grammar_(vocabulary == Vocabulary::urdf ? urdfElements() : srdfElements()),
+        matters_(vocabulary == Vocabulary::urdf ? "may be a geometry, a place or a motion"
+                                                : "may say which pairs are checked") {}
 
   void check(const tinyxml2::XMLElement& e) const {
-    const Grammar& of = grammar().at(e.Name());
+    const Grammar& of = grammar_.at(e.Name());
     attributes(e, of);
     std::map<std::string, int> counts;
     for (const tinyxml2::XMLNode* node = e.FirstChild(); node; node = node->NextSibling()) {
-      if (const tinyxml2::XMLText* text = node->ToText()) {
+      const tinyxml2::XMLText* text = node->ToText();
+      if (text && vocabulary_ == Vocabulary::urdf) {
         refuse(e, std::string("the text '") + text->Value() + "' stands in it, which is not understood; remove it");
       }
       const tinyxml2::XMLElement* const child = node->ToElement();
@@ -136,7 +163,7 @@ class Strict {
       const std::string cure = name == "quat_xyzw" || name == "quat_wxyz"
                                    ? "; write the rotation as rpy=\"ROLL PITCH YAW\" (rad)"
                                    : text::didYouMean(name, {of.attributes.begin(), of.attributes.end()});
-      refuse(e, "the attribute '" + name + "' is not understood, and may be of a geometry, a place or a motion" +
+      refuse(e, "the attribute '" + name + "' is not understood, and " + matters_ +
                     (cure.empty() ? "; if it is not, remove it" : cure));
     }
   }
@@ -152,33 +179,25 @@ class Strict {
     std::vector<std::string> known(of.passed_over.begin(), of.passed_over.end());
     for (const auto& [child, count] : of.children) known.push_back(child);
     const std::string hint = text::didYouMean(name, known);
-    refuse(e, std::string("in <") + in.Name() + "> it is not understood, and may be a geometry, a place or a motion" +
+    refuse(e, std::string("in <") + in.Name() + "> it is not understood, and " + matters_ +
                   (hint.empty() ? "; if it is not, remove it" : hint));
   }
 
   const std::string& where_;
+  const Vocabulary vocabulary_;
+  const Elements& grammar_;
+  const std::string matters_;
 };
 
 }  // namespace
 
-tinyxml2::XMLElement& requireUnderstood(const std::string& where, tinyxml2::XMLDocument& document) {
-  tinyxml2::XMLElement* robot = nullptr;
-  for (tinyxml2::XMLNode* node = document.FirstChild(); node; node = node->NextSibling()) {
-    if (node->ToUnknown()) fail(where, "line " + std::to_string(node->GetLineNum()) + ": document types are not read");
-    if (node->ToText()) fail(where, "line " + std::to_string(node->GetLineNum()) + ": text outside of <robot>");
-    tinyxml2::XMLElement* const element = node->ToElement();
-    if (!element) continue;
-    if (robot) {
-      fail(where, "line " + std::to_string(element->GetLineNum()) + ": <" + element->Name() +
-                      "> is a second root element; a file holds one <robot>");
-    }
-    robot = element;
-  }
-  if (!robot || std::strcmp(robot->Name(), "robot") != 0) {
-    fail(where, "is not a URDF: the root element is not <robot>");
-  }
-  Strict(where).check(*robot);
-  return *robot;
+tinyxml2::XMLElement& parseUnderstood(const std::string& where, const std::string& content, Vocabulary vocabulary,
+                                      tinyxml2::XMLDocument& document) {
+  const char* const kind = vocabulary == Vocabulary::urdf ? "a URDF" : "an SRDF";
+  const std::string wrong = text::parseXml(content, "robot", kind, document);
+  if (!wrong.empty()) fail(where, wrong);
+  Strict(where, vocabulary).check(*document.RootElement());
+  return *document.RootElement();
 }
 
 }  // namespace fcl_artic::detail

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What of a URDF is understood: the one list of elements and attributes. urdfdom passes over what it does not know, and
-// a robot without a geometry, a place or a motion that its file has would pass as free.
+// What of a URDF and of an SRDF is understood: the lists of elements and attributes. urdfdom passes over what it does
+// not know, and a robot without a geometry, a place or a motion that its file has would pass as free; so would a pair
+// that an SRDF wants checked.
 #pragma once
 
 #include <tinyxml2.h>
@@ -10,10 +11,13 @@
 
 namespace fcl_artic::detail {
 
-/// Refuses a document with anything in it that is neither understood nor on the list of what surely is no geometry,
-/// place or motion of the robot; and one that has of anything more or less than it may have.
+enum class Vocabulary { urdf, srdf };
+
+/// Parses a document, and refuses one with anything in it that is neither understood nor on the list of what surely
+/// does not matter; and one that has of anything more or less than it may have.
 /// @return its <robot>.
 /// @throws std::runtime_error beginning with `where`, naming element, attribute, line and cure.
-tinyxml2::XMLElement& requireUnderstood(const std::string& where, tinyxml2::XMLDocument& document);
+tinyxml2::XMLElement& parseUnderstood(const std::string& where, const std::string& content, Vocabulary vocabulary,
+                                      tinyxml2::XMLDocument& document);
 
 }  // namespace fcl_artic::detail

@@ -32,6 +32,9 @@ struct BodyName {
 /// - but no pair of which neither body moves with the group, and none that the allowed collision matrix always allows,
 ///   by an entry or by defaults. A pair that it allows conditionally is checked.
 ///
+/// A mimic joint that the group does not move stands where the state has it, also where its master would have it
+/// elsewhere: MoveIt keeps what was measured.
+///
 /// update() takes over a scene; what is the same as before is kept with all that was computed of it. A Cell whose
 /// update() threw is of no further use. One thread at a time may use a Cell.
 class Cell {
@@ -57,7 +60,9 @@ class Cell {
   const fcl_artic::ArticulatedCollisionManager& manager() const { return *manager_; }
   const moveit::core::RobotModelConstPtr& model() const { return model_; }
   /// Who a body of an answer is in MoveIt.
-  const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name); }
+  const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
+  /// The distance that the links' padding has two bodies of an answer keep, m.
+  double paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const;
   /// How often the robot was read: 1 as long as nothing asked for another tree.
   int robotsRead() const { return robots_read_; }
 
@@ -97,13 +102,14 @@ class Cell {
   std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const shapes::ShapeConstPtr& shape, const std::string& owner);
 
   moveit::core::RobotModelConstPtr model_;
-  std::set<std::string> apart_;   ///< links whose shapes are attached to them, so that neighbours are checked
-  std::set<std::string> mounts_;  ///< links that may not touch what they carry
+  std::set<std::string> apart_;     ///< links whose shapes are attached to them, so that neighbours are checked
+  std::set<std::string> mounts_;    ///< links that may not touch what they carry
+  std::set<std::string> standing_;  ///< mimic joints that the group does not move
   RobotTree robot_;
   std::unique_ptr<fcl_artic::ArticulatedCollisionManager> manager_;
   int robots_read_ = 0;
-  std::map<std::string, BodyName> names_;
-  std::set<std::string> used_;  ///< names in the manager
+  std::map<std::string, std::pair<BodyName, double>> names_;  ///< and the padding
+  std::set<std::string> used_;                                ///< names in the manager
   std::map<std::string, Registered> registered_;
   std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
   std::map<std::string, double> body_margins_;

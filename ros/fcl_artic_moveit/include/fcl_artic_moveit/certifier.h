@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,6 +14,7 @@
 #include <fcl_artic/bracket.h>
 #include <moveit/collision_detection/collision_env.hpp>
 #include <moveit/collision_detection/collision_matrix.hpp>
+#include <moveit/planning_scene/planning_scene.hpp>
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
 
 #include "fcl_artic_moveit/cell.h"
@@ -26,6 +28,12 @@ struct CertifierOptions {
   double margin = 0;
   /// Number of tests after which the answer is `undecided`; 0: no limit.
   std::uint64_t budget = 0;
+  /// Time after which the answer is `undecided`, s; 0: no limit. What is made of a robot when it is first seen does not
+  /// count.
+  double time_limit = 0;
+
+  /// @throws std::invalid_argument naming the value: margin, mimic tolerance or time limit negative or not finite.
+  void check() const;
 };
 
 /// The answer about one trajectory. Times are s from the trajectory's start, as in its message, or waypoints' numbers.
@@ -34,13 +42,22 @@ struct Verdict : fcl_artic::Bracket {
   bool timed = false;                                   ///< whether times are seconds
   std::size_t waypoints = 0;                            ///< number of them
   std::size_t pairs = 0;                                ///< pairs of bodies that were checked
-  /// The first contact, if there is one.
   struct Contact {
     BodyName body1, body2;
-    std::size_t waypoint = 0;                          ///< the waypoint at or before it
+    double t = 0;                                      ///< the pair is proven free before it, between these waypoints
+    bool certain = false;                              ///< whether contact is proven
     Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the model's frame, m
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< from body 1 to body 2
-  } contact;
+    double padding = 0;                                ///< m, that the links' padding has the two keep
+  };
+  /// The first contact, and those of all other pairs of bodies that touch between the same two waypoints, each pair's
+  /// first. Empty where there is none. Only the first one's time is proven to be free of contact before.
+  std::vector<Contact> contacts;
+  std::size_t waypoint = 0;  ///< that is at or before the first contact
+  /// Values of the group's joint variables at the first contact, with their names, rad or m.
+  std::vector<std::pair<std::string, double>> joints;
+  double margin = 0;               ///< m, CertifierOptions::margin
+  bool out_of_time = false;        ///< CertifierOptions::time_limit made it undecided
   std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
   std::string message;             ///< verdict, contact and cure, for a log
 };
@@ -49,27 +66,33 @@ struct Verdict : fcl_artic::Bracket {
 /// keeps what was made of a robot from call to call. Its const members may be called from many threads at once.
 class Certifier {
  public:
-  explicit Certifier(CertifierOptions options = {});
+  Certifier();
   ~Certifier();
+
+  /// Certifies one trajectory in a scene: a plan, a stored one, or one that MoveIt Task Constructor has put together:
+  /// certify(*sub_trajectory.start()->scene(), *sub_trajectory.trajectory()).
+  /// @param scene  its world, padding and allowed pairs; its state is what the robot starts from.
+  /// @throws std::invalid_argument as the other form.
+  Verdict certify(const planning_scene::PlanningScene& scene, const robot_trajectory::RobotTrajectory& trajectory,
+                  const CertifierOptions& options = {}) const;
 
   /// Certifies one trajectory.
   /// @param env         of the planning scene (PlanningScene::getCollisionEnv()): its world and the links' padding.
   /// @param acm         PlanningScene::getAllowedCollisionMatrix().
   /// @param trajectory  whose first waypoint has the attached bodies.
   /// @param start       what the robot starts from; null: waypoint 0 is taken at its word.
-  /// @throws std::invalid_argument as toMotion() and Cell::update(), for waypoints that carry other bodies than the
+  /// @throws std::invalid_argument as CertifierOptions::check(), toMotion() and Cell::update(), for waypoints that
+  /// carry other bodies than the
   ///   first, and for a first that lacks a body which `start` carries, or has it on another link or elsewhere: nothing
   ///   is claimed then.
   Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
-                  const robot_trajectory::RobotTrajectory& trajectory,
-                  const moveit::core::RobotState* start = nullptr) const;
+                  const robot_trajectory::RobotTrajectory& trajectory, const moveit::core::RobotState* start = nullptr,
+                  const CertifierOptions& options = {}) const;
 
  private:
   std::unique_ptr<Cell> idleCell(const moveit::core::RobotModelConstPtr& model) const;
   void giveBack(std::unique_ptr<Cell> cell) const;
-  Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajectory) const;
 
-  CertifierOptions options_;
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<Cell>> idle_;  ///< one for each thread that was here at the same time
 };

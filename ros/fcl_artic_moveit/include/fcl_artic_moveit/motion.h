@@ -11,13 +11,15 @@
 
 namespace fcl_artic_moveit {
 
-/// What lies between two waypoints, as joint_trajectory_controller has it. The polynomials are those of
-/// fcl_artic::JointTrajectory::linear(), cubic() and quintic().
+/// What lies between two waypoints, by what runs it. The polynomials are those of fcl_artic::JointTrajectory::linear(),
+/// cubic() and quintic().
 enum class Interpolation {
   automatic,  ///< quintic where the waypoints have velocities and accelerations, cubic with velocities, else linear
   linear,     ///< straight in the joints; quaternions by the shortest rotation
   cubic,      ///< the cubic with the waypoints' velocities
-  quintic     ///< the quintic with their velocities and accelerations
+  quintic,    ///< the quintic with their velocities and accelerations
+  jtc,        ///< as automatic: what joint_trajectory_controller runs by `interpolation_method: splines`
+  jtc_none    ///< `interpolation_method: none`: each waypoint at once; taken as linear, and noted
 };
 
 /// How joints that turn forever go where a step is half a turn or longer.
@@ -27,7 +29,8 @@ enum class Turns {
   shortest  ///< the shorter way round, as MoveIt's own interpolation has it
 };
 
-/// Of a parameter's value: "auto", "linear", "cubic", "quintic". @throws std::invalid_argument naming these.
+/// Of a parameter's value: "auto", "linear", "cubic", "quintic", "jtc", "jtc-none". @throws std::invalid_argument
+/// naming these.
 Interpolation interpolationNamed(const std::string& name);
 /// Of a parameter's value: "ask", "given", "shortest". @throws std::invalid_argument naming these.
 Turns turnsNamed(const std::string& name);
@@ -36,11 +39,14 @@ const char* toString(Interpolation interpolation);
 struct MotionOptions {
   Interpolation interpolation = Interpolation::automatic;
   Turns turns = Turns::ask;
+  /// By how much a mimic joint that moves with the group may be off from where its master has it, as encoders are, rad
+  /// or m. What is certified is where the master has it.
+  double mimic_tolerance = 1e-3;
 };
 
 /// A MoveIt trajectory as the motion that is asked about.
 struct Motion {
-  Interpolation interpolation;  ///< that was used
+  Interpolation interpolation;  ///< that was used: linear, cubic or quintic
   bool timed;                   ///< whether the trajectory has times; if not, they are the waypoints' numbers
   std::vector<double> times;    ///< of the waypoints, s, from the trajectory's start, as in its message
   fcl_artic::JointTrajectory trajectory;
@@ -50,8 +56,8 @@ struct Motion {
   std::size_t waypointBefore(double t) const;
 };
 
-/// Makes a motion of a trajectory. Joints that are not in its group stay where its first waypoint has them. A single
-/// waypoint stands still, from 0 to 1.
+/// Makes a motion of a trajectory. Joints that are not in its group stay where its first waypoint has them, mimic
+/// joints too where the tree lets them stand. A single waypoint stands still, from 0 to 1.
 /// @param trajectory  of the model that `robot` was made of.
 /// @throws std::invalid_argument, naming waypoint and joint: no waypoint, a joint outside the group that moves, values
 ///   that are not finite, mimic joints that are elsewhere than their masters have them, times that do not increase,

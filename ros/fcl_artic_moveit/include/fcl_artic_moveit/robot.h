@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,24 +19,31 @@ namespace fcl_artic_moveit {
 struct RobotTree {
   /// All links of the model by their names, in its order. The world of the tree is the model's frame: the parent frame
   /// of the SRDF's virtual joint, which is a link of the tree then (its root), or the root link. The virtual joint is
-  /// the tree's first joint. Variables have MoveIt's names; mimic joints have none.
+  /// the tree's first joint. Variables have MoveIt's names; mimic joints have none, but for those that stand.
   std::shared_ptr<const fcl_artic::KinematicTree> tree;
   /// Index of each of the tree's variables among MoveIt's.
   std::vector<std::size_t> variables;
 
-  /// Returns the values of a state: dof() values, rad or m.
-  /// @param state  of the model that the tree was made of.
-  /// @throws std::invalid_argument, naming the joint: a mimic joint that is not where its master has it (1e-6 rad or
-  ///   m), a value that is not finite.
-  Eigen::VectorXd configuration(const moveit::core::RobotState& state) const;
-
-  /// MoveIt's mimic joints: they have to be where their masters have them.
+  /// MoveIt's mimic joints, without those that stand: they have to be where their masters have them.
   struct Follower {
     std::string name;              ///< of the joint
     std::size_t variable, master;  ///< indices among MoveIt's variables
     double factor, offset;
   };
   std::vector<Follower> followers;
+
+  /// Returns the values of a state: dof() values, rad or m.
+  /// @param state  of the model that the tree was made of.
+  /// @param mimic_tolerance  rad or m, by which followers may be off from where their masters have them.
+  /// @throws std::invalid_argument, naming the joint: a mimic joint that is not where its master has it, a value that
+  ///   is not finite.
+  Eigen::VectorXd configuration(const moveit::core::RobotState& state, double mimic_tolerance = kFollows) const;
+  /// The follower that is farthest from where its master has it, rad or m, and by how much; null: there is none.
+  std::pair<const Follower*, double> farthestFollower(const moveit::core::RobotState& state) const;
+
+  /// rad or m, within which a mimic joint counts as being where its master has it: states come by way of messages and
+  /// of floats.
+  static constexpr double kFollows = 1e-6;
 };
 
 /// Makes a tree of a MoveIt robot model.
@@ -46,11 +54,14 @@ struct RobotTree {
 /// | planar (x, y, theta, about z) | planar |
 /// | floating (position, quaternion) | floating |
 /// | fixed | fixed |
-/// | mimic | it follows its master |
+/// | mimic | it follows its master, unless it is one of `standing` |
 /// @param mounts  names of links that get a link more, "LINK/mount", fixed in their frame: for what they carry and may
 ///   not touch.
+/// @param standing  names of mimic joints that stand where a state has them, whatever their masters do: they have
+///   variables, as joints that mimic none.
 /// @throws std::invalid_argument, naming the joint: a joint of unknown type, and as KinematicTree::addJoint().
-RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::string>& mounts = {});
+RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::string>& mounts = {},
+                 const std::set<std::string>& standing = {});
 
 /// Name of the link that toTree() adds to a link of `mounts`.
 std::string mountName(const std::string& link);
