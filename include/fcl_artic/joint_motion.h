@@ -25,8 +25,9 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// shortest rotation at constant speed (slerp, as OMPL's SO3 and SE3 spaces); a quaternion and its negative, which
   /// are one orientation, make no difference.
   /// @param q0, q1  tree.dof() joint values each, rad or m.
-  /// @throws std::invalid_argument for a wrong size, values that are not finite or, also for mimic joints, beyond 1e5
-  ///   rad or m, and quaternions whose lengths are not 1 within 1e-3.
+  /// @throws std::invalid_argument for a wrong size, values that are not finite or beyond 1e5 rad or m, mimic joints
+  ///   whose multiple and offset sum to more than that, whatever their signs, and quaternions whose lengths are not 1
+  ///   within 1e-3.
   static JointMotion linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
   /// Moves as linear(), except that continuous joints and the angles of planar joints take the shorter way round: their
   /// Δq is wrapped to [-π, π].

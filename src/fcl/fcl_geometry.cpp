@@ -122,12 +122,12 @@ std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<type
   const auto& shape = static_cast<const Shape&>(geometry);
   Eigen::Vector3d n = shape.n.template cast<double>();
   double d = shape.d;
-  const double largest = n.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-  if (!(largest > 0) || !std::isfinite(largest)) throw std::invalid_argument("its normal is zero or not finite");
-  if (std::abs(n.squaredNorm() - 1) > 4e-16) {  // else it is as good as it gets
-    n /= largest;
-    d = d / largest / n.norm();
-    n = UnitVector::within3Ulps(n).value();
+  const std::optional<UnitVector> unit = UnitVector::within3Ulps(n);
+  if (!unit) throw std::invalid_argument("its normal is zero or not finite");
+  if (unit->vector() != n) {  // its length, by way of the largest entry, as squares may vanish
+    const double largest = n.cwiseAbs().maxCoeff();
+    d = d / largest / (n / largest).norm();
+    n = *unit;
   }
   if (!(std::abs(d) <= 1e9)) throw std::invalid_argument("its offset is not finite or beyond 1e9 m");
   Piece piece;
@@ -368,11 +368,6 @@ std::shared_ptr<const ShapeTree> readNamed(const fcl::CollisionGeometry<S>& geom
   }
 }
 
-RigidTransform requireRigid(const Eigen::Isometry3d& M, double most, const std::string& what) {
-  if (const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(M, most)) return *rigid;
-  throw std::invalid_argument(what + " " + whyNotRigid(M, most));
-}
-
 }  // namespace
 
 std::shared_ptr<fcl::CollisionGeometryd> makeSolid(const fcl::CollisionGeometryd& mesh) {
@@ -532,11 +527,7 @@ std::intptr_t ocTreeCellId(const fcl::OcTree<S>& tree, const Eigen::Vector3d& po
 #endif
 
 RigidTransform requireRigid(const Eigen::Isometry3d& M, const std::string& what) {
-  return requireRigid(M, 1e-6, what);
-}
-
-RigidTransform requireRigid(const Eigen::Isometry3f& M, const std::string& what) {
-  return requireRigid(M.cast<double>(), 1e-5, what);
+  return requireRigid(M, 1e-6, [&] { return what; });
 }
 
 template std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<float>&);

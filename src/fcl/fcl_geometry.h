@@ -73,8 +73,7 @@ const char* geometryName(const fcl::CollisionGeometry<S>& geometry);
 
 /// The rigid transform with its rotation made orthonormal to rounding.
 /// @throws std::invalid_argument naming `what` when a value is not finite or beyond 1e9 m, or the rotation is off by
-///         more than 1e-6, in single precision 1e-5.
+///         more than 1e-6.
 RigidTransform requireRigid(const Eigen::Isometry3d& M, const std::string& what);
-RigidTransform requireRigid(const Eigen::Isometry3f& M, const std::string& what);
 
 }  // namespace fcl_artic

@@ -96,12 +96,10 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
     throw std::out_of_range("FclLinkMotion: robot '" + tree.name() + "' has no link number " + std::to_string(link));
   }
   motion.requireOf(tree, "FclLinkMotion: the motion");
-  const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(offset, kOffsetDefect);
-  if (!rigid) {
-    throw std::invalid_argument("FclLinkMotion: offset of the geometry on link '" + tree.linkName(link) +
-                                "' is not rigid: it " + whyNotRigid(offset, kOffsetDefect));
-  }
-
+  const auto nameOf = [&] {
+    return "FclLinkMotion: offset of the geometry on link '" + tree.linkName(link) + "' is not rigid: it";
+  };
+  const RigidTransform rigid = requireRigid(offset, kOffsetDefect, nameOf);
   motion.requirePolynomial("FclLinkMotion");
   if (motion.degree() > 1) {
     throw std::invalid_argument("FclLinkMotion: the motion has degree " + std::to_string(motion.degree()) +
@@ -130,8 +128,11 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
       switch (factor.kind) {
         case JointFactor::Kind::revolute:
         case JointFactor::Kind::prismatic: {
-          const double m = joint.mimics ? joint.mimic.multiplier : 1, offset = joint.mimics ? joint.mimic.offset : 0;
-          addStep(factor.axis, factor.kind == JointFactor::Kind::prismatic, m * q[0] + offset, m * q[1]);
+          const bool prismatic = factor.kind == JointFactor::Kind::prismatic;
+          const double m = joint.mimics ? joint.mimic.multiplier : 1;
+          addStep(factor.axis, prismatic, m * q[0], m * q[1]);
+          // A step of its own: the error of a sum that cancels would be far larger than the sum tells.
+          if (joint.mimics && joint.mimic.offset != 0) addStep(factor.axis, prismatic, joint.mimic.offset, 0);
           break;
         }
         case JointFactor::Kind::slide:
@@ -151,7 +152,7 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
       }
     }
   }
-  chain->after = fixed * *rigid;
+  chain->after = fixed * rigid;
   chain_ = chain;
 
   const auto addSegment = [this](double length, double rate) {

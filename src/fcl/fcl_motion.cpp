@@ -84,9 +84,7 @@ void requireLength(const Vector3d& v, const N& name, const char* what) {
 template <class S, class N>
 RigidTransform readRigid(const fcl::Transform3<S>& M, const N& name) {
   constexpr double kMost = std::is_same<S, float>::value ? 1e-4 : 1e-6;
-  const Isometry3d stored(M.template cast<double>());
-  if (const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(stored, kMost)) return *rigid;
-  throw std::invalid_argument(spelled(name) + " " + whyNotRigid(stored, kMost));
+  return requireRigid(Isometry3d(M.template cast<double>()), kMost, [&] { return spelled(name); });
 }
 
 MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d& velocity) {
@@ -181,7 +179,7 @@ UnitVector requireRotation(const fcl::Vector3<S>& axis, S angle, const Name& nam
   require(std::isfinite(angle) && a.allFinite(), name, "has a rotation that is not finite");
   require(angle >= 0 && angle < 3.1416 && (angle == 0 || std::abs(a.norm() - 1) < 1e-5), name,
           "has a rotation that FCL's constructors don't make; was it built without one?");
-  return angle == 0 ? UnitVector() : UnitVector::within3Ulps(a.normalized()).value();
+  return angle == 0 ? UnitVector() : UnitVector::within3Ulps(a).value();
 }
 
 template <class S>

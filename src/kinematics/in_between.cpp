@@ -21,12 +21,8 @@ std::vector<RigidTransform> requirePoses(const std::vector<Eigen::Isometry3d>& M
   }
   std::vector<RigidTransform> poses;
   for (std::size_t i = 0; i < M_0.size(); ++i) {
-    const std::optional<RigidTransform> pose = RigidTransform::within12Ulps(M_0[i], kNotRigid);
-    if (!pose) {
-      throw std::invalid_argument(what + ": pose " + std::to_string(i) + " is not rigid: it " +
-                                  whyNotRigid(M_0[i], kNotRigid));
-    }
-    poses.push_back(*pose);
+    const auto nameOf = [&] { return what + ": pose " + std::to_string(i) + " is not rigid: it"; };
+    poses.push_back(requireRigid(M_0[i], kNotRigid, nameOf));
   }
   return poses;
 }

@@ -21,35 +21,27 @@ Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int 
   return Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized();
 }
 
-/// Refuses values beyond 1e5, of mimic joints too: their multiplier may be large.
+/// Refuses values beyond 1e5; of mimic joints, whose multiples and offsets may cancel, the sum of both.
 /// @param sizes  of each variable, sums of absolute numbers.
 void requireSizes(const KinematicTree& tree, const Eigen::VectorXd& sizes, const std::string& what) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  const auto refuse = [&](const std::string& size, const std::string& joint) {
+    throw std::invalid_argument(what + ": " + size + " of joint '" + joint + "' is beyond 1e5");
+  };
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (!(sizes[v] <= kLargestJointValue)) refuse("the value " + shown(sizes[v]), tree.variableName(v));
+  }
+  for (const JointId j : tree.mimicJoints()) {
     const Joint& joint = tree.joint(j);
-    for (int i = 0; i < tree.numVariables(j); ++i) {
-      const double own = sizes[tree.jointVariable(j) + i];
-      const double value = joint.mimics ? std::abs(joint.mimic.multiplier) * own + std::abs(joint.mimic.offset) : own;
-      if (value <= kLargestJointValue) continue;
-      throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + joint.name +
-                                  "' is beyond 1e5");
-    }
+    const double multiple = std::abs(joint.mimic.multiplier) * sizes[tree.jointVariable(j)];
+    if (multiple + std::abs(joint.mimic.offset) <= kLargestJointValue) continue;
+    refuse("the sum of the multiple " + shown(multiple) + " and the offset " + shown(std::abs(joint.mimic.offset)),
+           joint.name);
   }
 }
 
 void requireEnd(const KinematicTree& tree, const Eigen::VectorXd& q, const std::string& what) {
   tree.requireConfiguration(q, what);
-  for (const JointId j : tree.mimicJoints()) {
-    if (tree.numVariables(j) != 1) continue;
-    const double value = tree.jointValue(j, q);
-    if (std::abs(value) <= kLargestJointValue) continue;
-    throw std::invalid_argument(what + ": the value " + shown(value) + " of joint '" + tree.joint(j).name +
-                                "' is beyond 1e5");
-  }
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (std::abs(q[v]) <= kLargestJointValue) continue;
-    throw std::invalid_argument(what + ": the value " + shown(q[v]) + " of joint '" + tree.variableName(v) +
-                                "' is beyond 1e5");
-  }
+  requireSizes(tree, q.cwiseAbs(), what);
 }
 
 /// The references of a tangent half-angle law: those given, or 0.

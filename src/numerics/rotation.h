@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include <Eigen/Geometry>
 
+#include "numerics/assertion.h"
 #include "numerics/constants.h"
 #include "numerics/unit_vector.h"
 
@@ -97,12 +99,14 @@ class RigidTransform {
     return RigidTransform(*R, M.translation());
   }
   /// What somebody has multiplied himself.
-  /// @param ulps, length  as ulps() and length() return them.
+  /// @param ulps, length  as ulps() and length() return them: M must be no farther from a rigid transform, nor reach
+  ///   farther.
   static RigidTransform product(const Eigen::Isometry3d& M, double ulps, double length) {
     RigidTransform product;
     product.M_ = M;
     product.length_ = length;
     product.ulps_ = std::max(ulps, kTransformUlps);
+    FCL_ARTIC_ASSERT(product.isAsGoodAsItSays());
     return product;
   }
 
@@ -146,7 +150,14 @@ class RigidTransform {
  private:
   /// Not a product.
   bool isStored() const { return ulps_ == kTransformUlps; }
+  /// R is off by e = ulps 2^-52 at most, so R^T R by 2 e + e^2, and by 9 2^-52 more as computed.
+  bool isAsGoodAsItSays() const {
+    const double e = 0x1p-52 * ulps_, slack = 0x1p-48 + 4 * e;
+    return orthonormalityDefect(M_.linear()).norm() <= 2 * e + e * e + 0x1p-48 &&
+           M_.translation().norm() <= length_ * (1 + slack) && std::isfinite(length_);
+  }
   void place(const Eigen::Vector3d& t) {
+    FCL_ARTIC_ASSERT(t.allFinite());
     M_.translation() = t;
     length_ = t.norm() * (1 + 1e-15);
   }
@@ -158,5 +169,14 @@ class RigidTransform {
 /// Why RigidTransform::within12Ulps() takes no M, as the end of a sentence: "has a transform that is not finite", "is
 /// more than 1e9 m away" and so on.
 std::string whyNotRigid(const Eigen::Isometry3d& M, double most);
+
+/// What RigidTransform::within12Ulps() makes of M.
+/// @param nameOf  what M belongs to, for the message: called where there is one, as spelling takes longer than reading.
+/// @throws std::invalid_argument beginning with that name where it makes nothing.
+template <class NameOf>
+RigidTransform requireRigid(const Eigen::Isometry3d& M, double most, const NameOf& nameOf) {
+  if (const std::optional<RigidTransform> rigid = RigidTransform::within12Ulps(M, most)) return *rigid;
+  throw std::invalid_argument(nameOf() + " " + whyNotRigid(M, most));
+}
 
 }  // namespace fcl_artic

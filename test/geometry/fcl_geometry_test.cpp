@@ -28,6 +28,7 @@
 #include "random.h"
 
 #include "numerics/baseline_isa.h"
+#include "numerics/unit_vector.h"
 
 #include "convex/piece_kinds.h"
 
@@ -357,7 +358,7 @@ TEST(FclGeometry, NormalsAreMadeUnit) {
   halfspace.n = Vector3d(0, 3, 4) * 1e200;  // whoever sets it himself
   halfspace.d = 1e200;
   const auto tree = readGeometry(halfspace);
-  EXPECT_NEAR((Vector3d::Map(tree->view().pieces[0].size) - Vector3d(0, 0.6, 0.8)).norm(), 0, 1e-16);
+  EXPECT_LE((Vector3d::Map(tree->view().pieces[0].size) - Vector3d(0, 0.6, 0.8)).norm(), UnitVector::kUlps * 0x1p-52);
   EXPECT_NEAR(tree->view().pieces[0].center[0], 0.2, 1e-16);
   // A float's unit normal is off by 1e-7, which would be 100 m at the far end of the world.
   Random random(8);
@@ -370,6 +371,17 @@ TEST(FclGeometry, NormalsAreMadeUnit) {
     // The same set of points: the foot of the perpendicular fulfils FCL's own equation.
     EXPECT_NEAR((p.center[0] * Vector3d::Map(p.size)).dot(plane.n.cast<double>()), plane.d, 4e-15);
   }
+  // One that is of unit length to rounding stays as it is, and so does its offset.
+  int kept = 0;
+  for (int i = 0; i < 1000; ++i) {
+    halfspace.n = unit(random);
+    halfspace.d = 0.3;
+    if (UnitVector::within3Ulps(halfspace.n)->vector() != halfspace.n) continue;
+    const Piece p = readGeometry(halfspace)->view().pieces[0];
+    EXPECT_TRUE(Vector3d::Map(p.size) == halfspace.n && p.center[0] == halfspace.d) << halfspace.n.squaredNorm() - 1;
+    ++kept;
+  }
+  EXPECT_GT(kept, 900);
 }
 
 TEST(FclGeometry, RefusesByName) {
@@ -616,25 +628,23 @@ TEST(GeometryContent, SeesEveryNumber) {
   EXPECT_FALSE(content.sameAs(octree));
 }
 
-TEST(RequireRigid, TakesWhatFloatsAre) {
+TEST(RequireRigid, TakesWhatIsNextToARotation) {
   Random random(9);
   for (int i = 0; i < 1000; ++i) {
-    const Eigen::AngleAxisf turn(static_cast<float>(uniform(random, 0, 3)), unit(random).cast<float>().normalized());
-    Eigen::Isometry3f M = Eigen::Isometry3f::Identity();
-    M.linear() = turn.toRotationMatrix() * turn.toRotationMatrix() * turn.toRotationMatrix();
-    M.translation() = unit(random).cast<float>();
+    Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
+    M.linear() = Eigen::AngleAxisd(uniform(random, 0, 3), unit(random)).toRotationMatrix();
+    M.linear() += 1e-7 * Eigen::Matrix3d::Random();
+    M.translation() = unit(random);
     const Eigen::Isometry3d rigid = requireRigid(M, "it");
     EXPECT_LE((rigid.linear().transpose() * rigid.linear() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-15);
-    EXPECT_LE((rigid.linear() - M.linear().cast<double>()).cwiseAbs().maxCoeff(), 2e-6);
-    EXPECT_EQ(rigid.translation(), M.translation().cast<double>());
+    EXPECT_LE((rigid.linear() - M.linear()).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_EQ(rigid.translation(), M.translation());
   }
-  Eigen::Isometry3f M = Eigen::Isometry3f::Identity();
-  M.linear()(0, 0) = 1 + 4e-6f;
-  EXPECT_NO_THROW(requireRigid(M, "it"));
-  EXPECT_TRUE(contains(refusal([&] { requireRigid(Eigen::Isometry3d(M.cast<double>()), "it"); }), "orthonormal"));
-  M.linear()(0, 0) = 1 + 1e-5f;
-  EXPECT_TRUE(contains(refusal([&] { requireRigid(M, "the first body"); }), "the first body"));
-  M = Eigen::Isometry3f::Identity();
+  Eigen::Isometry3d M = Eigen::Isometry3d::Identity();
+  M.linear()(0, 0) = 1 + 1e-6;
+  const std::string text = refusal([&] { requireRigid(M, "the first body"); });
+  EXPECT_TRUE(contains(text, "the first body") && contains(text, "orthonormal")) << text;
+  M = Eigen::Isometry3d::Identity();
   M.translation()[1] = NAN;
   EXPECT_TRUE(contains(refusal([&] { requireRigid(M, "it"); }), "finite"));
 }

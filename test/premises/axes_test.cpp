@@ -225,6 +225,47 @@ TEST(Rotations, OffsetsOfLinkMotionsAreMadeOrthonormal) {
   }
 }
 
+/// A joint that mimics another one, with a multiple and an offset that cancel but for the rounding of their sum: by
+/// this much the value is off that is computed. Balls and boxes that reach into each other by half of it are not free.
+TEST(Axes, LinkMotionsOfMimicJointsCountTheTermsThatCancel) {
+  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+    const auto fingers = [&](double multiplier, double q) {
+      KinematicTree tree("fingers");
+      for (const char* link : {"hand", "left", "right"}) tree.addLink(link);
+      tree.addJoint(makeJoint("master", JointType::prismatic, "hand", "left", Vector3d::UnitX()));
+      const Vector3d axis = type == JointType::revolute ? Vector3d(0, 0, 1) : Vector3d(0, 1, 0);
+      Joint joint = makeJoint("mimic", type, "hand", "right", axis);
+      joint.mimics = true;
+      joint.mimic = {"master", multiplier, -(multiplier * q)};
+      tree.addJoint(joint);
+      return tree;
+    };
+    for (const auto& [multiplier, q] : {std::pair(0.3, 99999.7), {-0.3, 99999.7}, {0.4567, 99999.3}, {163210.7, 0.3}}) {
+      const KinematicTree tree = fingers(multiplier, q);
+      const double value = std::fma(multiplier, q, tree.joint(1).mimic.offset);  // of the model, exactly
+      ASSERT_GT(std::abs(value), 1e-12);
+      const FclLinkMotion motion(tree, JointMotion::still(tree, VectorXd::Constant(1, q)), 2, pose({1, 0, 0}));
+      const fcl::Sphered ball(0.1);
+      for (const double deep : {0.5 * std::abs(value), -1e-6}) {
+        const Isometry3d other = pose({1, std::copysign(0.6 + std::abs(value) - deep, value), 0});
+        const fcl::TranslationMotiond stays(other, other);
+        CertifiedPairRequest request;
+        request.tolerance_distance = 1e-15;
+        CertifiedPairResult result;
+        const Status status = continuousCollide(&ball, &motion, unitBox(), &stays, request, result);
+        EXPECT_EQ(status, deep > 0 ? Status::contact : Status::free) << multiplier << " " << q << ": " << deep << " m";
+      }
+    }
+    // Where they cancel by more, they are refused, as the coefficients of a polynomial are.
+    for (const auto& [multiplier, q] : {std::pair(0.6, 99999.7), {3.1e9, 99999.7}, {-3.1e9, 0.3}}) {
+      const KinematicTree tree = fingers(multiplier, q);
+      EXPECT_NEAR(tree.jointValue(1, VectorXd::Constant(1, q)), 0, 1e-12);
+      EXPECT_THROW((void)JointMotion::still(tree, VectorXd::Constant(1, q)), std::invalid_argument);
+      EXPECT_THROW((void)JointMotion::linear(tree, VectorXd::Zero(1), VectorXd::Constant(1, q)), std::invalid_argument);
+    }
+  }
+}
+
 /// More than a thousand fixed joints, each of which turns by the same, in rounding modes that err to one side: their
 /// product is farther from a rotation than any one stored rotation is.
 TEST(Rotations, ProductsOfFixedJointsCountWithTheirErrors) {
