@@ -712,16 +712,16 @@ TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
   EXPECT_GT(last.steps, first.steps + 1000u * (kCuts - 1));
 }
 
-// A direction that grows or shrinks is as long as at its longer end: two balls that overlap are not apart along one.
+// A direction that grows or shrinks is as long as at its longer end, where two balls overlap here.
 TEST(VerifyProof, ADirectionIsAsLongAsAtItsLongerEnd) {
   const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
                                 hex(1) + " " + hex(0) + "\ngeometry sphere " + hex(0.1) + "\nbody obstacle o 0 0 " +
                                 hex(kHere) + "\nbody link l 1 0 " + hex(kHere) + "\n");
-  for (const auto& [n0, n1] : {std::pair(1.0, 0.01), std::pair(0.01, 1.0)}) {
-    const std::string turning = turnNode({n0, 0, 0}, {n1, 0, 0});
-    expectRefused(judge(world, moving({0.19}).write(world), turning), "apart");
-    expectVerified(judge(world, moving({30}).write(world), turning));
-  }
+  const std::string shrinks = turnNode({1, 0, 0}, {0.2, 0, 0}), grows = turnNode({0.2, 0, 0}, {1, 0, 0});
+  expectRefused(judge(world, moving({0.1, 0.2}).write(world), shrinks), "apart");
+  expectRefused(judge(world, moving({0.3, -0.2}).write(world), grows), "apart");
+  for (const std::string& turning : {shrinks, grows})
+    expectVerified(judge(world, moving({2, 1}).write(world), turning));
 }
 
 TEST(VerifyStatement, RotationsAreRotations) {
