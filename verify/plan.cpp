@@ -153,13 +153,13 @@ class PlanComparison {
 
   /// Coefficients of a variable in a piece, without zeros at the end but for the first.
   std::vector<double> coefficients(std::size_t piece, std::size_t v) const {
-    for (const Polynomial& q : motion_.pieces[piece].polynomials) {
-      if (q.variable != static_cast<int>(v)) continue;
-      std::vector<double> c = q.coefficients;
-      while (c.size() > 1 && c.back() == 0) c.pop_back();
-      return c;
-    }
-    return {0};
+    const std::vector<Polynomial>& all = motion_.pieces[piece].polynomials;  // by variable
+    const auto q = std::lower_bound(all.begin(), all.end(), static_cast<int>(v),
+                                    [](const Polynomial& p, int w) { return p.variable < w; });
+    if (q == all.end() || q->variable != static_cast<int>(v)) return {0};
+    std::vector<double> c = q->coefficients;
+    while (c.size() > 1 && c.back() == 0) c.pop_back();
+    return c;
   }
 
   void variable(std::size_t v) {
@@ -189,13 +189,20 @@ class PlanComparison {
 
   /// Whether an obstacle goes elsewhere in some piece.
   bool obstaclesMove() const {
-    for (const Body& body : world_.bodies)
-      for (int f = body.role == Role::obstacle ? body.frame : 0; f > 0;
-           f = world_.frames[static_cast<std::size_t>(f)].parent)
-        for (const Element& e : world_.frames[static_cast<std::size_t>(f)].elements)
-          for (std::size_t k = 0; k < motion_.pieces.size(); ++k)
-            if (coefficients(k, static_cast<std::size_t>(e.variable)).size() > 1) return true;
-    return false;
+    std::vector<char> goes(world_.variables.size(), 0), moves(world_.frames.size(), 0);
+    for (std::size_t k = 0; k < motion_.pieces.size(); ++k)
+      for (const Polynomial& q : motion_.pieces[k].polynomials) {
+        const auto v = static_cast<std::size_t>(q.variable);
+        goes[v] = goes[v] || coefficients(k, v).size() > 1;
+      }
+    for (std::size_t f = 1; f < world_.frames.size(); ++f) {  // parents first
+      moves[f] = moves[static_cast<std::size_t>(world_.frames[f].parent)];
+      for (const Element& e : world_.frames[f].elements)
+        moves[f] = moves[f] || goes[static_cast<std::size_t>(e.variable)];
+    }
+    return std::any_of(world_.bodies.begin(), world_.bodies.end(), [&](const Body& body) {
+      return body.role == Role::obstacle && moves[static_cast<std::size_t>(body.frame)];
+    });
   }
 
   /// Whether it is one of the three of a `rotate`.

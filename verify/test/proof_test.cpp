@@ -689,11 +689,13 @@ TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
   MotionText m = moving({0, 1});
   for (int k = 1; k < kObstacles; ++k)
     m.ignored += "ignored " + std::to_string(k) + " " + std::to_string(kObstacles) + " " + hex(1) + "\n";
-  std::string nodes = sep({1, 0, 0});
-  for (int k = 0; k < 50; ++k) nodes = node(kTime, nodes, sep({1, 0, 0}));
-  const Verdict v = judge(crowd, m.write(crowd), nodes);
-  expectVerified(v);
-  EXPECT_GT(v.steps, 51u * kObstacles);
+  const std::string motion = m.write(crowd), leaf = sep({1, 0, 0});
+  std::string nodes = leaf;
+  for (int k = 0; k < 50; ++k) nodes = node(kTime, nodes, leaf);
+  const Verdict one = judge(crowd, motion, leaf), many = judge(crowd, motion, nodes);
+  expectVerified(one);
+  expectVerified(many);
+  EXPECT_GT(many.steps, one.steps + 50u * kObstacles);
 
   std::vector<V> points{{0, 0, 0}, {0, 0, 1}};
   std::vector<std::array<int, 3>> fan;
@@ -703,9 +705,23 @@ TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
                                 "body obstacle o 0 0 " + hex(kHere) + "\nbody link l 1 1 " + hex(at(3, 0, 0)) + "\n");
   std::string solids;
   for (int k = 0; k < kCuts; ++k) solids += solidNode({{0, 3}});
-  const Verdict w = judge(sheet, moving({0, 1}).write(sheet), solids + sep({1, 0, 0}));
-  expectVerified(w);
-  EXPECT_GT(w.steps, 1000u * kCuts);
+  const std::string still = moving({0, 1}).write(sheet);
+  const Verdict first = judge(sheet, still, solidNode({{0, 3}}) + leaf), last = judge(sheet, still, solids + leaf);
+  expectVerified(first);
+  expectVerified(last);
+  EXPECT_GT(last.steps, first.steps + 1000u * (kCuts - 1));
+}
+
+// A direction that grows or shrinks is as long as at its longer end, where two balls overlap here.
+TEST(VerifyProof, ADirectionIsAsLongAsAtItsLongerEnd) {
+  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
+                                hex(1) + " " + hex(0) + "\ngeometry sphere " + hex(0.1) + "\nbody obstacle o 0 0 " +
+                                hex(kHere) + "\nbody link l 1 0 " + hex(kHere) + "\n");
+  const std::string shrinks = turnNode({1, 0, 0}, {0.2, 0, 0}), grows = turnNode({0.2, 0, 0}, {1, 0, 0});
+  expectRefused(judge(world, moving({0.1, 0.2}).write(world), shrinks), "apart");
+  expectRefused(judge(world, moving({0.3, -0.2}).write(world), grows), "apart");
+  for (const std::string& turning : {shrinks, grows})
+    expectVerified(judge(world, moving({2, 1}).write(world), turning));
 }
 
 TEST(VerifyStatement, RotationsAreRotations) {
