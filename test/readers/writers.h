@@ -15,6 +15,14 @@ namespace fcl_artic::test {
 using Random = std::mt19937_64;
 using Place = std::array<double, 3>;
 
+/// From 0 to `count` - 1.
+int below(Random& random, int count);
+bool coin(Random& random);
+template <class T>
+const T& oneOf(Random& random, const std::vector<T>& list) {
+  return list[static_cast<std::size_t>(below(random, static_cast<int>(list.size())))];
+}
+
 struct WrittenFile {
   std::string name;                             ///< With its ending.
   std::string content;                          ///< Of the file.

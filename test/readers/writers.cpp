@@ -12,17 +12,6 @@
 namespace fcl_artic::test {
 namespace {
 
-int below(Random& random, int count) {
-  return static_cast<int>(random() % static_cast<unsigned>(count));
-}
-bool coin(Random& random) {
-  return random() & 1;
-}
-template <class T>
-const T& oneOf(Random& random, const std::vector<T>& list) {
-  return list[static_cast<std::size_t>(below(random, static_cast<int>(list.size())))];
-}
-
 /// A decimal number, and the double nearest to it by the C library.
 struct Decimal {
   std::string text;
@@ -965,6 +954,13 @@ WrittenFile writeXyz(Random& random) {
 }
 
 }  // namespace
+
+int below(Random& random, int count) {
+  return static_cast<int>(random() % static_cast<unsigned>(count));
+}
+bool coin(Random& random) {
+  return random() & 1;
+}
 
 const std::vector<std::string>& writtenFormats() {
   static const std::vector<std::string> all{"stl", "obj", "off", "ply", "dae", "pcd", "xyz", "cloud.ply",
