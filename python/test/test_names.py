@@ -106,6 +106,8 @@ REACHABLE = {
 LEFT_OUT = {
     "LinkId": "an int; links go by their names",
     "JointId": "an int; joints go by their names",
+    "ObjectRef": "an argument of C++; objects are values and names in Python",
+    "LinkRef": "an argument of C++; links go by their names",
     "Fingerprint": "JointMotion.is_of() compares the joint spaces of trees",
     "toString": "the members of the enumerations have values as text",
     "exceptionsOf": "a result's text ends with it: str(result)",
