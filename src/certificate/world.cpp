@@ -398,12 +398,17 @@ class ManagedWorld {
   const char* excuse(const ManagedBody& a, const ManagedBody& b) const {
     if (a.link < 0 && b.link < 0) return "";
     if (a.link == b.link) return "";
-    if (a.link < 0 || b.link < 0) return registry_.mayTouch(a, b) ? nullptr : "allowed";
+    if (a.link < 0 || b.link < 0) {
+      if (!registry_.mayTouch(a, b)) return "allowed";
+      return registry_.standStill(a, b) ? "still" : nullptr;
+    }
     switch (registry_.excuseOf(a, b)) {
       case Excuse::allowed:
         return "allowed";
       case Excuse::touch_link:
         return "touch-link";
+      case Excuse::still:
+        return "still";
       case Excuse::neighbours:
         return "neighbours";
       case Excuse::none:
