@@ -18,8 +18,7 @@ std::string CertificateFile::add(const Certificate& certificate) {
 
 std::string CertificateFile::write(const std::string& files) const {
   if (!world_) return "";
-  files::write(worldPath(), *world_);
-  files::write(path_, records_);
+  files::writeTogether({{worldPath(), *world_}, {path_, records_}});  // records name their world's hash
   return fmt::format(
       "{} certificate{}, {} bytes, in {}, what {} about, {} bytes, in {}; fcl_artic_verify {} {}{} proves {} again",
       count_, count_ == 1 ? "" : "s", records_.size(), path_, count_ == 1 ? "it is" : "they are", world_->size(),

@@ -278,15 +278,19 @@ int runCertify(CertifyVerb& o) {
           }));
     });
   }
-  if (!o.out.empty()) writeOut(o, *manager, all);
-
   std::vector<std::string> notes = world.notes(*manager);
   notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
-  if (certificates.wanted())
-    notes.push_back(writeCertificates(certificates, all, verifierArguments(o.world) + planArguments(o, all)));
-  if (o.views.wanted()) notes.push_back(writePlanViews(o, of_mended, world, *manager, all));
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
-  if (!o.csv.empty()) files::write(o.csv, csvReport(report));
+  UnwrittenOutputs& unwritten = world.unwritten;
+  if (!o.out.empty()) unwritten.attempt([&] { writeOut(o, *manager, all); });
+  if (certificates.wanted()) {
+    unwritten.attempt([&] {
+      notes.push_back(writeCertificates(certificates, all, verifierArguments(o.world) + planArguments(o, all)));
+    });
+  }
+  if (o.views.wanted()) unwritten.attempt([&] { notes.push_back(writePlanViews(o, of_mended, world, *manager, all)); });
+  if (!o.csv.empty()) unwritten.attempt([&] { files::write(o.csv, csvReport(report)); });
+  notes.insert(notes.end(), unwritten.reasons().begin(), unwritten.reasons().end());
   if (o.json) {
     fmt::print("{}\n", jsonReport(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else {
@@ -294,7 +298,7 @@ int runCertify(CertifyVerb& o) {
   }
   int status = kExitFree;
   for (const CertifiedPlan& plan : all) status = worseExit(status, plan.exitStatus());
-  return status;
+  return unwritten.exitStatus(status);
 }
 
 }  // namespace
@@ -311,7 +315,7 @@ void addCertify(CLI::App& program, int& exit_status) {
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
       "before 3; with --mend a plan counts as what it is mended to.\n"
-      "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --edges --help says "
+      "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --merge --help says "
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
   addWorldOptions(*certify, o.world, "--robot,--urdf");

@@ -122,7 +122,9 @@ int runCheck(CheckVerb& options) {
   request.certificate = certificates.wanted();
   if (!options.lines.empty()) {
     for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-    return checkLines(manager, request, {options.lines, of_motion}, certificates);
+    const int status = checkLines(manager, request, {options.lines, of_motion}, certificates);
+    if (certificates.wanted()) world.unwritten.attempt([&] { certificates.write(); });
+    return world.unwritten.exitStatus(status);
   }
   CertifiedResult result;
   {
@@ -158,19 +160,25 @@ int runCheck(CheckVerb& options) {
   if (result.first() && result.t_lower <= begin) notes.insert(notes.begin(), startHint(*result.first()));
   if (result.certificate) {
     const std::string missing = certificates.add(*result.certificate);
-    const std::string written = certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
-    notes.push_back(missing.empty() ? written : missing);
+    if (!missing.empty()) notes.push_back(missing);
+    world.unwritten.attempt([&] {
+      const std::string written = certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
+      if (!written.empty()) notes.push_back(written);
+    });
   }
   Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
   if (trajectory) report.pieces = trajectory->numPieces();
 
-  writeViews(options.views, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
+  world.unwritten.attempt([&] {
+    writeViews(options.views, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
+  });
+  notes.insert(notes.end(), world.unwritten.reasons().begin(), world.unwritten.reasons().end());
   if (options.json) {
     fmt::print("{}\n", jsonReport(report).dump(2));
   } else {
     fmt::print("{}", textReport(report));
   }
-  return exitStatus(result);
+  return world.unwritten.exitStatus(exitStatus(result));
 }
 
 }  // namespace

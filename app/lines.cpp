@@ -211,7 +211,6 @@ int checkLines(const ArticulatedCollisionManager& manager, const CertifiedReques
   const std::string name = standard_input ? "standard input" : "'" + options.path + "'";
   if (in.bad()) throw std::runtime_error(name + ": cannot be read to its end");
   if (answers.asked() == 0) throw std::invalid_argument("--lines: " + name + " has no line to answer");
-  if (certificates.wanted()) certificates.write();
   return answers.exitStatus();
 }
 

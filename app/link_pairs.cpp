@@ -168,7 +168,6 @@ int runSrdf(SrdfVerb& options) {
       if (disabled->allowed(pair.link1, pair.link2)) of_file.pairs.push_back(pair);
     }
   }
-  if (!options.write.empty()) writeSrdf(options.write, tree.name(), report);
   if (options.json) {
     Json out = {
         {"robot", tree.name()}, {"margin", options.search.margin}, {"notes", robot.notes}, {"pairs", Json::array()}};
@@ -197,6 +196,7 @@ int runSrdf(SrdfVerb& options) {
   if (!options.json) {
     for (const std::string& note : robot.notes) fmt::print("note: {}\n", note);
   }
+  if (!options.write.empty()) writeSrdf(options.write, tree.name(), report);
   if (!options.write.empty() && !options.json) fmt::print("{} written to {}\n", summaryOf(report), options.write);
   if (!options.images.empty()) drawTouching(robot, disabled ? of_file : report, options.images);
   return disabled ? exitStatusOf(of_file) : kExitFree;

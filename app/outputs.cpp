@@ -7,6 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "exit_status.h"
+#include "files/files.h"
+#include "world.h"
+
 namespace fcl_artic::app {
 namespace {
 
@@ -16,7 +20,8 @@ namespace fs = std::filesystem;
 bool areSame(const fs::path& a, const fs::path& b) {
   std::error_code error;
   if (fs::equivalent(a, b, error)) return true;
-  const fs::path resolved_a = fs::weakly_canonical(a, error), resolved_b = fs::weakly_canonical(b, error);
+  const fs::path resolved_a = fs::weakly_canonical(files::targetOf(a), error),
+                 resolved_b = fs::weakly_canonical(files::targetOf(b), error);
   return !resolved_a.empty() && resolved_a == resolved_b;  // empty: it can't be resolved
 }
 
@@ -45,6 +50,9 @@ void removeEarlierOutputs(const std::vector<Output>& outputs, const std::vector<
       throw std::invalid_argument(
           fmt::format("{} and {} name one file: '{}'", outputs[k].option, output.option, *output.path));
     }
+    if (fs::is_directory(*output.path)) {
+      throw std::invalid_argument(fmt::format("{} '{}': is a directory, not a file", output.option, *output.path));
+    }
     if (!isRegular(*output.path)) continue;
     for (const std::string& input : inputs) {
       for (const std::string& file : filesIn(input)) {
@@ -57,14 +65,18 @@ void removeEarlierOutputs(const std::vector<Output>& outputs, const std::vector<
   }
   for (const Output& output : outputs) {
     if (output.path->empty() || !isRegular(*output.path)) continue;
-    if (fs::is_symlink(*output.path)) *output.path = fs::canonical(*output.path).string();
     std::error_code error;
-    fs::remove(*output.path, error);
+    fs::remove(files::targetOf(*output.path), error);
     if (error) {
       throw std::runtime_error(fmt::format("{} '{}': an earlier run's file can't be removed: {}", output.option,
                                            *output.path, error.message()));
     }
   }
+}
+
+int UnwrittenOutputs::exitStatus(int status) const {
+  for (const std::string& reason : reasons_) fmt::print(stderr, "fcl_artic: error: {}\n", reason);
+  return reasons_.empty() ? status : kExitError;
 }
 
 std::vector<std::string> inputsOf(const WorldOptions& options) {

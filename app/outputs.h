@@ -3,27 +3,49 @@
 // Files that a run writes. A file of an earlier run must not be taken for this run's answer.
 #pragma once
 
+#include <exception>
 #include <string>
 #include <vector>
 
-#include "world.h"
-
 namespace fcl_artic::app {
+
+struct WorldOptions;
 
 /// An option that names a file to write.
 struct Output {
-  const char* option;  ///< as it is typed, for messages
-  std::string* path;   ///< empty: not asked for
+  const char* option;       ///< as it is typed, for messages
+  const std::string* path;  ///< empty: not asked for
 };
 
-/// Removes what lies under the names of a run's outputs: if the run does not write them, nobody does. Afterwards a path
-/// that was a symbolic link is the file that it points to, so that the link stays. What is no regular file stays.
+/// Removes what lies under the names of a run's outputs: if the run does not write them, nobody does. Of a symbolic
+/// link, the file that it points to goes and the link stays. What is no regular file stays.
 /// To be called before the run reads anything.
 /// @param inputs  the run's own files; of a folder the files in it.
-/// @throws std::invalid_argument naming option and file, before anything is removed: the output is an input, or two
-///   outputs are one file.
+/// @throws std::invalid_argument naming option and file, before anything is removed: the output is an input or a
+///   folder, or two outputs are one file.
 /// @throws std::runtime_error naming the file: the system doesn't remove it.
 void removeEarlierOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
+
+/// The outputs that a run could not write. It prints its answers all the same, with the reasons among their notes, and
+/// ends as an error.
+class UnwrittenOutputs {
+ public:
+  /// Does what writes an output.
+  template <class Write>
+  void attempt(const Write& write) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      reasons_.emplace_back(error.what());
+    }
+  }
+  const std::vector<std::string>& reasons() const { return reasons_; }
+  /// The run's exit status, which would be `status` if all had been written. Prints the reasons as errors.
+  int exitStatus(int status) const;
+
+ private:
+  std::vector<std::string> reasons_;
+};
 
 /// The files that the options name: robot, SRDF, scenes, carried objects.
 std::vector<std::string> inputsOf(const WorldOptions& options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "program.h"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -21,6 +22,7 @@ int runProgram(int argc, char** argv, const std::function<void(CLI::App& program
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   int exit_status = kExitError;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error that names it
   add_verbs(program, exit_status);
   try {
     program.parse(argc, argv);

@@ -198,8 +198,10 @@ LinkPairReport World::provePairs(double margin) {
   robot.allowed = report.alwaysTouching();
   allowLinks();
   if (!options_.auto_srdf.empty()) {
-    writeSrdf(options_.auto_srdf, robot.tree->name(), report);
-    robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options_.auto_srdf));
+    unwritten.attempt([&] {
+      writeSrdf(options_.auto_srdf, robot.tree->name(), report);
+      robot.notes.push_back(fmt::format("{} written to {}", summaryOf(report), options_.auto_srdf));
+    });
   }
   if (margin > 0) {
     AllowedCollisionMatrix apart;

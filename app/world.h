@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include "fcl_artic/urdf/urdf.h"
+#include "outputs.h"
 #include "pair_options.h"
 #include "robot_options.h"
 
@@ -77,6 +78,7 @@ class World {
   Robot robot;
   Scene scene;                          ///< The last obstacles are carried, one for each attachment.
   std::vector<Attachment> attachments;  ///< in the order of the carried obstacles
+  UnwrittenOutputs unwritten;           ///< of the run
 
  private:
   void allowLinks();

@@ -155,6 +155,7 @@ void addDepth(CLI::App& bench, int& exit_status) {
   DepthOptions& o = *options;
   CLI::App* verb =
       bench.add_subcommand("depth", "Equations solved all at once and one by one, as the chain gets deeper");
+  verb->footer("Exit status: 0 all verdicts agree, 1 they don't, 2 error.");
   verb->add_option("--joints", o.joints, "Joints of the chain")
       ->check(CLI::Range(1, 200))
       ->capture_default_str()

@@ -17,6 +17,7 @@ namespace fcl_artic::app {
 void addGenerate(CLI::App& program, int& exit_status) {
   CLI::App* generate = program.add_subcommand("generate", "Write a robot or a scene to try things on");
   generate->require_subcommand(1);
+  generate->footer("Exit status: 0 it is written, 2 error.");
 
   auto folder = std::make_shared<std::string>();
   CLI::App* puma = generate->add_subcommand("puma560", "A PUMA 560 arm: URDF and link meshes");

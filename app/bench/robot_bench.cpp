@@ -398,14 +398,15 @@ int benchRobot(RobotBenchOptions& options) {
     outcome.rows =
         timeMotions(outcome.drawn, options.passes, questions, outcome.contradictions, show(kDrawing, 1), options.only);
   }
-  if (!options.csv.empty()) files::write(options.csv, csvOf(outcome));
-  if (!options.svg.empty()) files::write(options.svg, plotOf(outcome));
   if (options.json) {
     fmt::print("{}\n", jsonOf(outcome).dump(2));
   } else {
     fmt::print("{}", textOf(outcome));
   }
-  return tellContradictions(outcome.contradictions, [&](const MotionEnds& ends) { return outcome.commandOf(ends); });
+  if (!options.csv.empty()) files::write(options.csv, csvOf(outcome));
+  if (!options.svg.empty()) files::write(options.svg, plotOf(outcome));
+  return asked.world().unwritten.exitStatus(
+      tellContradictions(outcome.contradictions, [&](const MotionEnds& ends) { return outcome.commandOf(ends); }));
 }
 
 }  // namespace

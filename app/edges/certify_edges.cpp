@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -238,7 +237,7 @@ class Answerer {
   void write(std::size_t block) const {
     for (const auto& [scene, text] : worlds_) {
       const std::string path = folder_.worldPath(scene);
-      if (!fs::exists(path)) files::writeSynced(path, *text);
+      if (!fs::exists(path)) files::write(path, *text);
     }
     folder_.writeBlock(block, rows_, records_);
   }
@@ -293,7 +292,7 @@ class Answerer {
 
 /// What became of the blocks that a process took.
 struct Outcome {
-  bool blocks_failed = true, rows_refused = false;
+  bool blocks_failed = true, something_else_failed = false;  ///< else: rows are refused, --auto-srdf is not written
 };
 
 Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks& ranks,
@@ -365,7 +364,8 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   if (errors.size() > kErrorsShown) fmt::print(stderr, "fcl_artic: {} more errors\n", errors.size() - kErrorsShown);
   if (!answerer.refusal().empty())
     fmt::print(stderr, "fcl_artic: error: rows are refused, the first: {}\n", answerer.refusal());
-  return {!errors.empty(), counts[RowStatus::refused] > 0};
+  const bool unwritten = world.unwritten.exitStatus(kExitFree) != kExitFree;
+  return {!errors.empty(), counts[RowStatus::refused] > 0 || unwritten};
 }
 
 void printSummary(const RunFolder& folder, const Json& summary, bool json) {
@@ -393,7 +393,6 @@ void printSummary(const RunFolder& folder, const Json& summary, bool json) {
 }  // namespace
 
 int certifyEdges(const WorldOptions& world, EdgesOptions& o) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error that names it
   const std::unique_ptr<Ranks> ranks = openRanks(o.shard);
   std::optional<RunFolder> folder;
   Outcome outcome;
@@ -405,9 +404,12 @@ int certifyEdges(const WorldOptions& world, EdgesOptions& o) {
     if (ranks->rank() == 0) fmt::print(stderr, "fcl_artic: error: {}\n", error);
   }
   // All ranks meet here, whatever became of each: who is away would be waited for for ever.
-  constexpr int kDone = 0, kRefused = 1, kFailed = 2;
+  constexpr int kDone = 0, kFailedInPart = 1, kFailed = 2;
   int first = kDone;
-  const int worst = ranks->finish(outcome.blocks_failed ? kFailed : outcome.rows_refused ? kRefused : kDone, first);
+  const int worst = ranks->finish(outcome.blocks_failed           ? kFailed
+                                  : outcome.something_else_failed ? kFailedInPart
+                                                                  : kDone,
+                                  first);
   if (ranks->rank() != 0 && !error.empty() && first != kFailed) {  // what all ranks find is said once
     fmt::print(stderr, "fcl_artic: rank {}: error: {}\n", ranks->rank(), error);
   }

@@ -93,7 +93,7 @@ RunFolder::RunFolder(std::string folder, const Json& run) : folder_(std::move(fo
     throw std::invalid_argument(fmt::format(
         "'{}' is of another run: {}; give the same inputs to go on with it, or another --out", folder_, difference));
   }
-  files::writeSynced(path, text);
+  files::write(path, text);
 }
 
 RunFolder::RunFolder(std::string folder) : folder_(std::move(folder)), run_(parse(folder_ + "/run.json")) {
@@ -140,6 +140,8 @@ std::optional<Block> RunFolder::readBlock(std::size_t block, Read what) const {
     read.counts = countsOf(Json::parse(text("counts")));
     if (read.counts.rows() != count) throw std::runtime_error(fmt::format("'{}': it has not {} rows", path, count));
     if (what == Read::summary) return read;
+    if (certificates() && text("certificates_sha256") != certificate::sha256Text(files::read(certificatePath(block))))
+      throw std::runtime_error(fmt::format("'{}': is of another run of this block", certificatePath(block)));
     read.rows.assign(count, certificates());
     std::vector<double> doubles;
     std::vector<std::int64_t> numbers;
@@ -171,7 +173,6 @@ std::optional<Block> RunFolder::readBlock(std::size_t block, Read what) const {
 }
 
 void RunFolder::writeBlock(std::size_t block, const Columns& rows, const std::string& records) const {
-  if (certificates()) files::writeSynced(certificatePath(block), records);
   hdf5::Image image;
   forEachColumn(
       rows, [&](const char* name, hdf5::Type, const auto& values) { image.add(name, {values.size()}, values.data()); });
@@ -179,10 +180,14 @@ void RunFolder::writeBlock(std::size_t block, const Columns& rows, const std::st
   image.attribute("", "run", hash_);
   image.attribute("", "block", std::to_string(block));
   image.attribute("", "sha256", hashOf(rows));
+  if (certificates()) image.attribute("", "certificates_sha256", certificate::sha256Text(records));
   Counts counts;
   counts.add(rows);
   image.attribute("", "counts", jsonOf(counts).dump());
-  files::writeSynced(blockPath(block), image.bytes());
+  const std::string bytes = image.bytes();
+  std::vector<files::File> together{{blockPath(block), bytes}};
+  if (certificates()) together.insert(together.begin(), {certificatePath(block), records});
+  files::writeTogether(together);
 }
 
 Json RunFolder::merge(bool partial, Read what) const {
@@ -243,9 +248,10 @@ Json RunFolder::merge(bool partial, Read what) const {
   table.attribute("status", "values", statuses);
   table.attribute("", "format", kFormat);
   table.attribute("", "links", run_.at("robot").at("links").get<std::vector<std::string>>());
-  files::writeSynced(folder_ + "/table.h5", table.bytes());
+  const std::string rows_hash = certificate::sha256Text(hashes);
+  table.attribute("", "sha256", rows_hash);
 
-  Json summary = {{"format", kFormat},  {"run", hash_},           {"table_sha256", certificate::sha256Text(hashes)},
+  Json summary = {{"format", kFormat},  {"run", hash_},           {"table_sha256", rows_hash},
                   {"rows", cut.rows()}, {"blocks", cut.blocks()}, {"missing_blocks", missing.size()}};
   put(all, summary);
   constexpr std::size_t kScenesShown = 10000;
@@ -258,7 +264,8 @@ Json RunFolder::merge(bool partial, Read what) const {
       put(by_scene[s], scene);
     }
   }
-  files::writeSynced(folder_ + "/summary.json", textOf(summary));
+  const std::string bytes = table.bytes(), text = textOf(summary);
+  files::writeTogether({{folder_ + "/table.h5", bytes}, {folder_ + "/summary.json", text}});
   if (missing.empty()) {
     // What ranks that were killed have left behind.
     for (const char* part : {"/blocks", "/certificates"}) {

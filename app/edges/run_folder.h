@@ -75,11 +75,11 @@ class RunFolder {
   /// A block that is finished; nothing of one that isn't there.
   /// @throws DamagedBlock naming the file and the cure: of another run, not whole, or not what was written.
   std::optional<Block> readBlock(std::size_t block, Read what = Read::rows) const;
-  /// @param records  of certificates; written first.
+  /// @param records  of certificates, a file of their own; the block's names its hash.
   /// @throws std::runtime_error naming the file.
   void writeBlock(std::size_t block, const Columns& rows, const std::string& records) const;
 
-  /// Writes the table of all blocks (table.h5, a virtual one) and summary.json.
+  /// Writes the table of all blocks (table.h5, a virtual one) and summary.json; both name the hash of all rows.
   /// @param partial  blocks that are missing are no error: their rows say so.
   /// @param what     Read::summary for who has written all blocks or read their rows: the time that one process takes
   ///   here is time that all ranks wait.

@@ -84,9 +84,13 @@ std::string graphml(const Roadmap& roadmap, const std::vector<std::size_t>& edge
   return out + "</graph>\n</graphml>\n";
 }
 
-std::string edgesCsv(const Roadmap& roadmap, const std::vector<std::size_t>& edges) {
+/// @param vertices  content of the file beside it.
+std::string edgesCsv(const Roadmap& roadmap, const std::vector<std::size_t>& edges, const std::string& vertices) {
   const bool asked = roadmap.answers.size() > 0;
-  std::string out = asked ? "source,target,weight,status,t_lower,t_upper,certain,bodies\n" : "source,target,weight\n";
+  const std::string hash = certificate::sha256Text(vertices);
+  std::string out = "source,target,weight";
+  if (asked) out += ",status,t_lower,t_upper,certain,bodies";
+  out += ",vertices_sha256\n";
   for (const std::size_t e : edges) {
     out += fmt::format("{},{},{}", roadmap.edges[2 * e], roadmap.edges[2 * e + 1], roadmap.length(e));
     if (asked) {
@@ -94,7 +98,7 @@ std::string edgesCsv(const Roadmap& roadmap, const std::vector<std::size_t>& edg
       out += fmt::format(",{},{},{},{},{}", toString(static_cast<RowStatus>(a.status[e])), a.t_lower[e], a.t_upper[e],
                          static_cast<int>(a.certain[e]), csvText(roadmap.bodies[e]));
     }
-    out += "\n";
+    out += "," + hash + "\n";
   }
   return out;
 }
@@ -192,8 +196,8 @@ void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_on
   if (ending == ".graphml") {
     files::write(path, graphml(roadmap, edges));
   } else if (ending == ".csv") {
-    files::write(verticesFileOf(path), verticesCsv(roadmap));
-    files::write(path, edgesCsv(roadmap, edges));
+    const std::string vertices = verticesCsv(roadmap), rows = edgesCsv(roadmap, edges, vertices);
+    files::writeTogether({{verticesFileOf(path), vertices}, {path, rows}});
   } else {
     files::write(path, hdf5Bytes(roadmap, edges));
   }

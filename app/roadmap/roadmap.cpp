@@ -122,7 +122,7 @@ Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
   return roadmap;
 }
 
-void certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, int threads,
+bool certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, int threads,
                     Roadmap& roadmap) {
   const KinematicTree& tree = manager.tree();
   const std::size_t all = roadmap.numEdges();
@@ -132,6 +132,7 @@ void certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
   roadmap.bodies.assign(all, {});
   std::vector<JointMotion> motions;
   std::vector<CertifiedResult> results;
+  bool checked = false;
   for (std::size_t begin = 0; begin < all; begin += kMotionsAtOnce) {
     const std::size_t end = std::min(all, begin + kMotionsAtOnce);
     motions.clear();
@@ -142,6 +143,7 @@ void certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
     manager.continuousCollide(motions, request, results, threads);
     for (std::size_t e = begin; e < end; ++e) {
       const CertifiedResult& result = results[e - begin];
+      checked = checked || !result.nothingChecked();
       putRow(
           result,
           [&](const BodyRef& body) {
@@ -151,6 +153,7 @@ void certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
       if (const CertifiedContact* const c = result.first()) roadmap.bodies[e] = c->body1.name + ", " + c->body2.name;
     }
   }
+  return checked;
 }
 
 }  // namespace fcl_artic::app

@@ -53,14 +53,16 @@ Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
                     const RoadmapOptions& options, std::size_t& tried);
 
 /// Asks all edges again.
-void certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, int threads,
+/// @return whether there is a pair of bodies that was checked.
+bool certifyRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request, int threads,
                     Roadmap& roadmap);
 
 /// Reads what writeRoadmap() has written as HDF5.
 /// @throws std::runtime_error, std::invalid_argument naming file and dataset; a robot that has other variables.
 Roadmap readRoadmap(const std::string& path, const KinematicTree& tree);
 
-/// Writes it, as the ending says: .h5, .graphml, or .csv, a row for each edge, with PATH.vertices.csv beside it.
+/// Writes it, as the ending says: .h5, .graphml, or .csv, a row for each edge, with PATH.vertices.csv beside it, whose
+/// SHA-256 each row names.
 /// @param valid_only  edges that are not proven free are left out.
 /// @throws std::invalid_argument for another ending; std::runtime_error naming the file.
 void writeRoadmap(const Roadmap& roadmap, const std::string& path, bool valid_only);

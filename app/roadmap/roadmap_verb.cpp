@@ -99,10 +99,11 @@ int make(RoadmapVerb& o) {
   std::size_t tried = 0;
   Roadmap roadmap = makeRoadmap(manager, o.request, o.make, tried);
   roadmap.robot = robotHash(world);
-  writeRoadmap(roadmap, o.out, false);
+  const double seconds = secondsSince(begin);
+  world.unwritten.attempt([&] { writeRoadmap(roadmap, o.out, false); });
   fmt::print("{} vertices, {} of {} edges proven free, in {:.1f} s: {}\n", roadmap.numVertices(), roadmap.numEdges(),
-             tried, secondsSince(begin), o.out);
-  return kExitFree;
+             tried, seconds, o.out);
+  return world.unwritten.exitStatus(kExitFree);
 }
 
 int certify(RoadmapVerb& o) {
@@ -113,6 +114,7 @@ int certify(RoadmapVerb& o) {
   world.readScene();
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
+  bool proven = false;  // something of all edges, before
   if (o.request.check_self) {
     // What was proven when the roadmap was made holds for every scene: of this robot, and no larger a margin.
     const bool same = roadmap.robot == robotHash(world);
@@ -125,18 +127,31 @@ int certify(RoadmapVerb& o) {
                          : fmt::format("the roadmap was made for a margin of {} m", roadmap.self_margin));
     }
     o.request.check_self = !holds;
+    proven = holds;
   }
   if (o.any) o.request.mode = ContactMode::any;
   const auto begin = Clock::now();
-  certifyRoadmap(manager, o.request, o.make.threads, roadmap);
+  const bool checked = certifyRoadmap(manager, o.request, o.make.threads, roadmap);
   const double seconds = secondsSince(begin);
-  writeRoadmap(roadmap, o.out, o.valid_only);
+  world.unwritten.attempt([&] { writeRoadmap(roadmap, o.out, o.valid_only); });
   Counts counts;
   counts.add(roadmap.answers);
   fmt::print("{} edges in {:.3f} s: {} free, {} contact, {} undecided: {}\n", roadmap.numEdges(), seconds,
              counts[RowStatus::free], counts[RowStatus::contact], counts[RowStatus::undecided], o.out);
-  return kExitFree;
+  int status = kExitFree;
+  if (roadmap.numEdges() == 0 || !(checked || proven)) {
+    fmt::print("NOTHING CHECKED: {}\n",
+               roadmap.numEdges() == 0 ? "the roadmap has no edge" : "no two bodies are asked about");
+    status = kExitUndecided;
+  }
+  if (counts[RowStatus::undecided] > 0) status = worseExit(status, kExitUndecided);
+  if (counts[RowStatus::contact] > 0) status = worseExit(status, kExitContact);
+  return world.unwritten.exitStatus(status);
 }
+
+constexpr const char* kStatuses =
+    "Exit status: of make 0 it is made; of certify that of the worst edge, whether it is written or not: 0 all free\n"
+    "(proven), 1 contact, 3 undecided (budget) or nothing checked, 1 before 3; of both 2 error.";
 
 void addCommon(CLI::App& verb, RoadmapVerb& o) {
   addWorldOptions(verb, o.world, "--robot,--urdf");
@@ -154,11 +169,14 @@ void addRoadmap(CLI::App& program, int& exit_status) {
   CLI::App* roadmap = program.add_subcommand(
       "roadmap", "A probabilistic roadmap of a robot: made once, proven free again in each new scene");
   roadmap->require_subcommand(1);
+  roadmap->footer("fcl_artic roadmap make --help and fcl_artic roadmap certify --help say more.\n" +
+                  std::string(kStatuses));
 
   auto making = std::make_shared<RoadmapVerb>();
   CLI::App* make_verb = roadmap->add_subcommand(
       "make",
       "Draw configurations, join the nearest ones; what is not proven free, of links against links, is left out");
+  make_verb->footer(kStatuses);
   addCommon(*make_verb, *making);
   make_verb->add_option("--vertices", making->make.vertices, "Configurations")
       ->check(CLI::PositiveNumber)
@@ -183,6 +201,7 @@ void addRoadmap(CLI::App& program, int& exit_status) {
   auto asking = std::make_shared<RoadmapVerb>();
   CLI::App* certify_verb = roadmap->add_subcommand(
       "certify", "Which edges of a roadmap are free in a scene, and when the others touch first");
+  certify_verb->footer(kStatuses);
   certify_verb->add_option("ROADMAP", asking->roadmap, "File of `roadmap make`, .h5")->required()->check(requireInput);
   addCommon(*certify_verb, *asking);
   certify_verb->add_flag("--any", asking->any, "Any contact, not the first: cheaper where only the verdict matters")

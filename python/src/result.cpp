@@ -252,8 +252,8 @@ void bindCertificate(py::module_& module) {
             if (!c) valueError("there is no proof: " + c.missing);
             const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
             try {
-              files::write(file + ".world", *c.world);
-              files::write(file, c.record());
+              const std::string record = c.record();  // names the world's hash
+              files::writeTogether({{file + ".world", *c.world}, {file, record}});
             } catch (const std::runtime_error& problem) {
               PyErr_SetString(PyExc_OSError, problem.what());
               throw py::error_already_set();

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
+#include <deque>
 #include <iostream>
 #include <stdexcept>
 
@@ -71,15 +71,6 @@ bool writeAll(const Descriptor& to, std::string_view content) {
   return true;
 }
 
-/// Creates a file that isn't there yet beside `path`. @param[out] name  of it.
-int createBeside(const std::string& path, std::string& name) {
-  for (int k = 0;; ++k) {
-    name = path + ".part" + std::to_string(::getpid()) + "-" + std::to_string(k);
-    const int number = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (number >= 0 || errno != EEXIST) return number;
-  }
-}
-
 /// Has the system write a folder's list of names to the disk.
 bool syncFolder(const std::filesystem::path& folder) {
   const Descriptor at(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -87,29 +78,60 @@ bool syncFolder(const std::filesystem::path& folder) {
   return at.good() && (::fsync(at.number()) == 0 || errno == EINVAL);
 }
 
-/// @param synced  it is on the disk when this returns.
-void writeRegular(const std::string& path, std::string_view content, bool synced) {
-  const std::string what = "'" + path + "'";
-  struct stat old {};
-  const bool exists = ::stat(path.c_str(), &old) == 0;
-  if (exists) requireRegular(path, old);
-  if (exists && ::access(path.c_str(), W_OK) != 0) failToWrite(what);  // a new file would take its place all the same
-  // Of a symbolic link the file that it points to is replaced.
-  std::error_code error;
-  const std::filesystem::path resolved = std::filesystem::weakly_canonical(path, error);
-  const std::filesystem::path target = error ? std::filesystem::path(path) : resolved;
-  std::string name;
-  Descriptor to(createBeside(target.string(), name));
-  if (!to.good()) failToWrite(what);
-  const bool done = writeAll(to, content) && (!exists || ::fchmod(to.number(), old.st_mode & 07777) == 0) &&
-                    (!synced || ::fsync(to.number()) == 0) && to.close() && ::rename(name.c_str(), target.c_str()) == 0;
-  if (done && (!synced || syncFolder(target.parent_path()))) return;
-  if (done) failToWrite(what);
-  const int reason = errno;
-  ::unlink(name.c_str());
-  errno = reason;
-  failToWrite(what);
-}
+/// A regular file that is written as a whole beside the one whose place it takes. Not kept: it goes away again.
+class FileAside {
+ public:
+  /// Writes it, down to the disk.
+  FileAside(const std::string& path, std::string_view content) : path_(path), target_(targetOf(path)) {
+    struct stat old {};
+    replaces_ = ::stat(target_.c_str(), &old) == 0;
+    if (!replaces_ && errno == ELOOP) fail();  // links that go round
+    if (replaces_) requireRegular(path, old);
+    if (replaces_ && ::access(target_.c_str(), W_OK) != 0) fail();  // a new file would take its place all the same
+    Descriptor to(create());
+    const bool done = to.good() && writeAll(to, content) &&
+                      (!replaces_ || ::fchmod(to.number(), old.st_mode & 07777) == 0) && ::fsync(to.number()) == 0 &&
+                      to.close();
+    if (done) return;
+    if (to.good()) removeAside();
+    fail();
+  }
+  ~FileAside() {
+    if (!kept_) removeAside();
+  }
+  FileAside(const FileAside&) = delete;
+  FileAside& operator=(const FileAside&) = delete;
+
+  /// Removes the file whose place it will take, if there is one.
+  void removeOld() const {
+    if (replaces_ && (::unlink(target_.c_str()) != 0 || !syncFolder(target_.parent_path()))) fail();
+  }
+  void takePlace() {
+    if (::rename(name_.c_str(), target_.c_str()) != 0) fail();
+    kept_ = true;
+    if (!syncFolder(target_.parent_path())) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { failToWrite("'" + path_ + "'"); }
+  int create() {
+    for (int k = 0;; ++k) {
+      name_ = target_.string() + ".part" + std::to_string(::getpid()) + "-" + std::to_string(k);
+      const int number = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (number >= 0 || errno != EEXIST) return number;
+    }
+  }
+  void removeAside() const {
+    const int kept = errno;  // of the error that is being reported
+    ::unlink(name_.c_str());
+    errno = kept;
+  }
+
+  const std::string path_;
+  const std::filesystem::path target_;
+  std::string name_;
+  bool replaces_ = false, kept_ = false;
+};
 
 }  // namespace
 
@@ -134,20 +156,37 @@ std::string read(const std::string& path) {
   }
 }
 
-void write(const std::string& path, std::string_view content) {
-  const std::string what = "'" + path + "'";
-  struct stat old {};
-  const bool exists = ::stat(path.c_str(), &old) == 0;
-  if (exists && !S_ISREG(old.st_mode)) {
-    Descriptor to(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-    if (!to.good() || !writeAll(to, content) || !to.close()) failToWrite(what);
-    return;
+std::filesystem::path targetOf(const std::filesystem::path& path) {
+  std::filesystem::path target = path;
+  std::error_code error;
+  constexpr int kMostLinks = 40;  // Linux follows no more
+  for (int k = 0; k < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(target, error)); ++k) {
+    const std::filesystem::path next = std::filesystem::read_symlink(target, error);
+    if (error) break;
+    target = target.parent_path() / next;
   }
-  writeRegular(path, content, false);
+  return target;
 }
 
-void writeSynced(const std::string& path, std::string_view content) {
-  writeRegular(path, content, true);
+void write(const std::string& path, std::string_view content) {
+  writeTogether({{path, content}});
+}
+
+void writeTogether(const std::vector<File>& files) {
+  std::deque<FileAside> all;
+  for (const File& file : files) {
+    struct stat there {};
+    if (::stat(file.path.c_str(), &there) != 0 || S_ISREG(there.st_mode)) {
+      all.emplace_back(file.path, file.content);
+      continue;
+    }
+    Descriptor to(::open(file.path.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!to.good() || !writeAll(to, file.content) || !to.close()) failToWrite("'" + file.path + "'");
+  }
+  // From here on what was there is replaced. The last of the old ones goes first, so that at no time, also after a
+  // power cut, an old file stands beside a new one before it.
+  for (std::size_t i = all.size(); i-- > 1;) all[i].removeOld();
+  for (FileAside& one : all) one.takePlace();
 }
 
 void flushStandardOutput() {

@@ -3,8 +3,10 @@
 // file: what a half-read file describes must not be checked, a half-written one must not be left.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace fcl_artic::files {
 
@@ -14,15 +16,24 @@ namespace fcl_artic::files {
 /// @throws std::runtime_error naming the file and the system's reason, also for an error after the first bytes.
 std::string read(const std::string& path);
 
-/// Writes a file, all or nothing: a new one beside it is filled and takes its place (its permissions stay; of a
-/// symbolic link, the file it points to is replaced). What is no regular file, a device or a pipe, is written to.
+/// The file that a path leads to through symbolic links, also where it is not there yet.
+std::filesystem::path targetOf(const std::filesystem::path& path);
+
+/// Writes a file, all or nothing: a new one beside it is filled, written down to the disk, and takes its place (its
+/// permissions stay; of a symbolic link, the file it points to is replaced or made). After a power cut it is there as a
+/// whole, or what was there before. What is no regular file, a device or a pipe, is written to.
 /// @throws std::runtime_error naming the file and the system's reason; a file that was there is as before.
 void write(const std::string& path, std::string_view content);
 
-/// The same of a regular file, and it is on the disk when this returns, under its name too: after a power cut it is
-/// there as a whole, or what was there before.
+struct File {
+  std::string path;
+  std::string_view content;
+};
+/// Writes files that belong together, each of which is of use only beside those before it. All are filled beside their
+/// places first: a disk that fills up changes nothing. Whatever fails then, the power too, at no time does a file stand
+/// that is older than one before it: it is missing.
 /// @throws std::runtime_error as write().
-void writeSynced(const std::string& path, std::string_view content);
+void writeTogether(const std::vector<File>& files);
 
 /// Hands everything printed so far over to the system. To be called before a program says by its exit status that all
 /// is well: what is printed is kept back until then, and errors with it.

@@ -623,6 +623,27 @@ TEST_F(EdgesTest, CertificatesOfBlocksAreProvenAgain) {
   }
   std::printf("%d proofs in %d files\n", static_cast<int>(proofs), files);
 }
+
+/// A block and its certificates are of one run.
+TEST_F(EdgesTest, CertificatesBesideABlockAreItsOwn) {
+  arm();
+  writeScenes();
+  edges(60);
+  ASSERT_EQ(run(command("made", "--block-rows 40 --certificates")).status, 0);
+  const File table(path("made/table.h5"));
+  EXPECT_EQ(table.strings("", "sha256").at(0), summary("made").at("table_sha256"));
+  const std::string own = path("made/certificates/block-0000001.fac"), content = read(own);
+  for (const std::string& other : {read(path("made/certificates/block-0000000.fac")), content.substr(1)}) {
+    write("made/certificates/block-0000001.fac", other);
+    const Outcome merged = run("certify --merge --out " + path("made"));
+    EXPECT_EQ(merged.status, 2);
+    EXPECT_NE(merged.err.find("block 1 is damaged: '" + own + "'"), std::string::npos) << merged.err;
+  }
+  std::filesystem::remove(own);
+  EXPECT_EQ(run("certify --merge --out " + path("made")).status, 2);
+  write("made/certificates/block-0000001.fac", content);
+  EXPECT_EQ(run("certify --merge --out " + path("made")).status, 0);
+}
 #endif
 
 TEST_F(EdgesTest, GeneratedFilesAreThoseOfTheirSeed) {

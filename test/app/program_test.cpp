@@ -430,6 +430,15 @@ TEST_F(ProgramTest, ErrorsAreJsonToo) {
   EXPECT_NE(answer.at("error").get<std::string>().find("hinge, rail"), std::string::npos);
 }
 
+TEST_F(ProgramTest, HelpOfEveryVerbSaysItsExitStatuses) {
+  for (const char* verb : {"check", "certify", "srdf", "info", "compare", "generate", "bench robot", "bench planning",
+                           "bench certify", "bench rigid", "bench table1", "bench ideas", "bench depth"}) {
+    const Outcome help = run(std::string(verb) + " --help");
+    EXPECT_EQ(help.status, 0);
+    expectContains(help.out, "Exit status: ");
+  }
+}
+
 TEST_F(ProgramTest, HelpAndVersionAreNoErrors) {
   const Outcome version = this->run("--version");
   EXPECT_EQ(version.status, 0);

@@ -13,6 +13,7 @@
 #include <boost/graph/graphml.hpp>
 #endif
 
+#include "certificate/sha256.h"
 #include "hdf5/hdf5.h"
 #include "roadmap/nearest.h"
 #include "run_program.h"
@@ -66,7 +67,7 @@ TEST(NearestPointsTest, AreThoseThatLookingAtAllFinds) {
 TEST_F(RoadmapTest, EdgesOfASceneAreWhatCheckSaysOneByOne) {
   ASSERT_EQ(make("map.h5").status, 0);
   const Outcome done = certify("map.h5", "scene.h5");
-  ASSERT_EQ(done.status, 0) << done.err;
+  ASSERT_EQ(done.status, 1) << done.err;
   EXPECT_EQ(done.err, "");
   const File map(path("scene.h5"));
   const std::size_t edges = map.shape("edges")[0];
@@ -127,7 +128,6 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   const auto counts = [&](const std::string& map, const std::string& more, std::string& err) {
     const Outcome done =
         run("roadmap certify " + path(map) + " --robot " + robot + " --out " + path("out.csv") + " " + more);
-    EXPECT_EQ(done.status, 0) << done.err;
     err = done.err;
     const std::string csv = read(path("out.csv"));
     std::pair<int, int> free_and_contact;
@@ -136,6 +136,7 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
       free_and_contact.first += line.find(",free,") != std::string::npos;
       free_and_contact.second += line.find(",contact,") != std::string::npos;
     }
+    EXPECT_EQ(done.status, free_and_contact.second > 0 ? 1 : 0) << done.err;
     return free_and_contact;
   };
   std::string err;
@@ -188,7 +189,7 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   const auto piped = [&](const std::string& urdf, const std::string& arguments) {
     const std::string command = "cat \"" + urdf + "\" | \"" + std::string(FCL_ARTIC_PROGRAM) + "\" roadmap " +
                                 arguments + " --robot /dev/stdin >\"" + path("out") + "\" 2>\"" + path("err") + "\"";
-    EXPECT_EQ(std::system(command.c_str()), 0) << read(path("err"));
+    EXPECT_LT(WEXITSTATUS(std::system(command.c_str())), 2) << read(path("err"));
     return read(path("err"));
   };
   write("short.urdf", longer.replace(longer.find("0.1 1.3 0.1"), 11, "0.1 1 0.1"));
@@ -212,7 +213,7 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
 TEST_F(RoadmapTest, GraphMlIsReadByBoostGraph) {
 #ifdef FCL_ARTIC_HAS_BOOST_GRAPH
   ASSERT_EQ(make("map.h5").status, 0);
-  ASSERT_EQ(certify("map.h5", "map.graphml").status, 0);
+  ASSERT_EQ(certify("map.h5", "map.graphml").status, 1);
   struct Vertex {
     double hinge = 9, rail = 9;
   };
@@ -253,9 +254,9 @@ TEST_F(RoadmapTest, GraphMlIsReadByBoostGraph) {
 TEST_F(RoadmapTest, GraphMlIsReadByNetworkx) {
   if (std::system("python3 -c 'import networkx' 2>/dev/null") != 0) GTEST_SKIP() << "no networkx";
   ASSERT_EQ(make("map.h5").status, 0);
-  ASSERT_EQ(certify("map.h5", "map.graphml").status, 0);
-  ASSERT_EQ(certify("map.h5", "valid.graphml", "--valid-only").status, 0);
-  ASSERT_EQ(certify("map.h5", "map.csv").status, 0);
+  ASSERT_EQ(certify("map.h5", "map.graphml").status, 1);
+  ASSERT_EQ(certify("map.h5", "valid.graphml", "--valid-only").status, 1);
+  ASSERT_EQ(certify("map.h5", "map.csv").status, 1);
   const std::string script = write("read.py", R"(
 import csv, sys
 import networkx
@@ -289,6 +290,56 @@ TEST_F(RoadmapTest, FilesOfEarlierRunsAreNotLeft) {
   const Outcome same = run("roadmap certify " + map + " --robot " + arm() + " --out " + map);
   EXPECT_EQ(same.status, 2);
   EXPECT_EQ(read(map), "none");
+}
+
+TEST_F(RoadmapTest, ExitStatusIsThatOfTheWorstEdge) {
+  ASSERT_EQ(make("map.h5", "--vertices 30 --neighbours 3").status, 0);
+  EXPECT_EQ(certify("map.h5", "x.csv").status, 1);
+  EXPECT_EQ(certify("map.h5", "x.csv", "--budget 1").status, 3);
+  const auto alone = [&](const std::string& map, const std::string& more) {
+    return run("roadmap certify " + path(map) + " --robot " + arm() + " --out " + path("x.csv") + more);
+  };
+  EXPECT_EQ(alone("map.h5", "").status, 0);
+  const Outcome nothing = alone("map.h5", " --no-self");
+  EXPECT_EQ(nothing.status, 3);
+  EXPECT_NE(nothing.out.find("NOTHING CHECKED"), std::string::npos) << nothing.out;
+  ASSERT_EQ(make("empty.h5", "--vertices 1 --neighbours 3").status, 0);
+  EXPECT_EQ(certify("empty.h5", "x.csv").status, 3);
+  EXPECT_EQ(certify("arm.urdf", "x.csv").status, 2);
+  // What can't be written is an error, and said all the same.
+  std::filesystem::create_symlink("/dev/full", path("full.csv"));
+  const Outcome full = certify("map.h5", "full.csv");
+  EXPECT_EQ(full.status, 2);
+  EXPECT_NE(full.out.find(" free, "), std::string::npos) << full.out;
+  for (const char* verb : {"roadmap", "roadmap make", "roadmap certify", "certify --merge"}) {
+    const Outcome help = run(std::string(verb) + " --help");
+    EXPECT_NE(help.out.find("Exit status: "), std::string::npos) << verb;
+  }
+}
+
+/// An edge is of use only beside the vertices that it was proven for.
+TEST_F(RoadmapTest, EdgesNameTheirVertices) {
+  const auto hashOf = [&](const std::string& out, const std::string& more) {
+    EXPECT_EQ(make(out + ".csv", more).status, 0);
+    const std::string edges = read(path(out + ".csv"));
+    const std::string hash = fcl_artic::certificate::sha256Text(read(path(out + ".vertices.csv")));
+    std::istringstream lines(edges);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "source,target,weight,vertices_sha256");
+    int rows = 0;
+    for (; std::getline(lines, line); ++rows) EXPECT_EQ(line.substr(line.rfind(',') + 1), hash);
+    EXPECT_GT(rows, 10);
+    return hash;
+  };
+  EXPECT_NE(hashOf("one", "--vertices 30 --neighbours 3 --seed 1"),
+            hashOf("two", "--vertices 30 --neighbours 3 --seed 2"));
+  // By way of a link: the vertices stand beside the link, and an earlier run's go.
+  std::filesystem::create_directories(path("real"));
+  write("real/map.vertices.csv", "somebody's");
+  std::filesystem::create_symlink("real/map.csv", path("map.csv"));
+  hashOf("map", "--vertices 30 --neighbours 3");
+  EXPECT_EQ(read(path("real/map.vertices.csv")), "somebody's");
 }
 
 TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {

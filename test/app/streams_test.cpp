@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What happens when files can't be read to their end or written: an error that names the file, and never a verdict.
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 #include "files/files.h"
 #include "run_program.h"
@@ -241,6 +246,110 @@ TEST_F(StreamsTest, FilesAreReplacedAsAWhole) {
   expectContains(messageOf([&] { files::read(path("none")); }), "none': cannot be read: No such file");
   expectContains(messageOf([&] { files::read(folder_.string()); }), "is a directory, not a file");
   expectContains(messageOf([&] { files::read("/proc/self/mem"); }), "cannot be read: Input/output error");
+}
+
+TEST_F(StreamsTest, ALinkToAFileThatIsNotThereYetIsFollowed) {
+  fs::create_directories(path("real"));
+  fs::create_symlink("real/file", path("inner"));
+  fs::create_symlink("inner", path("outer"));
+  files::write(path("outer"), "new");
+  EXPECT_TRUE(fs::is_symlink(path("outer")) && fs::is_symlink(path("inner")));
+  EXPECT_EQ(read(path("real/file")), "new");
+  fs::create_symlink("round", path("round"));
+  expectContains(messageOf([&] { files::write(path("round"), "new"); }), "cannot write '" + path("round") + "'");
+  // A run that fails takes an earlier one's file away, and the next one writes it again.
+  fs::create_symlink("real/page.html", path("page.html"));
+  const std::string html = " --html " + path("page.html"), check = "check " + armAndBall() + motion() + html;
+  EXPECT_EQ(run(check).status, 1);
+  EXPECT_TRUE(fs::exists(path("real/page.html")));
+  EXPECT_EQ(run("check --robot " + write("bad.urdf", "<robot") + motion() + html).status, 2);
+  EXPECT_FALSE(fs::exists(path("real/page.html")));
+  EXPECT_EQ(run(check).status, 1);
+  EXPECT_TRUE(fs::is_symlink(path("page.html")) && fs::exists(path("real/page.html")));
+  // Two names of one file that is not there yet.
+  fs::remove(path("real/page.html"));
+  const Outcome twice = run(check + " --certificate " + path("real/page.html"));
+  EXPECT_EQ(twice.status, 2);
+  expectContains(twice.err, "--html and --certificate name one file");
+}
+
+/// A disk that fills up: of files that belong together all are new, or all are as before.
+TEST_F(StreamsTest, FilesThatBelongTogetherAreWrittenTogether) {
+  const std::string first = write("first", "old"), second = write("second", "old"), large(1 << 16, 'x');
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  struct rlimit small = before;
+  small.rlim_cur = 1 << 15;
+  const auto action = ::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message = messageOf([&] { files::writeTogether({{first, "new"}, {second, large}}); });
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, action);
+  expectContains(message, "cannot write '" + second + "': File too large");
+  EXPECT_EQ(read(first), "old");
+  EXPECT_EQ(read(second), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
+  files::writeTogether({{first, "new"}, {second, large}});
+  EXPECT_EQ(read(first), "new");
+  EXPECT_EQ(read(second), large);
+}
+
+/// Whenever a writer is killed: the second file is of the first one's time, or there is none.
+TEST_F(StreamsTest, AWriterThatIsKilledLeavesNoOldFileBesideANewOne) {
+  const std::string first = path("first"), second = path("second");
+  int both = 0;
+  for (int round = 0; round < 40; ++round) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (int version = 0;; ++version) {
+        const std::string text = std::to_string(round) + "." + std::to_string(version);
+        files::writeTogether({{first, text}, {second, text}});
+      }
+    }
+    ::usleep(static_cast<useconds_t>(3000 + 137 * round));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    if (!fs::exists(second)) continue;
+    ++both;
+    EXPECT_EQ(read(second), read(first)) << "round " << round;
+  }
+  std::printf("both files after %d of 40 kills\n", both);
+}
+
+TEST_F(StreamsTest, AnOutputThatCannotBeWrittenLeavesTheAnswers) {
+  const std::string full = path("full");
+  fs::create_symlink("/dev/full", full);
+  const std::string reason = "cannot write '" + full + "': No space left on device";
+  const std::string check = "check " + armAndBall() + motion();
+  const std::string plan = write("plan.csv", "time,hinge,rail\n0,0,0\n1,0.5,0\n");
+  const std::string certify = "certify " + plan + " " + armAndBall();
+  std::vector<std::pair<std::string, std::string>> runs = {
+      {check + " --html " + full, "contact"},
+      {check + " --certificate " + full, "contact"},
+      {check + " --auto-srdf " + full, "contact"},
+      {"srdf --robot " + arm() + " --write " + full, "arm and slide"}};
+#ifdef FCL_ARTIC_HAS_PLANS
+  fs::create_symlink("/dev/full", path("full.csv"));
+  for (const char* option : {" --csv ", " --html ", " --certificate ", " --auto-srdf "})
+    runs.emplace_back(certify + option + full, "FREE: ");
+#endif
+  for (const auto& [arguments, said] : runs) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    expectContains(outcome.err, "error: " + reason);
+    expectContains(outcome.out, said);
+    if (arguments.rfind("srdf", 0) == 0) continue;
+    expectContains(outcome.out, reason);
+    const nlohmann::json json = nlohmann::json::parse(run(arguments + " --json").out);
+    EXPECT_EQ(json.dump().find("\"error\":\""), std::string::npos) << json;
+    expectContains(json.at("notes").dump(), reason);
+  }
+#ifdef FCL_ARTIC_HAS_PLANS
+  const Outcome out = run(certify + " --out " + path("full.csv"));
+  EXPECT_EQ(out.status, 2);
+  expectContains(out.out, "FREE: ");
+#endif
 }
 
 #ifdef FCL_ARTIC_HAS_PLANS
