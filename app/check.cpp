@@ -162,7 +162,8 @@ int runCheck(CheckVerb& options) {
     const std::string missing = certificates.add(*result.certificate);
     if (!missing.empty()) notes.push_back(missing);
     world.unwritten.attempt([&] {
-      const std::string written = certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
+      const std::string written =
+          certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
       if (!written.empty()) notes.push_back(written);
     });
   }

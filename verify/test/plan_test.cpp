@@ -140,7 +140,8 @@ TEST_F(VerifyPlan, ComparingTakesNoTime) {
   const Motion motion = readMotion(m.write(world), world);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_TRUE(compareWithPlan(world, motion, readPlan(write("plan.csv", plan))).differences.empty());
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 1);  // 10 ms; was above 10 s
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+            1);  // 10 ms; was above 10 s
 }
 
 TEST_F(VerifyPlan, FromAndTo) {

@@ -499,7 +499,8 @@ TEST(VerifyProof, PairsThatStandStill) {
   for (const char* pair : {"table a", "a table", "a b", "b table"}) EXPECT_EQ(reason("", "", pair), "") << pair;
   EXPECT_EQ(reason(turn, "", "a b"), "");
   EXPECT_EQ(reason("", turn, "a table"), "");
-  EXPECT_EQ(reason(turn, "", "table a").rfind("the world has them stand still against each other, and they do not", 0), 0u);
+  EXPECT_EQ(reason(turn, "", "table a").rfind("the world has them stand still against each other, and they do not", 0),
+            0u);
   EXPECT_NE(reason(turn, "", "b table"), "");
   EXPECT_NE(reason("", turn, "a b"), "");
   EXPECT_NE(reason("", turn, "b table"), "");
