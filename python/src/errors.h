@@ -16,24 +16,36 @@ namespace fcl_artic::python {
 
 namespace py = pybind11;
 
+/// A text of the library's for Python, whatever bytes of files it holds: those that are no UTF-8 as \\xHH.
+inline py::str textOf(const std::string& text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
+}
+inline py::list textsOf(const std::vector<std::string>& texts) {
+  py::list out;
+  for (const std::string& text : texts) out.append(textOf(text));
+  return out;
+}
+
 [[noreturn]] inline void typeError(const std::string& message) {
   throw py::type_error(message);
 }
 
 [[noreturn]] inline void valueError(const std::string& message) {
-  throw py::value_error(message);
+  PyErr_SetObject(PyExc_ValueError, textOf(message).ptr());
+  throw py::error_already_set();
 }
 
 /// Raises FileNotFoundError as open() does: with errno, message and file name.
 [[noreturn]] inline void fileNotFound(const std::string& message, const std::string& path) {
-  PyErr_SetObject(PyExc_FileNotFoundError, py::make_tuple(ENOENT, message, path).ptr());
+  PyErr_SetObject(PyExc_FileNotFoundError, py::make_tuple(ENOENT, textOf(message), path).ptr());
   throw py::error_already_set();
 }
 
 /// A UserWarning of each note, where no object keeps them.
 inline void warn(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) {
-    if (PyErr_WarnEx(PyExc_UserWarning, note.c_str(), 1) != 0) throw py::error_already_set();
+    if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", textOf(note).ptr()) != 0) throw py::error_already_set();
   }
 }
 

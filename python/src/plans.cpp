@@ -101,10 +101,10 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
   py::class_<LoadedPlan>(module, "Plan",
                          "A plan of a file, as load_plans() gives it: what it says, and the motion that it is.")
       .def_property_readonly(
-          "name", [](const LoadedPlan& p) { return p.plan.name; }, "Within its file; '' for the only one.")
+          "name", [](const LoadedPlan& p) { return textOf(p.plan.name); }, "Within its file; '' for the only one.")
       .def_property_readonly(
           "error",
-          [](const LoadedPlan& p) -> py::object { return p.motion ? py::none() : py::object(py::str(p.error)); },
+          [](const LoadedPlan& p) -> py::object { return p.motion ? py::none() : py::object(textOf(p.error)); },
           "What is wrong with it, naming waypoint and joint; None where nothing is.")
       .def_property_readonly(
           "trajectory", [](const LoadedPlan& p) { return p.require().trajectory; },
@@ -140,7 +140,7 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
           },
           "Objects that the message says the robot carries.")
       .def_property_readonly(
-          "notes", [](const LoadedPlan& p) { return p.motion ? p.motion->notes : p.plan.notes; },
+          "notes", [](const LoadedPlan& p) { return textsOf(p.motion ? p.motion->notes : p.plan.notes); },
           "What was accepted though unusual.")
       .def(
           "waypoint_before", [](const LoadedPlan& p, double t) { return p.require().waypointBefore(t); },

@@ -68,7 +68,7 @@ py::tuple robotState(const Robot& robot) {
     if (at == seen.end()) seen.push_back(shape);
     parts.append(py::make_tuple(g.link, arrayOf(g.offset), index, g.source));
   }
-  return py::make_tuple(treeOfRobot(robot.tree), shapes, parts, pairsOf(robot.allowed), robot.notes,
+  return py::make_tuple(treeOfRobot(robot.tree), shapes, parts, pairsOf(robot.allowed), textsOf(robot.notes),
                         robot.allowed.complete(), frozensetOf(robot.allowed.disallowedPairs()));
 }
 
@@ -210,7 +210,7 @@ void bindRobot(py::module_& module) {
       .def_property(
           "proofs", [](const Robot& r) { return Proofs{r.proofs}; },
           [](Robot& r, const Proofs* proofs) { r.proofs = proofs ? proofs->proofs : nullptr; })
-      .def_readonly("notes", &Robot::notes)
+      .def_property_readonly("notes", [](const Robot& r) { return textsOf(r.notes); })
       .def("add_geometry", &addGeometry, "Gives a link a geometry; `offset` is its pose in the link's frame.",
            py::arg("link"), py::arg("geometry"), py::arg("offset") = py::none(), py::arg("source") = "")
       .def(

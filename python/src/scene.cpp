@@ -55,7 +55,7 @@ py::tuple sceneState(const Scene& scene) {
     obstacles.append(py::make_tuple(o.name, geometryState(geometryOfObstacle(o)),
                                     arrayOf(Eigen::Isometry3d(o.object->getTransform())), o.shape_of));
   }
-  return py::make_tuple(obstacles, scene.notes);
+  return py::make_tuple(obstacles, textsOf(scene.notes));
 }
 
 Scene sceneOfState(const py::tuple& s) {
@@ -94,7 +94,7 @@ void bindScene(py::module_& module) {
                                for (const Scene::Obstacle& o : s.obstacles) names.append(o.name);
                                return names;
                              })
-      .def_readonly("notes", &Scene::notes)
+      .def_property_readonly("notes", [](const Scene& s) { return textsOf(s.notes); })
       .def("__getitem__", [](Scene& s, const std::string& name) { return *find(s, name); })
       .def("__contains__",
            [](const Scene& s, const std::string& name) {

@@ -272,6 +272,30 @@ def test_what_is_left_out_of_points_and_meshes_is_a_warning(tmp_path):
     other.write_text("AC3Db\n")
     with pytest.raises(ValueError, match="import_meshes"):
         fcl_artic.load_mesh(other)
+    pairs = tmp_path / "arm.srdf"
+    pairs.write_text("<robot name='arm'><disable_collisions link1='a' link2='x'/><disable_collisions link1='a' link2='b'/></robot>")
+    tree = fcl_artic.KinematicTree("arm")
+    for link in ("a", "b"):
+        tree.add_link(link)
+    for read in (fcl_artic.load_srdf, fcl_artic.read_srdf):
+        with pytest.warns(UserWarning, match="1 of 2 entries name links"):
+            assert len(read(pairs, tree)) == 1
+
+
+def test_messages_hold_what_is_no_utf8(tmp_path):
+    wrong = tmp_path / "wrong.obj"
+    wrong.write_bytes(b"\xe4bc 1 2\n")
+    with pytest.raises(ValueError, match=r"'\\xe4bc' begins a line of no kind"):
+        fcl_artic.load_mesh(wrong)
+    odd = tmp_path / "odd.ply"
+    lines = ["ply", "format ascii 1.0", "element vertex 3"]
+    lines += [f"property float {name}" for name in ("x", "y", "z", "w\xe4rm")]
+    lines += ["element face 1", "property list uchar int vertex_indices", "end_header"]
+    lines += ["0 0 0 1", "1 0 0 1", "0 1 0 1", "3 0 1 2", ""]
+    odd.write_bytes("\n".join(lines).encode("latin-1"))
+    with pytest.warns(UserWarning, match=r"passed over of each vertex: 'w\\xe4rm'"):
+        fcl_artic.load_mesh(odd)
+    assert r"w\xe4rm" in fcl_artic.load_scene(odd).notes[0]
 
 
 def test_the_instruction_set_has_a_name():

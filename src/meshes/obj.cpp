@@ -28,11 +28,16 @@ Eigen::Vector3d readVertex(Lines& lines) {
   return x;
 }
 
+/// @throws std::runtime_error unless the word may name a vertex.
+void requireNumbers(std::string_view word, const Lines& lines) {
+  if (word.find_first_not_of("-0123456789/") != word.npos) lines.refuse(shown(word) + " names no vertex");
+}
+
 /// The vertex that a word such as "7", "7/1/3" or "-1" names, counted from 0.
 /// @param before  vertices above the line, from which negative numbers count back.
 std::size_t toIndex(std::string_view word, std::size_t before, std::size_t count, const Lines& lines) {
   const std::string_view digits = word.substr(0, word.find('/'));
-  if (word.find_first_not_of("-0123456789/") != word.npos) lines.refuse(shown(word) + " names no vertex");
+  requireNumbers(word, lines);
   long long number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (digits.empty() || error != std::errc() || end != digits.data() + digits.size()) {
@@ -72,10 +77,9 @@ TriangleSoup readObj(const Source& source) {
       lines.end();
     } else if (key == "v") {
       soup.vertices.push_back(readVertex(lines));
-    } else if (key == "p") {
-      ++soup.points;
-    } else if (key == "l") {
-      ++soup.lines;
+    } else if (key == "p" || key == "l") {
+      ++(key == "p" ? soup.points : soup.lines);
+      for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) requireNumbers(word, lines);
     } else if (isOneOf(key, kFreeForm)) {
       lines.refuse("has a free-form curve or surface (" + shown(key) + "): save it with polygons");
     } else if (key == "call" || key == "csh") {

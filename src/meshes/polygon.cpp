@@ -67,10 +67,6 @@ bool holds(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vect
 
 }  // namespace
 
-bool isConvexPolygon(const std::vector<Eigen::Vector3d>& corners) {
-  return isConvex(flattened(corners));
-}
-
 std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vector3d>& corners) {
   const std::size_t n = corners.size();
   std::vector<std::array<std::size_t, 3>> triangles;
@@ -84,10 +80,12 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
   // any corner is cut off, so that the work ends and no edge is lost.
   std::vector<std::size_t> before(n), after(n);
   for (std::size_t i = 0; i < n; ++i) before[i] = (i + n - 1) % n, after[i] = (i + 1) % n;
+  std::size_t compared = 0;
   const auto isEar = [&](std::size_t i) {
     const Eigen::Vector2d &a = points[before[i]], &b = points[i], &c = points[after[i]];
     if (!(turn(a, b, c) > 0)) return false;
     for (std::size_t k = after[after[i]]; k != before[i]; k = after[k]) {
+      ++compared;
       const Eigen::Vector2d& p = points[k];
       if (p == a || p == b || p == c) continue;  // where a polygon with a hole is slit open, corners come twice
       if (turn(points[before[k]], p, points[after[k]]) <= 0 && holds(a, b, c, p)) return false;
@@ -99,6 +97,7 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
     if (tried < left && !isEar(at)) {
       at = after[at];
       ++tried;
+      if (compared > kMostCompared) return {};
       continue;
     }
     triangles.push_back({before[at], at, after[at]});

@@ -10,8 +10,9 @@
 
 namespace fcl_artic::meshes {
 
-/// Corners of a polygon that cutPolygon() takes at most, where it is not convex: the time grows with their square.
-constexpr std::size_t kMostCorners = 20000;
+/// Corners that cutPolygon() compares with triangles at most: about a second. Polygons that are not convex take as many
+/// as the square of their corners, those that cross themselves or wind about more, up to the cube.
+constexpr std::size_t kMostCompared = 100000000;
 
 /// Cuts a polygon into n - 2 triangles between its corners, all of its own turning sense, so that each of its edges is
 /// an edge of one triangle: closed meshes stay closed, also where a polygon is broken.
@@ -20,10 +21,7 @@ constexpr std::size_t kMostCorners = 20000;
 /// other corner. The surface of a polygon that is not flat is not defined by its corners: it is taken to be these
 /// triangles. A polygon that crosses or touches itself is cut so that all of its corners are covered.
 /// @param corners  at least 3, finite.
-/// @return triples of numbers of corners.
+/// @return triples of numbers of corners; none where it would take more than kMostCompared.
 std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vector3d>& corners);
-
-/// Whether the polygon is convex as seen along its normal, within rounding: a fan covers it.
-bool isConvexPolygon(const std::vector<Eigen::Vector3d>& corners);
 
 }  // namespace fcl_artic::meshes

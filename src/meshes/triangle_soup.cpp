@@ -48,11 +48,13 @@ void TriangleSoup::addFace(const std::size_t* corners, std::size_t count, const 
   std::vector<Eigen::Vector3d> x;
   x.reserve(count);
   for (std::size_t k = 0; k < count; ++k) x.push_back(vertices[corners[k]]);
-  if (count > kMostCorners && !isConvexPolygon(x)) {
-    source.refuse("has a face of " + std::to_string(count) + " corners that is not convex: cut it into triangles");
+  const auto cut = cutPolygon(x);
+  if (cut.empty()) {
+    source.refuse("has a face of " + std::to_string(count) +
+                  " corners that takes too long to cut: cut it into triangles");
   }
   uneven += isUneven(x);
-  for (const auto& [a, b, c] : cutPolygon(x)) triangles.emplace_back(corners[a], corners[b], corners[c]);
+  for (const auto& [a, b, c] : cut) triangles.emplace_back(corners[a], corners[b], corners[c]);
 }
 
 void TriangleSoup::tell(const Source& source) const {

@@ -130,9 +130,13 @@ TEST(Obj, MarksLineEndsAndWordsThatWouldShiftVertices) {
 
 // Of a name that ends in a backslash some readers take the next line for a part, a face or a vertex.
 TEST(Obj, LinesThatMayTakeInTheNextOneAreRefused) {
-  for (const char* line : {"g part\\\n", "usemtl C:\\mat\\ \n", "o a \\\n", "vn 0 0 \\\n", "l 1 2\\\n"}) {
-    expectContains(errorOf(readObj, kObj + line + "f 1 2 3\nf 1 2 3\n"), "line 4: a line of '");
+  for (const char* line : {"g part\\\n", "usemtl C:\\mat\\ \n", "o a \\\n", "vn 0 0 \\\n"}) {
+    expectContains(errorOf(readObj, kObj + line + "f 1 2 3\nf 1 2 3\n"), ": a line of '");
   }
+  expectContains(errorOf(readObj, kObj + "l 1 2\\\nf 1 2 3\nf 1 2 3\n"), "'f' names no vertex");
+  read(readObj, kObj + "l 1 \\\n 2/1\nf 1 2 3\n");
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "its lines, 1,");
   EXPECT_EQ(read(readObj, "# c:\\\n" + kObj + "f 1\\\n 2 3\n").triangles.size(), 1u);
 }
 
@@ -146,6 +150,20 @@ TEST(Obj, PointsLinesAndFacesThatAreNotFlatAreNoted) {
   read(readObj,
        "v 451237 100.333 1\nv 451238 100.333 1.33333\nv 451238 101.333 1.66667\nv 451237 101.333 1.33334\nf 1 2 3 4\n");
   EXPECT_TRUE(notes.empty());
+}
+
+// The time for a polygon that crosses itself would grow with the cube of its corners.
+TEST(Obj, FacesThatTakeTooLongToCutAreRefused) {
+  std::string star;
+  constexpr int kCorners = 4001;
+  for (int i = 0; i < kCorners; ++i) {
+    const double turn = 2 * 3.14159265358979323846 * i / kCorners;
+    star += "v " + std::to_string((1 + i * 7919 % 997) * std::cos(turn)) + " " +
+            std::to_string((1 + i * 104729 % 991) * std::sin(turn)) + " 0\n";
+  }
+  star += "f";
+  for (int i = 1; i <= kCorners; ++i) star += " " + std::to_string(i);
+  expectContains(errorOf(readObj, star + "\n"), "a face of 4001 corners that takes too long to cut");
 }
 
 // ---- OFF

@@ -8,7 +8,9 @@ namespace {
 
 Item itemOf(const std::string& what, std::initializer_list<const double*> places) {
   Item item{what, {}};
-  for (const double* x : places) item.numbers.insert(item.numbers.end(), x, x + 3);
+  for (const double* x : places) {
+    for (int k = 0; k < 3; ++k) item.numbers.push_back(x[k]);
+  }
   return item;
 }
 

@@ -49,7 +49,7 @@ std::vector<double> rowsOf(const Eigen::Isometry3d& M) {
   return out;
 }
 void append(Item& item, const std::vector<double>& numbers) {
-  item.numbers.insert(item.numbers.end(), numbers.begin(), numbers.end());
+  for (const double x : numbers) item.numbers.push_back(x);
 }
 
 /// A shape as the readers make it: its kind, and its sizes or places.
