@@ -105,8 +105,8 @@ struct PlacedRobot {
 /// Combines several robots into one forest, each on a link of its own, prefix + "mount"; of a part that was combined
 /// before, each of its roots on prefix + "mount_of_" + the root's name. Their variables follow each other in the order
 /// of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none; every link of
-/// one robot is checked against every link of the others, also for robots that touch where they stand. Geometries are
-/// shared with the parts.
+/// one robot is checked against every link of the others, but for what stands still against each other
+/// (ArticulatedCollisionManager::setAllowedCollisions()). Geometries are shared with the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
