@@ -63,26 +63,6 @@ const T& required(py::handle value, const char* what, const char* type, const ch
   typeError(std::string(what) + " is no " + type + " but " + typeName(value) + "; " + cure);
 }
 
-/// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
-/// else that is wrong with a file's content a ValueError. To be called with the GIL held.
-/// @param path  of the file that the caller named.
-template <class Read>
-auto guardFiles(const std::string& path, Read&& read) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) fileNotFound("no such file", path);
-  try {
-    py::gil_scoped_release release;
-    return read();
-  } catch (const std::runtime_error& problem) {
-    const std::string message = problem.what();
-    if (message.find("no such file") != std::string::npos || message.find("No such file") != std::string::npos ||
-        message.find("there is no package") != std::string::npos) {
-      fileNotFound(message, path);
-    }
-    valueError(message);
-  }
-}
-
 /// Looks up a name of the library's, for which it throws std::out_of_range: a ValueError here, since no index is wrong.
 template <class Look>
 auto named(Look&& look) -> decltype(look()) {

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <mutex>
-#include <shared_mutex>
+#include <optional>
 #include <utility>
-#include <vector>
 
-#include "errors.h"
+#include "gil.h"
+#include "turns.h"
 
 namespace fcl_artic::python {
 
-/// A manager that Python's threads share: it sets itself up when it is asked after a change, changes wait for queries
-/// and queries for changes. No thread waits while it holds the GIL.
+/// A manager that Python's threads share: it sets itself up when it is asked after a change, changes and queries come
+/// in turn. No thread waits while it holds the GIL, and Ctrl-C ends each wait.
 template <class Manager>
 class Guarded {
   struct Nothing {
@@ -26,7 +24,7 @@ class Guarded {
   /// Changes the manager when no query runs. With the GIL held; `change` runs without it.
   /// @param commit  writes down beside the manager what has changed: with the GIL, and before any other thread changes
   ///   or asks the manager, so that what is written down is what the manager has.
-  /// @throws std::runtime_error in a callback of a query of this very manager, which would wait for itself.
+  /// @throws as Turn.
   template <class Change, class Commit = Nothing>
   void change(const Change& change, const Commit& commit = {}) {
     changeAtOnce(
@@ -39,79 +37,64 @@ class Guarded {
   /// The same for a change that takes effect by itself, or throws and changes nothing: no setup() follows.
   template <class Change, class Commit = Nothing>
   void changeAtOnce(const Change& change, const Commit& commit = {}) {
-    if (isAskedByThisThread()) throw std::runtime_error("a world can't be changed from within its own query");
-    const py::gil_scoped_release release;
-    const std::unique_lock<std::shared_mutex> lock(mutex_);
+    const GilReleased released;
+    const Turn turn(Turn::changes, turns_);
     change(manager_);
-    const py::gil_scoped_acquire acquire;  // who holds it waits for no lock of ours
+    const GilHeld held;  // who holds it waits for no turn
     commit();
   }
 
   /// Asks the manager, set up, while other threads may ask too. With the GIL held; `ask` runs without it.
+  /// @throws as Turn.
   template <class Ask>
   auto ask(const Ask& ask) const {
-    const py::gil_scoped_release release;
-    return askFreely(ask);
-  }
-  /// The same, without the GIL.
-  template <class Ask>
-  auto askFreely(const Ask& ask) const {
-    const Reading reading(*this);
+    const GilReleased released;
+    std::optional<Turn> turn(std::in_place, Turn::asks, turns_);
+    if (changed_) {
+      turn.reset();
+      turn.emplace(Turn::changes, turns_);
+      setUp();
+      turn->ask();
+    }
     return ask(static_cast<const Manager&>(manager_));
   }
-  /// The same, but looks at the manager as it is, set up or not.
+  /// Asks this manager and another one.
+  template <class Ask>
+  auto askWith(const Guarded& other, const Ask& ask) const {
+    const GilReleased released;
+    for (;;) {
+      {
+        const Turn turn(Turn::asks, turns_, &other.turns_);
+        if (!changed_ && !other.changed_) {
+          return ask(static_cast<const Manager&>(manager_), static_cast<const Manager&>(other.manager_));
+        }
+      }
+      for (const Guarded* one : {this, &other}) {
+        std::optional<Turn> turn(std::in_place, Turn::asks, one->turns_);
+        if (!one->changed_) continue;
+        turn.reset();
+        turn.emplace(Turn::changes, one->turns_);
+        one->setUp();
+      }
+    }
+  }
+  /// As ask(), but looks at the manager as it is, set up or not.
   template <class Look>
   auto look(const Look& look) const {
-    const py::gil_scoped_release release;
-    if (isAskedByThisThread()) return look(static_cast<const Manager&>(manager_));
-    const std::shared_lock<std::shared_mutex> lock(mutex_);
+    const GilReleased released;
+    const Turn turn(Turn::asks, turns_);
     return look(static_cast<const Manager&>(manager_));
   }
 
  private:
-  /// Holds the manager unchanged and set up. A thread that asks from within its own query, in a callback, holds it
-  /// already.
-  class Reading {
-   public:
-    explicit Reading(const Guarded& guarded) : guarded_(guarded), outermost_(!guarded.isAskedByThisThread()) {
-      if (!outermost_) return;
-      guarded_.mutex_.lock_shared();
-      while (guarded_.changed_) {
-        guarded_.mutex_.unlock_shared();
-        guarded_.setUp();
-        guarded_.mutex_.lock_shared();
-      }
-      askedByThisThread().push_back(&guarded_);
-    }
-    ~Reading() {
-      if (!outermost_) return;
-      askedByThisThread().pop_back();
-      guarded_.mutex_.unlock_shared();
-    }
-    Reading(const Reading&) = delete;
-    Reading& operator=(const Reading&) = delete;
-
-   private:
-    const Guarded& guarded_;
-    const bool outermost_;
-  };
-
+  /// In a turn to change it.
   void setUp() const {
-    const std::unique_lock<std::shared_mutex> lock(mutex_);
     if (changed_) manager_.setup();
     changed_ = false;
   }
-  static std::vector<const Guarded*>& askedByThisThread() {
-    thread_local std::vector<const Guarded*> asked;
-    return asked;
-  }
-  bool isAskedByThisThread() const {
-    const auto& asked = askedByThisThread();
-    return std::find(asked.begin(), asked.end(), this) != asked.end();
-  }
 
-  mutable std::shared_mutex mutex_;
-  mutable Manager manager_;  ///< const members write it in setup() only, under the unique lock
+  Turns turns_;
+  mutable Manager manager_;  ///< const members write it in setUp() only
   mutable bool changed_ = true;
 };
 

@@ -245,15 +245,6 @@ void bindTree(py::module_& module) {
           [](const Tree& t, py::handle) { return t.own ? treeOfState(treeState(t)) : t; }, py::arg("memo"));
 }
 
-/// A motion or trajectory as Python holds it. The library's functions take it as what it derives from.
-template <class Base>
-struct Made : Base {
-  Made(Base base, Recipe how) : Base(std::move(base)), recipe(std::move(how)) {}
-  Recipe recipe;
-};
-using MadeMotion = Made<JointMotion>;
-using MadeTrajectory = Made<JointTrajectory>;
-
 /// The tree alone of what has one: a recipe needs no geometry.
 py::object treeAlone(py::handle value) {
   return py::cast(treeOfRobot(treeOf(value)));

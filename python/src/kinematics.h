@@ -11,6 +11,7 @@
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/trajectory.h"
+#include "recipe.h"
 
 namespace fcl_artic::python {
 
@@ -37,6 +38,15 @@ LinkId linkOf(const KinematicTree& tree, py::handle link);
 
 /// The straight motion from one configuration to another.
 JointMotion linearMotion(const KinematicTree& tree, py::handle q0, py::handle q1);
+
+/// A motion or trajectory as Python holds it. The library's functions take it as what it derives from.
+template <class Base>
+struct Made : Base {
+  Made(Base base, Recipe how) : Base(std::move(base)), recipe(std::move(how)) {}
+  Recipe recipe;
+};
+using MadeMotion = Made<JointMotion>;
+using MadeTrajectory = Made<JointTrajectory>;
 
 /// Whether the value is a joint motion or trajectory.
 inline bool isMotion(py::handle value) {

@@ -11,7 +11,7 @@ namespace fcl_artic::python {
 
 LinkPairReport classifyWatched(py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
                                py::object progress,
-                               const std::function<LinkPairReport(const LinkPairOptions&)>& classify) {
+                               const std::function<void(const std::function<void(const ClassifyWith&)>&)>& ask) {
   struct Stopped {};
   LinkPairOptions options;
   AllowedCollisionMatrix pairs;
@@ -25,15 +25,14 @@ LinkPairReport classifyWatched(py::handle only, double margin, std::uint64_t wor
   options.threads = threads;
   Watch watch(std::move(progress));
   LinkPairReport report;
-  {
-    const py::gil_scoped_release release;
+  ask([&](const ClassifyWith& classify) {
     runWatched(watch, [&](const auto& goOn) {
       options.progress = [&](std::size_t done, std::size_t total) {
         if (!goOn(total == 0 ? 1 : static_cast<double>(done) / static_cast<double>(total))) throw Stopped();
       };
       report = classify(options);
     });
-  }
+  });
   watch.finish();
   if (watch.stopped()) throw std::runtime_error("progress ended the classification of the pairs of links");
   return report;

@@ -12,6 +12,7 @@
 #include "result.h"
 #include "robot.h"
 #include "scene.h"
+#include "turns.h"
 #include "world.h"
 
 PYBIND11_MODULE(_fcl_artic, module) {
@@ -21,6 +22,8 @@ PYBIND11_MODULE(_fcl_artic, module) {
   module.def("instruction_set", &fcl_artic::instructionSet,
              "The instructions that queries are answered with: 'avx512', 'avx2', 'sse2', 'neon' or 'portable'. The\n"
              "environment variable FCL_ARTIC_ISA asks for another of them, before the first query.");
+  watchForks();
+  watchEnd();
   bindRequest(module);
   bindKinematics(module);
   bindGeometry(module);

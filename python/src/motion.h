@@ -13,13 +13,17 @@
 
 namespace fcl_artic::python {
 
-/// A motion as Python holds it; it is not changed once it is made.
+/// A motion as Python holds it; it is not changed once it is made. Its functions are the recipe's: who has `motion` or
+/// `pose` has the recipe beside it.
 struct Motion {
   const char* kind = "";
   std::shared_ptr<const fcl::MotionBased> motion;
   /// The pose at t, with the GIL held: of a twin, as FCL's motions keep the last pose in themselves.
   std::function<Eigen::Isometry3d(double t)> pose;
   Recipe recipe;
+
+  /// For Python's garbage collector.
+  int visit(visitproc visit, void* arg) const { return recipe.visit(visit, arg); }
 };
 
 /// A motion, or a pose to stand still at. @throws py::type_error naming `what`.

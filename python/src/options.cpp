@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "array.h"
+#include "collected.h"
 #include "enums.h"
 #include "text/nearest_name.h"
 
@@ -244,7 +245,7 @@ void bindRequest(py::module_& module) {
                       [](const py::dict& state) { return ofState(state, redonOptions()); }));
   bindOptions(redon, redonOptions());
 
-  py::class_<Request> request(module, "Request",
+  py::class_<Request> request(module, "Request", collected<Request, true>(),
                               "What is asked of a query. Each of its options can also be given to the query itself.");
   request
       .def(py::init([](const py::kwargs& options) {

@@ -17,6 +17,13 @@ struct Request {
   CertifiedRequest request;
   py::object progress = py::none();
   bool most_contacts_chosen = false;  ///< Whether max_contacts was given; else it follows the mode.
+
+  // For Python's garbage collector.
+  int visit(visitproc visit, void* arg) const {
+    Py_VISIT(progress.ptr());
+    return 0;
+  }
+  void clear() { progress = py::none(); }
 };
 
 /// The request that keyword arguments describe: `request`, if given, and the options that stand beside it.

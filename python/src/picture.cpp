@@ -88,7 +88,8 @@ py::object picture(const World& world, py::handle q0, py::handle q1, const Certi
   };
   render::Image image;
   {
-    const py::gil_scoped_release release;
+    const GilReleased released;
+    const InLibrary within;
     static std::mutex one;  // OpenGL's contexts are one thread's
     const std::lock_guard<std::mutex> lock(one);
     image = render::drawPicture(robot, obstacles, path, drawn, options);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "files/files.h"
+#include "guard_files.h"
 #include "kinematics.h"
 #include "plans/carried.h"
 #include "plans/motion.h"
@@ -17,7 +18,18 @@ namespace {
 
 /// A plan of a file, and the motion that it is.
 struct LoadedPlan {
+  LoadedPlan(std::shared_ptr<const KinematicTree> of, plans::Plan read, plans::MotionOptions how)
+      : tree(std::move(of)), plan(std::move(read)), options(std::move(how)) {
+    try {
+      motion = plans::toMotion(*tree, plan, options);
+    } catch (const std::invalid_argument& problem) {
+      error = problem.what();
+    }
+  }
+
+  std::shared_ptr<const KinematicTree> tree;
   plans::Plan plan;
+  plans::MotionOptions options;
   std::optional<plans::PlanMotion> motion;  ///< none: `error` says why
   std::string error;
 
@@ -26,6 +38,50 @@ struct LoadedPlan {
     return *motion;
   }
 };
+
+/// What pickle keeps: all that the motion is made of.
+py::tuple planState(const LoadedPlan& p) {
+  std::vector<std::pair<std::string, std::string>> carried;
+  for (const plans::Carried& one : p.plan.carried) carried.emplace_back(one.name, one.link);
+  const plans::MotionOptions& o = p.options;
+  return py::make_tuple(
+      treeOfRobot(p.tree),
+      py::make_tuple(p.plan.name, p.plan.joints, p.plan.times, p.plan.positions, p.plan.velocities,
+                     p.plan.accelerations, p.plan.state, carried, p.plan.has_degrees, p.plan.notes, p.plan.error),
+      py::make_tuple(static_cast<int>(o.interpolation), o.blend, static_cast<int>(o.turns), o.ignore_limits,
+                     o.limit_tolerance, o.degrees, o.joints, o.state));
+}
+LoadedPlan planOfState(const py::tuple& state) {
+  const py::tuple given = state[1], how = state[2];
+  const auto read = [](const py::tuple& from, std::size_t i, auto& to) {
+    to = py::cast<std::decay_t<decltype(to)>>(from[i]);
+  };
+  plans::Plan plan;
+  std::vector<std::pair<std::string, std::string>> carried;
+  std::size_t i = 0;
+  read(given, i++, plan.name);
+  read(given, i++, plan.joints);
+  read(given, i++, plan.times);
+  read(given, i++, plan.positions);
+  read(given, i++, plan.velocities);
+  read(given, i++, plan.accelerations);
+  read(given, i++, plan.state);
+  read(given, i++, carried);
+  read(given, i++, plan.has_degrees);
+  read(given, i++, plan.notes);
+  read(given, i++, plan.error);
+  for (const auto& [name, link] : carried) plan.carried.push_back({name, link});
+  plans::MotionOptions options;
+  options.interpolation = static_cast<plans::Interpolation>(py::cast<int>(how[0]));
+  read(how, 1, options.blend);
+  options.turns = static_cast<plans::Turns>(py::cast<int>(how[2]));
+  read(how, 3, options.ignore_limits);
+  read(how, 4, options.limit_tolerance);
+  read(how, 5, options.degrees);
+  read(how, 6, options.joints);
+  read(how, 7, options.state);
+  return LoadedPlan(treeOf(state[0]), std::move(plan), std::move(options));
+}
 
 plans::Turns turnsNamed(const std::string& name) {
   if (name == "ask") return plans::Turns::ask;
@@ -61,13 +117,7 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
     std::vector<LoadedPlan> out;
     try {
       for (plans::Plan& plan : plans::parsePlans(*of, files::read(file), kind, of_csv)) {
-        LoadedPlan& one = out.emplace_back();
-        try {
-          one.motion = plans::toMotion(*of, plan, options);
-        } catch (const std::invalid_argument& error) {
-          one.error = error.what();
-        }
-        one.plan = std::move(plan);
+        out.emplace_back(of, std::move(plan), options);
       }
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error("'" + file + "': " + error.what());
@@ -107,7 +157,11 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
           [](const LoadedPlan& p) -> py::object { return p.motion ? py::none() : py::object(textOf(p.error)); },
           "What is wrong with it, naming waypoint and joint; None where nothing is.")
       .def_property_readonly(
-          "trajectory", [](const LoadedPlan& p) { return p.require().trajectory; },
+          "trajectory",
+          [](const py::object& self) {
+            const Recipe how("__getattribute__", py::make_tuple("trajectory"), self);
+            return MadeTrajectory(py::cast<const LoadedPlan&>(self).require().trajectory, how);
+          },
           "The motion that is asked about. A ValueError for a plan with an error.")
       .def_property_readonly(
           "interpolation",
@@ -145,6 +199,7 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
       .def(
           "waypoint_before", [](const LoadedPlan& p, double t) { return p.require().waypointBefore(t); },
           "Number of the waypoint at or before time t.", py::arg("t"))
+      .def(py::pickle(&planState, &planOfState))
       .def("__repr__", [](const LoadedPlan& p) {
         if (!p.motion) return py::str("<Plan {!r}: {}>").format(p.plan.name, p.error);
         return py::str("<Plan {!r}: {} waypoints, {}>")
@@ -164,7 +219,7 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
       py::arg("time") = "", py::arg("degrees") = false,
       py::arg("limit_tolerance") = plans::MotionOptions().limit_tolerance);
   world.def(
-      "certify", &certify,
+      "certify", &certify, py::call_guard<Call>(),
       "Finds the first contact of a plan of load_plans(), or proves that there is none. Options are those of Request.",
       py::arg("plan"));
 }

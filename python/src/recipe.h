@@ -23,6 +23,21 @@ class Recipe {
         arguments_(py::module_::import("copy").attr("deepcopy")(arguments)),
         owner_(std::move(owner)) {}
 
+  /// Of arguments that nobody changes: they are kept as they are.
+  static Recipe ofFixed(std::string maker, py::tuple arguments) {
+    Recipe recipe;
+    recipe.maker_ = std::move(maker);
+    recipe.arguments_ = std::move(arguments);
+    return recipe;
+  }
+
+  /// For Python's garbage collector.
+  int visit(visitproc visit, void* arg) const {
+    Py_VISIT(arguments_.ptr());
+    Py_VISIT(owner_.ptr());
+    return 0;
+  }
+
   /// What pickle wants to know of an object.
   /// @throws py::type_error if nothing is known.
   py::tuple reduced(const py::object& self) const {

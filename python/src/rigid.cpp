@@ -12,6 +12,7 @@
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 
+#include "collected.h"
 #include "fcl_artic/bounded_motion.h"
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/continuous_manager.h"
@@ -87,21 +88,15 @@ Motion ofLink(py::handle tree, py::handle motion, py::handle link, py::handle of
           Recipe("of_link", py::make_tuple(treeOfRobot(of), motion, link, offset))};
 }
 
-/// A motion of one's own, whose state and bounds Python functions tell.
+/// A motion of one's own, whose state and bounds Python functions tell, which must outlive it: Motion's recipe has
+/// them.
 class OwnMotion : public fcl::MotionBased, public BoundedMotion {
  public:
-  OwnMotion(py::function state, py::function bounds, bool derivatives)
-      : state_(std::move(state)), bounds_(std::move(bounds)), derivatives_(derivatives) {}
-  ~OwnMotion() override {
-    const py::gil_scoped_acquire acquire;
-    state_ = py::function();
-    bounds_ = py::function();
-  }
-  OwnMotion(const OwnMotion&) = delete;
-  OwnMotion& operator=(const OwnMotion&) = delete;
+  OwnMotion(py::handle state, py::handle bounds, bool derivatives)
+      : state_(state), bounds_(bounds), derivatives_(derivatives) {}
 
   State state(double t) const override {
-    const py::gil_scoped_acquire acquire;
+    const GilHeld held;
     const py::object answer = state_(t);
     if (answer.is_none()) typeError("state(t) returned None, not a pose");  // which is the identity elsewhere
     State s;
@@ -119,7 +114,7 @@ class OwnMotion : public fcl::MotionBased, public BoundedMotion {
     return s;
   }
   Bounds bounds(double begin, double end) const override {
-    const py::gil_scoped_acquire acquire;
+    const GilHeld held;
     const auto items = sequenceOf(bounds_(begin, end), "bounds(begin, end)", derivatives_ ? 6 : 2);
     const auto at = [&](std::size_t i) { return numberOf(py::object(items[i]), "bounds(begin, end)"); };
     Bounds b;
@@ -153,14 +148,14 @@ class OwnMotion : public fcl::MotionBased, public BoundedMotion {
     }
     return value;
   }
-  py::function state_, bounds_;
-  bool derivatives_;
+  const py::handle state_, bounds_;
+  const bool derivatives_;
 };
 
 Motion bounded(const py::function& state, const py::function& bounds, bool derivatives) {
   const auto made = std::make_shared<const OwnMotion>(state, bounds, derivatives);
   return {"bounded", made, [made](double t) { return made->state(t).pose; },
-          Recipe("bounded", py::make_tuple(state, bounds, derivatives))};
+          Recipe::ofFixed("bounded", py::make_tuple(state, bounds, derivatives))};
 }
 
 /// The request for two bodies. @throws py::type_error for an option that only worlds have.
@@ -181,7 +176,8 @@ CertifiedPairResult collidePair(py::handle a, py::handle motion_a, py::handle b,
   asked.progress = [&watch](double t) { return watch.goOn(t); };
   CertifiedPairResult result;
   {
-    const py::gil_scoped_release release;
+    const GilReleased released;
+    const InLibrary within;
     continuousCollide(first.shape.get(), moves_first.motion.get(), second.shape.get(), moves_second.motion.get(), asked,
                       result);
   }
@@ -246,16 +242,26 @@ class Bodies {
         [&] { bodies_[name] = after; });
   }
   const std::vector<std::string>& names() const { return order_; }
+  /// For Python's garbage collector: the functions of motions.
+  int visit(visitproc visit, void* arg) const {
+    for (const auto& [name, body] : bodies_) {
+      if (const int status = body.motion.visit(visit, arg)) return status;
+    }
+    return 0;
+  }
 
   BodiesResult check(const py::kwargs& options) const {
-    return answer(options, [](const auto& manager, const auto& request, auto& result, const auto&) {
-      manager.continuousCollide(request, result);
+    return answer(options, [&](const auto& request, auto& result, const auto& nameThem) {
+      manager_.ask([&](const ContinuousCollisionManager& manager) {
+        nameThem(*this);  // now that nothing changes
+        manager.continuousCollide(request, result);
+      });
     });
   }
   BodiesResult checkAgainst(const Bodies& other, const py::kwargs& options) const {
-    return answer(options, [&](const auto& manager, const auto& request, auto& result, const auto& nameThem) {
-      other.manager_.askFreely([&](const ContinuousCollisionManager& theirs) {
-        nameThem(other);
+    return answer(options, [&](const auto& request, auto& result, const auto& nameThem) {
+      manager_.askWith(other.manager_, [&](const auto& manager, const auto& theirs) {
+        for (const Bodies* one : {this, &other}) nameThem(*one);
         manager.continuousCollide(&theirs, request, result);
       });
     });
@@ -292,10 +298,7 @@ class Bodies {
     const auto nameThem = [&](const Bodies& bodies) {
       for (const auto& [key, body] : bodies.bodies_) name[body.object.get()] = key;
     };
-    manager_.ask([&](const ContinuousCollisionManager& manager) {
-      nameThem(*this);  // now that nothing changes
-      ask(manager, asked, found, nameThem);
-    });
+    ask(asked, found, nameThem);
     BodiesResult result;
     static_cast<Bracket&>(result) = found;
     result.never_apart_pairs = found.never_apart_pairs;
@@ -317,7 +320,7 @@ class Bodies {
 };
 
 void bindRigidMotion(py::module_& module) {
-  py::class_<Motion>(module, "Motion", "How a rigid body moves in the world over t in [0, 1].")
+  py::class_<Motion>(module, "Motion", collected<Motion>(), "How a rigid body moves in the world over t in [0, 1].")
       .def_static("still", &still, "Stands still at a pose.", py::arg("pose") = py::none())
       .def_static("translation", &translation, "Goes straight by a displacement, without turning.", py::arg("begin"),
                   py::arg("displacement"))
@@ -357,7 +360,7 @@ Motion motionOf(py::handle value, const char* what) {
 void bindRigid(py::module_& module) {
   bindRigidMotion(module);
   module.def(
-      "continuous_collide", &collidePair,
+      "continuous_collide", &collidePair, py::call_guard<Call>(),
       "Finds the first contact of two geometries along two motions, or proves that there is none. In place of a\n"
       "motion a pose (4, 4) to stand still at is taken. Options are those of Request that are not about links.",
       py::arg("geometry_a"), py::arg("motion_a"), py::arg("geometry_b"), py::arg("motion_b"));
@@ -391,15 +394,17 @@ void bindRigid(py::module_& module) {
         out << ">";
         return out.str();
       });
-  py::class_<Bodies>(module, "Bodies", "Many bodies that move freely, each with a name. Threads may share it.")
+  py::class_<Bodies>(module, "Bodies", collected<Bodies>(),
+                     "Many bodies that move freely, each with a name. Threads may share it.")
       .def(py::init<>())
       .def("add", &Bodies::add, "Adds a body with its motion, or a pose to stand still at.", py::arg("name"),
            py::arg("geometry"), py::arg("motion"))
       .def("remove", &Bodies::remove, "Removes a body.", py::arg("name"))
       .def("set_motion", &Bodies::setMotion, "Gives a body another motion.", py::arg("name"), py::arg("motion"))
       .def_property_readonly("names", &Bodies::names)
-      .def("check", &Bodies::check, "Finds the first contact of all pairs, or proves that there is none.")
-      .def("check_against", &Bodies::checkAgainst,
+      .def("check", &Bodies::check, py::call_guard<Call>(),
+           "Finds the first contact of all pairs, or proves that there is none.")
+      .def("check_against", &Bodies::checkAgainst, py::call_guard<Call>(),
            "Finds the first contact of these bodies with other ones, or proves that there is none.", py::arg("other"))
       .def("swept_box", &Bodies::sweptBox, "Lower and upper corner of a box that is proven to hold the whole motion.",
            py::arg("name"))

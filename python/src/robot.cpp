@@ -218,8 +218,11 @@ void bindRobot(py::module_& module) {
           [](const Robot& robot, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
              py::object progress) {
             // Of a copy: another thread may change the robot meanwhile.
-            return classifyWatched(only, margin, work, samples, threads, std::move(progress),
-                                   [robot](const LinkPairOptions& o) { return generateAllowedCollisions(robot, o); });
+            return classifyWatched(only, margin, work, samples, threads, std::move(progress), [robot](const auto& run) {
+              const GilReleased released;
+              const InLibrary within;
+              run([&](const LinkPairOptions& o) { return generateAllowedCollisions(robot, o); });
+            });
           },
           "Finds out which pairs of links never touch, proven; which always do; which do sometimes.", py::kw_only(),
           py::arg("only") = py::none(), py::arg("margin") = 0.0, py::arg("work") = LinkPairOptions().work,

@@ -5,6 +5,7 @@
 
 #include "fcl_artic/urdf/urdf.h"
 #include "geometry.h"
+#include "guard_files.h"
 #include "kinematics.h"
 
 namespace fcl_artic::python {
@@ -43,10 +44,11 @@ class Input {
 void bindRobot(py::module_& module);
 void bindLinkPairs(py::module_& module);
 
+using ClassifyWith = std::function<LinkPairReport(const LinkPairOptions&)>;
 /// How classify_link_pairs() is asked, of a robot or a world.
-/// @param classify  gets the options, without the GIL.
+/// @param ask  calls what it gets with a function that classifies: in the library, without the GIL.
 LinkPairReport classifyWatched(py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
                                py::object progress,
-                               const std::function<LinkPairReport(const LinkPairOptions&)>& classify);
+                               const std::function<void(const std::function<void(const ClassifyWith&)>&)>& ask);
 
 }  // namespace fcl_artic::python

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "guard_files.h"
 #include "kinematics.h"
 #include "robot.h"
 #include "text/nearest_name.h"

@@ -11,7 +11,8 @@
 #include <mutex>
 #include <thread>
 
-#include "errors.h"
+#include "gil.h"
+#include "turns.h"
 
 namespace fcl_artic::python {
 
@@ -31,7 +32,7 @@ class Watch {
   bool goOn(double fraction) {
     const auto now = Clock::now();
     if (now < next_) return true;
-    const py::gil_scoped_acquire acquire;
+    const GilHeld held;
     const bool good = ask(fraction);
     next_ = Clock::now() + kPause;
     return good;
@@ -54,6 +55,7 @@ class Watch {
   using Clock = std::chrono::steady_clock;
 
   bool ask(double fraction) {
+    if (stopped_ || Call::shallStop()) stopped_ = true;
     if (stopped_) return false;
     try {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -75,7 +77,7 @@ class Watch {
 };
 
 /// Runs work that tells of its progress from any thread, in a thread of its own; this one asks Python meanwhile, since
-/// only Python's main thread hears of signals. To be called without the GIL.
+/// only Python's main thread hears of signals. To be called in the library, without the GIL.
 /// @param work  gets a function that takes the part that is done and returns whether to go on.
 template <class Work>
 void runWatched(Watch& watch, const Work& work) {
@@ -85,7 +87,8 @@ void runWatched(Watch& watch, const Work& work) {
   std::exception_ptr error;
   std::atomic<double> fraction{0};
   std::atomic<bool> stop{false};
-  std::thread worker([&] {
+  std::thread worker([&, doings = Doings::here()] {
+    const PartOf part(doings);
     try {
       work([&](double part) {
         fraction = part;

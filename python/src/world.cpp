@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collected.h"
 #include "enums.h"
 #include "fcl_artic/visibility/offscreen.h"
 #include "link_pairs.h"
@@ -231,6 +232,13 @@ std::vector<std::string> World::namesOf(const std::string& name) const {
   return names;
 }
 
+int World::visit(visitproc visit, void* arg) const {
+  for (const Mover& mover : movers_) {
+    if (const int status = mover.motion.recipe.visit(visit, arg)) return status;
+  }
+  return 0;
+}
+
 World::Body& World::ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object) {
   return *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.object == object; });
 }
@@ -405,7 +413,7 @@ void bindChanges(py::class_<World>& world) {
             w.addMoving(name, geometryOf(geometry, "geometry"), motion);
           },
           "Adds an obstacle that moves while the robot does, over the same time.", py::arg("name"), py::arg("geometry"),
-          py::arg("motion"), py::keep_alive<1, 4>())
+          py::arg("motion"))
       .def("remove", &World::remove,
            "Removes an obstacle, also one that a link carries, with its allowed pairs and margins: the next of its "
            "name has\n"
@@ -506,24 +514,24 @@ void bindChanges(py::class_<World>& world) {
 
 void bindQueries(py::class_<World>& world) {
   world
-      .def("check", &check,
+      .def("check", &check, py::call_guard<Call>(),
            "Finds the first contact on the straight way from q0 to q1 in joint space, or proves that there is none.\n"
            "In place of q0 and q1 a JointMotion or JointTrajectory is taken. Options are those of Request.",
            py::arg("q0"), py::arg("q1") = py::none())
-      .def("check_trajectory", &checkTrajectory,
+      .def("check_trajectory", &checkTrajectory, py::call_guard<Call>(),
            "Finds the first contact on the way through waypoints (N, n), in the unit of `times`; without times, in\n"
            "numbers of waypoints. Straight from point to point, cubic with velocities, quintic with accelerations too.",
            py::arg("waypoints"), py::arg("times") = py::none(), py::kw_only(), py::arg("velocities") = py::none(),
            py::arg("accelerations") = py::none(), py::arg("blend") = py::none(), py::arg("unwrap") = false)
-      .def("is_free", &isFree,
+      .def("is_free", &isFree, py::call_guard<Call>(),
            "Whether the way is proven free: the fastest question. False also where that is not decided. What a free\n"
            "result does not speak of (Result.never_apart_pairs, Result.unproven_allowed_pairs) it does not say.",
            py::arg("q0"), py::arg("q1") = py::none())
-      .def("collide", &collide,
+      .def("collide", &collide, py::call_guard<Call>(),
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))
       .def(
-          "clearance", &clearance,
+          "clearance", &clearance, py::call_guard<Call>(),
           "The smallest distance of any checked pair on the whole way, proven from below and from above. With\n"
           "ignore_initial_contact=True, pairs that touch at its begin, or are within their margin (ignored_margin, or\n"
           "their own), are left out.",
@@ -536,10 +544,10 @@ void bindQueries(py::class_<World>& world) {
           "classify_link_pairs",
           [](const World& w, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
              py::object progress) {
-            return classifyWatched(
-                only, margin, work, samples, threads, std::move(progress), [&](const LinkPairOptions& o) {
-                  return w.manager().askFreely([&](const auto& m) { return m.classifyLinkPairs(o); });
-                });
+            return classifyWatched(only, margin, work, samples, threads, std::move(progress), [&](const auto& run) {
+              w.manager().ask(
+                  [&](const auto& m) { run([&](const LinkPairOptions& o) { return m.classifyLinkPairs(o); }); });
+            });
           },
           "Finds out which pairs of links never touch, proven; which always do; which do sometimes.", py::kw_only(),
           py::arg("only") = py::none(), py::arg("margin") = 0.0, py::arg("work") = LinkPairOptions().work,
@@ -550,7 +558,7 @@ void bindQueries(py::class_<World>& world) {
 
 void bindWorld(py::module_& module) {
   py::class_<World> world(
-      module, "World",
+      module, "World", collected<World>(),
       "Robots and obstacles, ready to be asked. Threads may share it. The robot is copied: what is changed\n"
       "in it later does not reach the world.");
   world.def(py::init(&makeWorld), py::arg("robot"), py::arg("scene") = py::none())

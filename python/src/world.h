@@ -66,6 +66,9 @@ class World {
   Guarded<ArticulatedCollisionManager>& manager() { return manager_; }
   const Guarded<ArticulatedCollisionManager>& manager() const { return manager_; }
 
+  /// For Python's garbage collector: the functions of motions.
+  int visit(visitproc visit, void* arg) const;
+
   /// Names of all bodies that a name stands for: of a whole object, its shapes; of other names themselves.
   std::vector<std::string> namesOf(const std::string& name) const;
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Plans of files: load_plans() and World.certify()."""
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -110,3 +111,42 @@ def test_every_carried_object_is_attached_by_its_name(robot, tmp_path):
     world.detach("spoon")
     world.attach("spoon", "flange", [0, 0, 0.5])
     assert world.certify(plan).status is not None
+
+
+def test_a_plans_trajectory_is_one(robot, tmp_path):
+    times = [0.5, 2.5]
+    (tmp_path / "a.json").write_text(json.dumps({"times": times, "waypoints": [FROM, TO]}))
+    (plan,) = fcl_artic.load_plans(tmp_path / "a.json", robot)
+    trajectory = plan.trajectory
+    assert type(trajectory) is fcl_artic.JointTrajectory and repr(trajectory).startswith("<JointTrajectory of 1 pieces")
+    assert (trajectory.begin_time, trajectory.end_time, len(trajectory)) == (0.5, 2.5, 1)
+    assert np.array_equal(trajectory.configuration(0.5), FROM)
+    copy = pickle.loads(pickle.dumps(trajectory))
+    for t in np.linspace(*times, 7):
+        assert np.array_equal(copy.configuration(t), trajectory.configuration(t))
+
+
+def test_plans_are_pickled(shared_world, robot, tmp_path):
+    points = [{"positions": FROM, "velocities": 6 * [0.1], "time_from_start": 0},
+              {"positions": TO, "velocities": 6 * [0.0], "time_from_start": 1}]
+    message = {"trajectory": [{"joint_trajectory": {"joint_names": list(robot.tree.variables), "points": points}}],
+               "trajectory_start": {"attached_collision_objects": [{"link_name": "flange", "object": {"id": "cup"}}]}}
+    (tmp_path / "a.json").write_text(json.dumps(message))
+    (tmp_path / "b.jsonl").write_text(json.dumps({"name": "good", "waypoints": [FROM, ASIDE]}) + "\n" +
+                                      json.dumps({"name": "bad", "waypoints": [FROM, ASIDE[:5]]}))
+    np.savetxt(tmp_path / "c.csv", np.degrees([FROM, ASIDE]), delimiter=",")
+    plans = fcl_artic.load_plans(tmp_path / "a.json", robot) + fcl_artic.load_plans(tmp_path / "b.jsonl", robot)
+    plans += fcl_artic.load_plans(tmp_path / "c.csv", robot, degrees=True)
+    for plan in plans:
+        copy = pickle.loads(pickle.dumps(plan))
+        assert type(copy) is fcl_artic.Plan and repr(copy) == repr(plan)
+        for name in ("name", "error", "interpolation", "joints", "carried", "notes"):
+            assert getattr(copy, name) == getattr(plan, name), name
+        if plan.error:
+            continue
+        assert np.array_equal(copy.times, plan.times) and np.array_equal(copy.waypoints, plan.waypoints)
+        for t in np.linspace(plan.times[0], plan.times[-1], 9):
+            assert np.array_equal(copy.trajectory.configuration(t), plan.trajectory.configuration(t))
+        if not plan.carried:
+            assert str(shared_world.certify(copy)) == str(shared_world.certify(plan))
+    assert plans[0].interpolation == "cubic" and plans[0].carried == ["cup"] and plans[2].error

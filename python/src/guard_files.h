@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "gil.h"
+#include "turns.h"
+
+namespace fcl_artic::python {
+
+/// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
+/// else that is wrong with a file's content a ValueError. To be called with the GIL held.
+/// @param path  of the file that the caller named.
+template <class Read>
+auto guardFiles(const std::string& path, Read&& read) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) fileNotFound("no such file", path);
+  try {
+    const GilReleased released;
+    const InLibrary within;
+    return read();
+  } catch (const std::runtime_error& problem) {
+    const std::string message = problem.what();
+    if (message.find("no such file") != std::string::npos || message.find("No such file") != std::string::npos ||
+        message.find("there is no package") != std::string::npos) {
+      fileNotFound(message, path);
+    }
+    valueError(message);
+  }
+}
+
+}  // namespace fcl_artic::python
