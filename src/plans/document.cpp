@@ -66,7 +66,7 @@ bool holdsPlan(const Json& value) {
 std::vector<std::string> plansIn(const Json& object) {
   static const std::set<std::string> kParts{"joint_trajectory", "multi_dof_joint_trajectory"},
       kEnds{"waypoints", "from", "start", "to", "goal"}, kLists{"trajectory", "planned_trajectory", "msg", "plans"},
-      kOthers{"trajectory_start", "start_state", kRecorded};
+      kOthers{"trajectory_start", "start_state", "multi_dof_trajectory", kRecorded};
   std::vector<std::string> out;
   bool parts = false, ends = false;
   for (const auto& [key, value] : object.items()) {

@@ -525,7 +525,7 @@ TEST(PlanReadersTest, NothingOfADocumentIsPassedOver) {
   json("{\"trajectory\": " + joints + ", \"multi_dof_trajectory\": " + base + "}",
        "no planar or floating joint 'drive'");
   json("{\"trajectory\": " + joints + ", \"planned_trajectory\": " + joints + "}",
-       "has both 'trajectory' and 'planned_trajectory'");
+       "more than one plan, in 'trajectory' and in 'planned_trajectory'");
   json("{\"trajectory\": " + joints + ", \"offset\": 1}", "the key 'offset' is not known");
   json("{\"joint_trajectory\": " + joints + ", \"points\": []}", "the key 'points' is not known");
   json("{\"units\": \"deg\", " + joints.substr(1), "the key 'units' is not known");
