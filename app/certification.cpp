@@ -188,6 +188,8 @@ void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, 
       again->plan = plans::parsePlans(manager->tree(), written, plans::Format::json).at(0);
       CertifyOptions straight = options;
       straight.motion.interpolation = plans::Interpolation::linear;
+      straight.motion.joints.clear();  // it names all joints, and their values
+      straight.motion.state.clear();
       straight.motion.degrees = false;              // it is in rad
       straight.motion.turns = plans::Turns::given;  // its steps are what was proven
       if (!straight.clearance) {

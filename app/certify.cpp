@@ -38,9 +38,9 @@ struct CertifyVerb {
   PlanVariables variables;
   PlanColumnOptions columns;
   std::vector<std::string> plans;
-  std::string format, interpolation = "auto", csv, out, certificate;
+  std::string format, csv, out, certificate;
   ViewOptions views;
-  double blend = 0;
+  InterpolationOptions interpolation;
   CertifyOptions certify;
   bool clearance = false, json = false, failed_only = false, mend = false;
   ClearanceRequest clearance_request;
@@ -59,6 +59,12 @@ std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::ve
   std::vector<plans::Attached> out;
   for (auto& one : of_option) out.push_back(std::move(one.second));
   return out;
+}
+
+/// Whether a plan's values say by themselves that this lies between its waypoints.
+bool isByValues(plans::Interpolation kind) {
+  return kind == plans::Interpolation::linear || kind == plans::Interpolation::cubic ||
+         kind == plans::Interpolation::quintic;
 }
 
 /// A certified plan in the words of a format, so that who reads it goes the way that was certified: velocities only
@@ -125,7 +131,8 @@ void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, 
   const std::string text = plans::writePlans(out, format);
   const std::vector<plans::Plan> again = plans::parsePlans(manager.tree(), text, format);
   CertifyOptions read = o.certify;
-  read.motion.joints.clear();
+  read.motion.joints.clear();  // it names all joints, and their values
+  read.motion.state.clear();
   read.motion.degrees = false;  // what is written is in rad
   read.motion.turns = plans::Turns::given;
   read.clearance.reset();
@@ -133,8 +140,8 @@ void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, 
   for (std::size_t i = 0; i < out.size(); ++i) {
     CertifiedPlan one;
     one.plan = again.at(i);
-    const bool blends = from[i]->motion->interpolation == plans::Interpolation::blends;
-    read.motion.interpolation = blends ? plans::Interpolation::blends : plans::Interpolation::automatic;
+    const plans::Interpolation kind = from[i]->motion->interpolation;
+    read.motion.interpolation = isByValues(kind) ? plans::Interpolation::automatic : kind;
     certify(manager, read, one);
     if (one.exitStatus() == kExitFree) continue;
     throw std::runtime_error(
@@ -166,7 +173,8 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
 std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
                         o.columns.columns.time.empty() && !o.columns.degrees;
-  if (!as_named || o.variables.turns == "shortest" || o.interpolation == "blends") return "";
+  const plans::Interpolation kind = o.interpolation.kind();
+  if (!as_named || o.variables.turns == "shortest") return "";
   std::string text;
   bool mended = false;
   for (const CertifiedPlan& plan : all) {
@@ -178,9 +186,9 @@ std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>
     mended = mended || plan.as_mended;
   }
   for (const std::string& value : o.variables.state) text += " --state " + shellWord(value);
-  if (mended && o.interpolation != "auto" && o.interpolation != "linear") return "";  // which goes straight
-  if (o.interpolation != "auto") text += " --interpolation " + o.interpolation;
-  return text;
+  // What is mended goes straight.
+  if (mended && (kind == plans::Interpolation::cubic || kind == plans::Interpolation::quintic)) return "";
+  return verifierInterpolation(kind, text);
 }
 
 /// FILE.mended.png beside FILE.png.
@@ -236,8 +244,8 @@ int runCertify(CertifyVerb& o) {
   world.readRobot();
   world.provePairsFor(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
-  o.certify.motion.interpolation = plans::interpolationNamed(o.interpolation);
-  o.certify.motion.blend = o.blend;
+  o.certify.motion.interpolation = o.interpolation.kind();
+  o.certify.motion.blend = o.interpolation.blend;
   o.certify.motion.turns = turnsOf(o.variables);
   o.certify.motion.joints = o.variables.joints;
   o.certify.motion.state = parseValues(tree, o.variables.state, "--state");
@@ -315,15 +323,7 @@ void addCertify(CLI::App& program, int& exit_status) {
   certify->add_option("--format", o.format, "What the files are, whatever their endings")
       ->check(CLI::IsMember({"csv", "json", "jsonl", "yaml", "ompl", "numpy"}))
       ->group("Plans");
-  certify
-      ->add_option(
-          "--interpolation", o.interpolation,
-          "Between waypoints: linear; cubic by their velocities; quintic by their velocities and accelerations; "
-          "blends: lines joined by parabolas; auto: as much as each plan gives")
-      ->check(CLI::IsMember({"auto", "linear", "cubic", "quintic", "blends"}))
-      ->group("Plans")
-      ->capture_default_str();
-  certify->add_option("--blend", o.blend, "Half the duration of a blend, in s")->check(requirePositive)->group("Plans");
+  addInterpolation(*certify, o.interpolation, "Plans");
   addPlanVariables(*certify, o.variables);
   addPlanColumns(*certify, o.columns);
 
@@ -365,9 +365,7 @@ void addCertify(CLI::App& program, int& exit_status) {
   addViewOptions(*certify, o.views);
   certify->add_flag("--failed-only", o.failed_only, "Show only plans that are not free")->group("Output");
   certify->callback([options, &exit_status] {
-    if ((options->interpolation == "blends") != (options->blend > 0)) {
-      throw CLI::RequiresError("--interpolation blends", "--blend");
-    }
+    options->interpolation.require();
     try {
       exit_status = runCertify(*options);
     } catch (const std::exception& error) {

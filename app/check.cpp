@@ -16,7 +16,9 @@
 #include "fcl_artic/fcl_artic.h"
 #include "files/files.h"
 #include "lines.h"
+#include "motions.h"
 #include "outputs.h"
+#include "plan_variables.h"
 #include "progress.h"
 #include "query_options.h"
 #include "redon_options.h"
@@ -24,7 +26,6 @@
 #include "usage.h"
 #include "views.h"
 #include "visibility_options.h"
-#include "waypoints.h"
 #include "world.h"
 
 namespace fcl_artic::app {
@@ -35,8 +36,9 @@ constexpr std::size_t kAllContacts = 1000000;
 struct CheckVerb {
   WorldOptions world;
   ViewOptions views;
-  std::string certificate, trajectory, lines, interpolation = "linear";
-  std::vector<std::string> from, to;
+  std::string certificate, trajectory, lines;
+  InterpolationOptions interpolation;
+  std::vector<std::string> from, to, state;
   CertifiedRequest request;
   VisibilityChoice visibility;
   std::optional<std::size_t> max_contacts;
@@ -46,11 +48,19 @@ struct CheckVerb {
 };
 
 /// The motion as fcl_artic_verify takes it, each word after a space; empty where it does not.
-std::string motionArguments(const CheckVerb& options) {
-  if (options.interpolation != "linear" || options.shortest) return "";
-  if (!options.trajectory.empty()) return " --plan " + shellWord(options.trajectory);
-  const auto joined = [](const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); };
-  return " --from " + shellWord(joined(options.from)) + " --to " + shellWord(joined(options.to));
+/// @param motion  of two ends.
+std::string motionArguments(const CheckVerb& options, const std::optional<JointMotion>& motion) {
+  if (options.shortest) return "";
+  if (motion) {
+    if (options.interpolation.kind() == plans::Interpolation::tangentHalfAngle) return "";
+    const auto words = [](const Eigen::VectorXd& q) {  // they find the very numbers again
+      return shellWord(fmt::format("{}", fmt::join(q.data(), q.data() + q.size(), " ")));
+    };
+    return " --from " + words(motion->configuration(0)) + " --to " + words(motion->configuration(1));
+  }
+  std::string text = " --plan " + shellWord(options.trajectory);
+  for (const std::string& value : options.state) text += " --state " + shellWord(value);
+  return verifierInterpolation(options.interpolation.kind(), text);
 }
 
 int runCheck(CheckVerb& options) {
@@ -74,7 +84,12 @@ int runCheck(CheckVerb& options) {
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
-  const Interpolation interpolation = interpolationNamed(options.interpolation);
+  plans::MotionOptions of_motion;
+  of_motion.interpolation = options.interpolation.kind();
+  of_motion.blend = options.interpolation.blend;
+  of_motion.turns = options.shortest ? plans::Turns::shortest : plans::Turns::given;
+  of_motion.ignore_limits = true;
+  of_motion.state = parseValues(tree, options.state, "--state");
   std::vector<std::string> motion_notes;
   const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
     for (const std::string& note : tree.limitNotes(q)) motion_notes.push_back(where + ": " + note);
@@ -82,25 +97,17 @@ int runCheck(CheckVerb& options) {
   if (!options.lines.empty()) {
     // Each line is a motion of its own.
   } else if (options.trajectory.empty()) {
-    const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from");
-    const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to");
-    motion = motionBetween(tree, q0, q1, interpolation, options.shortest);
+    const Eigen::VectorXd q0 = parseConfiguration(tree, options.from, "--from", of_motion.state);
+    const Eigen::VectorXd q1 = parseConfiguration(tree, options.to, "--to", of_motion.state);
+    motion = motionBetween(tree, q0, q1, of_motion);
     noteLimits(motion->configuration(0), "--from");
     noteLimits(motion->configuration(1), "--to");
   } else {
-    const Waypoints waypoints = readWaypoints(tree, options.trajectory);
-    trajectory = interpolate(tree, waypoints, interpolation, options.shortest);
-    if (!waypoints.unnamed.empty()) {
-      motion_notes.push_back(fmt::format("'{}' has no column for {}: at 0 all the time, a quaternion at no rotation",
-                                         options.trajectory, waypoints.unnamed));
-    }
-    if (waypoints.open_end) {
-      motion_notes.push_back(
-          fmt::format("the last line of '{}' has no line end: the file may be cut short", options.trajectory));
-    }
-    for (std::size_t k = 0; k < waypoints.times.size(); ++k) {
-      noteLimits(waypoints.configurations[k], fmt::format("waypoint at t = {:g}", waypoints.times[k]));
-    }
+    plans::PlanMotion plan = readTrajectory(tree, options.trajectory, of_motion);
+    trajectory = std::move(plan.trajectory);
+    motion_notes.push_back(
+        fmt::format("the waypoints of '{}' are joined by: {}", options.trajectory, toString(plan.interpolation)));
+    motion_notes.insert(motion_notes.end(), plan.notes.begin(), plan.notes.end());
   }
   world.readScene();
   ArticulatedCollisionManager manager = world.makeManager();
@@ -115,7 +122,7 @@ int runCheck(CheckVerb& options) {
   request.certificate = certificates.wanted();
   if (!options.lines.empty()) {
     for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-    const int status = checkLines(manager, request, {options.lines, interpolation, options.shortest}, certificates);
+    const int status = checkLines(manager, request, {options.lines, of_motion}, certificates);
     if (certificates.wanted()) world.unwritten.attempt([&] { certificates.write(); });
     return world.unwritten.exitStatus(status);
   }
@@ -155,7 +162,8 @@ int runCheck(CheckVerb& options) {
     const std::string missing = certificates.add(*result.certificate);
     if (!missing.empty()) notes.push_back(missing);
     world.unwritten.attempt([&] {
-      const std::string written = certificates.write(verifierArguments(options.world) + motionArguments(options));
+      const std::string written =
+          certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
       if (!written.empty()) notes.push_back(written);
     });
   }
@@ -184,10 +192,11 @@ void addCheck(CLI::App& program, int& exit_status) {
       "check",
       "Does anything touch while every joint goes straight from one configuration to another, or along a trajectory?");
   check->footer(
-      "A configuration is a list of all joint values (\"0, 1.57, -90deg\") or name=value pairs, joints that are not\n"
-      "named at 0; rad or m, angles also as 90deg.\n"
-      "A trajectory is a CSV file: its first line names the columns, 'time' and joints; times in the answer are the "
-      "file's.\n"
+      "A configuration is a list of all joint values (\"0, 1.57, -90deg\") or name=value pairs; rad or m, angles also\n"
+      "as 90deg. A joint that nobody names is an error: --state NAME=VALUE says where it stands.\n"
+      "A trajectory is a CSV file as certify takes it: its first line names the columns, time and joints; times in "
+      "the\n"
+      "answer are the file's.\n"
       "A line of --lines has from and to (or start and goal), each a list of all joint values or an object by name,\n"
       "or waypoints (a list of these) and, where they are not 0, 1, 2 ..., times; and an id, which its answer "
       "repeats.\n"
@@ -216,13 +225,8 @@ void addCheck(CLI::App& program, int& exit_status) {
           ->excludes(trajectory)
           ->group("Motion")
           ->type_name("FILE");
-  check
-      ->add_option("--interpolation", o.interpolation,
-                   "linear; between waypoints also cubic (smooth, from rest to rest); tangent-half-angle: the tangent "
-                   "of half of each angle goes straight")
-      ->check(CLI::IsMember({"linear", "cubic", "tangent-half-angle"}))
-      ->group("Motion")
-      ->capture_default_str();
+  addInterpolation(*check, o.interpolation, "Motion");
+  addState(*check, o.state, "Motion");
   check->add_flag("--shortest", o.shortest, "Continuous joints take the shorter way round")->group("Motion");
 
   addQueryOptions(*check, request);
@@ -254,14 +258,15 @@ void addCheck(CLI::App& program, int& exit_status) {
   for (CLI::Option* view : addViewOptions(*check, o.views)) view->excludes(lines);
   clearance->excludes(lines);
   check->callback([options, from, to, trajectory, lines, &exit_status] {
+    options->interpolation.require();
     const bool waypoints = trajectory->count() > 0 || lines->count() > 0;
     for (const CLI::Option* end : {from, to}) {
       if (end->count() == 0 && !waypoints) throw CLI::RequiredError(end->get_name());
     }
-    if (options->interpolation == "cubic" && !waypoints) {
-      throw CLI::RequiresError("--interpolation cubic", "--trajectory or --lines");
+    if (!waypoints && !isOfTwoEnds(options->interpolation.kind())) {
+      throw CLI::RequiresError("--interpolation " + options->interpolation.name, "--trajectory or --lines");
     }
-    if (options->interpolation == "tangent-half-angle" && options->shortest) {
+    if (options->interpolation.kind() == plans::Interpolation::tangentHalfAngle && options->shortest) {
       throw CLI::ExcludesError("--shortest", "--interpolation tangent-half-angle");
     }
     try {

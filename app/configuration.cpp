@@ -73,25 +73,47 @@ std::map<int, double> namedValues(const KinematicTree& tree, const std::vector<s
 }  // namespace
 
 Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<std::string>& words,
-                                   const std::string& option) {
+                                   const std::string& option, const std::map<std::string, double>& state) {
   const std::vector<std::string> tokens = splitTokens(words);
-  Eigen::VectorXd q = tree.neutralConfiguration();
+  Eigen::VectorXd q(tree.dof());
   if (!tokens.empty() && tokens.front().find('=') != std::string::npos) {
-    for (const auto& [variable, value] : namedValues(tree, tokens, option)) q[variable] = value;
+    const std::map<int, double> named = namedValues(tree, tokens, option);
+    std::vector<std::string> unnamed;
+    for (int v = 0; v < tree.dof(); ++v) {
+      const auto value = named.find(v);
+      const auto given = state.find(tree.variableName(v));
+      if (value == named.end() && given == state.end()) {
+        unnamed.push_back(tree.variableName(v));
+        continue;
+      }
+      q[v] = value != named.end() ? value->second : given->second;
+      if (given != state.end()) plans::requireGiven(given->first, given->second, q[v], option);
+    }
+    if (!unnamed.empty()) plans::refuseUnnamed(unnamed, option);
     return q;
   }
-  if (static_cast<int>(tokens.size()) != tree.dof()) {
+  std::vector<int> variables;  // of the values
+  for (int v = 0; v < tree.dof(); ++v) {
+    const auto given = state.find(tree.variableName(v));
+    const bool all = static_cast<int>(tokens.size()) == tree.dof();
+    if (all || given == state.end()) variables.push_back(v);
+    if (!all && given != state.end()) q[v] = given->second;
+  }
+  if (tokens.size() != variables.size()) {
     throw std::invalid_argument(fmt::format("{} has {} value{}, robot '{}' has {} joint{}: {}", option, tokens.size(),
                                             tokens.size() == 1 ? "" : "s", tree.name(), tree.dof(),
                                             tree.dof() == 1 ? "" : "s", plans::variableNames(tree)));
   }
-  for (int v = 0; v < tree.dof(); ++v) {
-    const std::string& token = tokens[static_cast<std::size_t>(v)];
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const std::string& token = tokens[i];
+    const int v = variables[i];
     if (token.find('=') != std::string::npos) {
       throw std::invalid_argument(
           fmt::format("{}: '{}': either all values carry a joint's name or none does", option, token));
     }
     q[v] = parseValue(tree, v, token, option);
+    const auto given = state.find(tree.variableName(v));
+    if (given != state.end()) plans::requireGiven(given->first, given->second, q[v], option);
   }
   return q;
 }

@@ -159,8 +159,9 @@ Info collect(const RobotOptions& options) {
   robot.addTo(manager);
   manager.setup();
   info.checked = manager.checkedLinkPairs();
-  std::set<std::pair<std::string, std::string>> undecided;
+  std::set<std::pair<std::string, std::string>> neighbours, undecided;
   for (const LinkPairFinding& pair : manager.neighbours()) {
+    neighbours.insert(std::minmax(pair.link1, pair.link2));
     if (pair.undecided()) undecided.insert(std::minmax(pair.link1, pair.link2));
   }
   const std::set<std::pair<std::string, std::string>> checked(info.checked.begin(), info.checked.end());
@@ -168,7 +169,7 @@ Info collect(const RobotOptions& options) {
     for (auto b = std::next(a); b != with_geometry.end(); ++b) {
       if (checked.count({*a, *b})) continue;
       const auto reason = reasons.find({*a, *b});
-      std::string why = "neighbours that touch";
+      std::string why = neighbours.count({*a, *b}) ? "neighbours that touch" : "stand still against each other";
       if (undecided.count({*a, *b})) why = "neighbours, undecided";
       if (reason != reasons.end()) why = "SRDF" + (reason->second.empty() ? "" : ": " + reason->second);
       info.unchecked.push_back({*a, *b, why});

@@ -15,6 +15,7 @@
 #include "configuration.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "motions.h"
 #include "plans/document.h"
 #include "report/report.h"
 
@@ -40,18 +41,19 @@ std::string wordOf(const Json& value, const std::string& what) {
 }
 
 /// @param value  a list of all joint values, or an object from names to values.
-Eigen::VectorXd toConfiguration(const KinematicTree& tree, const Json& value, const std::string& what) {
+/// @param state  as parseConfiguration() takes it.
+Eigen::VectorXd toConfiguration(const KinematicTree& tree, const Json& value, const std::string& what,
+                                const std::map<std::string, double>& state) {
   std::vector<std::string> words;
   if (value.is_array()) {
     for (const Json& one : value) words.push_back(wordOf(one, what));
   } else if (value.is_object()) {
     for (const auto& [name, one] : value.items()) words.push_back(name + "=" + wordOf(one, what));
-    if (words.empty()) return tree.neutralConfiguration();
   } else {
     throw std::invalid_argument(
         fmt::format("{}: {} is neither a list of joint values nor an object of them by name", what, value.dump()));
   }
-  return parseConfiguration(tree, words, what);
+  return parseConfiguration(tree, words, what, state);
 }
 
 /// The value of one of two keys, of which one must be there.
@@ -81,13 +83,19 @@ void requireKeys(const Json& line) {
   if (line.contains("times") && !line.contains("waypoints")) throw std::invalid_argument("has times, but no waypoints");
 }
 
-Waypoints toWaypoints(const KinematicTree& tree, const Json& line) {
-  Waypoints waypoints;
+/// Waypoints of all joints.
+plans::Plan toPlan(const KinematicTree& tree, const Json& line, const std::map<std::string, double>& state) {
+  plans::Plan plan;
+  const auto add = [&](const Eigen::VectorXd& q) { plan.positions.emplace_back(q.data(), q.data() + q.size()); };
+  if (!line.contains("waypoints")) {
+    add(toConfiguration(tree, oneOf(line, "from", "start"), "from", state));
+    add(toConfiguration(tree, oneOf(line, "to", "goal"), "to", state));
+    return plan;
+  }
   const Json& given = line.at("waypoints");
   if (!given.is_array() || given.size() < 2) throw std::invalid_argument("waypoints: a list of two or more is needed");
   for (std::size_t k = 0; k < given.size(); ++k) {
-    waypoints.configurations.push_back(toConfiguration(tree, given[k], fmt::format("waypoint {}", k + 1)));
-    waypoints.times.push_back(static_cast<double>(k));
+    add(toConfiguration(tree, given[k], fmt::format("waypoint {}", k), state));
   }
   if (line.contains("times")) {
     const Json& times = line.at("times");
@@ -96,9 +104,9 @@ Waypoints toWaypoints(const KinematicTree& tree, const Json& line) {
     if (!numbers || times.size() != given.size()) {
       throw std::invalid_argument(fmt::format("times: {} numbers are needed, one for each waypoint", given.size()));
     }
-    waypoints.times = times.get<std::vector<double>>();
+    plan.times = times.get<std::vector<double>>();
   }
-  return waypoints;
+  return plan;
 }
 
 /// @param[out] out  its id is there even if this throws, where the line has one.
@@ -107,21 +115,23 @@ void read(const KinematicTree& tree, const std::string& text, const LinesOptions
   if (!line.is_object()) throw std::invalid_argument("is no JSON object, as {\"from\": [...], \"to\": [...]}");
   if (line.contains("id")) out.id = line.at("id");
   requireKeys(line);
-  const auto noteLimits = [&](const Eigen::VectorXd& q, const std::string& where) {
-    for (const std::string& note : tree.limitNotes(q)) out.notes.push_back(where + ": " + note);
-  };
-  if (line.contains("waypoints")) {
-    const Waypoints waypoints = toWaypoints(tree, line);
-    out.trajectory = interpolate(tree, waypoints, options.interpolation, options.shortest);
-    for (std::size_t k = 0; k < waypoints.configurations.size(); ++k)
-      noteLimits(waypoints.configurations[k], fmt::format("waypoint {}", k + 1));
+  const plans::Plan plan = toPlan(tree, line, options.motion.state);
+  plans::MotionOptions motion = options.motion;
+  motion.state.clear();  // it is in the plan
+  if (line.contains("waypoints") || !isOfTwoEnds(motion.interpolation)) {
+    plans::PlanMotion made = toMotion(tree, plan, motion);
+    out.notes = std::move(made.notes);
+    out.trajectory = std::move(made.trajectory);
     return;
   }
-  const Eigen::VectorXd q0 = toConfiguration(tree, oneOf(line, "from", "start"), "from"),
-                        q1 = toConfiguration(tree, oneOf(line, "to", "goal"), "to");
-  out.motion = motionBetween(tree, q0, q1, options.interpolation, options.shortest);
-  noteLimits(q0, "from");
-  noteLimits(q1, "to");
+  const auto end = [&](std::size_t k) -> Eigen::VectorXd {
+    const std::vector<double>& values = plan.positions[k];
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  out.motion = motionBetween(tree, end(0), end(1), motion);
+  for (const std::size_t k : {0, 1}) {
+    for (const std::string& note : tree.limitNotes(end(k))) out.notes.push_back((k == 0 ? "from: " : "to: ") + note);
+  }
 }
 
 class Answers {

@@ -8,14 +8,13 @@
 
 #include "certificate_file.h"
 #include "fcl_artic/manager.h"
-#include "waypoints.h"
+#include "plans/motion.h"
 
 namespace fcl_artic::app {
 
 struct LinesOptions {
   std::string path;  ///< "-": standard input
-  Interpolation interpolation = Interpolation::linear;
-  bool shortest = false;
+  plans::MotionOptions motion;
 };
 
 /// Asks the manager about every line of a file, in order, and prints an answer for each at once. A line that is wrong

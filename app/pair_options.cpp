@@ -96,6 +96,13 @@ void addPairOptions(CLI::App& verb, PairOptions& o) {
       ->allow_extra_args(false)
       ->group(kPairGroup)
       ->type_name("BODY,BODY");
+  verb.add_option(
+          "--disallow", o.disallowed,
+          "Two links or obstacles that are checked though they are neighbours, an SRDF allows them, or they stand "
+          "still against each other; may be repeated")
+      ->allow_extra_args(false)
+      ->group(kPairGroup)
+      ->type_name("BODY,BODY");
 }
 
 PairSettings readPairSettings(const PairOptions& o) {
@@ -110,10 +117,20 @@ PairSettings readPairSettings(const PairOptions& o) {
     throw std::invalid_argument(fmt::format("{}: '{}'{} has a margin already, by {}", said.where, said.a,
                                             said.b.empty() ? "" : " with '" + said.b + "'", at->second));
   }
-  for (const std::string& text : o.allowed) {
-    const auto two = twoBodies(text);
-    if (!two) throw std::invalid_argument(fmt::format("--allow: '{}' is not BODY,BODY", text));
-    out.allowed.push_back({"--allow", std::min(two->first, two->second), std::max(two->first, two->second), 0});
+  const auto readPairs = [](const char* option, const std::vector<std::string>& texts,
+                            std::vector<PairSettings::Said>& to) {
+    for (const std::string& text : texts) {
+      const auto two = twoBodies(text);
+      if (!two) throw std::invalid_argument(fmt::format("{}: '{}' is not BODY,BODY", option, text));
+      to.push_back({option, std::min(two->first, two->second), std::max(two->first, two->second), 0});
+    }
+  };
+  readPairs("--allow", o.allowed, out.allowed);
+  readPairs("--disallow", o.disallowed, out.disallowed);
+  for (const PairSettings::Said& said : out.disallowed) {
+    const bool both = std::any_of(out.allowed.begin(), out.allowed.end(),
+                                  [&](const PairSettings::Said& one) { return one.a == said.a && one.b == said.b; });
+    if (both) throw std::invalid_argument(fmt::format("--allow and --disallow are of one pair: {},{}", said.a, said.b));
   }
   return out;
 }
@@ -141,12 +158,16 @@ void PairSettings::apply(const Scene& scene, ArticulatedCollisionManager& manage
   for (const Said& said : allowed) {
     set(said, [&](const std::string& a, const std::string& b) { manager.allow(a, b); });
   }
+  for (const Said& said : disallowed) {
+    set(said, [&](const std::string& a, const std::string& b) { manager.disallow(a, b); });
+  }
 }
 
 std::string PairSettings::text() const {
   std::vector<std::string> lines;
   for (const Said& said : margins) lines.push_back(fmt::format("margin {}\n{}\n{:a}", said.a, said.b, said.margin));
   for (const Said& said : allowed) lines.push_back(fmt::format("allow {}\n{}", said.a, said.b));
+  for (const Said& said : disallowed) lines.push_back(fmt::format("disallow {}\n{}", said.a, said.b));
   std::sort(lines.begin(), lines.end());
   std::string out;
   for (const std::string& line : lines) out += line + "\n";

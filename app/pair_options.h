@@ -15,13 +15,13 @@ namespace fcl_artic::app {
 
 /// As they are typed. A body is a link, an obstacle or a carried object.
 struct PairOptions {
-  std::vector<std::string> margins_of;    ///< BODY=METRES
-  std::vector<std::string> pair_margins;  ///< BODY,BODY=METRES
-  std::string margins;                    ///< a file of lines as these two; empty: none
-  std::vector<std::string> allowed;       ///< BODY,BODY
+  std::vector<std::string> margins_of;           ///< BODY=METRES
+  std::vector<std::string> pair_margins;         ///< BODY,BODY=METRES
+  std::string margins;                           ///< a file of lines as these two; empty: none
+  std::vector<std::string> allowed, disallowed;  ///< BODY,BODY
 };
 
-/// Adds --margin-of, --margin-pair, --margins and --allow, in the group "Robot and scene".
+/// Adds --margin-of, --margin-pair, --margins, --allow and --disallow, in the group "Robot and scene".
 void addPairOptions(CLI::App& verb, PairOptions& options);
 
 /// The same, read.
@@ -32,7 +32,7 @@ struct PairSettings {
     std::string a, b;   ///< b empty: of all pairs of a
     double margin = 0;  ///< m
   };
-  std::vector<Said> margins, allowed;
+  std::vector<Said> margins, allowed, disallowed;
 
   /// Sets them. The name of an object of several shapes stands for all of them.
   /// @param scene  that the manager has.

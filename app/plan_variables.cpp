@@ -17,10 +17,7 @@ void addPlanVariables(CLI::App& verb, PlanVariables& options) {
       ->allow_extra_args(false)
       ->group("Plans")
       ->type_name("NAME,...");
-  verb.add_option("--state", options.state, "Values of joints that plans do not name: NAME=VALUE; may be repeated")
-      ->allow_extra_args(false)
-      ->group("Plans")
-      ->type_name("NAME=VALUE");
+  addState(verb, options.state, "Plans");
   verb.add_flag("--ignore-limits", options.ignore_limits,
                 "Waypoints beyond the joints' limits are noted, and certified all the same")
       ->group("Plans");
@@ -53,6 +50,48 @@ void addPlanColumns(CLI::App& verb, PlanColumnOptions& options) {
       ->check(requireNotNegative)
       ->group("Plans")
       ->capture_default_str();
+}
+
+void InterpolationOptions::require() const {
+  if ((kind() == plans::Interpolation::blends) != (blend > 0)) {
+    throw CLI::RequiresError("--interpolation blends", "--blend");
+  }
+}
+
+void addInterpolation(CLI::App& verb, InterpolationOptions& options, const std::string& group) {
+  const auto known = [](const std::string& text) {
+    try {
+      (void)plans::interpolationNamed(text);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  verb.add_option(
+          "--interpolation", options.name,
+          "Between waypoints: linear; cubic by their velocities; quintic by their velocities and accelerations; "
+          "auto: as much as each plan gives; jtc: the same, as joint_trajectory_controller runs it; "
+          "jtc-upsampled: one smooth spline from rest to rest, as it does by positions_upsampling; jtc-none: as "
+          "by interpolation_method none; blends: lines joined by parabolas; tangent-half-angle: the tangent of "
+          "half of each angle goes straight")
+      ->check(CLI::Validator(known, "KIND"))
+      ->group(group)
+      ->capture_default_str();
+  verb.add_option("--blend", options.blend, "Half the duration of a blend, in s")->check(requirePositive)->group(group);
+}
+
+void addState(CLI::App& verb, std::vector<std::string>& state, const std::string& group) {
+  verb.add_option("--state", state, "Values of joints that nobody else names: NAME=VALUE; may be repeated")
+      ->allow_extra_args(false)
+      ->group(group)
+      ->type_name("NAME=VALUE");
+}
+
+std::string verifierInterpolation(plans::Interpolation kind, const std::string& arguments) {
+  using plans::Interpolation;
+  if (kind == Interpolation::automatic || kind == Interpolation::jtc) return arguments;
+  const bool known = kind == Interpolation::linear || kind == Interpolation::cubic || kind == Interpolation::quintic;
+  return known ? arguments + " --interpolation " + plans::toString(kind) : "";
 }
 
 plans::Turns turnsOf(const PlanVariables& options) {

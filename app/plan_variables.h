@@ -32,6 +32,26 @@ void addPlanColumns(CLI::App& verb, PlanColumnOptions& options);
 /// Adds --turns, --joints, --state and --ignore-limits.
 void addPlanVariables(CLI::App& verb, PlanVariables& options);
 
+/// What lies between waypoints.
+struct InterpolationOptions {
+  std::string name = "auto";
+  double blend = 0;  ///< s
+
+  plans::Interpolation kind() const { return plans::interpolationNamed(name); }
+  /// @throws CLI::RequiresError: blends without a duration, or a duration without blends.
+  void require() const;
+};
+
+/// Adds --interpolation and --blend.
+void addInterpolation(CLI::App& verb, InterpolationOptions& options, const std::string& group);
+
+/// Adds --state.
+void addState(CLI::App& verb, std::vector<std::string>& state, const std::string& group);
+
+/// Arguments of fcl_artic_verify about plans, with what says how their waypoints are joined; empty where it knows no
+/// such curve.
+std::string verifierInterpolation(plans::Interpolation kind, const std::string& arguments);
+
 plans::Turns turnsOf(const PlanVariables& options);
 
 }  // namespace fcl_artic::app

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -92,7 +93,7 @@ void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
 
 CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string& names) {
   addRobotFile(verb, o, names);
-  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
+  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch, and how the root moves (SRDF)")
                           ->check(requireInput)
                           ->group(kWorldGroup)
                           ->type_name("FILE");
@@ -124,6 +125,11 @@ UrdfOptions urdfOptions(const RobotOptions& options) {
   out.packages = packagesOf(options);
   if (!options.base.empty()) out.base = parsePose(options.base, "--base");
   out.floating_base = options.floating_base;
+  std::error_code none;
+  // What comes through a pipe is read once, for its pairs.
+  if (!options.srdf.empty() && std::filesystem::is_regular_file(options.srdf, none)) {
+    out.virtual_joint = loadVirtualJoint(options.srdf);
+  }
   return out;
 }
 

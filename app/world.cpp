@@ -133,6 +133,7 @@ std::string shellArguments(const WorldOptions& o) {
   addAll("--margin-pair", o.pairs.pair_margins);
   add("--margins", o.pairs.margins);
   addAll("--allow", o.pairs.allowed);
+  addAll("--disallow", o.pairs.disallowed);
   if (o.proof_work != WorldOptions().proof_work) add("--proof-work", fmt::format("{}", o.proof_work));
   return text;
 }

@@ -346,10 +346,12 @@ World readWorldText(std::string_view text) {
       Reason why = Reason::allowed;
       if (reason == "neighbours") {
         why = Reason::neighbours;
+      } else if (reason == "still") {
+        why = Reason::still;
       } else if (reason == "touch-link") {
         why = Reason::touch_link;
       } else if (reason != "allowed") {
-        lines.fail("the reason is neighbours, allowed or touch-link");
+        lines.fail("the reason is still, neighbours, allowed or touch-link");
       }
       const int a = idOf(lines.name()), b = idOf(lines.name());
       if (!world.unchecked.emplace(std::minmax(a, b), why).second) lines.fail("the pair is listed already");

@@ -416,8 +416,7 @@ Verdict verifyRecord(const World& world, const Record& record, const Options& op
     verdict.pieces = motion.pieces.size();
     verdict.until = motion.until;
     if (motion.world != hexOf(world.hash)) throw NotProven("the motion is about another world: " + motion.world);
-    if (!world.false_neighbours.empty())
-      throw NotProven("the world calls them neighbours, and they are not: " + world.false_neighbours);
+    if (!world.false_reason.empty()) throw NotProven(world.false_reason);
     for (const std::vector<Partner>& partners : world.partners) budget.spend(1 + partners.size() / 8);
     countPairs(world, motion, verdict);
     if (verdict.checked == 0) throw NotProven("nothing is checked: the claim is about no pair of bodies");

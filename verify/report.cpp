@@ -69,7 +69,7 @@ std::vector<std::string> linesOf(const World& world) {
       lines.push_back(who + " moves with the frame " + inQuotes(world.frames[static_cast<std::size_t>(carrier)].name));
     if (body.role == Role::carried) lines.push_back(who + " is carried by the frame " + frame);
   }
-  for (const Reason reason : {Reason::neighbours, Reason::allowed, Reason::touch_link}) {
+  for (const Reason reason : {Reason::still, Reason::neighbours, Reason::allowed, Reason::touch_link}) {
     std::vector<std::string> pairs;
     for (const auto& [pair, why] : world.unchecked)
       if (why == reason)

@@ -31,7 +31,7 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
   for (const std::string& name : others) links.erase(name);  // the SRDF's word is about links
   std::size_t found = 0;
   for (const auto& [pair, reason] : world.unchecked) {
-    if (reason == Reason::touch_link) continue;
+    if (reason == Reason::touch_link || reason == Reason::still) continue;
     const std::string &x = world.names[static_cast<std::size_t>(pair.first)],
                       &y = world.names[static_cast<std::size_t>(pair.second)];
     const std::pair<std::string, std::string> key(std::min(x, y), std::max(x, y));

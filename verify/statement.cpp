@@ -36,6 +36,17 @@ std::vector<FrameFacts> factsOf(const World& world) {
   return facts;
 }
 
+/// Whether nothing on the path between the two frames moves.
+bool standStill(const World& world, const std::vector<FrameFacts>& facts, int f, int g, std::uint64_t& steps) {
+  while (f != g) {
+    int& up = f > g ? f : g;
+    ++steps;
+    if (facts[static_cast<std::size_t>(up)].moves) return false;
+    up = world.frames[static_cast<std::size_t>(up)].parent;
+  }
+  return true;
+}
+
 /// See "Pairs" in doc/CERTIFICATES.md.
 bool areNeighbours(const World& world, const std::vector<FrameFacts>& facts, const Body& a, const Body& b,
                    std::uint64_t& steps) {
@@ -93,9 +104,15 @@ void derivePairs(World& world) {
       } else if (listed != world.unchecked.end()) {
         ++world.not_checked[static_cast<int>(listed->second)];
         used.insert(listed->first);
-        if (listed->second == Reason::neighbours && world.false_neighbours.empty() &&
+        const auto refuse = [&](const char* why) {
+          world.false_reason = why + world.describe(static_cast<int>(a)) + " and " + world.describe(b);
+        };
+        if (listed->second == Reason::neighbours && world.false_reason.empty() &&
             !areNeighbours(world, facts, A, B, steps))
-          world.false_neighbours = world.describe(static_cast<int>(a)) + " and " + world.describe(b);
+          refuse("the world calls them neighbours, and they are not: ");
+        if (listed->second == Reason::still && world.false_reason.empty() &&
+            !standStill(world, facts, A.frame, B.frame, steps))
+          refuse("the world has them stand still against each other, and they do not: ");
         if (listed->second == Reason::touch_link &&
             (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
           throw BadInput("world: 'touch-link' of " + inQuotes(A.name) + " and " + inQuotes(B.name) +
@@ -116,8 +133,9 @@ void derivePairs(World& world) {
 }
 
 const char* nameOf(Reason reason) {
-  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "neighbours", "allowed",
-                                               "touch-link", "scope",         "ignored"};
+  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "still against each other",
+                                               "neighbours", "allowed",       "touch-link",
+                                               "scope",      "ignored"};
   return kNames[static_cast<int>(reason)];
 }
 const char* nameOf(Role role) {

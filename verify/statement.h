@@ -33,8 +33,8 @@ struct Frame {
 };
 
 enum class Role { link, carried, obstacle };
-enum class Reason { same_frame, obstacles, neighbours, allowed, touch_link, scope, ignored };
-constexpr int kReasons = 7;
+enum class Reason { same_frame, obstacles, still, neighbours, allowed, touch_link, scope, ignored };
+constexpr int kReasons = 8;
 const char* nameOf(Reason reason);
 const char* nameOf(Role role);
 /// A name in quotes, such that no name looks like another text: quotes, backslashes and what is no printing character
@@ -73,7 +73,7 @@ struct World {
   std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
   std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
   std::uint64_t not_checked[kReasons] = {};
-  std::string false_neighbours;  // a pair that the world calls neighbours, and that are not; empty: none
+  std::string false_reason;  // a pair that is listed for a reason that it has not, and which; empty: none
 
   /// margin(A, B) without `added`, where the motion's own is `general`.
   double margin(int a, int b, double general) const;

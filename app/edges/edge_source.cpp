@@ -93,6 +93,11 @@ void EdgeSource::readColumns(const std::string& dataset) {
   std::vector<std::string> names = file_.strings(dataset, "joints");
   if (names.empty()) names = file_.strings("", "joints");
   const bool named = !names.empty();
+  if (named && !options_.joints.empty() && options_.joints != names) {
+    throw std::invalid_argument(
+        fmt::format("--joints is {}, and dataset '{}' of '{}' names its joints itself: {}; leave --joints out",
+                    fmt::join(options_.joints, ", "), dataset, file_.path(), fmt::join(names, ", ")));
+  }
   if (!named) names = options_.joints;
   const std::vector<std::string> known = variableNames(tree_);
   if (names.empty()) names = known;

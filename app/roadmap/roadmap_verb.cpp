@@ -44,7 +44,7 @@ void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
   for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
 }
 
-/// The waypoints of a file's plans; joints without a column stay at 0.
+/// The waypoints of a file's plans, which name all joints.
 std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const std::string& path) {
   std::vector<Eigen::VectorXd> configurations;
   std::vector<std::string> known;
@@ -53,10 +53,15 @@ std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const
   for (const plans::Plan& plan : plans::parsePlans(tree, files::read(path), plans::formatOf(path))) {
     if (!plan.error.empty()) fail(plan.error);
     const std::vector<std::string>& joints = plan.joints.empty() ? known : plan.joints;
+    for (const std::string& joint : known) {
+      if (std::find(joints.begin(), joints.end(), joint) == joints.end()) {
+        fail(fmt::format("it has no joint '{}': a roadmap's configurations are of all joints", joint));
+      }
+    }
     for (const std::vector<double>& row : plan.positions) {
       if (row.size() != joints.size())
         fail(fmt::format("a row has {} values for {} joints", row.size(), joints.size()));
-      Eigen::VectorXd q = tree.neutralConfiguration();
+      Eigen::VectorXd q(tree.dof());
       for (std::size_t j = 0; j < joints.size(); ++j) {
         const auto at = std::find(known.begin(), known.end(), joints[j]);
         if (at == known.end())

@@ -31,7 +31,8 @@ class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
     pairs_.insert(key(a, b));
     disallowed_.erase(key(a, b));
   }
-  /// Removes the pair, if it is there, and has it checked even if the two are neighbours.
+  /// Removes the pair, if it is there, and has it checked even if the two are neighbours or stand still against each
+  /// other.
   void disallow(const std::string& a, const std::string& b) {
     pairs_.erase(key(a, b));
     disallowed_.insert(key(a, b));

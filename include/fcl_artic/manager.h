@@ -128,9 +128,12 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup(). A pair
   /// goes with its obstacle or attached object (unregisterObject()); one of two links stays.
   ///
-  /// Neighbours are links with at most one moving joint between them and no other link with geometry. (But a link that
-  /// a planar or floating joint moves freely in the world is no neighbour of what stands still. Links that are rigidly
-  /// connected through another link with geometry are checked: allow them if they touch by construction.) Of neighbours
+  /// Two bodies that no joint moves against each other, links that fixed joints connect, what they carry, and an
+  /// obstacle that stands still beside a link that does, are not checked, unless disallow() has asked for the pair:
+  /// notes() names those that touch.
+  ///
+  /// Neighbours are links with one moving joint between them and no other link with geometry. (But a link that a planar
+  /// or floating joint moves freely in the world is no neighbour of what stands still.) Of neighbours
   /// that the matrix neither allows nor has checked (AllowedCollisionMatrix::mustBeChecked()), setup() finds out what
   /// they do over all values of the joint between them, as classifyLinkPairs() does of all pairs, once and with less
   /// work:
@@ -145,7 +148,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Lets one more pair touch. Needs setup().
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object.
   void allow(const std::string& a, const std::string& b);
-  /// Has a pair checked again, also if the two are neighbours. Needs setup().
+  /// Has a pair checked again, also if the two are neighbours, or stand still against each other. Needs setup().
   /// @throws std::invalid_argument as allow().
   void disallow(const std::string& a, const std::string& b);
   /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); what the rule for neighbours
@@ -155,8 +158,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// links' order in the tree.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<LinkPairFinding> neighbours() const;
-  /// What is unusual about the robot as it was set up, one line each: neighbours that are not checked because they
-  /// touch whatever the joint between them does, and those of which that can't be decided.
+  /// What is unusual about the world as it was set up, one line each: pairs that touch, or can't be told apart, and
+  /// stand still against each other; neighbours that are not checked because they touch whatever the joint between them
+  /// does, and those of which that can't be decided. The former are looked at when this is called.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<std::string> notes() const;
 
@@ -234,7 +238,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> boundObjects() const;
   /// Returns the pairs of what links carry that queries check against each other (CertifiedRequest::check_self): names
   /// of two links, of a link and an attached object or of two attached objects, each pair once. All others are
-  /// allowed, neighbours that touch (setAllowedCollisions()), or stand on the same link.
+  /// allowed, neighbours that touch (setAllowedCollisions()), or stand still against each other.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<std::pair<std::string, std::string>> checkedLinkPairs() const;
   /// Returns the pose of a bound or attached geometry's frame in its link's frame.

@@ -168,7 +168,8 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
           [](const LoadedPlan& p) -> py::object {
             return p.motion ? py::object(py::str(plans::toString(p.motion->interpolation))) : py::none();
           },
-          "What lies between the waypoints: 'linear', 'cubic', 'quintic' or 'blends'.")
+          "What lies between the waypoints, as the option `interpolation` names it: 'linear', 'cubic', 'jtc-upsampled' "
+          "...")
       .def_property_readonly(
           "times",
           [](const LoadedPlan& p) -> py::object {

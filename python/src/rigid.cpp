@@ -98,12 +98,14 @@ class OwnMotion : public fcl::MotionBased, public BoundedMotion {
   State state(double t) const override {
     const GilHeld held;
     const py::object answer = state_(t);
+    if (answer.is_none()) typeError("state(t) returned None, not a pose");  // which is the identity elsewhere
     State s;
     if (!derivatives_ && !py::isinstance<py::tuple>(answer)) {
       s.pose = poseOf(answer, "state(t)");
       return s;
     }
     const auto items = sequenceOf(answer, "state(t)", 5);
+    if (py::object(items[0]).is_none()) typeError("state(t) returned None for its pose");
     s.pose = poseOf(py::object(items[0]), "pose");
     s.velocity = vector3Of(py::object(items[1]), "velocity");
     s.acceleration = vector3Of(py::object(items[2]), "acceleration");

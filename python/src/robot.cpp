@@ -23,6 +23,10 @@ Robot loadRobot(py::handle urdf, py::handle srdf, py::handle packages, py::handl
   options.import_meshes = import_meshes;
   options.base = poseOf(base, "base");
   options.floating_base = floating_base;
+  if (!srdf.is_none()) {
+    const Input joint(srdf, "srdf");
+    options.virtual_joint = joint.read([&] { return loadVirtualJoint(joint.path()); });
+  }
   Robot robot = file.read([&] { return loadUrdf(file.path(), options); });
   if (!srdf.is_none()) {
     const Input pairs(srdf, "srdf");

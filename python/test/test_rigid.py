@@ -116,6 +116,11 @@ def test_an_error_in_a_motion_of_ones_own_comes_through():
     broken = fcl_artic.Motion.bounded(state, lambda a, b: [1] * 6)
     with pytest.raises(LookupError, match="no such time"):
         fcl_artic.continuous_collide(CUBE_MESH, broken, CUBE_MESH, np.eye(4))
+    # A pose that may be left out elsewhere: who forgets to return one does not mean the identity.
+    for state, derivatives in ((lambda t: None, False), (lambda t: None, True), (lambda t: (None, *[[0, 0, 0]] * 4), True)):
+        silent = fcl_artic.Motion.bounded(state, lambda a, b: [1] * (6 if derivatives else 2), derivatives=derivatives)
+        with pytest.raises(TypeError, match="returned None"):
+            fcl_artic.continuous_collide(CUBE_MESH, silent, CUBE_MESH, fcl_artic.pose([5, 0, 0]))
     few = fcl_artic.Motion.bounded(lambda t: np.eye(4), lambda a, b: [1], derivatives=False)
     with pytest.raises(TypeError, match="2 values"):
         fcl_artic.continuous_collide(CUBE_MESH, few, CUBE_MESH, np.eye(4))

@@ -29,9 +29,8 @@ std::string word(const std::string& name) {
   std::string text;
   for (const char c : name) {
     const auto byte = static_cast<unsigned char>(c);
-    const bool plain = byte > 32 && byte < 127 && c != '%';
     char digits[4];
-    std::snprintf(digits, sizeof digits, plain ? "%c" : "%%%02x", byte);
+    std::snprintf(digits, sizeof digits, byte > 32 && byte < 127 && c != '%' ? "%c" : "%%%02x", byte);
     text += digits;
   }
   return text;
@@ -43,8 +42,6 @@ std::string vectorText(const Eigen::Vector3d& v) {
 std::string poseText(const Eigen::Isometry3d& M) {
   return rotationText(M.linear()) + " " + vectorText(M.translation());
 }
-
-// ---- frames
 
 Frame frameOf(const KinematicTree& tree, LinkId link, const std::vector<int>& frame_of_link) {
   Frame frame;
@@ -396,14 +393,17 @@ class ManagedWorld {
 
   /// Why the two are not checked; null: they are, empty: nobody asks.
   const char* excuse(const ManagedBody& a, const ManagedBody& b) const {
-    if (a.link < 0 && b.link < 0) return "";
-    if (a.link == b.link) return "";
-    if (a.link < 0 || b.link < 0) return registry_.mayTouch(a, b) ? nullptr : "allowed";
+    if (a.link == b.link || (a.link < 0 && b.link < 0)) return "";
+    if (a.link < 0 || b.link < 0) {
+      return !registry_.mayTouch(a, b) ? "allowed" : registry_.standStill(a, b) ? "still" : nullptr;
+    }
     switch (registry_.excuseOf(a, b)) {
       case Excuse::allowed:
         return "allowed";
       case Excuse::touch_link:
         return "touch-link";
+      case Excuse::still:
+        return "still";
       case Excuse::neighbours:
         return "neighbours";
       case Excuse::none:

@@ -133,6 +133,7 @@ enum class Quantity { time, position, velocity, acceleration, none };
 struct Meaning {
   Quantity quantity = Quantity::none;
   std::string joint;
+  bool counted = false;  ///< by its place or number among the joints, not by its name
 
   std::string text() const {
     switch (quantity) {
@@ -229,7 +230,7 @@ void addNumbered(const std::vector<std::string>& columns, const std::vector<std:
       const int first = found.begin()->first;
       if (first > 1 || found.rbegin()->first != first + static_cast<int>(joints.size()) - 1) continue;
       for (const auto& [number, column] : found) {
-        meanings[column] = Meaning{quantity, joints[static_cast<std::size_t>(number - first)]};
+        meanings[column] = Meaning{quantity, joints[static_cast<std::size_t>(number - first)], true};
       }
       break;
     }
@@ -289,7 +290,7 @@ std::vector<std::optional<Meaning>> meaningsByPlace(const KinematicTree& tree, c
   }
   std::vector<std::optional<Meaning>> meanings;
   if (timed) meanings.emplace_back(Meaning{Quantity::time, {}});
-  for (const std::string& joint : joints) meanings.emplace_back(Meaning{Quantity::position, joint});
+  for (const std::string& joint : joints) meanings.emplace_back(Meaning{Quantity::position, joint, true});
   return meanings;
 }
 
@@ -476,6 +477,7 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
     }
   }
   plan.joints = positions.joints;
+  plan.joints_counted = std::any_of(meanings.begin(), meanings.end(), [](const auto& m) { return m->counted; });
   plan.positions = take(table, positions, plan.joints, "position");
   plan.velocities = take(table, velocities, plan.joints, "velocity");
   plan.accelerations = take(table, accelerations, plan.joints, "acceleration");

@@ -20,7 +20,6 @@ namespace {
 constexpr int kDeepestMessage = 20;  // messages within messages
 constexpr double kFlat = 1e-6;       // of a planar joint's pose: m out of its plane, and part of the quaternion
 constexpr double kIdentity = 1e-9;   // a pose that nobody has to know of
-constexpr double kFollows = 1e-6;    // rad or m: within it a mimic joint is where the joint that it follows has it
 
 /// Of a message's start state.
 struct Start {
@@ -34,6 +33,10 @@ std::string shown(const Json& value) {
   return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }
 
+/// Keys under which a message holds another one, or several.
+constexpr std::initializer_list<const char*> kInner{"trajectory", "planned_trajectory", "goal", "msg"};
+constexpr const char* kRecorded = "executed_trajectory";  // of a move_group's result: no plan
+
 /// The first of the keys that an object has; null where it has none.
 const Json* find(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
@@ -41,6 +44,42 @@ const Json* find(const Json& object, std::initializer_list<const char*> keys) {
     if (found != object.end()) return &*found;
   }
   return nullptr;
+}
+
+bool areRows(const Json& value) {
+  return value.is_array() && !value.empty() && value[0].is_array() && !value[0].empty() && value[0][0].is_number();
+}
+
+/// Whether a value is a plan, or holds one, however deep: there is a waypoint in it.
+bool holdsPlan(const Json& value) {
+  if (value.is_array()) return std::any_of(value.begin(), value.end(), holdsPlan);
+  if (!value.is_object()) return false;
+  for (const char* list : {"points", "waypoints"}) {
+    const Json* rows = find(value, {list});
+    if (rows && rows->is_array() && !rows->empty()) return true;
+  }
+  if (find(value, {"from", "start"}) && find(value, {"to", "goal"})) return true;
+  return std::any_of(value.begin(), value.end(), holdsPlan);
+}
+
+/// Which of an object's keys have plans, or are parts of one; parts of one plan count once, by the first of them.
+std::vector<std::string> plansIn(const Json& object) {
+  static const std::set<std::string> kParts{"joint_trajectory", "multi_dof_joint_trajectory"},
+      kEnds{"waypoints", "from", "start", "to", "goal"}, kLists{"trajectory", "planned_trajectory", "msg", "plans"},
+      kOthers{"trajectory_start", "start_state", "multi_dof_trajectory", kRecorded};
+  std::vector<std::string> out;
+  bool parts = false, ends = false;
+  for (const auto& [key, value] : object.items()) {
+    if (kOthers.count(key)) continue;
+    const bool inside = holdsPlan(value), end = kEnds.count(key) && !(key == "goal" && inside);
+    const bool points = key == "points" && value.is_array() && !value.empty();
+    if (!(inside || end || points || (kLists.count(key) && areRows(value)))) continue;
+    bool* once = end ? &ends : kParts.count(key) ? &parts : nullptr;
+    if (once && *once) continue;
+    if (once) *once = true;
+    out.push_back(key);
+  }
+  return out;
 }
 
 const Json& listOf(const Json& object, const char* key, const std::string& where) {
@@ -148,8 +187,10 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
     }
     return out;
   }
-  refuse(fmt::format("{}: robot '{}' has no planar or floating joint '{}' (its base moves with --floating-base)", where,
-                     tree.name(), name));
+  refuse(
+      fmt::format("{}: robot '{}' has no planar or floating joint '{}': an SRDF's virtual_joint of this name moves its "
+                  "base (--srdf)",
+                  where, tree.name(), name));
 }
 
 /// Values of the joint's variables at a pose.
@@ -192,7 +233,7 @@ void requireFollowing(const KinematicTree& tree, const std::map<std::string, dou
                          joint.name, value->second, joint.mimic.master));
     }
     const double wanted = tree.jointValue(j, q);
-    if (std::abs(value->second - wanted) <= kFollows) continue;
+    if (std::abs(value->second - wanted) <= kSameValue) continue;
     refuse(fmt::format("{}: joint '{}' is at {}, where the joint that it mimics, '{}', has it at {}", where, joint.name,
                        value->second, joint.mimic.master, wanted));
   }
@@ -243,7 +284,7 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
       if (moved) {
         refuse(
             fmt::format("{}: joint '{}', which the robot lacks, is not at the identity: where the robot stands is "
-                        "said by --base, or it moves with --floating-base",
+                        "said by --base, or it moves by an SRDF's virtual_joint of this name (--srdf)",
                         where, names[i]));
       }
     }
@@ -365,6 +406,15 @@ class Reader {
     if (depth > kDeepestMessage) return fail(label, "too many messages within messages");
     if (value.is_array()) return readList(value, label, start, depth);
     if (!value.is_object()) return fail(label, fmt::format("{} is no plan", shown(value)));
+    if (const Json* model = find(value, {"model_id"}); model && *model != "" && *model != tree_.name()) {
+      return fail(label, fmt::format("the message is for the robot {} (model_id), and this one is '{}': --robot takes "
+                                     "the message's",
+                                     shown(*model), tree_.name()));
+    }
+    if (const std::vector<std::string> plans = plansIn(value); plans.size() > 1) {
+      return fail(label, fmt::format("it holds more than one plan, in '{}' and in '{}': give each an object of its own",
+                                     plans[0], plans[1]));
+    }
     if (find(value, {"waypoints", "from", "start"})) {
       return add(label, start, [&](Plan& plan) { readPlan(value, plan); });
     }
@@ -376,8 +426,7 @@ class Reader {
       if (find(value, {"joint_trajectory", "multi_dof_joint_trajectory", "points"})) {
         return add(label, start, [&](Plan& plan) { readMessage(value, plan); });
       }
-      if (find(value, {"trajectory", "planned_trajectory", "goal", "msg"}))
-        return readOuter(value, label, start, depth);
+      if (find(value, kInner)) return readOuter(value, label, start, depth);
     } catch (const std::invalid_argument& error) {
       return fail(label, error.what());
     }
@@ -425,8 +474,9 @@ class Reader {
                   "type",
                   "name",
                   "id"});
-    const Json& inner = *find(value, {"trajectory", "planned_trajectory", "goal", "msg"});
+    const Json& inner = *find(value, kInner);
     Start own = start;
+    if (find(value, {kRecorded})) own.notes.push_back(fmt::format("{}, which was recorded, is not read", kRecorded));
     if (const Json* state = find(value, {"trajectory_start", "start_state"})) own = startOf(tree_, *state);
     const Json* poses = find(value, {"multi_dof_trajectory"});
     if (!poses) return readParts(inner, label, own, depth + 1);
@@ -450,31 +500,64 @@ class Reader {
   }
 
   void readList(const Json& list, const std::string& label, const Start& start, int depth) {
-    const bool rows = !list.empty() && list[0].is_array() && !list[0].empty() && list[0][0].is_number();
-    if (rows) {
+    if (areRows(list)) {
       return add(label, start, [&](Plan& plan) { Rows(plan).add(list, "", plan.positions); });
     }
     if (list.empty()) return fail(label, "an empty list");
     for (std::size_t i = 0; i < list.size(); ++i) read(list[i], fmt::format("{}[{}]", label, i), start, depth + 1);
   }
 
-  /// One message or several, carried out one after the other: what the first has moved stays where it is.
+  /// One message or several, carried out one after the other: each begins where the one before has left the robot.
   void readParts(const Json& message, const std::string& label, const Start& start, int depth) {
     if (!message.is_array() || message.size() == 1) {
       return read(message.is_array() ? message[0] : message, label, start, depth);
     }
     if (message.empty()) return fail(label, "a message without a trajectory");
     Start now = start;
+    const std::size_t first = out_.size();
     for (std::size_t i = 0; i < message.size(); ++i) {
       const std::size_t begin = out_.size();
       read(message[i], fmt::format("{}[{}]", label, i), now, depth);
       for (std::size_t p = begin; p < out_.size(); ++p) {
-        const Plan& plan = out_[p];
-        if (!plan.error.empty() || plan.positions.empty() || plan.positions.back().size() != plan.joints.size())
-          continue;
+        Plan& plan = out_[p];
+        if (!plan.error.empty()) continue;
+        if (plan.joints.empty()) plan.error = "a message in several parts names the joints of each";
+        const bool whole = !plan.positions.empty() && plan.positions.front().size() == plan.joints.size() &&
+                           plan.positions.back().size() == plan.joints.size();
+        if (!whole) continue;  // toMotion() says what is wrong
+        if (p > first) plan.error = gapBefore(plan, out_[p - 1], now.state);
         for (std::size_t j = 0; j < plan.joints.size(); ++j) now.state[plan.joints[j]] = plan.positions.back()[j];
       }
     }
+  }
+
+  /// Why a part does not begin where the parts before it end; empty: it does.
+  std::string gapBefore(const Plan& part, const Plan& before, const std::map<std::string, double>& state) const {
+    if (!before.error.empty()) {
+      return fmt::format("'{}', the part before it, is wrong: where the robot stands then is not known", before.name);
+    }
+    Eigen::VectorXd from = tree_.neutralConfiguration(), to = from;
+    for (int v = 0; v < tree_.dof(); ++v) {
+      const auto known = state.find(tree_.variableName(v));
+      if (known != state.end()) from[v] = to[v] = known->second;
+      for (std::size_t j = 0; known != state.end() && j < part.joints.size(); ++j) {
+        if (part.joints[j] == known->first) to[v] = part.positions.front()[j];
+      }
+    }
+    for (int v = 0; v < tree_.dof(); ++v) {
+      const JointId j = tree_.variableJoint(v);
+      const bool forever = tree_.isAngle(v) && !hasLimits(tree_.joint(j));
+      double gap = forever ? std::remainder(to[v] - from[v], 2 * kHalfTurn) : to[v] - from[v];
+      if (const int q = tree_.quaternionVariable(j); q >= 0 && v >= q) {  // of two signs, which say the same
+        gap = from.segment<4>(q).dot(to.segment<4>(q)) < 0 ? to[v] + from[v] : gap;
+      }
+      if (std::abs(gap) <= kSameValue) continue;
+      return fmt::format(
+          "'{}' is at {:g} at its begin, and at {:g} where the parts of the message before it end: "
+          "nobody says how it gets there; take them as plans of their own, or join them",
+          tree_.variableName(v), to[v], from[v]);
+    }
+    return {};
   }
 
   void readMessage(const Json& message, Plan& plan) {

@@ -16,17 +16,20 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kHalfTurn = 3.14159265358979323846;
-constexpr double kSameStart = 1e-6;  // rad or m, within which a plan begins at its start state
 // Cosine of half the angle between two quaternions, below which no sense of rotation is sure: of two senses the
 // rounding of a file decides, 1e-6 with the six digits that OMPL and ROS print.
 constexpr double kNearHalfTurn = 2e-6;
 
-const std::vector<std::pair<const char*, Interpolation>> kInterpolations{{"auto", Interpolation::automatic},
-                                                                         {"linear", Interpolation::linear},
-                                                                         {"cubic", Interpolation::cubic},
-                                                                         {"quintic", Interpolation::quintic},
-                                                                         {"blends", Interpolation::blends}};
+const std::vector<std::pair<const char*, Interpolation>> kInterpolations{
+    {"auto", Interpolation::automatic},
+    {"linear", Interpolation::linear},
+    {"cubic", Interpolation::cubic},
+    {"quintic", Interpolation::quintic},
+    {"blends", Interpolation::blends},
+    {"jtc", Interpolation::jtc},
+    {"jtc-upsampled", Interpolation::jtcUpsampled},
+    {"jtc-none", Interpolation::jtcNone},
+    {"tangent-half-angle", Interpolation::tangentHalfAngle}};
 
 std::string plural(std::size_t n, const std::string& what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
@@ -40,6 +43,10 @@ struct PlanColumns {
 
 PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
   PlanColumns out;
+  if (!plan.joints.empty() && !plan.joints_counted && !options.joints.empty() && options.joints != plan.joints) {
+    refuse(fmt::format("--joints (Python: joints) is {}, and the plan names its joints itself: {}; leave --joints out",
+                       fmt::join(options.joints, ", "), fmt::join(plan.joints, ", ")));
+  }
   out.names = plan.joints.empty() ? options.joints : plan.joints;
   if (out.names.empty()) {
     for (int v = 0; v < tree.dof(); ++v) out.names.push_back(tree.variableName(v));
@@ -73,10 +80,17 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   for (const auto* state : {&options.state, &plan.state}) {
     for (const auto& [name, value] : *state) {
       const auto v = static_cast<std::size_t>(variableOf(tree, name, "the state of the other joints"));
-      if (in_plan[v]) continue;
+      if (in_plan[v]) {
+        const auto column = static_cast<std::size_t>(std::find(columns.variables.begin(), columns.variables.end(), v) -
+                                                     columns.variables.begin());
+        for (std::size_t k = 0; state == &options.state && k < plan.positions.size(); ++k) {
+          requireGiven(name, value, plan.positions[k].at(column), fmt::format("waypoint {}", k));
+        }
+        continue;
+      }
       if (!std::isfinite(value)) refuse(fmt::format("the state of joint '{}' is {}", name, value));
       const auto asked = options.state.find(name);
-      if (asked != options.state.end() && std::abs(asked->second - value) > kSameStart) {
+      if (asked != options.state.end() && std::abs(asked->second - value) > kSameValue) {
         notes.push_back(fmt::format("joint '{}' is at {:g}, as asked for; the plan's own start state has it at {:g}",
                                     name, asked->second, value));
       }
@@ -85,12 +99,11 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
       known[v] = true;
     }
   }
+  std::vector<std::string> unnamed;
   for (int v = 0; v < tree.dof(); ++v) {
-    if (known[static_cast<std::size_t>(v)]) continue;
-    refuse(
-        fmt::format("the plan has no joint '{0}': give its value by --state {0}=VALUE (Python: state={{'{0}': VALUE}})",
-                    tree.variableName(v)));
+    if (!known[static_cast<std::size_t>(v)]) unnamed.push_back(tree.variableName(v));
   }
+  if (!unnamed.empty()) refuseUnnamed(unnamed, "the plan");
   // A quaternion of which only parts are known is nobody's wish, but has a length that is looked at.
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
@@ -189,7 +202,7 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns&
 void noteStart(const Plan& plan, const PlanColumns& columns, std::vector<std::string>& notes) {
   for (std::size_t j = 0; j < columns.names.size(); ++j) {
     const auto start = plan.state.find(columns.names[j]);
-    if (start == plan.state.end() || std::abs(start->second - plan.positions[0][j]) <= kSameStart) continue;
+    if (start == plan.state.end() || std::abs(start->second - plan.positions[0][j]) <= kSameValue) continue;
     notes.push_back(
         fmt::format("joint '{}' begins at {:g}, the start state has it at {:g}: the way there is no part of "
                     "the plan",
@@ -233,9 +246,29 @@ void requireSenses(const KinematicTree& tree, const std::vector<VectorXd>& q) {
   }
 }
 
+bool isController(Interpolation kind) {
+  return kind == Interpolation::jtc || kind == Interpolation::jtcUpsampled || kind == Interpolation::jtcNone;
+}
+
+/// joint_trajectory_controller takes the values of joints that turn forever as they are.
+Turns turnsOf(const MotionOptions& options) {
+  if (options.interpolation == Interpolation::tangentHalfAngle && options.turns == Turns::shortest) {
+    refuse("tangent-half-angle says which way round a joint goes, and --turns shortest another way");
+  }
+  if (!isController(options.interpolation)) return options.turns;
+  if (options.turns == Turns::shortest) {
+    refuse(fmt::format("{} goes from waypoint to waypoint as the values say, and --turns shortest another way",
+                       toString(options.interpolation)));
+  }
+  return Turns::given;
+}
+
 Interpolation chosen(const Plan& plan, const MotionOptions& options) {
   Interpolation kind = options.interpolation;
-  if (kind == Interpolation::automatic) {
+  const bool positions_only = plan.velocities.empty() && plan.accelerations.empty();
+  if (kind == Interpolation::jtcNone || kind == Interpolation::tangentHalfAngle) return kind;
+  if (kind == Interpolation::jtcUpsampled && positions_only) return kind;
+  if (kind == Interpolation::automatic || isController(kind)) {
     if (plan.velocities.empty() && !plan.accelerations.empty()) {
       refuse("it has accelerations and no velocities: --interpolation says what is meant");
     }
@@ -248,10 +281,42 @@ Interpolation chosen(const Plan& plan, const MotionOptions& options) {
   if (kind == Interpolation::quintic && plan.accelerations.empty()) {
     refuse("quintic needs accelerations, the plan has none");
   }
-  if (kind != Interpolation::linear && plan.times.empty()) {
+  if (kind != Interpolation::linear && plan.times.empty()) {  // of a curve that depends on them
     refuse(fmt::format("{} needs times, the plan has none", toString(kind)));
   }
   return kind;
+}
+
+/// Velocities at the waypoints of the spline of cubics that goes from rest to rest and whose acceleration has no jump.
+/// With h_k = t_{k+1} - t_k and slopes s_k = (q_{k+1} - q_k) / h_k, the accelerations before and after waypoint k,
+/// (2 v_{k-1} + 4 v_k - 6 s_{k-1}) / h_{k-1} and (6 s_k - 4 v_k - 2 v_{k+1}) / h_k, are the same if
+///   a v_{k-1} + 2 v_k + b v_{k+1} = 3 (a s_{k-1} + b s_k),  a = h_k / (h_{k-1} + h_k),  b = h_{k-1} / (h_{k-1} + h_k).
+/// The diagonal exceeds the rest of its row by 1, so elimination goes without pivots, and errors do not grow
+/// (doc/NUMERICS.md, section 12).
+std::vector<VectorXd> restToRestVelocities(const std::vector<double>& t, const std::vector<VectorXd>& q) {
+  const std::size_t n = q.size();
+  std::vector<VectorXd> v(n, VectorXd::Zero(q[0].size()));
+  std::vector<double> over(n, 0);  // what is left above the diagonal, of a diagonal of 1
+  for (std::size_t k = 1; k + 1 < n; ++k) {
+    const double before = t[k] - t[k - 1], after = t[k + 1] - t[k], both = before + after;
+    const double a = after / both, b = before / both, pivot = 2 - a * over[k - 1];
+    const VectorXd wanted = 3 * (a * ((q[k] - q[k - 1]) / before) + b * ((q[k + 1] - q[k]) / after));
+    v[k] = (wanted - a * v[k - 1]) / pivot;
+    over[k] = b / pivot;
+  }
+  for (std::size_t k = n - 1; k-- > 1;) v[k] -= over[k] * v[k + 1];
+  return v;
+}
+
+/// joint_trajectory_controller runs single values.
+void requireNoQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& q, Interpolation kind) {
+  for (const JointId j : tree.quaternionJoints()) {
+    const int v = tree.quaternionVariable(j);
+    for (const VectorXd& one : q) {
+      if (one.segment<4>(v) == q[0].segment<4>(v)) continue;
+      refuse(fmt::format("joint '{}' has a quaternion, and {} runs none", tree.joint(j).name, toString(kind)));
+    }
+  }
 }
 
 /// Rows of some columns as vectors of all variables.
@@ -270,7 +335,14 @@ Interpolation interpolationNamed(const std::string& name) {
   for (const auto& known : kInterpolations) {
     if (name == known.first) return known.second;
   }
-  refuse(fmt::format("'{}' is no interpolation", name));
+  if (name == "totg") {
+    refuse(
+        "totg rounds the corners of a path, and the controller then runs a spline through samples of that: certify "
+        "its result, by --interpolation jtc");
+  }
+  std::string names;
+  for (const auto& known : kInterpolations) names += (names.empty() ? "" : ", ") + std::string(known.first);
+  refuse(fmt::format("'{}' is no interpolation: {} are", name, names));
 }
 
 const char* toString(Interpolation interpolation) {
@@ -324,8 +396,8 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     plan.joints = given.joints;
   }
   std::vector<std::string> notes = plan.notes;
-  const VectorXd rest = restOf(tree, plan, options, columns, notes);
   requireRows(plan.positions, "positions", waypoints, columns);
+  const VectorXd rest = restOf(tree, plan, options, columns, notes);
   if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);
   if (!plan.accelerations.empty()) requireRows(plan.accelerations, "accelerations", waypoints, columns);
   const bool timed = !plan.times.empty();
@@ -333,7 +405,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
   for (std::size_t k = 0; !timed && k < waypoints; ++k) times.push_back(static_cast<double>(k));
   requireTimes(times, waypoints);
   judgeLimits(tree, plan, columns, options, notes);
-  const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, options.turns);
+  const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, turnsOf(options));
   const Interpolation kind = chosen(plan, options);
   if (timed && times.front() > 0) {
     notes.push_back(
@@ -344,6 +416,15 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
 
   std::vector<VectorXd> q = spread(plan.positions, columns, rest);
   requireSenses(tree, q);
+  if (isController(options.interpolation)) requireNoQuaternions(tree, q, options.interpolation);
+  if (kind == Interpolation::jtcNone) {
+    notes.emplace_back(
+        "the controller jumps from waypoint to waypoint, and does not say how the joints get there: certified is that "
+        "all of them go straight, together");
+  }
+  if (kind == Interpolation::jtcUpsampled && !timed) {
+    notes.emplace_back("it has no times: its waypoints follow each other at equal times, as by policy_frequency");
+  }
   const VectorXd zero = VectorXd::Zero(tree.dof());
   const auto trajectory = [&]() -> JointTrajectory {
     switch (kind) {
@@ -354,7 +435,13 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
                                         spread(plan.accelerations, columns, zero), unwrap);
       case Interpolation::blends:
         return JointTrajectory::parabolicBlends(tree, times, q, options.blend, unwrap);
+      case Interpolation::tangentHalfAngle:
+        return JointTrajectory::tangentHalfAngle(tree, times, q);
+      case Interpolation::jtcUpsampled:
+        return JointTrajectory::cubic(tree, times, q, restToRestVelocities(times, q), unwrap);
+      case Interpolation::jtcNone:
       case Interpolation::automatic:
+      case Interpolation::jtc:
       case Interpolation::linear:
         break;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plans/variables.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
@@ -42,6 +43,20 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
   for (int v = 0; v < tree.dof(); ++v) names.push_back(tree.variableName(v));
   throw std::invalid_argument(fmt::format("{}: robot '{}' has no joint '{}'; its joints are: {}{}", what, tree.name(),
                                           name, variableNames(tree), text::didYouMean(name, names)));
+}
+
+void refuseUnnamed(const std::vector<std::string>& joints, const std::string& what) {
+  throw std::invalid_argument(
+      fmt::format("{} has no joint '{}': --state {}=VALUE gives its value (Python: state={{...}})", what,
+                  fmt::join(joints, "', '"), fmt::join(joints, "=VALUE,")));
+}
+
+void requireGiven(const std::string& joint, double given, double value, const std::string& where) {
+  if (std::abs(given - value) <= kSameValue) return;
+  throw std::invalid_argument(
+      fmt::format("--state (Python: state) has joint '{}' at {:g}, and {} has it at {:g}: "
+                  "leave it out of the one or the other",
+                  joint, given, where, value));
 }
 
 }  // namespace fcl_artic::plans

@@ -7,7 +7,9 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -410,36 +412,6 @@ std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& regist
         links, NeighbourFindings::Pair{std::move(findings[i]), std::move(made_of_open[i]), std::move(apart[i])});
   }
   return found;
-}
-
-std::vector<LinkPairFinding> ArticulatedCollisionManager::neighbours() const {
-  impl_->requireReady();
-  std::vector<LinkPairFinding> open;
-  for (const auto& [links, pair] : impl_->registry.neighbours()->pairs) {
-    if (!impl_->registry.allowed().allowed(pair.finding.link1, pair.finding.link2)) open.push_back(pair.finding);
-  }
-  return open;
-}
-
-std::vector<std::string> ArticulatedCollisionManager::notes() const {
-  impl_->requireReady();
-  std::string throughout, undecided;
-  for (const auto& [links, pair] : impl_->registry.neighbours()->pairs) {
-    const LinkPairFinding& found = pair.finding;
-    if (impl_->registry.allowed().allowed(found.link1, found.link2)) continue;
-    const std::string names = "'" + found.link1 + "' and '" + found.link2 + "'" +
-                              (pair.apart.empty() ? "" : " (but for their parts that are apart at one of these)");
-    if (found.touchThroughout()) throughout += (throughout.empty() ? "" : ", ") + names;
-    if (found.undecided()) undecided += (undecided.empty() ? "" : ", ") + names;
-  }
-  std::vector<std::string> notes;
-  const auto note = [&](const std::string& said, const std::string& of) {
-    if (!of.empty()) notes.push_back("neighbours " + said + ": " + of);
-  };
-  note("that touch at all tried values of the joint between them, as housings that overlap in it, are not checked",
-       throughout);
-  note("of which it can't be decided whether they touch are not checked, and each answer counts them", undecided);
-  return notes;
 }
 
 LinkPairReport ArticulatedCollisionManager::classifyLinkPairs(const LinkPairOptions& options) const {

@@ -84,7 +84,7 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
     const ManagedBody &a = links[i], &b = links[j];
     if (a.empty() || b.empty()) return;
     const Excuse excuse = registry.excuseOf(a, b);
-    if (excuse == Excuse::none) return;
+    if (excuse == Excuse::none || excuse == Excuse::still) return;  // notes() names the latter
     if (excuse != Excuse::touch_link && !a.attached && !b.attached && neighbours) {
       const NeighbourFindings::Pair* const pair = neighbours->find(a.link, b.link);
       const bool overlaps = pair && pair->finding.touchThroughout();

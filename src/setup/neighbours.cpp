@@ -10,11 +10,7 @@ namespace {
 bool isFree(const KinematicTree& tree, JointId joint) {
   const JointType type = tree.joint(joint).type;
   if (type != JointType::planar && type != JointType::floating) return false;
-  LinkId link = tree.linkId(tree.joint(joint).parent);
-  while (tree.parentJoint(link) >= 0 && tree.joint(tree.parentJoint(link)).type == JointType::fixed) {
-    link = tree.parentLink(link);
-  }
-  return tree.parentJoint(link) < 0;
+  return carrierOf(tree, tree.linkId(tree.joint(joint).parent)) < 0;
 }
 
 std::vector<LinkId> pathToRoot(const KinematicTree& tree, LinkId link) {
@@ -24,6 +20,15 @@ std::vector<LinkId> pathToRoot(const KinematicTree& tree, LinkId link) {
 }
 
 }  // namespace
+
+LinkId carrierOf(const KinematicTree& tree, LinkId link) {
+  while (link >= 0) {
+    const JointId joint = tree.parentJoint(link);
+    if (joint >= 0 && tree.joint(joint).type != JointType::fixed) return link;
+    link = tree.parentLink(link);
+  }
+  return link;
+}
 
 bool areNeighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry, LinkId a, LinkId b) {
   std::vector<LinkId> x = pathToRoot(tree, a), y = pathToRoot(tree, b);

@@ -171,12 +171,20 @@ void Registry::setAllowed(AllowedCollisionMatrix matrix) {
 }
 
 bool Registry::areOpenNeighbours(const std::set<LinkId>& with_geometry, LinkId a, LinkId b) const {
-  return areNeighbours(*tree_, with_geometry, a, b) && !allowed_.mustBeChecked(tree_->linkName(a), tree_->linkName(b));
+  return carrierOf(*tree_, a) != carrierOf(*tree_, b) && areNeighbours(*tree_, with_geometry, a, b) &&
+         !allowed_.mustBeChecked(tree_->linkName(a), tree_->linkName(b));
+}
+
+bool Registry::standStill(const ManagedBody& a, const ManagedBody& b) const {
+  if (a.moving || b.moving || carrierOf(*tree_, a.link) != carrierOf(*tree_, b.link)) return false;
+  const AllowedCollisionMatrix::Pairs& asked = allowed_.disallowedPairs();
+  return asked.empty() || asked.count(std::minmax(a.name, b.name)) == 0;
 }
 
 Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
   if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
   if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
+  if (standStill(a, b)) return Excuse::still;
   if (a.attached || b.attached || !neighbours_) return Excuse::none;
   return neighbours_->leavesOut(*tree_, a, b) ? Excuse::neighbours : Excuse::none;
 }

@@ -25,6 +25,7 @@ enum class Excuse : std::uint8_t {
   none,        ///< they are
   allowed,     ///< somebody said that they may touch
   touch_link,  ///< the one is carried, and may touch the other
+  still,       ///< no motion moves the one against the other (standStill())
   neighbours   ///< by the rule for neighbours (ArticulatedCollisionManager::setAllowedCollisions())
 };
 
@@ -57,10 +58,13 @@ class Registry {
   std::set<LinkId> linksWithGeometry() const;
   bool hasObstacle(const std::string& name) const { return obstacle_names_.count(name) != 0; }
 
+  /// Whether no joint lies between the two, links or what they carry, or one of these and an obstacle that stands
+  /// still; and nobody has asked for the pair (disallow()).
+  bool standStill(const ManagedBody& a, const ManagedBody& b) const;
   /// Of two bodies that two links carry, neither of them empty.
   Excuse excuseOf(const ManagedBody& a, const ManagedBody& b) const;
-  /// Of two links: neighbours by the tree and the links that have geometry, of which nobody says that they are to be
-  /// checked.
+  /// Of two links: neighbours by the tree and the links that have geometry, with a joint between them, of which nobody
+  /// says that they are to be checked.
   /// @param with_geometry  linksWithGeometry()
   bool areOpenNeighbours(const std::set<LinkId>& with_geometry, LinkId a, LinkId b) const;
   /// What was found of neighbours for the links as they are now; null: nobody looked.

@@ -10,6 +10,7 @@
 #include "motion/part_of_motion.h"
 #include "motion/variables.h"
 #include "numerics/baseline_isa.h"
+#include "setup/neighbours.h"
 #include "setup/setup.h"
 
 #include "convex/piece_kinds.h"
@@ -117,7 +118,7 @@ void Setup::buildObstacles(const Registry& registry) {
   obstacle_tree_ = widen(buildBoxTree(boxes));
 }
 
-/// Pairs of link and still obstacle that may touch, or cannot.
+/// Pairs of link and still obstacle that may touch, or cannot, or stand still against each other.
 void Setup::allowScenePairs(const Registry& registry) {
   const std::vector<ManagedBody>& obstacles = registry.obstacles();
   scene_allowed_.clear();
@@ -150,7 +151,14 @@ void Setup::allowScenePairs(const Registry& registry) {
   for (std::size_t m = 0; m < num_links_; ++m) {
     if (link(m).empty()) empty_links.push_back(m);
   }
+  std::vector<std::size_t> still_links;
+  for (std::size_t m = 0; m < num_links_; ++m) {
+    if (carrierOf(*registry.tree(), link(m).link) < 0) still_links.push_back(m);
+  }
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    for (const std::size_t m : still_links) {
+      if (registry.standStill(link(m), obstacles[o])) allow(m, o);
+    }
     for (const std::size_t m : empty_links) allow(m, o);
     for (std::size_t m = 0; m < num_links_ && obstacles[o].empty(); ++m) allow(m, o);
   }

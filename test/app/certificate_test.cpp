@@ -66,7 +66,7 @@ TEST_F(CertificateOptionTest, SaysWhatItWrote) {
   EXPECT_EQ(noteOf(run, "notes"), expected(" --from 0 --to 1")) << run.err;
   run = this->run("check " + world + " --trajectory '" + plan + "'");
   EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;
-  run = this->run("check " + world + " --trajectory '" + plan + "' --interpolation cubic");
+  run = this->run("check " + world + " --trajectory '" + plan + "' --interpolation jtc-upsampled");
   EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
   run = this->run("certify '" + plan + "' --robot " + world);
   EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;

@@ -128,6 +128,14 @@ TEST_F(CertifyProgramTest, SplinesAreSaidAndGoByTheirVelocities) {
   EXPECT_EQ(none.status, 2);
   EXPECT_NE(none.out.find("cubic needs velocities"), std::string::npos) << none.out;
   EXPECT_EQ(certifyFile("way.csv", cubic, "--interpolation blends").status, 2);
+  // Straight from waypoint to waypoint it stays before the ball; the controller's spline swings beyond the middle ones.
+  const std::string swing = "t,hinge,rail\n0,0,0\n1,0.78,0\n2,0.78,0\n3,0,0\n4,0,0\n";
+  EXPECT_EQ(certifyFile("way.csv", swing, "--interpolation jtc").status, 0);
+  const Outcome upsampled = certifyFile("way.csv", swing, "--interpolation jtc-upsampled");
+  EXPECT_EQ(upsampled.status, 1);
+  EXPECT_NE(upsampled.out.find("way.csv: jtc-upsampled, 5 waypoints, t 0 to 4 s\n"), std::string::npos)
+      << upsampled.out;
+  EXPECT_NE(upsampled.out.find("CONTACT: first contact at t = 1.0197"), std::string::npos) << upsampled.out;
   EXPECT_EQ(
       certifyFile("way.csv", "t,hinge,rail\n0,0,0\n1,0.4,0\n2,0,0\n", "--interpolation blends --blend 0.5").status, 0);
 }
@@ -301,7 +309,7 @@ TEST_F(CertifyProgramTest, OutputsAreNoInputs) {
 TEST_F(CertifyProgramTest, OtherJointsAndCarriedObjectsAreAskedFor) {
   const Outcome missing = certifyFile("way.csv", "hinge\n0\n0.5\n");
   EXPECT_EQ(missing.status, 2);
-  EXPECT_NE(missing.out.find("way.csv: error: the plan has no joint 'rail': give its value by --state rail=VALUE"),
+  EXPECT_NE(missing.out.find("way.csv: error: the plan has no joint 'rail': --state rail=VALUE gives its value"),
             std::string::npos)
       << missing.out;
   EXPECT_EQ(certifyFile("way.csv", "hinge\n0\n0.5\n", "--state rail=0.5").status, 0);

@@ -54,11 +54,15 @@ TEST(Configuration, ListsTakeCommasBlanksAndDegrees) {
   EXPECT_LT((parseConfiguration(tree, {"-90deg", "+0.25,", "0.001"}, "--from") - wanted).norm(), 1e-15);
 }
 
-TEST(Configuration, NamedValuesLeaveTheOthersAtZero) {
-  const Eigen::VectorXd q = parseConfiguration(threeJoints(), {"spin=180deg", "lift=-.5"}, "--from");
-  EXPECT_EQ(q[0], 0);
-  EXPECT_EQ(q[1], -0.5);
-  EXPECT_DOUBLE_EQ(q[2], M_PI);
+TEST(Configuration, OthersStandWhereTheStateHasThem) {
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"spin=180deg", "lift=-.5"}, {"-.5 180deg"}}) {
+    const Eigen::VectorXd q = parseConfiguration(threeJoints(), words, "--from", {{"turn", 0.25}});
+    EXPECT_EQ(q[0], 0.25);
+    EXPECT_EQ(q[1], -0.5);
+    EXPECT_DOUBLE_EQ(q[2], M_PI);
+  }
+  EXPECT_NE(refusal({"lift=1"}).find("--from has no joint 'turn', 'spin': --state turn=VALUE,spin=VALUE"),
+            std::string::npos);
 }
 
 TEST(Configuration, WrongCountsListTheJoints) {

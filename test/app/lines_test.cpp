@@ -32,8 +32,8 @@ class LinesTest : public ProgramTest {
 TEST_F(LinesTest, AnswersComeInOrder) {
   const Answers a =
       ask("{\"id\": \"one\", \"from\": [0, 0], \"to\": [\"40deg\", 0]}\n\n"
-          "{\"start\": {}, \"goal\": {\"hinge\": \"90deg\"}, \"id\": [2]}\n"
-          "{\"waypoints\": [[0, 0], [0.5, 0], {\"hinge\": 1.5707963267948966}]}\n"
+          "{\"start\": {\"hinge\": 0, \"rail\": 0}, \"goal\": {\"hinge\": \"90deg\", \"rail\": 0}, \"id\": [2]}\n"
+          "{\"waypoints\": [[0, 0], [0.5, 0], {\"hinge\": 1.5707963267948966, \"rail\": 0}]}\n"
           "{\"waypoints\": [[0, 0], [\"90deg\", 0]], \"times\": [10, 20]}");
   EXPECT_EQ(a.status, 1) << a.err;
   ASSERT_EQ(a.lines.size(), 4u);
@@ -62,7 +62,8 @@ TEST_F(LinesTest, NotesAndWhatWasNotCheckedAreSaid) {
   EXPECT_EQ(nothing.lines.at(0).at("nothing_checked"), true);
   EXPECT_EQ(ask(free).lines.at(0).at("nothing_checked"), false);
   const Answers beyond = ask("{\"waypoints\": [[0, 0], [2.5, 0]]}\n");
-  EXPECT_NE(beyond.lines.at(0).at("notes").dump().find("waypoint 2: "), std::string::npos) << beyond.lines[0];
+  EXPECT_NE(beyond.lines.at(0).at("notes").dump().find("waypoint 1 is beyond its limits"), std::string::npos)
+      << beyond.lines[0];
   // Of robot and scene: here that its joint stands at 0.
   const std::string scene =
       write("door.urdf",

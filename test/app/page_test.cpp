@@ -128,7 +128,7 @@ TEST_F(ProgramTest, PageOfAFreeMotionHasNoContact) {
 
 TEST_F(ProgramTest, PageOfATrajectoryIsInItsOwnTime) {
   const std::string csv = write("way.csv", "time,hinge\n10,0\n12,0.3\n14,1.5\n"), file = path("way.html");
-  const Outcome run = this->run("check " + armAndBall() + " --trajectory " + csv + " --html " + file);
+  const Outcome run = this->run("check " + armAndBall() + " --state rail=0 --trajectory " + csv + " --html " + file);
   ASSERT_EQ(run.status, 1) << run.err;
   const std::string page = read(file);
   const Json answer = answerOf(page), motion = motionOf(page);

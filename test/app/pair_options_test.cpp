@@ -28,9 +28,12 @@ class PairOptionsTest : public ProgramTest {
   <link name="post"><collision><origin xyz="0.5 0.5 0.2"/><geometry><box size="0.1 0.1 0.4"/></geometry></collision></link>
   <joint name="stand" type="fixed"><parent link="floor"/><child link="post"/></joint></robot>)");
   }
+  /// The base and its floor are checked, though no motion moves them, unless they are allowed.
   Outcome check(const std::string& gap, const std::string& more) const {
-    return run("check " + cell(gap) + " --from 0 --to 1.5 " + more);
+    const bool allowed = more.find("--allow base,floor") != std::string::npos;
+    return run("check " + cell(gap) + (allowed ? " " : kChecked) + "--from 0 --to 1.5 " + more);
   }
+  static constexpr const char* kChecked = " --disallow base,floor ";
 };
 
 constexpr const char* kOnIt = "0.05";    ///< the floor's middle: it touches the base
@@ -47,7 +50,7 @@ TEST_F(PairOptionsTest, TheFirstHintOfAContactAtTheStartNamesPairAndOption) {
   EXPECT_EQ(on.status, 1);
   EXPECT_NE(on.out.find("base,floor leaves them out"), std::string::npos) << on.out;
   const std::string plan = write("plan.csv", "hinge\n0\n1.5\n");
-  const Outcome certified = run("certify " + plan + " " + cell(kBelow) + " " + kMargin + "--json");
+  const Outcome certified = run("certify " + plan + " " + cell(kBelow) + kChecked + kMargin + "--json");
   EXPECT_EQ(certified.status, 1);
   EXPECT_NE(Json::parse(certified.out)
                 .at("plans")
@@ -67,12 +70,30 @@ TEST_F(PairOptionsTest, BodiesAndPairsHaveMarginsOfTheirOwn) {
        {std::string("--margin-pair base,floor=0"), std::string("--margin-pair floor,base=0.001"),
         std::string("--margin-of base=0"), std::string("--margin-of=floor=1e-3"), "--margins " + file}) {
     EXPECT_EQ(check(kBelow, kMargin + own).status, 0) << own;
-    EXPECT_EQ(run("certify " + plan + " " + cell(kBelow) + " " + kMargin + own).status, 0) << own;
+    EXPECT_EQ(run("certify " + plan + " " + cell(kBelow) + kChecked + kMargin + own).status, 0) << own;
   }
   // All else keeps the margin: the arm passes the post at 0.1 m.
   EXPECT_EQ(check(kBelow, "--margin 0.11 --margin-pair base,floor=0 --margin-pair base,post=0").status, 1);
   EXPECT_EQ(check(kBelow, "--margin-of post=0.11").status, 1);
   EXPECT_EQ(check(kBelow, "--margin-of post=0.09").status, 0);
+}
+
+// No motion moves a base on its floor: the note names them, once, and no answer has an exception for them.
+TEST_F(PairOptionsTest, WhatStandsStillIsNoContactOfAMotion) {
+  const std::string motion = " --from 0 --to 1.5 ";
+  const Outcome on = run("check " + cell(kOnIt) + motion);
+  EXPECT_EQ(on.status, 0) << on.out;
+  EXPECT_EQ(on.out.rfind("FREE: proven", 0), 0u) << on.out;
+  EXPECT_NE(on.out.find("touch, and stand still against each other"), std::string::npos) << on.out;
+  EXPECT_NE(on.out.find(": 'base' and 'floor'\n"), std::string::npos) << on.out;
+  const Outcome below = run("check " + cell(kBelow) + motion + kMargin);
+  EXPECT_EQ(below.status, 0) << below.out;
+  EXPECT_EQ(below.out.find("stand still"), std::string::npos) << below.out;
+  const Outcome asked = run("check " + cell(kOnIt) + motion + kChecked);
+  EXPECT_EQ(asked.status, 1);
+  EXPECT_EQ(asked.out.find("stand still"), std::string::npos) << asked.out;
+  EXPECT_EQ(run("check " + cell(kOnIt) + motion + "--disallow base,flor").status, 2);
+  EXPECT_EQ(run("check " + cell(kOnIt) + motion + kChecked + "--allow base,floor").status, 2);
 }
 
 TEST_F(PairOptionsTest, AllowedPairsAreSaid) {

@@ -47,7 +47,7 @@ TEST_F(ProgramTest, ThePapersMethodIsAskedForByName) {
 }
 
 TEST_F(ProgramTest, JsonHasItsKeysAndAllDigits) {
-  const Outcome run = this->run("check --json " + armAndBall() + " --from hinge=0 --to hinge=90deg");
+  const Outcome run = this->run("check --json " + armAndBall() + " --state rail=0 --from hinge=0 --to hinge=90deg");
   ASSERT_EQ(run.status, 1) << run.err;
   const Json answer = Json::parse(run.out);
   EXPECT_EQ(answer.at("status"), "contact");
@@ -495,8 +495,9 @@ TEST_F(ProgramTest, GeneratedDataIsReadBack) {
   ASSERT_EQ(this->run("generate pipes --triangles 1000 --seed 7 " + pipes).status, 0);
   ASSERT_EQ(this->run("generate pipes --triangles 1000 --seed 7 " + path("again.obj")).status, 0);
   EXPECT_EQ(read(pipes), read(path("again.obj")));
-  const Outcome run = this->run("check --json --robot " + robot + "/puma560.urdf --scene " + pipes +
-                                " --from joint1=0 --to joint1=1deg");
+  const Outcome run =
+      this->run("check --json --robot " + robot + "/puma560.urdf --scene " + pipes +
+                " --state joint2=0,joint3=0,joint4=0,joint5=0,joint6=0 --from joint1=0 --to joint1=1deg");
   EXPECT_TRUE(run.status == 0 || run.status == 1) << run.err;
   EXPECT_TRUE(Json::parse(run.out).at("poses").contains("flange"));
 }

@@ -65,7 +65,10 @@ TEST_F(ProgramTest, BaseMovesTheRobot) {
   EXPECT_NEAR(timeOf(" --from 0,0 --to 1,0 --base 0,0,0,0,0,0.25"), contact - 0.25, 1e-5);
   EXPECT_EQ(this->run(check + " --from 0,0 --to 1,0 --base -5,0,0").status, 0);
   // The same turn by the base itself, from no rotation to 2 atan(1) = 90 degrees, along the shorter way.
-  const std::string floating = " --floating-base --from floating_base/rot_w=1 --to ";
+  const std::string floating =
+      " --floating-base --from 0,0,0,0,0,0,1,0,0 --state "
+      "hinge=0,rail=0,floating_base/trans_x=0,floating_base/trans_y=0,"
+      "floating_base/trans_z=0,floating_base/rot_x=0,floating_base/rot_y=0 --to ";
   const Outcome turned =
       this->run(check + floating + "floating_base/rot_z=0.70710678118654757,floating_base/rot_w=0.70710678118654757");
   ASSERT_EQ(turned.status, 1) << turned.err << turned.out;
@@ -73,6 +76,53 @@ TEST_F(ProgramTest, BaseMovesTheRobot) {
   const Outcome bad = this->run(check + " --from 0,0 --to 1,0 --base 1,2");
   EXPECT_EQ(bad.status, 2);
   EXPECT_NE(bad.err.find("--base: '1,2' is no pose"), std::string::npos) << bad.err;
+}
+
+// As MoveIt has it: the SRDF's virtual joint moves the base, by the messages' poses; its name is theirs.
+TEST_F(ProgramTest, VirtualJointsMoveTheBase) {
+  const auto srdf = [&](const std::string& type, const std::string& child = "base") {
+    return write(type + child + ".srdf",
+                 R"(<robot name="arm"><virtual_joint name="world_joint" type=")" + type +
+                     R"(" parent_frame="odom" child_link=")" + child +
+                     R"("/><disable_collisions link1="base" link2="arm" reason="Adjacent"/></robot>)");
+  };
+  const auto message = [&](double x) {
+    const auto pose = [](double at) {
+      return R"({"translation": {"x": )" + std::to_string(at) +
+             R"(, "y": 0, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}})";
+    };
+    return write(
+        "drive.json", R"({"joint_trajectory": {"joint_names": [], "points": []}, "state": {"hinge": 0, "rail": 0},
+      "multi_dof_joint_trajectory": {"joint_names": ["world_joint"], "points": [
+      {"transforms": [)" + pose(0) +
+                          R"(], "time_from_start": 0}, {"transforms": [)" + pose(x) + R"(], "time_from_start": 2}]}})");
+  };
+  // A ball of 0.1 m, which the arm's tip meets when the base has come near enough.
+  const std::string far = write("ahead.urdf", R"(<robot name="far"><link name="far"><collision>
+    <origin xyz="3 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link></robot>)");
+  const auto certify = [&](const std::string& options, double x) {
+    return this->run("certify " + message(x) + " --robot " + arm() + " --scene " + far + " " + options);
+  };
+  for (const char* type : {"planar", "floating"}) {
+    EXPECT_EQ(certify("--srdf " + srdf(type), 1).status, 0) << type;
+    const Outcome met = certify("--srdf " + srdf(type), 3);
+    EXPECT_EQ(met.status, 1) << met.err << met.out;
+  }
+  const Outcome fixed = certify("--srdf " + srdf("fixed"), 1);
+  EXPECT_EQ(fixed.status, 2);
+  EXPECT_NE(fixed.out.find("no planar or floating joint 'world_joint': an SRDF's virtual_joint"), std::string::npos)
+      << fixed.out;
+  EXPECT_NE(certify("--floating-base --srdf " + srdf("planar"), 1).err.find("leave floating_base out"),
+            std::string::npos);
+  EXPECT_NE(certify("--srdf " + srdf("planar", "arm"), 1).err.find("moves link 'arm', and the root is 'base'"),
+            std::string::npos);
+  EXPECT_NE(certify("--srdf " + srdf("prismatic"), 1).err.find("not fixed, planar or floating"), std::string::npos);
+  // The joints of the arm alone: where the base stands nobody has said.
+  const std::string check = "check --robot " + arm() + " --scene " + far + " --srdf " + srdf("planar") +
+                            " --from hinge=0,rail=0 --to hinge=1,rail=0";
+  EXPECT_NE(this->run(check).err.find("--state world_joint/x=VALUE,world_joint/y=VALUE,world_joint/theta=VALUE"),
+            std::string::npos);
+  EXPECT_EQ(this->run(check + " --state world_joint/x=0,world_joint/y=0,world_joint/theta=0").status, 0);
 }
 
 // A rod of 1 m that the arm holds out beyond the ball's distance, turned up or along the arm.

@@ -44,7 +44,7 @@ class StreamsTest : public ProgramTest {
     const std::string robot = "--robot " + arm();
     std::string way = "time,hinge\n";
     for (int i = 0; i <= 157; ++i) way += std::to_string(i) + "," + std::to_string(0.01 * i) + "\n";
-    add("way.csv", way, armAndBall() + " --trajectory ", "");
+    add("way.csv", way, armAndBall() + " --state rail=0 --trajectory ", "");
     add("robot.urdf", read(arm()), "--scene " + ball() + " --robot ", motion());
     // 200 boxes far away, and a last one in the way.
     std::string scene = "(scene)\n", urdf = "<robot name=\"w\"><link name=\"base\"/>\n";
@@ -137,9 +137,9 @@ TEST_F(StreamsTest, TrajectoryThatIsCutShortIsSeenWhereItCanBe) {
   const std::string check = "check " + armAndBall() + " --trajectory " + csv;
   const Outcome cut = run(check);
   EXPECT_EQ(cut.status, 2) << cut.out;
-  expectContains(cut.err, "cut.csv' line 4 has 2 columns, the first line names 3");
+  expectContains(cut.err, "cut.csv': line 4 has 2 columns, the first line names 3");
   write("cut.csv", "time,hinge,rail\n0,0,0\n1,0.5,0");
-  expectContains(run(check + " --json").out, "cut.csv' has no line end: the file may be cut short");
+  expectContains(run(check + " --json").out, "the last line has no line end: the file may be cut short");
   write("cut.csv", "time,hinge,rail\n0,0,0\n1,0.5,0\n");
   EXPECT_EQ(run(check + " --json").out.find("cut short"), std::string::npos);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Plans in CSV, and all curves through their waypoints.
+#include "plans/csv.h"
 #include "fuzz.h"
-#include "waypoints.h"
+#include "plans/motion.h"
 
 using namespace fcl_artic;
 
@@ -22,21 +24,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return all;
   }();
   const std::string_view content(reinterpret_cast<const char*>(data), size);
-  app::Waypoints waypoints;
+  plans::Plan plan;
   try {
-    waypoints = app::parseWaypoints(tree, content, "input.csv");
-  } catch (const std::invalid_argument& error) {
-    if (std::string(error.what()).find("input.csv") == std::string::npos)
-      fuzz::fault("the error does not name the file");
+    plan = plans::parseCsv(tree, content);
+  } catch (const std::invalid_argument&) {
     return 0;
   }
-  if (waypoints.times.size() < 2 || waypoints.times.size() != waypoints.configurations.size())
-    fuzz::fault("too few waypoints");
-  for (const auto interpolation : {app::Interpolation::linear, app::Interpolation::cubic}) {
-    for (const bool shortest : {false, true}) {
+  using plans::Interpolation;
+  for (const auto interpolation : {Interpolation::automatic, Interpolation::linear, Interpolation::jtcUpsampled,
+                                   Interpolation::jtcNone, Interpolation::tangentHalfAngle}) {
+    for (const auto turns : {plans::Turns::given, plans::Turns::shortest}) {
+      plans::MotionOptions options;
+      options.interpolation = interpolation;
+      options.turns = turns;
       try {
-        const JointTrajectory way = app::interpolate(tree, waypoints, interpolation, shortest);
-        if (way.beginTime() != waypoints.times.front() || way.endTime() != waypoints.times.back()) {
+        const plans::PlanMotion way = plans::toMotion(tree, plan, options);
+        if (way.times.size() < 2 || way.times.size() != plan.positions.size()) fuzz::fault("too few waypoints");
+        if (way.trajectory.beginTime() != way.times.front() || way.trajectory.endTime() != way.times.back()) {
           fuzz::fault("the trajectory has another time than the file");
         }
       } catch (const std::invalid_argument&) {

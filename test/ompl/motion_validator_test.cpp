@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <stdexcept>
 #include <thread>
 
+#include <fcl/math/motion/translation_motion.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
 
 #include "fcl_artic/ompl/motion_validator.h"
@@ -235,6 +238,69 @@ TEST(ContinuousMotionValidatorTest, TurnsTakeTheShorterWay) {
     EXPECT_NEAR(lastValid(straight, {2.5}, {-2.5}), (2.5 - reach) / 5, 3 * kTolerance);
     EXPECT_EQ(lastValid(straight, {2.5}, {3.5}), 2);
   }
+}
+
+// From 2.8 to -2.8 an SO2StateSpace goes over pi, where a joint with limits can't: its drive goes through 0, and the
+// ball there. Without limits the way over pi is the joint's own.
+TEST(ContinuousMotionValidatorTest, LimitsForbidTheWayOverPi) {
+  for (const double limit : {0.0, 3.0}) {
+    auto tree = std::make_shared<KinematicTree>("arm");
+    for (const char* link : {"base", "arm"}) tree->addLink(link);
+    tree->addJoint(makeJoint("turn", JointType::revolute, "base", "arm", Eigen::Vector3d::UnitZ(), -limit, limit));
+    World world(tree);
+    const auto ball = std::make_shared<fcl::Sphered>(0.1);
+    world.bind("arm", ball, at(1, 0)).obstacle(ball, at(1, 0));
+    const auto so2 = std::make_shared<ob::SO2StateSpace>();
+    if (limit > 0) {
+      try {
+        const Planning planning(std::move(world), so2);
+        ADD_FAILURE() << "accepted";
+      } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("cannot drive joint 'turn', which has the limits [-3"),
+                  std::string::npos)
+            << error.what();
+      }
+    } else {
+      const Planning planning(std::move(world), so2);
+      EXPECT_EQ(lastValid(planning, {2.8}, {-2.8}), 2);  // valid
+    }
+  }
+}
+
+// Each edge would begin where the obstacle does.
+TEST(ContinuousMotionValidatorTest, ObstaclesThatMoveAreRefused) {
+  const auto cube = std::make_shared<fcl::Boxd>(1, 1, 1);
+  fcl::ContinuousCollisionObjectd cart(cube, std::make_shared<fcl::TranslationMotiond>(at(0, 50), at(5, 50)));
+  const auto refused = [](const std::function<void()>& call) {
+    try {
+      call();
+      ADD_FAILURE() << "accepted";
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("an obstacle moves"), std::string::npos) << error.what();
+    }
+  };
+  const auto tree = slideWorld().manager()->sharedTree();
+  const auto manager = std::make_shared<ArticulatedCollisionManager>(tree);
+  manager->setup();
+  const auto space = reals(1);
+  const auto si = std::make_shared<ob::SpaceInformation>(space);
+  const ContinuousMotionValidator validator(si, manager);
+  const CollisionStateValidityChecker checker(si, manager);
+  const TestState s1(space, {0}), s2(space, {1});
+  EXPECT_TRUE(validator.checkMotion(s1, s2));
+  // It comes later, when the scene changes; and it is there from the beginning on.
+  manager->registerObject(&cart, "cart");
+  manager->setup();
+  refused([&] { (void)validator.checkMotion(s1, s2); });
+  std::pair<ob::State*, double> last{nullptr, 2};
+  refused([&] { (void)validator.checkMotion(s1, s2, last); });
+  EXPECT_EQ(last.second, 0);
+  refused([&] { (void)checker.isValid(s1); });
+  refused([&] { (void)ContinuousMotionValidator(si, manager); });
+  refused([&] { (void)CollisionStateValidityChecker(si, manager); });
+  manager->unregisterObject(&cart);
+  manager->setup();
+  EXPECT_TRUE(validator.checkMotion(s1, s2));
 }
 
 TEST(ContinuousMotionValidatorTest, CompoundOfSlideAndTurn) {

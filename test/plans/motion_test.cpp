@@ -159,6 +159,105 @@ TEST(PlanMotionTest, ColumnsWithoutNamesAreSaid) {
   EXPECT_EQ(toMotion(tree, plan, options).joints, options.joints);
   plan.joints = {"rail", "hinge"};
   EXPECT_TRUE(toMotion(tree, plan, {}).named);
+  EXPECT_TRUE(toMotion(tree, plan, options).named);  // the same names
+  options.joints = {"hinge", "rail"};
+  expectContains(refusal([&] { (void)toMotion(tree, plan, options); }),
+                 "--joints (Python: joints) is hinge, rail, and the plan names its joints itself: rail, hinge");
+  // Numbered columns are of the given joints, in whatever order.
+  ColumnOptions columns;
+  columns.joints = options.joints;
+  const Plan numbered = parsePlans(tree, "q2,q1\n0,0\n0.5,1\n", Format::csv, columns).at(0);
+  EXPECT_EQ(toMotion(tree, numbered, options).waypoints[1], Eigen::Vector2d(1, 0.5));
+}
+
+/// Two waypoints: q1 (3 s² - 2 s³). Three at equal times, 0, 1, 2: 4 v1 = 3 (q2 - q0), so 3/2 at the middle, and half
+/// way to it 1/2 - (3/2) / 8. At times 0, 1, 3 and for all others velocity and acceleration go on without a jump.
+TEST(PlanMotionTest, TheUpsampledCurveIsOneSmoothSpline) {
+  const KinematicTree tree = armTree();
+  MotionOptions options;
+  options.interpolation = Interpolation::jtcUpsampled;
+  Plan plan;
+  plan.positions = {{0, 0}, {1, 0.5}};
+  EXPECT_NEAR(toMotion(tree, plan, options).trajectory.configuration(0.25)[0], 3.0 / 16 - 2.0 / 64, 1e-15);
+  plan.positions = {{0, 0}, {1, 0.25}, {2, 0.5}};
+  const PlanMotion even = toMotion(tree, plan, options);
+  EXPECT_EQ(even.interpolation, Interpolation::jtcUpsampled);
+  expectContains(even.notes.at(0), "policy_frequency");
+  EXPECT_NEAR(even.trajectory.configuration(0.5)[0], 0.5 - 1.5 / 8, 1e-15);
+  EXPECT_NEAR(even.trajectory.configuration(1.5)[1], 0.25 * (1.5 + 1.5 / 8), 1e-15);
+
+  plan.times = {2, 3, 5, 5.5, 6.5, 9};
+  plan.positions = {{0, 0}, {1, 0.5}, {-0.5, 0.25}, {1.5, 0}, {1.5, -0.5}, {0.25, 0.5}};
+  const JointTrajectory way = toMotion(tree, plan, options).trajectory;
+  const auto derivatives = [&](std::size_t k, double s) {                // of the hinge, by t
+    const double h = way.times()[k + 1] - way.times()[k], d = 1.0 / 64;  // exact differences of a cubic
+    const auto q = [&](double at) { return way.piece(k).configuration(at)[0]; };
+    const double c3 = (q(1) - 3 * q(2.0 / 3) + 3 * q(1.0 / 3) - q(0)) * 4.5;
+    const double second = (q(0.5 + d) - 2 * q(0.5) + q(0.5 - d)) / (d * d) + 6 * c3 * (s - 0.5);
+    const double middle = (q(0.5 + d) - q(0.5 - d)) / (2 * d) - c3 * d * d;
+    const double first =
+        middle + (q(0.5 + d) - 2 * q(0.5) + q(0.5 - d)) / (d * d) * (s - 0.5) + 3 * c3 * (s - 0.5) * (s - 0.5);
+    return Eigen::Vector2d(first / h, second / (h * h));
+  };
+  for (std::size_t k = 0; k + 1 < plan.times.size(); ++k) {
+    EXPECT_NEAR(way.configuration(plan.times[k])[0], plan.positions[k][0], 1e-14);
+    if (k == 0) continue;
+    // Second differences over 1/64 lose 1/64² of 16 digits.
+    EXPECT_LT((derivatives(k - 1, 1) - derivatives(k, 0)).norm(), 1e-9) << k;
+  }
+  EXPECT_NEAR(derivatives(0, 0)[0], 0, 1e-10);
+  EXPECT_NEAR(derivatives(4, 1)[0], 0, 1e-10);
+}
+
+TEST(PlanMotionTest, CurvesHaveTheNamesOfWhatRunsThem) {
+  const KinematicTree tree = armTree();
+  Plan plan;
+  plan.positions = {{0, 0}, {1, 0.5}};
+  plan.times = {0, 1};
+  MotionOptions options;
+  for (const char* name :
+       {"auto", "linear", "cubic", "quintic", "blends", "jtc", "jtc-upsampled", "jtc-none", "tangent-half-angle"}) {
+    EXPECT_STREQ(toString(interpolationNamed(name)), name);
+  }
+  options.interpolation = Interpolation::jtc;
+  EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::linear);
+  options.interpolation = Interpolation::jtcNone;
+  const PlanMotion jumps = toMotion(tree, plan, options);
+  EXPECT_EQ(jumps.interpolation, Interpolation::jtcNone);
+  expectContains(jumps.notes.at(0), "the controller jumps from waypoint to waypoint");
+  // With velocities a message is passed through.
+  plan.velocities = {{0, 0}, {0, 0}};
+  options.interpolation = Interpolation::jtcUpsampled;
+  EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::cubic);
+  options.interpolation = Interpolation::jtc;
+  EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::cubic);
+  expectContains(refusal([] { (void)interpolationNamed("totg"); }), "--interpolation jtc");
+  expectContains(refusal([] { (void)interpolationNamed("wild"); }), "auto, linear, cubic");
+
+  // The controller takes turns as they are, and has no quaternions.
+  const KinematicTree cart = cartTree();
+  plan = Plan();
+  plan.joints = {"wheel"};
+  plan.positions = {{3}, {-3}};
+  plan.times = {0, 1};
+  for (int v = 0; v < cart.dof(); ++v) {
+    if (cart.variableName(v) != "wheel") options.state[cart.variableName(v)] = cart.neutralConfiguration()[v];
+  }
+  expectContains(
+      refusal([&] {
+        (void)toMotion(cart, plan, {Interpolation::automatic, 0, Turns::ask, false, 1e-3, false, {}, options.state});
+      }),
+      "turns forever");
+  EXPECT_EQ(toMotion(cart, plan, options).trajectory.configuration(0.5)[cart.jointVariable(1)], 0);
+  options.turns = Turns::shortest;
+  expectContains(refusal([&] { (void)toMotion(cart, plan, options); }), "as the values say");
+  options.turns = Turns::ask;
+  options.state.erase("fly/rot_z");
+  options.state.erase("fly/rot_w");
+  plan.joints = {"wheel", "fly/rot_z", "fly/rot_w"};
+  plan.positions = {{0, 0, 1}, {0, 0.6, 0.8}};
+  expectContains(refusal([&] { (void)toMotion(cart, plan, options); }),
+                 "joint 'fly' has a quaternion, and jtc runs none");
 }
 
 TEST(PlanMotionTest, OtherJointsKeepTheirState) {
@@ -176,6 +275,10 @@ TEST(PlanMotionTest, OtherJointsKeepTheirState) {
   expectContains(motion.notes[0], "joint 'rail' is at 1.5, as asked for; the plan's own start state has it at 0.25");
   expectContains(motion.notes[1], "joint 'rail' stays at 1.5, beyond its limits");
   expectContains(motion.notes[2], "joint 'hinge' begins at 0, the start state has it at 0.5");
+  options.state = {{"rail", 0}, {"hinge", 0}};
+  expectContains(refusal([&] { (void)toMotion(tree, plan, options); }),
+                 "has joint 'hinge' at 0, and waypoint 1 has it at 1");
+  options.state = {{"rail", 1.5}};
   plan.state = {{"elbow", 1}};
   expectContains(refusal([&] { (void)toMotion(tree, plan, {}); }), "no joint 'elbow'");
   plan.positions[1][0] = 2.5;

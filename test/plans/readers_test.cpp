@@ -269,6 +269,44 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
   expectContains(refusalOf(arm, message(turned), Format::json), "robot 'arm' has no planar or floating joint 'drive'");
 }
 
+/// What is certified is all that an object holds, for the robot that it names.
+TEST(PlanReadersTest, AnObjectHoldsOnePlanOfThisRobot) {
+  const KinematicTree tree = armTree();
+  const std::string
+      points =
+          R"("points": [{"positions": [0, 0], "time_from_start": 0}, {"positions": [1, 0], "time_from_start": 1}])",
+      joints = R"({"joint_names": ["hinge", "rail"], )" + points + "}",
+      robot =
+          R"({"joint_trajectory": )" + joints + R"(, "multi_dof_joint_trajectory": {"joint_names": [], "points": []}})";
+  const auto errorOf = [&](const std::string& document) {
+    const std::vector<Plan> plans = parsePlans(tree, document, Format::json);
+    EXPECT_EQ(plans.size(), 1u) << document;
+    return plans.at(0).error;
+  };
+  for (const std::string& two : {R"({"trajectory": [)" + robot + R"(], "planned_trajectory": )" + robot + "}",
+                                 R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": )" + joints + "}",
+                                 R"({"joint_trajectory": )" + joints + R"(, "waypoints": [[0, 0], [1, 0]]})",
+                                 R"({"joint_trajectory": )" + joints + ", " + points + "}",
+                                 R"({"plans": [{"from": [0, 0], "to": [1, 0]}], "trajectory": )" + robot + "}",
+                                 R"({"from": [0, 0], "to": [1, 0], "msg": )" + robot + "}"}) {
+    expectContains(errorOf(two), "it holds more than one plan, in '");
+  }
+  for (const std::string& one :
+       {R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": {"joint_names": [], "points": []}})",
+        R"({"goal": {"trajectory": )" + joints + "}}", std::string(R"({"start": [0, 0], "goal": [1, 0]})"),
+        R"({"model_id": "arm", "trajectory": [)" + robot + "]}",
+        R"({"model_id": "", "trajectory": [)" + robot + "]}"}) {
+    EXPECT_EQ(errorOf(one), "") << one;
+  }
+  const Plan ran = parsePlans(tree, R"({"planned_trajectory": )" + robot + R"(, "executed_trajectory": )" + robot + "}",
+                              Format::json)
+                       .at(0);
+  EXPECT_EQ(ran.error, "");
+  expectContains(ran.notes.at(0), "executed_trajectory");
+  expectContains(errorOf(R"({"model_id": "panda", "trajectory": [)" + robot + "]}"),
+                 R"(the message is for the robot "panda" (model_id), and this one is 'arm')");
+}
+
 TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
   const KinematicTree tree = armTree();
   const auto part = [](const std::string& joint, double to) {
@@ -285,6 +323,15 @@ TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
   EXPECT_EQ(toMotion(tree, plans[1], {}).waypoints[0],
             Eigen::Vector2d(1, 0.1));  // the hinge is where the first left it
   EXPECT_EQ(toMotion(tree, plans[1], {}).waypoints[1], Eigen::Vector2d(1, 0.5));
+  // A gap between parts is nobody's way; nor is one that follows a wrong part.
+  const std::string joined = part("hinge", 1) + ", " + part("hinge", 0.5);
+  const std::vector<Plan> apart =
+      parsePlans(tree, "{\"trajectory\": [" + joined + ", " + part("hinge", 2) + "], " + start + "}", Format::json);
+  ASSERT_EQ(apart.size(), 3u);
+  EXPECT_EQ(apart[0].error, "");
+  expectContains(apart[1].error,
+                 "'hinge' is at 0.1 at its begin, and at 1 where the parts of the message before it end");
+  expectContains(apart[2].error, "the part before it, is wrong");
   const std::string moved =
       R"("trajectory_start": {"multi_dof_joint_state": {"joint_names": ["virtual"], "transforms": [
         {"translation": {"x": 0, "y": 0.1, "z": 0}, "rotation": {"x": 0, "y": 0, "z": 0, "w": 1}}]}})";
@@ -384,7 +431,7 @@ TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
   expectContains(refusalOf(tree, R"({"joints": ["hinge", "rail"], "waypoints": [[0, 0]]})", Format::json),
                  "it has 1 waypoint, a plan needs two");
   expectContains(refusalOf(tree, R"({"joints": ["hinge"], "waypoints": [[0], [1]]})", Format::json),
-                 "the plan has no joint 'rail': give its value by --state rail=VALUE");
+                 "the plan has no joint 'rail': --state rail=VALUE gives its value");
   expectContains(refusalOf(tree, R"({"joint": ["hinge"], "waypoints": [[0], [1]]})", Format::json),
                  "the key 'joint' is not known");
   expectContains(refusalOf(tree, R"({"waypoints": [{"hinge": 0, "rail": 0}, {"hinge": 0}]})", Format::json),
@@ -478,7 +525,7 @@ TEST(PlanReadersTest, NothingOfADocumentIsPassedOver) {
   json("{\"trajectory\": " + joints + ", \"multi_dof_trajectory\": " + base + "}",
        "no planar or floating joint 'drive'");
   json("{\"trajectory\": " + joints + ", \"planned_trajectory\": " + joints + "}",
-       "has both 'trajectory' and 'planned_trajectory'");
+       "more than one plan, in 'trajectory' and in 'planned_trajectory'");
   json("{\"trajectory\": " + joints + ", \"offset\": 1}", "the key 'offset' is not known");
   json("{\"joint_trajectory\": " + joints + ", \"points\": []}", "the key 'points' is not known");
   json("{\"units\": \"deg\", " + joints.substr(1), "the key 'units' is not known");

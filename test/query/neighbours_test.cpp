@@ -7,6 +7,8 @@
 
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/motion/translation_motion.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
 #include <gtest/gtest.h>
 
 #include "fcl_artic/manager.h"
@@ -241,6 +243,132 @@ TEST(Neighbours, AreClassifiedAsAnyPair) {
   EXPECT_EQ(housing.pairs.at(0).kind, LinkPairKind::always);
   EXPECT_TRUE(housing.alwaysTouching().pairs().empty()) << "the manager's own to find";
   EXPECT_EQ(housing.needNoCheck().pairs().size(), 1u);
+}
+
+/// A base with two fixtures that overlap, on a table; an arm with a tool and a cover that overlap it and each other:
+///
+///        arm =======[tool[cover]
+///     [base]  [left[right]
+///     ========== table
+class StillPairs : public ::testing::Test {
+ protected:
+  StillPairs() {
+    auto made = std::make_shared<KinematicTree>("cell");
+    for (const char* link : {"base", "left", "right", "arm", "tool", "cover"}) made->addLink(link);
+    const auto add = [&](const char* name, JointType type, const char* parent, const char* child) {
+      Joint joint;
+      joint.name = name;
+      joint.type = type;
+      joint.parent = parent;
+      joint.child = child;
+      joint.axis = Vector3d::UnitZ();
+      if (type == JointType::revolute) joint.lower = -kPi, joint.upper = kPi;
+      made->addJoint(joint);
+    };
+    add("left", JointType::fixed, "base", "left");
+    add("right", JointType::fixed, "left", "right");
+    add("turn", JointType::revolute, "base", "arm");
+    add("tool", JointType::fixed, "arm", "tool");
+    add("cover", JointType::fixed, "tool", "cover");
+    tree_ = made;
+  }
+  ArticulatedCollisionManager manager(bool table = true) const {
+    ArticulatedCollisionManager manager(tree_);
+    manager.bind("base", box(0.2, 0.2, 0.2), to(0, 0, -0.2));
+    manager.bind("left", box(0.2, 0.2, 0.2), to(0.3, 0, -0.2));
+    manager.bind("right", box(0.2, 0.2, 0.2), to(0.4, 0, -0.2));
+    manager.bind("arm", box(1, 0.1, 0.1), to(0.5, 0, 0.1));
+    manager.bind("tool", box(0.1, 0.1, 0.1), to(1, 0, 0.1));
+    manager.bind("cover", box(0.1, 0.1, 0.1), to(1.05, 0, 0.1));
+    if (table) manager.registerObject(table_.get(), "table");
+    manager.setup();
+    return manager;
+  }
+  static std::string stillNote(const ArticulatedCollisionManager& manager) {
+    for (const std::string& note : manager.notes()) {
+      if (note.find("stand still against each other") != std::string::npos) return note;
+    }
+    return {};
+  }
+
+  std::shared_ptr<fcl::CollisionObjectd> table_ = std::make_shared<fcl::CollisionObjectd>(
+      std::make_shared<fcl::Boxd>(3, 3, 0.1), fcl::Transform3d(Eigen::Translation3d(0, 0, -0.32)));
+  std::shared_ptr<const KinematicTree> tree_;
+};
+
+TEST_F(StillPairs, AreNoContactOfAMotion) {
+  ArticulatedCollisionManager robot = manager();
+  for (const double margin : {0.0, 0.05}) {
+    CertifiedRequest request;
+    request.margin = margin;
+    const CertifiedResult result = robot.continuousCollide(at(0), at(3), request);
+    EXPECT_TRUE(result.isFree());
+    EXPECT_EQ(result.unproven_allowed_pairs, 0u);
+    EXPECT_TRUE(result.ignored_initial_contacts.empty());
+    EXPECT_GT(result.statistics.pairs, 0u) << "the arm and the table";
+    EXPECT_TRUE(robot.collide(at(0), request).isFree());
+  }
+  EXPECT_TRUE(robot.clearance(JointMotion::linear(*tree_, at(0), at(3))).lower > 0.1);
+  const std::string note = stillNote(robot);
+  for (const char* pair : {"'base' and 'table'", "'left' and 'table'", "'right' and 'table'", "'left' and 'right'",
+                           "'arm' and 'tool'", "'arm' and 'cover'", "'cover' and 'tool'"}) {
+    EXPECT_NE(note.find(pair), std::string::npos) << pair << " in: " << note;
+  }
+  for (const char* pair : {"'base' and 'left'", "'base' and 'right'", "'arm' and 'table'", "'arm' and 'base'"}) {
+    EXPECT_EQ(note.find(pair), std::string::npos) << pair << " in: " << note;
+  }
+}
+
+TEST_F(StillPairs, AreCheckedWhereSomebodyAsks) {
+  const std::pair<std::string, std::string> pairs[] = {{"base", "table"}, {"left", "right"}, {"cover", "arm"}};
+  for (const auto& [a, b] : pairs) {
+    ArticulatedCollisionManager robot = manager();
+    robot.disallow(a, b);
+    robot.setup();
+    const CertifiedResult result = robot.continuousCollide(at(0), at(1));
+    ASSERT_EQ(result.status, Status::contact) << a;
+    EXPECT_EQ(result.t_lower, 0);
+    EXPECT_EQ(std::minmax(result.first()->body1.name, result.first()->body2.name), std::minmax(a, b));
+    EXPECT_EQ(stillNote(robot).find("'" + std::min(a, b) + "' and '" + std::max(a, b) + "'"), std::string::npos);
+  }
+  // A matrix that is complete says which pairs may touch, and none that stand still is a matter of a motion.
+  ArticulatedCollisionManager robot = manager();
+  AllowedCollisionMatrix matrix;
+  matrix.setComplete();
+  robot.setAllowedCollisions(matrix);
+  robot.setup();
+  EXPECT_TRUE(robot.continuousCollide(at(0), at(1)).isFree());
+}
+
+TEST_F(StillPairs, WhateverMovesIsChecked) {
+  // An obstacle in the arm's way, one that the arm carries into its own base, and one that moves through the base.
+  const auto post = std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(0.1, 0.1, 1),
+                                                            fcl::Transform3d(Eigen::Translation3d(0, 0.8, 0)));
+  ArticulatedCollisionManager robot = manager();
+  robot.registerObject(post.get(), "post");
+  robot.setup();
+  EXPECT_EQ(robot.continuousCollide(at(0), at(3)).status, Status::contact);
+  EXPECT_NE(stillNote(robot).find("'base' and 'table'"), std::string::npos);
+  // Carried by the arm beside the tool, into which it reaches, it stands still against both; not against the table.
+  robot.attach("arm", post.get(), to(0.95, 0, 0.1));
+  robot.setup();
+  EXPECT_NE(stillNote(robot).find("'post' and 'tool'"), std::string::npos);
+  const CertifiedResult low = robot.continuousCollide(at(0), at(3));
+  ASSERT_EQ(low.status, Status::contact);
+  EXPECT_TRUE(low.first()->body1.name == "post" || low.first()->body2.name == "post");
+  EXPECT_NE(low.first()->body1.name, "tool");
+  EXPECT_NE(low.first()->body2.name, "tool");
+
+  ArticulatedCollisionManager alone = manager(false);
+  fcl::ContinuousCollisionObjectd cart(
+      std::make_shared<fcl::Boxd>(0.1, 0.1, 0.1),
+      std::make_shared<fcl::TranslationMotiond>(fcl::Transform3d(Eigen::Translation3d(-2, 0, -0.2)),
+                                                fcl::Transform3d(Eigen::Translation3d(0, 0, -0.2))));
+  alone.registerObject(&cart, "cart");
+  alone.setup();
+  const CertifiedResult met = alone.continuousCollide(at(0), at(0));
+  ASSERT_EQ(met.status, Status::contact);
+  EXPECT_NEAR(met.t_lower, (2 - 0.15) / 2, 1e-5);
 }
 
 }  // namespace neighbours_test

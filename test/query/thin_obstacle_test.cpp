@@ -168,6 +168,7 @@ class Press {
     manager_.bind("base", base_.get(), tilt() * turned({0, 0, 0.1}));
     manager_.bind("arm", arm_.get(), tilt() * turned({1, 0, height}));
     manager_.registerObject(table_.get(), "table");
+    manager_.disallow("base", "table");  // which no motion parts
     manager_.setup();
   }
   CertifiedResult slide(double way, ContactMode mode) const {

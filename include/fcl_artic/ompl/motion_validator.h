@@ -28,7 +28,7 @@ FCL_ARTIC_EXPORT CertifiedRequest planningRequest();
 /// | space | joints | motion |
 /// | --- | --- | --- |
 /// | RealVectorStateSpace of n dimensions | n revolute, continuous or prismatic | straight |
-/// | SO2StateSpace | 1 revolute or continuous | the shorter way round, over π if that is it |
+/// | SO2StateSpace | 1 revolute or continuous without limits | the shorter way round, over π if that is it |
 /// | SE2StateSpace | 1 planar | position straight, angle the shorter way round |
 /// | SO3StateSpace | 1 spherical | the shortest rotation at constant speed |
 /// | SE3StateSpace | 1 floating | position straight, shortest rotation |
@@ -53,8 +53,8 @@ class FCL_ARTIC_EXPORT JointMapping {
   ///   configuration.
   /// @throws std::invalid_argument naming space or joint: tree null, space not supported, wrong number of joints, a
   ///   joint that is unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a
-  ///   quaternion, SO2 for a joint with a mimic joint that is elsewhere after a whole turn, others that are no
-  ///   configuration.
+  ///   quaternion, SO2 for a joint with limits or with a mimic joint that is elsewhere after a whole turn, others that
+  ///   are no configuration.
   JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
                const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
 
@@ -118,21 +118,25 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
   /// @param mapping  made with the manager's own tree (ArticulatedCollisionManager::sharedTree()).
   /// @param request  mode, max_contacts and progress are not used.
-  /// @throws std::invalid_argument if something is null, or if the mapping is of another tree than the manager's.
+  /// @throws std::invalid_argument if something is null, if the mapping is of another tree than the manager's, or if an
+  ///   obstacle moves.
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                             const CertifiedRequest& request = planningRequest());
   /// Creates a validator for a space information whose space has all variables of the manager's tree in its order.
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
   /// @param request  mode, max_contacts and progress are not used.
-  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
+  /// @throws std::invalid_argument if something is null, if an obstacle moves, and as JointMapping for the space of
+  /// `si`.
   ContinuousMotionValidator(const ::ompl::base::SpaceInformationPtr& si,
                             std::shared_ptr<const ArticulatedCollisionManager> manager,
                             const CertifiedRequest& request = planningRequest());
 
   /// Returns whether the motion from s1 to s2 is proven free. (Any contact decides it; the first one is not looked
   /// for.)
-  /// @throws as JointMapping::motion() and ArticulatedCollisionManager::continuousCollide().
+  /// @throws as JointMapping::motion() and ArticulatedCollisionManager::continuousCollide(), and std::invalid_argument
+  /// if
+  ///   an obstacle moves.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2) const override;
 
   /// Returns whether the motion from s1 to s2 is proven free, and if not, how far it is.
@@ -181,14 +185,16 @@ class FCL_ARTIC_EXPORT CollisionStateValidityChecker : public ::ompl::base::Stat
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
   /// @param mapping  made with the manager's own tree (ArticulatedCollisionManager::sharedTree()).
   /// @param request  mode, max_contacts, progress and ignore_initial_contact are not used.
-  /// @throws std::invalid_argument if something is null, or if the mapping is of another tree than the manager's.
+  /// @throws std::invalid_argument if something is null, if the mapping is of another tree than the manager's, or if an
+  ///   obstacle moves.
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager, JointMapping mapping,
                                 const CertifiedRequest& request = planningRequest());
   /// Creates a checker for a space information whose space has all variables of the manager's tree in its order.
   /// @param manager  set up, and not changed while planners run; it must keep its objects alive.
   /// @param request  mode, max_contacts, progress and ignore_initial_contact are not used.
-  /// @throws std::invalid_argument if something is null, and as JointMapping for the space of `si`.
+  /// @throws std::invalid_argument if something is null, if an obstacle moves, and as JointMapping for the space of
+  /// `si`.
   CollisionStateValidityChecker(const ::ompl::base::SpaceInformationPtr& si,
                                 std::shared_ptr<const ArticulatedCollisionManager> manager,
                                 const CertifiedRequest& request = planningRequest());
@@ -196,7 +202,7 @@ class FCL_ARTIC_EXPORT CollisionStateValidityChecker : public ::ompl::base::Stat
   /// OMPL's overloads, which also return distances to invalid states.
   using ::ompl::base::StateValidityChecker::isValid;
   /// Returns whether the state is proven free of contact.
-  /// @throws as ArticulatedCollisionManager::collide().
+  /// @throws as ArticulatedCollisionManager::collide(), and std::invalid_argument if an obstacle moves.
   bool isValid(const ::ompl::base::State* state) const override;
 
  private:

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,21 @@ struct Robot {
   FCL_ARTIC_EXPORT void addTo(ArticulatedCollisionManager& manager) const;
 };
 
+/// How a robot's root link moves in the world, as the `virtual_joint` of an SRDF says it.
+struct VirtualJoint {
+  std::string name;
+  JointType type = JointType::floating;  ///< planar (x, y, theta, in the plane z = 0 of its parent) or floating
+  std::string parent_frame;              ///< name of the link that stands for the world
+  std::string child_link;                ///< the robot's root link
+};
+
+/// Reads the `virtual_joint` of an SRDF that moves the robot.
+/// @return none where the file has none, or only ones of type `fixed`.
+/// @throws std::runtime_error naming file, line and reason: unreadable, not an SRDF, a missing attribute, a type that
+/// is
+///   neither fixed, planar nor floating, two that move.
+FCL_ARTIC_EXPORT std::optional<VirtualJoint> loadVirtualJoint(const std::string& path);
+
 /// Options of loadUrdf().
 struct UrdfOptions {
   /// Folders that stand for "package://NAME/" (or "package:///NAME/"): from name to folder. A package that isn't named
@@ -65,13 +81,17 @@ struct UrdfOptions {
   bool floating_base = false;
   /// Whether meshes of formats that loadMesh() does not read itself are read by assimp, with a note.
   bool import_meshes = false;
+  /// Moves the robot's root link in the world: the tree has one more link, its `parent_frame`, and its joint, whose
+  /// origin is `base`. Its variables come before the robot's own. Not beside `floating_base`.
+  std::optional<VirtualJoint> virtual_joint;
 };
 
 /// Reads a robot from a URDF file. Meshes are read as by loadMesh(), with their scale, and are found by absolute path,
 /// path relative to the URDF's folder, `file:` or `package:` URL. Xacro files must be expanded before.
 /// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
 ///   empty mesh, with all places that were searched, mesh without a triangle of positive area, mesh that is to be a
-///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs.
+///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs, a
+///   virtual joint beside floating_base, or whose child is not the root link.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
 /// One part of combineRobots().
@@ -85,8 +105,8 @@ struct PlacedRobot {
 /// Combines several robots into one forest, each on a link of its own, prefix + "mount"; of a part that was combined
 /// before, each of its roots on prefix + "mount_of_" + the root's name. Their variables follow each other in the order
 /// of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none; every link of
-/// one robot is checked against every link of the others, also for robots that touch where they stand. Geometries are
-/// shared with the parts.
+/// one robot is checked against every link of the others, but for what stands still against each other
+/// (ArticulatedCollisionManager::setAllowedCollisions()). Geometries are shared with the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");

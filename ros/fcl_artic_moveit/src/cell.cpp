@@ -258,6 +258,10 @@ void Cell::registerBodies(const std::vector<Body>& bodies) {
 
 void Cell::setPairs(const std::vector<Body>& bodies, const AllowedCollisionMatrix& acm) {
   fcl_artic::AllowedCollisionMatrix allowed;
+  const KinematicTree& tree = *robot_.tree;
+  const auto mayMove = [&](const Body& a, const Body& b) {
+    return jointsBetween(tree, tree.linkId(a.link->getName()), tree.linkId(b.link->getName())) > 0;
+  };
   wanted_.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (!bodies[i].link) continue;
@@ -265,7 +269,7 @@ void Cell::setPairs(const std::vector<Body>& bodies, const AllowedCollisionMatri
       if (i == j || (bodies[j].link && j < i)) continue;
       if (!isChecked(bodies[i], bodies[j], acm)) {
         allowed.allow(bodies[i].name, bodies[j].name);
-      } else if (bodies[j].link) {
+      } else if (bodies[j].link && mayMove(bodies[i], bodies[j])) {
         wanted_.insert(ordered(bodies[i].name, bodies[j].name));
       }
     }

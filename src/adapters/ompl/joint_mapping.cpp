@@ -26,13 +26,19 @@ double shorterWay(double d) {
   return d > kPi ? d - 2 * kPi : d < -kPi ? d + 2 * kPi : d;
 }
 
-/// The way over π is that of the joint only when a whole turn leaves every pose as it is.
+/// The way over π is that of the joint only when a whole turn leaves every pose as it is, and no limit lies on it: a
+/// drive goes from 2.8 to -2.8 through 0 then.
 void requireWholeTurns(const KinematicTree& tree, int variable, const std::string& where) {
   const std::string& name = tree.variableName(variable);
   if (!tree.isAngle(variable)) {
     const bool prismatic = tree.joint(tree.variableJoint(variable)).type == JointType::prismatic;
     throw std::invalid_argument(where + ": an SO2StateSpace cannot drive " +
                                 (prismatic ? "the prismatic joint '" : "what is no angle, '") + name + "'");
+  }
+  if (const Joint& joint = tree.joint(tree.variableJoint(variable)); hasLimits(joint)) {
+    throw std::invalid_argument(where + ": an SO2StateSpace cannot drive joint '" + name + "', which has the limits [" +
+                                std::to_string(joint.lower) + ", " + std::to_string(joint.upper) +
+                                "] and does not turn forever: a RealVectorStateSpace within them can");
   }
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     const Joint& joint = tree.joint(j);

@@ -18,10 +18,22 @@ CertifiedResult& scratch() {
   return result;
 }
 
+/// An edge of a plan has no time of its own: every query would begin with moving obstacles where they are at t = 0.
+const ArticulatedCollisionManager& requireStill(const ArticulatedCollisionManager& manager) {
+  thread_local std::vector<const fcl::ContinuousCollisionObjectd*> moving;
+  manager.getObjects(moving);
+  if (moving.empty()) return manager;
+  throw std::invalid_argument(
+      "planning: an obstacle moves, and each edge of a plan would begin where the obstacle does: plan without it, and "
+      "ask "
+      "the manager about the whole trajectory with its times");
+}
+
 /// What the constructors are given, refused before any of it is used.
 const ob::SpaceInformationPtr& required(const ob::SpaceInformationPtr& si, const ManagerPtr& manager) {
   if (!si) throw std::invalid_argument("planning: the space information is null");
   if (!manager) throw std::invalid_argument("planning: the manager is null");
+  requireStill(*manager);
   return si;
 }
 
@@ -108,7 +120,7 @@ bool ContinuousMotionValidator::roomAt(const ob::State* state) const {
   thread_local Eigen::VectorXd q;
   mapping_.configuration(state, q);
   CertifiedResult& result = scratch();
-  manager_->collide(q, apart_, result);
+  requireStill(*manager_).collide(q, apart_, result);
   return result.isFree();
 }
 
@@ -121,7 +133,7 @@ bool ContinuousMotionValidator::provenFree(const JointMotion& motion, const ob::
   CertifiedRequest request = any_;
   request.ignore_initial_contact = ignoring;
   CertifiedResult& result = scratch();
-  manager_->continuousCollide(motion, request, result);
+  requireStill(*manager_).continuousCollide(motion, request, result);
   return result.isFree() && (!any_.ignore_initial_contact || roomAt(s2));
 }
 
@@ -133,7 +145,7 @@ double ContinuousMotionValidator::timeWithRoom(const JointMotion& motion, bool i
   CertifiedResult& result = scratch();
   const auto freeUntil = [&](CertifiedRequest request) {
     request.ignore_initial_contact = ignoring;
-    manager_->continuousCollide(motion, request, result);
+    requireStill(*manager_).continuousCollide(motion, request, result);
     return result.isFree() ? 1 : result.t_lower;
   };
   const double t = freeUntil(first_);
@@ -204,7 +216,7 @@ bool CollisionStateValidityChecker::isValid(const ob::State* state) const {
   thread_local Eigen::VectorXd q;
   mapping_.configuration(state, q);
   CertifiedResult& result = scratch();
-  manager_->collide(q, request_, result);
+  requireStill(*manager_).collide(q, request_, result);
   return result.isFree();
 }
 

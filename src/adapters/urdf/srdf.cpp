@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "detail.h"
@@ -147,6 +148,33 @@ class SrdfReader {
 };
 
 }  // namespace
+
+std::optional<VirtualJoint> loadVirtualJoint(const std::string& path) {
+  const std::string where = "'" + path + "'", xml = files::read(path);
+  tinyxml2::XMLDocument document;
+  if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
+  const tinyxml2::XMLElement* robot = document.RootElement();
+  if (!robot || std::string(robot->Name()) != "robot") fail(where, "is not an SRDF: the root element is not <robot>");
+  std::optional<VirtualJoint> found;
+  for (auto* e = robot->FirstChildElement("virtual_joint"); e; e = e->NextSiblingElement("virtual_joint")) {
+    const std::string line = where + ", line " + std::to_string(e->GetLineNum());
+    const auto attribute = [&](const char* name) -> std::string {
+      const char* value = e->Attribute(name);
+      if (!value || !*value) fail(line, std::string("<virtual_joint> has no attribute '") + name + "'");
+      return value;
+    };
+    const std::string type = attribute("type");
+    if (type == "fixed") continue;
+    if (type != "planar" && type != "floating") {
+      fail(line, "<virtual_joint> is of type '" + type + "', not fixed, planar or floating");
+    }
+    if (found)
+      fail(line, "a second <virtual_joint> that moves, '" + attribute("name") + "' beside '" + found->name + "'");
+    found = VirtualJoint{attribute("name"), type == "planar" ? JointType::planar : JointType::floating,
+                         attribute("parent_frame"), attribute("child_link")};
+  }
+  return found;
+}
 
 std::vector<SrdfPair> readSrdf(const std::string& path, const KinematicTree& tree, std::vector<std::string>* notes) {
   const SrdfReader reader(path, tree);

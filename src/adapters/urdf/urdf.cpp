@@ -210,11 +210,25 @@ std::vector<Joint> mastersFirst(const std::vector<Joint>& mimics) {
 
 /// Joins the root link to one that stands for the world, where the options ask for that.
 void placeBase(KinematicTree& tree, const std::string& root, const UrdfOptions& options) {
-  if (!options.floating_base && options.base.matrix() == Eigen::Matrix4d::Identity()) return;
-  std::string world = "world";
+  const std::optional<VirtualJoint>& moving = options.virtual_joint;
+  if (moving && options.floating_base) {
+    throw std::invalid_argument("the SRDF's virtual joint '" + moving->name +
+                                "' moves the root already: leave floating_base out");
+  }
+  if (moving && moving->child_link != root) {
+    throw std::invalid_argument("the SRDF's virtual joint '" + moving->name + "' moves link '" + moving->child_link +
+                                "', and the root is '" + root + "'");
+  }
+  if (!moving && !options.floating_base && options.base.matrix() == Eigen::Matrix4d::Identity()) return;
+  std::string world = moving ? moving->parent_frame : "world";
   while (tree.hasLink(world)) world += "_";
   tree.addLink(world);
   Joint joint = Joint::fixed("base_mount", world, root, options.base);
+  if (moving) {
+    joint.name = moving->name;
+    joint.type = moving->type;
+    joint.axis = Eigen::Vector3d::UnitZ();
+  }
   if (options.floating_base) {
     joint.name = "floating_base";
     joint.type = JointType::floating;

@@ -113,7 +113,8 @@ class Cell {
   std::map<std::string, Registered> registered_;
   std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
   std::map<std::string, double> body_margins_;
-  std::set<std::pair<std::string, std::string>> wanted_;  ///< pairs of what links carry that have to be checked
+  /// Pairs of what links carry that have to be checked; those that no joint moves are the library's to judge.
+  std::set<std::pair<std::string, std::string>> wanted_;
 };
 
 }  // namespace fcl_artic_moveit
