@@ -93,7 +93,7 @@ void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
 
 CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string& names) {
   addRobotFile(verb, o, names);
-  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch, and how the root moves (SRDF)")
+  CLI::Option* srdf = verb.add_option("--srdf", o.srdf, "Pairs of links that may touch (SRDF)")
                           ->check(requireInput)
                           ->group(kWorldGroup)
                           ->type_name("FILE");
@@ -103,6 +103,10 @@ CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& o, const std::string&
       ->type_name("POSE");
   verb.add_flag("--floating-base", o.floating_base,
                 "The robot's root moves freely: seven values more, floating_base/trans_x to floating_base/rot_w, first")
+      ->group(kWorldGroup);
+  verb.add_flag("--virtual-joint", o.virtual_joint,
+                "The robot's root moves by the virtual_joint of --srdf, planar or floating: its values come first")
+      ->needs(srdf)
       ->group(kWorldGroup);
   return srdf;
 }
@@ -125,10 +129,16 @@ UrdfOptions urdfOptions(const RobotOptions& options) {
   out.packages = packagesOf(options);
   if (!options.base.empty()) out.base = parsePose(options.base, "--base");
   out.floating_base = options.floating_base;
-  std::error_code none;
-  // What comes through a pipe is read once, for its pairs.
-  if (!options.srdf.empty() && std::filesystem::is_regular_file(options.srdf, none)) {
+  if (options.virtual_joint) {
+    // The file is read a second time for its pairs.
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(options.srdf, none)) {
+      throw std::invalid_argument("--virtual-joint: '" + options.srdf + "' is no regular file, and is read twice");
+    }
     out.virtual_joint = loadVirtualJoint(options.srdf);
+    if (!out.virtual_joint) {
+      throw std::invalid_argument("--virtual-joint: '" + options.srdf + "' has no planar or floating virtual_joint");
+    }
   }
   return out;
 }

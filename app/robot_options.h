@@ -19,7 +19,8 @@ struct RobotOptions {
   std::vector<std::string> packages;  ///< NAME=DIR
   std::string base;                   ///< a pose, as parsePose() reads it; empty: the identity
   std::vector<std::string> attached;  ///< as parseAttachment() reads them
-  bool floating_base = false, solid_meshes = false, collada_up_axis = false, import_meshes = false;
+  bool floating_base = false, virtual_joint = false, solid_meshes = false, collada_up_axis = false,
+       import_meshes = false;
 };
 
 /// Names of the robot's option: the file may stand by itself.
@@ -27,7 +28,7 @@ constexpr const char* kRobotNames = "ROBOT,--robot";
 /// Adds ROBOT (or --robot), --package and --import, in the group "Robot and scene".
 /// @param names  of the robot's option.
 void addRobotFile(CLI::App& verb, RobotOptions& options, const std::string& names = kRobotNames);
-/// Adds these, --srdf, --base and --floating-base.
+/// Adds these, --srdf, --base, --floating-base and --virtual-joint.
 /// @return --srdf, for what excludes it.
 CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options, const std::string& names = kRobotNames);
 /// Adds --attach.

@@ -120,6 +120,7 @@ std::string shellArguments(const WorldOptions& o) {
   }
   if (!o.robot.base.empty()) text += " --base=" + shellWord(o.robot.base);  // may begin with a minus
   addFlag("--floating-base", o.robot.floating_base);
+  addFlag("--virtual-joint", o.robot.virtual_joint);
   addAll("--scene", o.scenes);
   if (o.scale != 1) add("--scale", fmt::format("{}", o.scale));
   addFlag("--collada-up-axis", o.robot.collada_up_axis);

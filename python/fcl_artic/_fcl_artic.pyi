@@ -1104,6 +1104,7 @@ def load_urdf(
     packages: Mapping[str, _Path] | None = ...,
     base: _Pose | None = ...,
     floating_base: bool = ...,
+    virtual_joint: bool = ...,
     solid_meshes: bool = ...,
     collada_up_axis: bool = ...,
     import_meshes: bool = ...,

@@ -14,7 +14,7 @@ namespace fcl_artic::python {
 namespace {
 
 Robot loadRobot(py::handle urdf, py::handle srdf, py::handle packages, py::handle base, bool floating_base,
-                bool solid_meshes, bool collada_up_axis, bool import_meshes) {
+                bool virtual_joint, bool solid_meshes, bool collada_up_axis, bool import_meshes) {
   const Input file(urdf, "urdf");
   UrdfOptions options;
   options.packages = packagesOf(packages);
@@ -23,9 +23,13 @@ Robot loadRobot(py::handle urdf, py::handle srdf, py::handle packages, py::handl
   options.import_meshes = import_meshes;
   options.base = poseOf(base, "base");
   options.floating_base = floating_base;
-  if (!srdf.is_none()) {
+  if (virtual_joint) {
+    if (srdf.is_none()) throw py::value_error("virtual_joint=True: no srdf is given that has one");
     const Input joint(srdf, "srdf");
     options.virtual_joint = joint.read([&] { return loadVirtualJoint(joint.path()); });
+    if (!options.virtual_joint) {
+      throw py::value_error("virtual_joint=True: the SRDF has no planar or floating virtual_joint");
+    }
   }
   Robot robot = file.read([&] { return loadUrdf(file.path(), options); });
   if (!srdf.is_none()) {
@@ -238,8 +242,8 @@ void bindRobot(py::module_& module) {
   module.def("load_urdf", &loadRobot,
              "Reads a robot from a URDF file, or from text that begins with '<'; with an SRDF, its allowed pairs too.",
              py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("packages") = py::none(),
-             py::arg("base") = py::none(), py::arg("floating_base") = false, py::arg("solid_meshes") = false,
-             py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
+             py::arg("base") = py::none(), py::arg("floating_base") = false, py::arg("virtual_joint") = false,
+             py::arg("solid_meshes") = false, py::arg("collada_up_axis") = false, py::arg("import_meshes") = false);
   module.def("combine_robots", &combine,
              "Combines several robots into one, each a tuple (robot, prefix) or (robot, prefix, base).",
              py::arg("parts"), py::arg("name") = "robots");

@@ -120,6 +120,20 @@ def test_base_and_floating_base_place_a_robot(data):
     assert floating.dof == 13 and floating.tree.neutral[6] == 1
 
 
+def test_an_srdfs_virtual_joint_moves_the_base_when_asked(data):
+    path = data / "puma560" / "puma560.urdf"
+    root = fcl_artic.load_urdf(path).tree.links[0]
+    srdf = f"<robot name='puma560'><virtual_joint name='v' type='planar' parent_frame='odom' child_link='{root}'/></robot>"
+    still = fcl_artic.load_urdf(path, srdf)
+    assert still.dof == 6 and "stands still here" in still.notes[-1]
+    driven = fcl_artic.load_urdf(path, srdf, virtual_joint=True)
+    assert driven.dof == 9 and driven.tree.variables[0] == "v/x"
+    with pytest.raises(ValueError, match="no srdf"):
+        fcl_artic.load_urdf(path, virtual_joint=True)
+    with pytest.raises(ValueError, match="no planar or floating virtual_joint"):
+        fcl_artic.load_urdf(path, srdf.replace("planar", "fixed"), virtual_joint=True)
+
+
 def test_robots_are_combined(robot):
     both = fcl_artic.combine_robots([(robot, "left_"), (robot, "right_", [0, 3, 0])], "two")
     assert both.dof == 12 and both.name == "two"

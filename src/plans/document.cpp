@@ -189,7 +189,7 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
   }
   refuse(
       fmt::format("{}: robot '{}' has no planar or floating joint '{}': an SRDF's virtual_joint of this name moves its "
-                  "base (--srdf)",
+                  "base (--srdf, --virtual-joint)",
                   where, tree.name(), name));
 }
 
@@ -284,7 +284,7 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
       if (moved) {
         refuse(
             fmt::format("{}: joint '{}', which the robot lacks, is not at the identity: where the robot stands is "
-                        "said by --base, or it moves by an SRDF's virtual_joint of this name (--srdf)",
+                        "said by --base, or it moves by an SRDF's virtual_joint of this name (--virtual-joint)",
                         where, names[i]));
       }
     }

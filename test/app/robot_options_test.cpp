@@ -104,21 +104,26 @@ TEST_F(ProgramTest, VirtualJointsMoveTheBase) {
     return this->run("certify " + message(x) + " --robot " + arm() + " --scene " + far + " " + options);
   };
   for (const char* type : {"planar", "floating"}) {
-    EXPECT_EQ(certify("--srdf " + srdf(type), 1).status, 0) << type;
-    const Outcome met = certify("--srdf " + srdf(type), 3);
+    EXPECT_EQ(certify("--virtual-joint --srdf " + srdf(type), 1).status, 0) << type;
+    const Outcome met = certify("--virtual-joint --srdf " + srdf(type), 3);
     EXPECT_EQ(met.status, 1) << met.err << met.out;
   }
-  const Outcome fixed = certify("--srdf " + srdf("fixed"), 1);
-  EXPECT_EQ(fixed.status, 2);
-  EXPECT_NE(fixed.out.find("no planar or floating joint 'world_joint': an SRDF's virtual_joint"), std::string::npos)
-      << fixed.out;
-  EXPECT_NE(certify("--floating-base --srdf " + srdf("planar"), 1).err.find("leave floating_base out"),
+  EXPECT_NE(certify("--virtual-joint --srdf " + srdf("fixed"), 1).err.find("has no planar or floating virtual_joint"),
             std::string::npos);
-  EXPECT_NE(certify("--srdf " + srdf("planar", "arm"), 1).err.find("moves link 'arm', and the root is 'base'"),
+  const Outcome still = certify("--srdf " + srdf("planar"), 1);
+  EXPECT_EQ(still.status, 2);
+  EXPECT_NE((still.out + still.err).find("stands still here (--virtual-joint moves it)"), std::string::npos);
+  EXPECT_NE(still.out.find("virtual_joint of this name moves its base (--srdf, --virtual-joint)"), std::string::npos)
+      << still.out;
+  EXPECT_NE(certify("--floating-base --virtual-joint --srdf " + srdf("planar"), 1).err.find("leave floating_base out"),
             std::string::npos);
-  EXPECT_NE(certify("--srdf " + srdf("prismatic"), 1).err.find("not fixed, planar or floating"), std::string::npos);
+  EXPECT_NE(certify("--virtual-joint --srdf " + srdf("planar", "arm"), 1)
+                .err.find("moves link 'arm', and the root is 'base'"),
+            std::string::npos);
+  EXPECT_NE(certify("--virtual-joint --srdf " + srdf("prismatic"), 1).err.find("not fixed, planar or floating"),
+            std::string::npos);
   // The joints of the arm alone: where the base stands nobody has said.
-  const std::string check = "check --robot " + arm() + " --scene " + far + " --srdf " + srdf("planar") +
+  const std::string check = "check --robot " + arm() + " --scene " + far + " --virtual-joint --srdf " + srdf("planar") +
                             " --from hinge=0,rail=0 --to hinge=1,rail=0";
   EXPECT_NE(this->run(check).err.find("--state world_joint/x=VALUE,world_joint/y=VALUE,world_joint/theta=VALUE"),
             std::string::npos);

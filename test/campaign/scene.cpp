@@ -99,6 +99,16 @@ bool Kinematics::hasBody(int link) const {
   return std::any_of(scene_.bodies.begin(), scene_.bodies.end(), [&](const Body& b) { return b.link == link; });
 }
 
+/// The nearest link at or above this one that a joint moves; -1: the world, which also carries obstacles (link -1).
+int Kinematics::carrier(int link) const {
+  while (link >= 0) {
+    const Link& l = scene_.links[static_cast<std::size_t>(link)];
+    if (l.parent >= 0 && l.joint != JointKind::fixed) break;
+    link = l.parent;
+  }
+  return link;
+}
+
 /// Whether the library leaves the pair out by itself: at most one joint that can move, and nothing but links without
 /// geometry, lie between.
 bool Kinematics::joined(int link_a, int link_b) const {
@@ -125,6 +135,7 @@ std::vector<std::pair<int, int>> Kinematics::pairs() const {
       if (a == b || scene_.allowed.count({i, j})) continue;  // of one link, or both obstacles
       const bool self = a >= 0 && b >= 0;
       if (!(self ? scene_.check_self : scene_.check_scene)) continue;
+      if (carrier(a) == carrier(b)) continue;  // stand still against each other
       if (self && joined(a, b)) continue;
       r.emplace_back(i, j);
     }

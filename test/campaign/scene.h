@@ -70,6 +70,7 @@ class Kinematics {
   /// Speed of the body's points against the frame of the ancestor link (-1: the world).
   double speedAgainst(int body, int ancestor) const;
   bool joined(int link_a, int link_b) const;
+  int carrier(int link) const;
   bool hasBody(int link) const;
   std::vector<int> ancestors(int link) const;
 

@@ -226,6 +226,7 @@ void World::choosePairs(Random& random) {
   const auto carried = [](const Body& body) {
     return body.kind == Body::Kind::link || body.kind == Body::Kind::attached;
   };
+  const auto isStill = [](const Body& body) { return body.kind == Body::Kind::still || body.link == 0; };  // l0: a root
   const bool own = random.chance(0.4);
   AllowedCollisionMatrix allowed;
   if (own) {
@@ -240,6 +241,7 @@ void World::choosePairs(Random& random) {
     for (std::size_t i = 0; i < j; ++i) {
       const Body &a = bodies_[i], &b = bodies_[j];
       if (!carried(a) && !carried(b)) continue;
+      if (isStill(a) && isStill(b)) continue;
       if (carried(a) && carried(b)) {
         if (a.link == b.link) continue;
         const bool links = a.kind == Body::Kind::link && b.kind == Body::Kind::link;

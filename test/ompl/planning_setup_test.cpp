@@ -169,8 +169,10 @@ TEST_F(PlanningSetupTest, AnObstacleWithALinksNameIsMet) {
   std::pair<ob::State*, double> last{nullptr, 2};
   EXPECT_FALSE(setup.si->checkMotion(s1.get(), s2.get(), last));
   EXPECT_NEAR(last.second, 0.5, 3 * 0x1p-12);
-  ASSERT_EQ(setup.notes.size(), 1u);
-  expectContains(setup.notes[0], "'arm' is called 'arm#2'");
+  ASSERT_EQ(setup.notes.size(), 2u);
+  const std::string notes = setup.notes[0] + setup.notes[1];
+  expectContains(notes, "base is planar by its virtual_joint, and stands still here");
+  expectContains(notes, "'arm' is called 'arm#2'");
 }
 
 // The cart within a box of 8 m, a mesh: where it is a solid no state in it is valid, and no motion.

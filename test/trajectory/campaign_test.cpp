@@ -127,6 +127,7 @@ struct Case {
     };
     for (const auto& [i, j] : watched_) {
       const Body &a = bodies[static_cast<std::size_t>(i)], &b = bodies[static_cast<std::size_t>(j)];
+      if (carrier(*scene.tree, a.link) == carrier(*scene.tree, b.link)) continue;  // stand still against each other
       if (near(scene.tree.get(), a.link, b.link)) continue;
       fcl::CollisionRequestd request;
       fcl::CollisionResultd result;
@@ -136,6 +137,12 @@ struct Case {
   }
 
  private:
+  /// The nearest link at or above this one that a joint moves; 0: the base, which stands still as obstacles (-1) do.
+  static int carrier(const KinematicTree& tree, int link) {
+    if (link < 0) return 0;
+    while (link > 0 && tree.joint(tree.parentJoint(link)).type == JointType::fixed) link = tree.parentLink(link);
+    return link;
+  }
   /// Neighbours may touch (every link has geometry but the base).
   static bool near(const KinematicTree* tree, int a, int b) {
     if (a < 0 || b < 0) return false;

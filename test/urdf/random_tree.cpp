@@ -309,32 +309,13 @@ std::vector<Isometry3d> RandomTree::poses(const std::vector<JointWay>& way, doub
   return M_0;
 }
 
-bool RandomTree::neighbours(int a, int b) const {
-  const auto up = [&](int i) { return links_[static_cast<std::size_t>(i)].parent; };
-  std::vector<int> above_a = {a};
-  while (up(above_a.back()) >= 0) above_a.push_back(up(above_a.back()));
-  int moving = 0, common = b;
-  bool bare = true;
-  const auto pass = [&](int i) { bare = bare && links_[static_cast<std::size_t>(i)].shapes.empty(); };
-  bool free = false;  // a planar or floating joint, on what stands still
-  const auto cross = [&](int i) {
-    const auto link = [&](int k) -> const Link& { return links_[static_cast<std::size_t>(k)]; };
-    moving += link(i).moves(links_);
-    if (link(i).type != JointType::planar && link(i).type != JointType::floating) return;
-    int below = up(i);
-    while (up(below) >= 0 && !link(below).moves(links_)) below = up(below);
-    free = free || up(below) < 0;
-  };
-  for (; std::find(above_a.begin(), above_a.end(), common) == above_a.end(); common = up(common)) {
-    cross(common);
-    if (common != b) pass(common);
+int RandomTree::carrier(int i) const {
+  while (i >= 0) {
+    const Link& link = links_[static_cast<std::size_t>(i)];
+    if (link.parent >= 0 && link.moves(links_)) break;
+    i = link.parent;
   }
-  for (int i = a; i != common; i = up(i)) {
-    cross(i);
-    if (i != a) pass(i);
-  }
-  if (common != a && common != b) pass(common);
-  return moving <= 1 && bare && !free;
+  return i;
 }
 
 }  // namespace urdf_trees

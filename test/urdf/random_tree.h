@@ -67,9 +67,8 @@ class RandomTree {
   std::vector<JointWay> way(pairs::Random& random, double reach) const;
   /// Pose of every link: joint values straight from end to end, quaternions by the shortest rotation.
   std::vector<Isometry3d> poses(const std::vector<JointWay>& way, double t) const;
-  /// Neighbours may touch: at most one moving joint between the links, and no other link with geometry; but not
-  /// what is free to go anywhere, and what stands still.
-  bool neighbours(int a, int b) const;
+  /// The nearest link at or above this one that a joint moves; -1: the world, which also carries obstacles (link -1).
+  int carrier(int link) const;
 
  private:
   std::vector<Link> links_;

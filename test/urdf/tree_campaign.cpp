@@ -228,6 +228,7 @@ class Case {
         const int a = bodies_[i].link, b = bodies_[j].link;
         if (a < 0 || a == b) continue;
         if (b >= 0 && allowed_.allowed(RandomTree::linkName(a), RandomTree::linkName(b))) continue;
+        if (tree_.carrier(a) == tree_.carrier(b)) continue;  // stand still against each other
         watched_.emplace_back(i, j);
       }
     }

@@ -123,7 +123,7 @@ class SrdfReader {
     if (!type || std::string(type) == "fixed") return;
     if (child && tree_.hasLink(child) && tree_.parentJoint(tree_.linkId(child)) >= 0) return;
     notes_.push_back(lineOf(e) + ": the robot's base is " + type +
-                     " by its virtual_joint, and stands still here (--floating-base)");
+                     " by its virtual_joint, and stands still here (--virtual-joint moves it)");
   }
 
   [[noreturn]] void refuseEnabled(const tinyxml2::XMLElement& e, const std::string& missing,
