@@ -6,6 +6,7 @@
 #   FCL_ARTIC_WIDER_SETS            those of them that take flags, FCL_ARTIC_ENGINE_FLAGS_<set>, FCL_ARTIC_BATCH_FLAGS_<set>
 include(CheckCXXSymbolExists)
 option(FCL_ARTIC_PORTABLE "Use no processor's own instructions: one engine in plain C++, rounding modes by <cfenv>" OFF)
+option(FCL_ARTIC_WIDE_ENGINES "Compile engines also for instructions beyond the processor's baseline (AVX2, AVX-512)" ON)
 
 include(RefuseBigEndian)
 check_cxx_symbol_exists(__x86_64__ cstddef FCL_ARTIC_X86_64)
@@ -15,6 +16,9 @@ set(FCL_ARTIC_WIDER_SETS)
 if(FCL_ARTIC_PORTABLE)
   set(FCL_ARTIC_INSTRUCTION_SETS portable)
   add_compile_definitions(FCL_ARTIC_PORTABLE)
+elseif(FCL_ARTIC_X86_64 AND NOT FCL_ARTIC_WIDE_ENGINES)
+  set(FCL_ARTIC_INSTRUCTION_SETS portable sse2)
+  add_compile_definitions(FCL_ARTIC_BASELINE_ONLY)
 elseif(FCL_ARTIC_X86_64)
   set(FCL_ARTIC_INSTRUCTION_SETS portable sse2 avx2 avx512)
   set(FCL_ARTIC_WIDER_SETS avx2 avx512)

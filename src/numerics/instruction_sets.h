@@ -14,7 +14,10 @@
 
 // The widest first: X(name, Name). FCL_ARTIC_ENGINES are those with an engine: the last one runs on every processor of
 // the kind. All sets have batches; "portable" ones need no rounding mode.
-#if defined(__x86_64__) && !defined(FCL_ARTIC_PORTABLE)
+#if defined(__x86_64__) && defined(FCL_ARTIC_BASELINE_ONLY)
+#define FCL_ARTIC_INSTRUCTION_SETS(X) X(sse2, Sse2) X(portable, Portable)
+#define FCL_ARTIC_ENGINES(X) X(sse2, Sse2)
+#elif defined(__x86_64__) && !defined(FCL_ARTIC_PORTABLE)
 #define FCL_ARTIC_INSTRUCTION_SETS(X) X(avx512, Avx512) X(avx2, Avx2) X(sse2, Sse2) X(portable, Portable)
 #define FCL_ARTIC_ENGINES(X) X(avx512, Avx512) X(avx2, Avx2) X(sse2, Sse2)
 #elif defined(__aarch64__) && !defined(FCL_ARTIC_PORTABLE)
