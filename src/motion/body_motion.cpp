@@ -123,8 +123,6 @@ struct PathBounds {
 // below 40, its product with the rotations before it 9, its angle is off by less than 3 * degree + 3 = 18 times the sum
 // of its terms (Horner's scheme, and the norm of the vector).
 constexpr double kRotationUlps = 64, kAngleUlps = 18;
-// An author's rotations and positions are off by at most 1.5e-12 (Frobenius) and 5e-13 of their length.
-constexpr double kBoundedUlps = 8192;
 // Of the box at a pose: the products and sums that lead to its ends, and those of D1 and D2, twice what they come to.
 constexpr double kBoxUlps = 64;
 

@@ -162,7 +162,7 @@ void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
     source.bounds(source.self, T.lower() > 0 ? T.lower() : 0, T.upper() < 1 ? T.upper() : 1, bound);
   }
   const double half = (T - Interval(middle)).magnitude();
-  constexpr double part = interval_chain::kBoundedUlps * interval_chain::kUlp;
+  constexpr double part = kBoundedUlps * kUlp;
   const auto drift = [&](double b) { return plusMinus((Interval(half) * b).upper()); };
   const auto far = [&](double b) { return plusMinus((Interval(b) * (1 + part)).upper()); };
 
