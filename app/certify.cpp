@@ -241,8 +241,7 @@ int runCertify(CertifyVerb& o) {
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
-  world.readRobot();
-  world.provePairsFor(o.certify.request);
+  world.open(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = o.interpolation.kind();
   o.certify.motion.blend = o.interpolation.blend;
@@ -258,7 +257,6 @@ int runCertify(CertifyVerb& o) {
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
   std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns, plan_notes);
-  world.readScene();
   o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
 

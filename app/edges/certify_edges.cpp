@@ -298,17 +298,11 @@ struct Outcome {
 Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks& ranks,
                       std::optional<RunFolder>& folder) {
   World world(world_options);
-  world.readRobot();
-  world.provePairsFor(o.request);
+  world.open(o.request);
   const KinematicTree& tree = *world.robot.tree;
   o.columns.state = parseValues(tree, o.state, "--state");
   const EdgeSource edges(tree, o.edges, o.columns);
-  world.readScene();
-  SceneOptions scene_options = sceneOptions(world_options.robot);
-  scene_options.unknown_cells = world_options.unknown_cells;
-  scene_options.point_radius = world_options.point_radius;
-  scene_options.scale = world_options.scale;
-  const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, scene_options);
+  const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, sceneOptions(world_options));
   folder.emplace(o.out, describe(world_options, world, o, edges, scenes));
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   Stage stage(world, scenes, !o.quiet);
