@@ -38,7 +38,7 @@ struct CertifyVerb {
   PlanVariables variables;
   PlanColumnOptions columns;
   std::vector<std::string> plans;
-  std::string format, csv, out, certificate;
+  std::string format, csv, out, certificate, line;
   ViewOptions views;
   InterpolationOptions interpolation;
   CertifyOptions certify;
@@ -253,6 +253,7 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.degrees = o.columns.degrees;
   o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;
+  if (!o.line.empty()) o.certify.line = parseToolLine(tree, o.line);
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
@@ -312,7 +313,8 @@ void addCertify(CLI::App& program, int& exit_status) {
       "(.path, .txt), NumPy's arrays (.npy, .npz); - is standard input, with --format.\n"
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
-      "before 3; with --mend a plan counts as what it is mended to.\n"
+      "before 3; a plan whose tool leaves its --line counts as in contact, with --mend a plan counts as what it is "
+      "mended to.\n"
       "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --merge --help says "
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
@@ -327,6 +329,7 @@ void addCertify(CLI::App& program, int& exit_status) {
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
+  addToolLine(*certify, o.line, "Query");
   certify->add_option("--threads", o.certify.threads, "Threads at most; 0: as many as the machine runs at once")
       ->check(CLI::NonNegativeNumber)
       ->group("Query")
