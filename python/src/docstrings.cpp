@@ -207,29 +207,6 @@ constexpr struct {
     {"BodiesResult", "t_lower", "Proven free before this time, whatever the verdict."},
     {"BodiesResult", "t_upper", "If certain, the first contact is at or before it."},
     {"BodiesResult", "certain", "Whether the contact is proven."},
-    {"Request", "mode", "Which contacts are looked for."},
-    {"Request", "max_contacts", "Contacts to report at most; 0: the verdict alone, which takes less time."},
-    {"Request", "tolerance_time", "Wanted width of the bracket, in the motion's time."},
-    {"Request", "tolerance_distance",
-     "A gap below this, m, may count as touching where it cannot be proven (`certain` is False then)."},
-    {"Request", "margin",
-     "Nearer than this counts as touching, m. Margins of a body's or pair's own replace it, smaller ones too."},
-    {"Request", "added_margin", "Added to every margin, also to those of bodies and pairs, m."},
-    {"Request", "check_scene", "Whether links are checked against obstacles."},
-    {"Request", "check_self", "Whether links are checked against each other."},
-    {"Request", "ignore_initial_contact",
-     "Whether pairs that touch at the start, or are within their margin, may separate: they are not checked before "
-     "they\n"
-     "have kept their margin once. One that never does, however deep it goes, is never checked\n"
-     "(Result.never_apart_pairs). All of a body is one: a link that touches one point of a cloud is not checked "
-     "against\n"
-     "the others."},
-    {"Request", "certificate", "Whether a proof is asked for."},
-    {"Request", "visibility", "When stage 2, culling by visibility, is used."},
-    {"Request", "method", "The library's own method, or the paper's."},
-    {"Request", "redon", "Options of the paper's method."},
-    {"Request", "work_budget", "Tests after which the answer is undecided; 0: no limit."},
-    {"Request", "measure_times", "Whether the statistics have times."},
     {"Request", "progress", "Called with the part that is done; False ends the query."},
     {"RedonOptions", "enclosure", "How a link's motion is bounded over a time interval."},
     {"RedonOptions", "refinement_level",
