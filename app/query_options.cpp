@@ -11,14 +11,21 @@ namespace fcl_artic::app {
 namespace {
 constexpr const char* kQueryGroup = "Query";
 
+/// Without its full stop, as the program's other options have it.
+std::string helpOf(const RequestOption& o) {
+  const std::string help = o.help;
+  return help.substr(0, help.size() - 1);
+}
+
 void add(CLI::App& verb, const RequestOption& o, double& value) {
-  verb.add_option(o.program, value, o.help)->check(requireNotNegative)->group(kQueryGroup)->capture_default_str();
+  verb.add_option(o.program, value, helpOf(o))->check(requireNotNegative)->group(kQueryGroup)->capture_default_str();
 }
 void add(CLI::App& verb, const RequestOption& o, std::uint64_t& value) {
-  verb.add_option(o.program, value, o.help)->group(kQueryGroup)->capture_default_str();
+  verb.add_option(o.program, value, helpOf(o))->group(kQueryGroup)->capture_default_str();
 }
 void add(CLI::App& verb, const RequestOption& o, bool& value) {
-  const std::string help = value ? std::string("Switches off: ") + o.help : o.help;
+  std::string help = helpOf(o);
+  if (value) help = "Do not c" + help.substr(1);  // "Check ..."
   verb.add_flag_callback(
           o.program, [&value, given = !value] { value = given; }, help)
       ->group(kQueryGroup);

@@ -29,6 +29,7 @@ struct ToolLineRequest {
 /// The distance is that of the tool's origin from the segment between its origins at the ends. The angle is that
 /// between the tool's orientation and the one that it should have where its origin is: the shortest rotation from the
 /// first orientation to the last one goes as far as the nearest point of the segment has gone.
+/// Of ends that are turned by more than 2.5 rad against each other nothing is said of the angle: it is from 0 to pi.
 struct ToolDeviation {
   double distance_lower = 0, distance_upper = 0;  ///< m
   double distance_time = 0;                       ///< when the tool is at least distance_lower away
@@ -51,7 +52,7 @@ struct ToolDeviation {
 /// @param link  that carries the tool.
 /// @throws std::out_of_range for a link that the tree lacks; std::invalid_argument for a motion of another tree, a
 ///   motion by tangents of half angles, a tool frame that is not rigid to 1e-9, values outside the ranges given in
-///   ToolLineRequest, ends less than 1e-6 m apart, and ends that are turned by more than 2.5 rad against each other.
+///   ToolLineRequest, and ends less than 1e-6 m apart.
 FCL_ARTIC_EXPORT ToolDeviation toolDeviation(const KinematicTree& tree, const JointMotion& motion, const LinkRef& link,
                                              const ToolLineRequest& request = {});
 /// The same over all of a trajectory; times are the trajectory's own.

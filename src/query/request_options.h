@@ -11,7 +11,7 @@ namespace fcl_artic {
 struct RequestOption {
   const char* name;     ///< in Python and in JSON
   const char* program;  ///< of the program's option; of a flag that is on by default, what switches it off; null: none
-  const char* help;
+  const char* help;     ///< of what is on by default, an imperative
 };
 
 /// Calls visit(option, member) for each, in the order in which they are listed.
@@ -35,8 +35,8 @@ void forEachRequestOption(const Visit& visit) {
         &C::margin);
   visit(RequestOption{"added_margin", nullptr, "Added to every margin, also to those of bodies and pairs, m."},
         &C::added_margin);
-  visit(RequestOption{"check_scene", "--no-scene", "Whether links are checked against obstacles."}, &C::check_scene);
-  visit(RequestOption{"check_self", "--no-self", "Whether links are checked against links."}, &C::check_self);
+  visit(RequestOption{"check_scene", "--no-scene", "Check links against obstacles."}, &C::check_scene);
+  visit(RequestOption{"check_self", "--no-self", "Check links against links."}, &C::check_self);
   visit(RequestOption{"ignore_initial_contact", "--ignore-initial-contact",
                       "Pairs that touch at the start, or are within their margin, may separate: they are checked from "
                       "then on. One that never separates is never checked, and the answer counts it. All of a body is "

@@ -64,8 +64,8 @@ struct Way {
 };
 
 struct Sample {
-  double distance, angle;  ///< as computed
-  double angle_upper, angle_lower;
+  double distance = 0;  ///< as computed
+  double angle_upper = kPiUpper, angle_lower = 0;
 
   bool tellsNoAngle() const { return angle_upper >= kPiUpper; }
 };
@@ -92,9 +92,8 @@ class Line {
     }
     const Matrix3d turn = begin.linear().transpose() * end.linear();
     const double sine = sineOfHalf(begin.linear(), end.linear());
-    if (!(sine < kSteep)) {
-      throw std::invalid_argument("toolDeviation: the tool's orientations at the ends are more than 2.5 rad apart");
-    }
+    far_apart_ = !(sine < kSteep);
+    if (far_apart_) return;
     const Vector3d across(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1));
     if (const double size = across.norm(); size > 0) turn_ = across * (angleOf(sine) / size);
     MotionElement& element = wanted_.elements.emplace_back();
@@ -118,18 +117,20 @@ class Line {
     const double s = std::min(std::max(from_begin.dot(along_) / (length_ * length_), 0.0), 1.0);
     Sample sample;
     sample.distance = (from_begin - s * along_).norm();
+    if (far_apart_) return sample;
     const double sine = sineOfHalf(wanted_.pose(s).linear(), M.linear());
-    sample.angle = angleOf(sine);
+    const double angle = angleOf(sine);
     const double pad = angle_pad_ + turned() * fraction_error_ * (1 + from_begin.norm() / length_) * kSlack;
-    sample.angle_upper = sine < kSteep ? std::min(sample.angle + pad, kPiUpper) : kPiUpper;
-    sample.angle_lower = std::max(sample.angle - pad, 0.0);
+    sample.angle_upper = sine < kSteep ? std::min(angle + pad, kPiUpper) : kPiUpper;
+    sample.angle_lower = std::max(angle - pad, 0.0);
     return sample;
   }
 
  private:
   Vector3d begin_, along_, turn_ = Vector3d::Zero();
   BodyMotion wanted_;  ///< the orientation at the part s of the way
-  double length_, pad_, angle_pad_, fraction_error_;
+  double length_, pad_, angle_pad_ = 0, fraction_error_ = 0;
+  bool far_apart_ = false;  ///< the orientations at the ends: nothing is said of angles
 };
 
 struct Bracketed {

@@ -181,7 +181,11 @@ TEST(ToolLine, WhatIsNoLineIsRefused) {
   EXPECT_THROW((void)toolDeviation(tree, turn(1), "arm", request), std::invalid_argument);  // it stays where it is
   request.tool = translation({1, 0, 0});
   EXPECT_NO_THROW((void)toolDeviation(tree, turn(2.4), "arm", request));
-  EXPECT_THROW((void)toolDeviation(tree, turn(2.6), "arm", request), std::invalid_argument);
+  const ToolDeviation far = toolDeviation(tree, turn(2.6), "arm", request);
+  EXPECT_EQ(far.angle_lower, 0);
+  EXPECT_GE(far.angle_upper, kPi);
+  EXPECT_FALSE(far.within_tolerance);
+  EXPECT_NEAR(far.distance_upper, 1 - std::cos(1.3), 1e-5);
   EXPECT_THROW((void)toolDeviation(tree, turn(1), "hand", request), std::out_of_range);
   EXPECT_THROW((void)toolDeviation(tree, turn(1), 7, request), std::out_of_range);
   EXPECT_THROW((void)toolDeviation(KinematicTree("other"), turn(1), 0, request), std::invalid_argument);
