@@ -157,7 +157,7 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   std::istringstream rows(read(csv));
   std::string line;
   int lines = 0;
-  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 27) << line;
+  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 28) << line;
   EXPECT_EQ(lines, 3);
   const Outcome error = certifyFile("plans.jsonl", free + "\n" + wrong + "\n" + hit + "\n" + "{\n");
   EXPECT_EQ(error.status, 2);
@@ -480,8 +480,10 @@ TEST_F(CertifyProgramTest, APlanAndWhatItIsMendedToAreShown) {
 
 // Straight, and by way of a point 0.3 m off.
 TEST_F(CertifyProgramTest, AToolKeepsToItsLine) {
+  const std::string far_away =
+      R"(<collision><origin xyz="0 0 9"/><geometry><sphere radius="0.1"/></geometry></collision>)";
   const auto certify = [&](const std::string& csv, const std::string& options) {
-    return this->run("certify " + write("way.csv", csv) + " " + gantry("") + " --no-scene --json " + options);
+    return this->run("certify " + write("way.csv", csv) + " " + gantry(far_away) + " --json " + options);
   };
   const std::string straight = "x,y\n0,0\n0.5,0.15\n1,0.3\n", corner = "x,y\n0,0\n0.5,0.3\n1,0\n";
   const auto lineOf = [](const Outcome& run) { return Json::parse(run.out).at("plans").at(0).at("line"); };
@@ -505,8 +507,7 @@ TEST_F(CertifyProgramTest, AToolKeepsToItsLine) {
   EXPECT_EQ(certify(straight, "--line hand=1mm").status, 2);
   EXPECT_EQ(certify(straight, "--line tool=1").status, 2);
   EXPECT_EQ(certify("x,y\n0,0\n0,0\n", "--line tool=1mm").status, 2);
-  const Outcome text =
-      this->run("certify " + write("way.csv", corner) + " " + gantry("") + " --no-scene --line tool=1mm");
+  const Outcome text = this->run("certify " + write("way.csv", corner) + " " + gantry(far_away) + " --line tool=1mm");
   EXPECT_NE(text.out.find("'tool' LEAVES its line of 1 m: at most 300"), std::string::npos) << text.out;
 }
 
