@@ -163,7 +163,10 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
     const std::string why = certificates.add(*one.result.certificate);
     if (missing.empty()) missing = why;
   }
-  const std::string written = certificates.write(files);
+  std::string written = certificates.write(files);
+  const bool mended =
+      std::any_of(all.begin(), all.end(), [](const CertifiedPlan& plan) { return plan.as_mended != nullptr; });
+  if (mended && !written.empty()) written = "of plans as they were mended: " + written;
   if (written.empty()) return missing.empty() ? "no certificate: no plan has an answer" : missing;
   return all.size() == 1 ? written : fmt::format("of {} plans {}", all.size(), written);
 }
@@ -172,14 +175,14 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
 /// given or, of what was mended, written; empty where it does not compare them.
 std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
-                        o.columns.columns.time.empty() && !o.columns.degrees;
+                        o.columns.columns.time.empty() && !o.columns.degrees && o.variables.turns != "shortest";
   const plans::Interpolation kind = o.interpolation.kind();
-  if (!as_named || o.variables.turns == "shortest") return "";
   std::string text;
   bool mended = false;
   for (const CertifiedPlan& plan : all) {
     const auto& certificate = plan.as_mended ? plan.as_mended->result.certificate : plan.result.certificate;
     if (!certificate || !*certificate) continue;
+    if (!as_named && !plan.as_mended) return "";
     const std::string& file = plan.as_mended ? o.out : plan.file;
     if (!plans::hasPlanEnding(file) || plans::formatOf(file) != plans::Format::csv) return "";
     text += " --plan " + shellWord(file);

@@ -198,7 +198,7 @@ LinkPairReport World::provePairs(double margin) {
     search.margin = margin;
     const LinkPairReport report = classify(robot, search);
     robot.proofs = report.proofs;
-    for (const std::string& doubt : doubtsOf(report, margin)) robot.notes.push_back(doubt);
+    for (const std::string& doubt : doubtsOf(*robot.tree, report, margin)) robot.notes.push_back(doubt);
     return report;
   }
   // Which pairs always touch is no matter of the margin: what only comes near stays checked.

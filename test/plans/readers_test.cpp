@@ -270,6 +270,14 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
 }
 
 /// What is certified is all that an object holds, for the robot that it names.
+TEST(PlanReadersTest, AClocksTimesAreCountedFromTheFirst) {
+  const KinematicTree tree = armTree();
+  const Plan plan = parsePlans(tree, "time,hinge,rail\n1700000000.5,0,0\n1700000002,1,0\n", Format::csv).at(0);
+  EXPECT_EQ(plan.times, (std::vector<double>{0, 1.5}));
+  expectContains(plan.notes.at(0), "counted from the first, 1700000000.500000 s");
+  EXPECT_EQ(parsePlans(tree, "time,hinge,rail\n5,0,0\n7,1,0\n", Format::csv).at(0).times, (std::vector<double>{5, 7}));
+}
+
 TEST(PlanReadersTest, AnObjectHoldsOnePlanOfThisRobot) {
   const KinematicTree tree = armTree();
   const std::string
