@@ -38,7 +38,7 @@ struct CertifyVerb {
   PlanVariables variables;
   PlanColumnOptions columns;
   std::vector<std::string> plans;
-  std::string format, csv, out, certificate;
+  std::string format, csv, out, certificate, line;
   ViewOptions views;
   InterpolationOptions interpolation;
   CertifyOptions certify;
@@ -241,8 +241,7 @@ int runCertify(CertifyVerb& o) {
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
-  world.readRobot();
-  world.provePairsFor(o.certify.request);
+  world.open(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = o.interpolation.kind();
   o.certify.motion.blend = o.interpolation.blend;
@@ -254,11 +253,11 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.degrees = o.columns.degrees;
   o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;
+  if (!o.line.empty()) o.certify.line = parseToolLine(tree, o.line);
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
   std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns, plan_notes);
-  world.readScene();
   o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
 
@@ -314,7 +313,8 @@ void addCertify(CLI::App& program, int& exit_status) {
       "(.path, .txt), NumPy's arrays (.npy, .npz); - is standard input, with --format.\n"
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
-      "before 3; with --mend a plan counts as what it is mended to.\n"
+      "before 3; a plan whose tool leaves its --line counts as in contact, with --mend a plan counts as what it is "
+      "mended to.\n"
       "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --merge --help says "
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
@@ -329,6 +329,7 @@ void addCertify(CLI::App& program, int& exit_status) {
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
+  addToolLine(*certify, o.line, "Query");
   certify->add_option("--threads", o.certify.threads, "Threads at most; 0: as many as the machine runs at once")
       ->check(CLI::NonNegativeNumber)
       ->group("Query")

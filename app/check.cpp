@@ -78,8 +78,7 @@ int runCheck(CheckVerb& options) {
                         {"--auto-srdf", &options.world.auto_srdf}},
                        inputs);
   World world(options.world);
-  world.readRobot();
-  world.provePairsFor(options.request);
+  world.open(options.request);
   const KinematicTree& tree = *world.robot.tree;
   // One of the two.
   std::optional<JointMotion> motion;
@@ -109,7 +108,6 @@ int runCheck(CheckVerb& options) {
         fmt::format("the waypoints of '{}' are joined by: {}", options.trajectory, toString(plan.interpolation)));
     motion_notes.insert(motion_notes.end(), plan.notes.begin(), plan.notes.end());
   }
-  world.readScene();
   ArticulatedCollisionManager manager = world.makeManager();
   useVisibility(options.visibility, manager);
 

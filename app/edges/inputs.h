@@ -23,7 +23,7 @@ std::string obstaclesHash(const Scene& scene, std::size_t number);
 
 /// SHA-256 of all that a robot's answers depend on but for scenes and requests: joints, geometry, where it stands, what
 /// it carries, the pairs that are allowed; and of kErrata.
-/// @param read  with readRobot(), provePairs() and readScene() done.
+/// @param read  after World::open().
 std::string robotHash(const World& read);
 
 }  // namespace fcl_artic::app

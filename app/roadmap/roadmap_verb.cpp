@@ -34,12 +34,6 @@ struct RoadmapVerb {
   bool valid_only = false, any = false;
 };
 
-/// Robot and allowed pairs, without a scene.
-void readRobot(World& world, const RoadmapVerb& o) {
-  world.readRobot();
-  world.provePairsFor(o.request);
-}
-
 void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
   for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
 }
@@ -90,9 +84,8 @@ void removeEarlier(RoadmapVerb& o) {
 int make(RoadmapVerb& o) {
   removeEarlier(o);
   World world(o.world);
-  readRobot(world, o);
+  world.open(o.request);
   if (!o.given.empty()) o.make.given = readConfigurations(*world.robot.tree, o.given);
-  world.readScene();
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   const auto begin = Clock::now();
@@ -109,9 +102,8 @@ int make(RoadmapVerb& o) {
 int certify(RoadmapVerb& o) {
   removeEarlier(o);
   World world(o.world);
-  readRobot(world, o);
+  world.open(o.request);
   Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
-  world.readScene();
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   bool proven = false;  // something of all edges, before

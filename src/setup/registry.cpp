@@ -182,9 +182,9 @@ bool Registry::standStill(const ManagedBody& a, const ManagedBody& b) const {
 }
 
 Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
+  if (standStill(a, b)) return Excuse::still;  // before what callers excuse: of these `free` takes no exception
   if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
   if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
-  if (standStill(a, b)) return Excuse::still;
   if (a.attached || b.attached || !neighbours_) return Excuse::none;
   return neighbours_->leavesOut(*tree_, a, b) ? Excuse::neighbours : Excuse::none;
 }

@@ -284,13 +284,14 @@ TEST(PlanReadersTest, AnObjectHoldsOnePlanOfThisRobot) {
     return plans.at(0).error;
   };
   for (const std::string& two : {R"({"trajectory": [)" + robot + R"(], "planned_trajectory": )" + robot + "}",
-                                 R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": )" + joints + "}",
                                  R"({"joint_trajectory": )" + joints + R"(, "waypoints": [[0, 0], [1, 0]]})",
                                  R"({"joint_trajectory": )" + joints + ", " + points + "}",
                                  R"({"plans": [{"from": [0, 0], "to": [1, 0]}], "trajectory": )" + robot + "}",
                                  R"({"from": [0, 0], "to": [1, 0], "msg": )" + robot + "}"}) {
     expectContains(errorOf(two), "it holds more than one plan, in '");
   }
+  expectContains(errorOf(R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": )" + joints + "}"),
+                 "joint 'hinge' of robot 'arm' is neither planar nor floating");
   for (const std::string& one :
        {R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": {"joint_names": [], "points": []}})",
         R"({"goal": {"trajectory": )" + joints + "}}", std::string(R"({"start": [0, 0], "goal": [1, 0]})"),
