@@ -264,8 +264,10 @@ void addCheck(CLI::App& program, int& exit_status) {
     if (!waypoints && !isOfTwoEnds(options->interpolation.kind())) {
       throw CLI::RequiresError("--interpolation " + options->interpolation.name, "--trajectory or --lines");
     }
-    if (options->interpolation.kind() == plans::Interpolation::tangentHalfAngle && options->shortest) {
-      throw CLI::ExcludesError("--shortest", "--interpolation tangent-half-angle");
+    const plans::Interpolation kind = options->interpolation.kind();
+    // Both say which way round a joint goes. (Of others with waypoints the readers of plans know it.)
+    if (options->shortest && (kind == plans::Interpolation::tangentHalfAngle || kind == plans::Interpolation::jtc)) {
+      throw CLI::ExcludesError("--shortest", "--interpolation " + options->interpolation.name);
     }
     try {
       exit_status = runCheck(*options);
