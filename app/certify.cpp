@@ -227,6 +227,11 @@ std::string writePlanViews(const CertifyVerb& o, const ViewOptions& of_mended, c
 
 int runCertify(CertifyVerb& o) {
   if (o.mend) requireMending();
+  if (o.mend && o.interpolation.kind() == plans::Interpolation::jtcUpsampled) {
+    throw std::invalid_argument(
+        "--mend: detours go straight between waypoints, and a controller that upsamples positions goes another way: "
+        "certify a mended plan with its time law, as jtc");
+  }
   if (!o.out.empty()) (void)plans::formatOf(o.out);
   std::vector<std::string> inputs = inputsOf(o.world);
   inputs.insert(inputs.end(), o.plans.begin(), o.plans.end());

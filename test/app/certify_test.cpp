@@ -537,6 +537,10 @@ TEST_F(CertifyProgramTest, MendsWhatOnlyTouchesWhatItMay) {
 }
 
 TEST_F(CertifyProgramTest, SaysWhyItCannotMend) {
+  EXPECT_NE(this->run("certify " + write("way.csv", "x,y\n0,0\n1,0\n") + " " + gantry() +
+                      " --mend --interpolation jtc-upsampled")
+                .err.find("a controller that upsamples positions goes another way"),
+            std::string::npos);
   const auto refused = [&](const std::string& csv, const std::string& world, const std::string& reason) {
     const Outcome run = this->run("certify " + write("way.csv", csv) + " " + world + " --mend --mend-time 0.3 --out " +
                                   path("none.csv"));
