@@ -124,6 +124,7 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
             {"point_radius", world.point_radius},
             {"unknown_cells", world.unknown_cells},
             {"ignore_limits", o.columns.ignore_limits},
+            {"limit_tolerance", o.columns.limit_tolerance},
             {"turns", static_cast<int>(o.columns.turns)},
             {"certificates", o.certificates}}},
           {"cut",
@@ -203,7 +204,7 @@ class Stage {
 /// Answers blocks.
 class Answerer {
  public:
-  Answerer(Stage& stage, const EdgeSource& edges, const EdgesOptions& options, const RunFolder& folder, int threads)
+  Answerer(Stage& stage, EdgeSource& edges, const EdgesOptions& options, const RunFolder& folder, int threads)
       : stage_(stage), edges_(edges), options_(options), folder_(folder), threads_(threads) {}
 
   /// Computes a block.
@@ -279,7 +280,7 @@ class Answerer {
   }
 
   Stage& stage_;
-  const EdgeSource& edges_;
+  EdgeSource& edges_;
   const EdgesOptions& options_;
   const RunFolder& folder_;
   int threads_;
@@ -302,7 +303,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   world.provePairsFor(o.request);
   const KinematicTree& tree = *world.robot.tree;
   o.columns.state = parseValues(tree, o.state, "--state");
-  const EdgeSource edges(tree, o.edges, o.columns);
+  EdgeSource edges(tree, o.edges, o.columns);
   world.readScene();
   SceneOptions scene_options = sceneOptions(world_options.robot);
   scene_options.unknown_cells = world_options.unknown_cells;
@@ -362,6 +363,9 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   for (std::size_t i = 0; i < std::min(kErrorsShown, errors.size()); ++i)
     fmt::print(stderr, "fcl_artic: error: {}\n", errors[i]);
   if (errors.size() > kErrorsShown) fmt::print(stderr, "fcl_artic: {} more errors\n", errors.size() - kErrorsShown);
+  if (!o.quiet) {
+    for (const std::string& note : edges.limitNotes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+  }
   if (!answerer.refusal().empty())
     fmt::print(stderr, "fcl_artic: error: rows are refused, the first: {}\n", answerer.refusal());
   const bool unwritten = world.unwritten.exitStatus(kExitFree) != kExitFree;

@@ -350,12 +350,19 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
   EXPECT_EQ(q, (std::vector<double>{0.5, 0.25, 1.75, -0.5}));
   // In a scene that always stands there they are to be free.
   const Outcome touching = run("roadmap make " + armAndBall() + " --out " + path("x.h5") + " --vertices 30 --with " +
-                               write("bad.csv", "hinge\n1.0471975511965976\n"));
+                               write("bad.csv", "rail,hinge\n0,1.0471975511965976\n"));
   EXPECT_EQ(touching.status, 2);
   EXPECT_NE(touching.err.find("given configuration 0 is not proven free: arm and ball"), std::string::npos)
       << touching.err;
-  EXPECT_NE(make("x.h5", "--with " + write("far.csv", "hinge\n3\n")).err.find("given configuration 0: "),
+  EXPECT_NE(make("x.h5", "--with " + write("far.csv", "rail,hinge\n0,3\n")).err.find("given configuration 0: "),
             std::string::npos);
+  // Limits as of plans: a sensor's error is noted.
+  const Outcome near = make("near.h5", "--vertices 3 --with " + write("near.csv", "rail,hinge\n0,2.0009\n"));
+  EXPECT_EQ(near.status, 0);
+  EXPECT_NE(near.err.find("given configuration: joint 'hinge': some values are beyond its limits [-1, 2], by at most "
+                          "0.0009 rad"),
+            std::string::npos)
+      << near.err;
   EXPECT_NE(make("x.dot").err.find("written as .h5, .graphml or .csv"), std::string::npos);
   EXPECT_NE(certify("arm.urdf", "x.h5").err.find("can't be read as an HDF5 file"), std::string::npos);
 }
