@@ -103,8 +103,8 @@ std::string mendedText(const CertifiedPlan& plan) {
 
 std::string sumText(const CertifyReport& r) {
   const Sum sum = sumOf(r.plans);
-  std::string text = fmt::format("{} plans: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(), sum.free,
-                                 sum.contact, sum.undecided, sum.wrong);
+  std::string text = fmt::format("{} plan{}: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(),
+                                 r.plans.size() == 1 ? "" : "s", sum.free, sum.contact, sum.undecided, sum.wrong);
   const bool mending = std::any_of(r.plans.begin(), r.plans.end(),
                                    [](const CertifiedPlan& p) { return p.as_mended || !p.not_mended.empty(); });
   if (mending) text += fmt::format("; {} of {} mended", sum.mended, sum.contact);
