@@ -97,9 +97,13 @@ std::string CertifiedPlan::title() const {
   return plan.name.empty() ? file : file + " " + plan.name;
 }
 
+int CertifiedPlan::ownExitStatus() const {
+  if (!error.empty()) return kExitError;
+  return worseExit(app::exitStatus(result), line ? line->exitStatus() : kExitFree);
+}
+
 int CertifiedPlan::exitStatus() const {
-  if (as_mended) return as_mended->exitStatus();
-  return error.empty() ? app::exitStatus(result) : kExitError;
+  return as_mended ? as_mended->exitStatus() : ownExitStatus();
 }
 
 std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vector<std::string>& paths,
@@ -130,6 +134,7 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
     if (first && plan.result.t_lower <= plan.motion->trajectory.beginTime()) {
       plan.motion->notes.insert(plan.motion->notes.begin(), startHint(*first));
     }
+    if (options.line) plan.line = askToolLine(manager.tree(), plan.motion->trajectory, *options.line);
     if (options.clearance) {
       plan.clearance = manager.clearance(plan.motion->trajectory, clearanceOf(*options.clearance, options.request));
     }

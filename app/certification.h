@@ -17,6 +17,7 @@
 #include "plans/carried.h"
 #include "plans/motion.h"
 #include "plans/plan.h"
+#include "tool_line.h"
 
 namespace fcl_artic::app {
 
@@ -28,6 +29,7 @@ struct CertifiedPlan {
   std::string error;                        ///< why there is no answer; empty: there is one
   CertifiedResult result;
   std::optional<Clearance> clearance;  ///< where it was asked for
+  std::optional<ToolLineAnswer> line;  ///< where it was asked for
   double us = 0;                       ///< time of the query, without reading and clearance
 
   std::optional<Mended> mended;              ///< a way around what the plan touches
@@ -36,7 +38,9 @@ struct CertifiedPlan {
 
   /// "FILE" or "FILE PLAN".
   std::string title() const;
-  /// Exit status of the answer; that of the mended plan, where there is one.
+  /// Exit status of the plan as given: of the worse answer, about contacts or about the tool's line.
+  int ownExitStatus() const;
+  /// The same; that of the mended plan, where there is one.
   int exitStatus() const;
 };
 
@@ -44,6 +48,7 @@ struct CertifyOptions {
   plans::MotionOptions motion;
   CertifiedRequest request;
   std::optional<ClearanceRequest> clearance;
+  std::optional<ToolLine> line;
   std::vector<plans::Attached> attached;  ///< what the caller has said the robot carries
   int threads = 0;                        ///< 0: as many as the machine runs at once
 };

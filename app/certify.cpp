@@ -38,7 +38,7 @@ struct CertifyVerb {
   PlanVariables variables;
   PlanColumnOptions columns;
   std::vector<std::string> plans;
-  std::string format, csv, out, certificate;
+  std::string format, csv, out, certificate, line;
   ViewOptions views;
   InterpolationOptions interpolation;
   CertifyOptions certify;
@@ -163,7 +163,10 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
     const std::string why = certificates.add(*one.result.certificate);
     if (missing.empty()) missing = why;
   }
-  const std::string written = certificates.write(files);
+  std::string written = certificates.write(files);
+  const bool mended =
+      std::any_of(all.begin(), all.end(), [](const CertifiedPlan& plan) { return plan.as_mended != nullptr; });
+  if (mended && !written.empty()) written = "of plans as they were mended: " + written;
   if (written.empty()) return missing.empty() ? "no certificate: no plan has an answer" : missing;
   return all.size() == 1 ? written : fmt::format("of {} plans {}", all.size(), written);
 }
@@ -172,14 +175,14 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
 /// given or, of what was mended, written; empty where it does not compare them.
 std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
-                        o.columns.columns.time.empty() && !o.columns.degrees;
+                        o.columns.columns.time.empty() && !o.columns.degrees && o.variables.turns != "shortest";
   const plans::Interpolation kind = o.interpolation.kind();
-  if (!as_named || o.variables.turns == "shortest") return "";
   std::string text;
   bool mended = false;
   for (const CertifiedPlan& plan : all) {
     const auto& certificate = plan.as_mended ? plan.as_mended->result.certificate : plan.result.certificate;
     if (!certificate || !*certificate) continue;
+    if (!as_named && !plan.as_mended) return "";
     const std::string& file = plan.as_mended ? o.out : plan.file;
     if (!plans::hasPlanEnding(file) || plans::formatOf(file) != plans::Format::csv) return "";
     text += " --plan " + shellWord(file);
@@ -241,8 +244,7 @@ int runCertify(CertifyVerb& o) {
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
-  world.readRobot();
-  world.provePairsFor(o.certify.request);
+  world.open(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = o.interpolation.kind();
   o.certify.motion.blend = o.interpolation.blend;
@@ -254,11 +256,11 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.degrees = o.columns.degrees;
   o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;
+  if (!o.line.empty()) o.certify.line = parseToolLine(tree, o.line);
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
   std::vector<CertifiedPlan> all = readPlans(tree, o.plans, format, o.columns.columns, plan_notes);
-  world.readScene();
   o.certify.attached = attachedOf(tree, world.attachments);
   const auto manager = std::make_shared<const ArticulatedCollisionManager>(world.makeManager());
 
@@ -314,7 +316,8 @@ void addCertify(CLI::App& program, int& exit_status) {
       "(.path, .txt), NumPy's arrays (.npy, .npz); - is standard input, with --format.\n"
       "Waypoints are counted from 0; times are the plan's own, or the waypoints' numbers where it has none.\n"
       "Exit status: 0 all free (proven), 1 contact, 2 error, 3 undecided (budget): the worst of all plans, 2 before 1\n"
-      "before 3; with --mend a plan counts as what it is mended to.\n"
+      "before 3; a plan whose tool leaves its --line counts as in contact, with --mend a plan counts as what it is "
+      "mended to.\n"
       "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --merge --help says "
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
@@ -329,6 +332,7 @@ void addCertify(CLI::App& program, int& exit_status) {
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
+  addToolLine(*certify, o.line, "Query");
   certify->add_option("--threads", o.certify.threads, "Threads at most; 0: as many as the machine runs at once")
       ->check(CLI::NonNegativeNumber)
       ->group("Query")

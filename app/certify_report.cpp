@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 /// What the plans come to.
 struct Sum {
   std::size_t free = 0, contact = 0, undecided = 0, wrong = 0;
-  std::size_t mended = 0;  ///< of those in contact: free, as mended
+  std::size_t mended = 0;     ///< of those in contact: free, as mended
+  std::size_t left_line = 0;  ///< without contact; whether for certain or not
   double median_us = 0, slowest_us = 0;
 };
 
@@ -33,7 +34,11 @@ Sum sumOf(const std::vector<CertifiedPlan>& plans) {
     }
     us.push_back(plan.us);
     const int status = exitStatus(plan.result);  // of a motion without a pair to check nothing is known
-    ++(status == kExitFree ? sum.free : status == kExitContact ? sum.contact : sum.undecided);
+    const bool left_line = status == kExitFree && plan.ownExitStatus() != kExitFree;
+    ++(left_line                ? sum.left_line
+       : status == kExitFree    ? sum.free
+       : status == kExitContact ? sum.contact
+                                : sum.undecided);
     sum.mended += plan.as_mended && plan.as_mended->exitStatus() == kExitFree;
   }
   if (us.empty()) return sum;
@@ -61,6 +66,7 @@ std::string verdictText(const CertifiedPlan& plan) {
         plan.motion->waypointBefore(result.t_lower), c->body1.name, c->body2.name, c->point.x(), c->point.y(),
         c->point.z(), c->normal.x(), c->normal.y(), c->normal.z());
   }
+  if (plan.line) out << "; " << plan.line->text();
   if (plan.clearance) out << fmt::format("; clearance at least {:.6g} m", plan.clearance->lower);
   return out.str();
 }
@@ -105,6 +111,8 @@ std::string sumText(const CertifyReport& r) {
   const Sum sum = sumOf(r.plans);
   std::string text = fmt::format("{} plan{}: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(),
                                  r.plans.size() == 1 ? "" : "s", sum.free, sum.contact, sum.undecided, sum.wrong);
+  if (sum.left_line > 0)
+    text += fmt::format(", {} without contact that leave, or may leave, the tool's line", sum.left_line);
   const bool mending = std::any_of(r.plans.begin(), r.plans.end(),
                                    [](const CertifiedPlan& p) { return p.as_mended || !p.not_mended.empty(); });
   if (mending) text += fmt::format("; {} of {} mended", sum.mended, sum.contact);
@@ -133,6 +141,7 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   out["contacts"] = all.at("contacts");
   if (!free) out["q_at_t_lower"] = all.at("q_at_t_lower");
   out["clearance"] = all.at("clearance");
+  out["line"] = plan.line ? plan.line->json() : Json();
   for (const char* key : kExceptions) out[key] = all.at(key);
   out["certificate"] = all.at("certificate");
   out["us"] = plan.us;
@@ -190,6 +199,7 @@ std::string textReport(const CertifyReport& r) {
       text += fmt::format("after waypoint {}\n", plan.motion->waypointBefore(plan.result.t_lower));
     }
     text += textReport(reportOf(r.tree, r.request, plan));
+    if (plan.line) text += line("", plan.line->text());
     if (const std::string mended = mendedText(plan); !mended.empty()) text += line("", mended);
     for (const std::string& note : r.notes) text += line("note: ", note);
     return text + columnsText(r);
@@ -221,6 +231,7 @@ nlohmann::ordered_json jsonReport(const CertifyReport& r) {
             {"undecided", sum.undecided},
             {"error", sum.wrong},
             {"mended", sum.mended},
+            {"left_line", sum.left_line},
             {"median_us", sum.median_us},
             {"slowest_us", sum.slowest_us},
             {"seconds", r.seconds}}},
@@ -231,11 +242,11 @@ std::string csvReport(const CertifyReport& r) {
   std::string out =
       "file,plan,status,certain,t_lower,t_upper,waypoint,body1,body2,x,y,z,normal_x,normal_y,normal_z,clearance_lower,"
       "clearance_upper,interpolation,waypoints,us,mended,deviation,length_ratio,mend_ms,ignored_initial_contacts,"
-      "never_apart_pairs,unproven_allowed_pairs,error\n";
+      "never_apart_pairs,unproven_allowed_pairs,line,error\n";
   for (const CertifiedPlan& plan : r.plans) {
     out += fmt::format("{},{},", field(plan.file), field(plan.plan.name));
     if (!plan.error.empty()) {
-      out += fmt::format("error{}{}\n", std::string(25, ','), field(plan.error));
+      out += fmt::format("error{}{}\n", std::string(26, ','), field(plan.error));
       continue;
     }
     const CertifiedResult& result = plan.result;
@@ -257,6 +268,7 @@ std::string csvReport(const CertifyReport& r) {
                : ",,,,";
     out += fmt::format("{},{},{},", result.ignored_initial_contacts.size(), result.never_apart_pairs,
                        result.unproven_allowed_pairs);
+    out += plan.line ? fmt::format("{},", plan.line->verdict()) : ",";
     out += field(plan.not_mended) + "\n";
   }
   return out;

@@ -78,8 +78,7 @@ int runCheck(CheckVerb& options) {
                         {"--auto-srdf", &options.world.auto_srdf}},
                        inputs);
   World world(options.world);
-  world.readRobot();
-  world.provePairsFor(options.request);
+  world.open(options.request);
   const KinematicTree& tree = *world.robot.tree;
   // One of the two.
   std::optional<JointMotion> motion;
@@ -109,7 +108,6 @@ int runCheck(CheckVerb& options) {
         fmt::format("the waypoints of '{}' are joined by: {}", options.trajectory, toString(plan.interpolation)));
     motion_notes.insert(motion_notes.end(), plan.notes.begin(), plan.notes.end());
   }
-  world.readScene();
   ArticulatedCollisionManager manager = world.makeManager();
   useVisibility(options.visibility, manager);
 
@@ -266,8 +264,10 @@ void addCheck(CLI::App& program, int& exit_status) {
     if (!waypoints && !isOfTwoEnds(options->interpolation.kind())) {
       throw CLI::RequiresError("--interpolation " + options->interpolation.name, "--trajectory or --lines");
     }
-    if (options->interpolation.kind() == plans::Interpolation::tangentHalfAngle && options->shortest) {
-      throw CLI::ExcludesError("--shortest", "--interpolation tangent-half-angle");
+    const plans::Interpolation kind = options->interpolation.kind();
+    // Both say which way round a joint goes. (Of others with waypoints the readers of plans know it.)
+    if (options->shortest && (kind == plans::Interpolation::tangentHalfAngle || kind == plans::Interpolation::jtc)) {
+      throw CLI::ExcludesError("--shortest", "--interpolation " + options->interpolation.name);
     }
     try {
       exit_status = runCheck(*options);

@@ -285,7 +285,14 @@ std::string summaryOf(const LinkPairReport& report) {
       pairsText(all), apart, all - apart - always, always);
 }
 
-std::vector<std::string> doubtsOf(const LinkPairReport& disabled, double margin) {
+std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairReport& disabled, double margin) {
+  const auto carrier = [&](const std::string& name) {  // the link that moves it; -1: nothing does
+    LinkId link = tree.linkId(name);
+    while (link >= 0 && tree.parentJoint(link) >= 0 && tree.joint(tree.parentJoint(link)).type == JointType::fixed) {
+      link = tree.parentLink(link);
+    }
+    return tree.parentJoint(link) < 0 ? -1 : link;
+  };
   std::vector<std::string> lines;
   const std::string touch = margin > 0 ? fmt::format("come within the margin of {:g} m", margin) : "touch";
   const std::string apart = margin > 0 ? fmt::format(" by the margin of {:g} m", margin) : "";
@@ -294,7 +301,7 @@ std::vector<std::string> doubtsOf(const LinkPairReport& disabled, double margin)
     std::string text;
     std::size_t count = 0;
     for (const LinkPairFinding& pair : disabled.pairs) {
-      if (pair.kind != kind) continue;
+      if (pair.kind != kind || carrier(pair.link1) == carrier(pair.link2)) continue;  // no motion changes the latter
       if (count++ < kMost) text += fmt::format("{}{} and {}", text.empty() ? "" : "; ", pair.link1, pair.link2);
     }
     if (count > kMost) text += fmt::format("; and {} more", count - kMost);

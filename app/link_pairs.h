@@ -22,6 +22,6 @@ std::string summaryOf(const LinkPairReport& report);
 /// What is to be said of pairs that an SRDF disables: those that do touch, those that are not proven apart. A line
 /// each; nothing where all is proven.
 /// @param margin  by which they were looked at, m.
-std::vector<std::string> doubtsOf(const LinkPairReport& disabled, double margin);
+std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairReport& disabled, double margin);
 
 }  // namespace fcl_artic::app

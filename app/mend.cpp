@@ -15,6 +15,7 @@
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
+#include <ompl/util/RandomNumbers.h>
 
 #include "elapsed.h"
 #include "fcl_artic/ompl/planning_setup.h"
@@ -476,6 +477,7 @@ void requireMending() {}
 Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const plans::PlanMotion& motion,
             plans::Turns turns, const MendOptions& options) {
   ompl::msg::noOutputHandler();
+  [[maybe_unused]] static const bool seeded = (ompl::RNG::setSeed(1), true);  // the same detours each time
   const Clock::time_point begin = Clock::now();
   for (std::size_t i = 0;; ++i) {
     const bool last = kClearances[i] == 0;

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "files/files.h"
-#include "plans/csv.h"
+#include "plans/plan.h"
 
 namespace fcl_artic::app {
 
@@ -30,7 +30,7 @@ plans::PlanMotion readTrajectory(const KinematicTree& tree, const std::string& p
   try {
     plans::ColumnOptions columns;
     columns.joints = plans::unnamedColumns(tree, options);
-    return toMotion(tree, plans::parseCsv(tree, content, columns), options);
+    return toMotion(tree, plans::parsePlans(tree, content, plans::Format::csv, columns).front(), options);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("'{}': {}", path, error.what()));
   }

@@ -1,36 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query_options.h"
 
+#include <cstdint>
 #include <string>
 
+#include "query/request_options.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
 namespace {
 constexpr const char* kQueryGroup = "Query";
+
+/// Without its full stop, as the program's other options have it.
+std::string helpOf(const RequestOption& o) {
+  const std::string help = o.help;
+  return help.substr(0, help.size() - 1);
+}
+
+void add(CLI::App& verb, const RequestOption& o, double& value) {
+  verb.add_option(o.program, value, helpOf(o))->check(requireNotNegative)->group(kQueryGroup)->capture_default_str();
+}
+void add(CLI::App& verb, const RequestOption& o, std::uint64_t& value) {
+  verb.add_option(o.program, value, helpOf(o))->group(kQueryGroup)->capture_default_str();
+}
+void add(CLI::App& verb, const RequestOption& o, bool& value) {
+  std::string help = helpOf(o);
+  if (value) help = "Do not c" + help.substr(1);  // "Check ..."
+  verb.add_flag_callback(
+          o.program, [&value, given = !value] { value = given; }, help)
+      ->group(kQueryGroup);
+}
+template <class Other>
+void add(CLI::App&, const RequestOption&, Other&) {}  // no option of the program is of such a type
+
 }  // namespace
 
 void addQueryOptions(CLI::App& verb, CertifiedRequest& request) {
-  const auto number = [&](const std::string& name, double& value, const std::string& help) {
-    verb.add_option(name, value, help)->check(requireNotNegative)->group(kQueryGroup)->capture_default_str();
-  };
-  number("--margin", request.margin, "Nearer than this counts as touching, in m");
-  number("--tolerance-time", request.tolerance_time, "Wanted width of the bracket of the contact time");
-  number("--tolerance-distance", request.tolerance_distance,
-         "A gap below this, in m, may be taken for a contact that is not certain");
-  verb.add_option("--budget", request.work_budget, "Tests after which the answer is 'undecided'; 0: no limit")
-      ->group(kQueryGroup)
-      ->capture_default_str();
-  verb.add_flag("--ignore-initial-contact", request.ignore_initial_contact,
-                "Pairs that touch at t = 0 may separate; they are watched from then on. So may pairs that are within "
-                "their margin then")
-      ->group(kQueryGroup);
-  verb.add_flag_callback(
-          "--no-self", [&request] { request.check_self = false; }, "Do not check links against links")
-      ->group(kQueryGroup);
-  verb.add_flag_callback(
-          "--no-scene", [&request] { request.check_scene = false; }, "Do not check links against obstacles")
-      ->group(kQueryGroup);
+  forEachRequestOption([&](const RequestOption& option, auto member) {
+    if (option.program) add(verb, option, request.*member);
+  });
 }
 
 CLI::Option* addClearanceOptions(CLI::App& verb, bool& wanted, ClearanceRequest& request) {

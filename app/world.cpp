@@ -163,6 +163,14 @@ std::string verifierArguments(const WorldOptions& o) {
   return text;
 }
 
+SceneOptions sceneOptions(const WorldOptions& options) {
+  SceneOptions out = sceneOptions(options.robot);
+  out.unknown_cells = options.unknown_cells;
+  out.point_radius = options.point_radius;
+  out.scale = options.scale;
+  return out;
+}
+
 World::World(const WorldOptions& options)
     : options_(options),
       pairs_(readPairSettings(options.pairs)),
@@ -190,7 +198,7 @@ LinkPairReport World::provePairs(double margin) {
     search.margin = margin;
     const LinkPairReport report = classify(robot, search);
     robot.proofs = report.proofs;
-    for (const std::string& doubt : doubtsOf(report, margin)) robot.notes.push_back(doubt);
+    for (const std::string& doubt : doubtsOf(*robot.tree, report, margin)) robot.notes.push_back(doubt);
     return report;
   }
   // Which pairs always touch is no matter of the margin: what only comes near stays checked.
@@ -216,19 +224,19 @@ LinkPairReport World::provePairs(double margin) {
   return report;
 }
 
-void World::provePairsFor(const CertifiedRequest& request) {
+void World::open(const CertifiedRequest& request) {
+  readRobot();
   const bool allowed = !options_.robot.srdf.empty() && request.check_self;
   if (allowed || !options_.auto_srdf.empty()) provePairs(request.margin);
+  readScene();
 }
 
 void World::readScene() {
   const KinematicTree& tree = *robot.tree;
   std::vector<Scene> scenes;
-  SceneOptions carried_options = sceneOptions(options_.robot);
-  carried_options.unknown_cells = options_.unknown_cells;
-  carried_options.point_radius = options_.point_radius;
-  SceneOptions scene_options = carried_options;
-  scene_options.scale = options_.scale;
+  const SceneOptions scene_options = sceneOptions(options_);
+  SceneOptions carried_options = scene_options;
+  carried_options.scale = 1;
   for (const std::string& path : options_.scenes) scenes.push_back(loadScene(path, scene_options));
   attachments = readAttachments(options_.robot, tree, carried_options, scenes);
   scene = combineScenes(scenes, tree);

@@ -45,13 +45,19 @@ std::string verifierArguments(const WorldOptions& options);
 /// A word of a shell's command.
 std::string shellWord(const std::string& word);
 
-/// Reads and sets up what the options name. The steps are separate, so that a verb can read its own input or measure
-/// time between them; they are to be called in this order.
+/// The scene's options; what links carry has the same, but for the scale.
+SceneOptions sceneOptions(const WorldOptions& options);
+
+/// Reads and sets up what the options name: open(), or its steps, in their order, where a verb measures their time.
 class World {
  public:
   /// @param options  must outlive this object.
   /// @throws as readPairSettings().
   explicit World(const WorldOptions& options);
+
+  /// Reads the robot, proves pairs of links where the request's queries make use of that, and reads the obstacles.
+  /// @throws as the steps below.
+  void open(const CertifiedRequest& request);
 
   /// Reads the robot and the pairs that its SRDF allows.
   /// @throws as loadUrdf() and loadSrdf(), and std::invalid_argument for a link that can't be made solid.
@@ -61,8 +67,6 @@ class World {
   /// --auto-srdf is written.
   /// @param margin  m.
   LinkPairReport provePairs(double margin);
-  /// The same, where queries of links against links make use of it.
-  void provePairsFor(const CertifiedRequest& request);
   /// Reads the obstacles and what links carry.
   /// @throws as loadScene() and parseAttachment(), and std::invalid_argument for a --solid that names nothing.
   void readScene();

@@ -139,7 +139,8 @@ class Lines {
   /// Nine numbers near a rotation.
   void rotation(double numbers[9]) {
     for (int k = 0; k < 9; ++k) numbers[k] = number();
-    if (!mayBeRotation(numbers)) fail("no rotation is within 2^-49 of the nine numbers");
+    if (!mayBeRotation(numbers))
+      fail("the nine numbers are no rotation's: R R^T is more than 2^-47 off the identity, or det R is not above 0");
   }
   double notNegative() {
     const double value = number();

@@ -10,6 +10,8 @@ namespace verify {
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180;
+constexpr const char* kHowPlansAreMade =
+    "; its plans have a column for each variable, as `fcl_artic certify --out FILE.csv` writes them";
 
 std::string shortDecimal(double x) {
   char text[40];
@@ -94,7 +96,8 @@ Columns columnsOf(const World& world, const Plan& plan) {
   const std::set<std::string> robot = plan.robot.empty() ? known : std::set(plan.robot.begin(), plan.robot.end());
   for (std::size_t k = 0; k < plan.columns.size(); ++k)
     if (!isOf(robot, k) && !isOf(known, k))
-      throw BadInput("'" + plan.title + "': the column " + inQuotes(plan.columns[k]) + " is no variable of the world");
+      throw BadInput("'" + plan.title + "': the column " + inQuotes(plan.columns[k]) + " is no variable of the world" +
+                     kHowPlansAreMade);
   for (const auto& [name, of] : columns.variables)
     if (of.position == Columns::kNone || (columns.velocities && of.velocity == Columns::kNone) ||
         (columns.accelerations && of.acceleration == Columns::kNone))

@@ -113,7 +113,7 @@ void Xml::refuse(const Element& e, const std::string& why) const {
 }
 
 void Xml::only(const Element& e, const std::set<std::string>& attributes, const std::set<std::string>& children,
-               const std::set<std::string>& passed_over) const {
+               const std::set<std::string>& passed_over, Text text) const {
   std::set<std::string> seen;
   for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
     const std::string name = a->Name();
@@ -123,6 +123,7 @@ void Xml::only(const Element& e, const std::set<std::string>& attributes, const 
   }
   for (const tinyxml2::XMLNode* node = e.FirstChild(); node != nullptr; node = node->NextSibling()) {
     if (node->ToComment() != nullptr) continue;
+    if (node->ToText() != nullptr && text == Text::passed_over) continue;
     const Element* const child = node->ToElement();
     if (child == nullptr) refuse(e, "there is text in it");
     if (children.count(child->Name()) == 0 && passed_over.count(child->Name()) == 0)

@@ -30,9 +30,10 @@ class Xml {
   const Element& robot() const { return *robot_; }
 
   /// Refuses an attribute that is not listed, or that is there twice, and a child that is neither in `children` nor in
-  /// `passed_over`; also text.
+  /// `passed_over`; also text, unless that is passed over.
+  enum class Text { refused, passed_over };
   void only(const Element& e, const std::set<std::string>& attributes, const std::set<std::string>& children = {},
-            const std::set<std::string>& passed_over = {}) const;
+            const std::set<std::string>& passed_over = {}, Text text = Text::refused) const;
   /// The one child of that name, or null; two are refused.
   const Element* one(const Element& e, const char* name) const;
   std::string attribute(const Element& e, const char* name) const;

@@ -26,6 +26,7 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
+#include "report/request_json.h"
 #include "text/one_line.h"
 #include "threads/parallel.h"
 
@@ -98,7 +99,6 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
   for (LinkId link = 0; link < read.robot.tree->numLinks(); ++link) links.push_back(read.robot.tree->linkName(link));
 
   const std::string common = obstaclesHash(read.scene, read.scene.obstacles.size() - read.attachments.size());
-  const CertifiedRequest& r = o.request;
   Json scene_names = Json::object();
   scene_names["count"] = scenes.size();
   scene_names["sha256"] = certificate::sha256Text(scenes.hash() + common);
@@ -107,26 +107,19 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
     Json& names = scene_names["names"] = Json::array();
     for (std::size_t s = 0; s < scenes.size(); ++s) names.push_back(scenes.name(s));
   }
+  Json request = requestJson(o.request);
+  request.update({{"scale", world.scale},
+                  {"point_radius", world.point_radius},
+                  {"unknown_cells", world.unknown_cells},
+                  {"ignore_limits", o.columns.ignore_limits},
+                  {"limit_tolerance", o.columns.limit_tolerance},
+                  {"turns", static_cast<int>(o.columns.turns)},
+                  {"certificates", o.certificates}});
   return {{"version", FCL_ARTIC_VERSION},
           {"robot", {{"name", read.robot.tree->name()}, {"sha256", robotHash(read)}, {"links", links}}},
           {"edges", {{"count", edges.size()}, {"trajectories", edges.areTrajectories()}, {"sha256", edges.hash()}}},
           {"scenes", scene_names},
-          {"request",
-           {{"mode", r.mode == ContactMode::any ? "any" : "first"},
-            {"margin", r.margin},
-            {"tolerance_time", r.tolerance_time},
-            {"tolerance_distance", r.tolerance_distance},
-            {"work_budget", r.work_budget},
-            {"ignore_initial_contact", r.ignore_initial_contact},
-            {"check_self", r.check_self},
-            {"check_scene", r.check_scene},
-            {"scale", world.scale},
-            {"point_radius", world.point_radius},
-            {"unknown_cells", world.unknown_cells},
-            {"ignore_limits", o.columns.ignore_limits},
-            {"limit_tolerance", o.columns.limit_tolerance},
-            {"turns", static_cast<int>(o.columns.turns)},
-            {"certificates", o.certificates}}},
+          {"request", request},
           {"cut",
            {{"scenes", scenes.size()},
             {"edges", edges.size()},
@@ -299,17 +292,11 @@ struct Outcome {
 Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks& ranks,
                       std::optional<RunFolder>& folder) {
   World world(world_options);
-  world.readRobot();
-  world.provePairsFor(o.request);
+  world.open(o.request);
   const KinematicTree& tree = *world.robot.tree;
   o.columns.state = parseValues(tree, o.state, "--state");
   EdgeSource edges(tree, o.edges, o.columns);
-  world.readScene();
-  SceneOptions scene_options = sceneOptions(world_options.robot);
-  scene_options.unknown_cells = world_options.unknown_cells;
-  scene_options.point_radius = world_options.point_radius;
-  scene_options.scale = world_options.scale;
-  const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, scene_options);
+  const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, sceneOptions(world_options));
   folder.emplace(o.out, describe(world_options, world, o, edges, scenes));
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   Stage stage(world, scenes, !o.quiet);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "request_json.h"
 #include "stage2.h"
 #include "text/one_line.h"
 
@@ -179,18 +180,6 @@ Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
           {"nearest2", vectorJson(c.nearest2)},
           {"approach_speed", c.approach_speed},
           {"feature", toString(c.feature)}};
-}
-
-Json requestJson(const CertifiedRequest& request) {
-  return {{"tolerance_time", request.tolerance_time},
-          {"tolerance_distance", request.tolerance_distance},
-          {"margin", request.margin},
-          {"check_scene", request.check_scene},
-          {"check_self", request.check_self},
-          {"every_pair", request.mode == ContactMode::firstOfEveryPair},
-          {"max_contacts", request.max_contacts},
-          {"budget", request.work_budget},
-          {"ignore_initial_contact", request.ignore_initial_contact}};
 }
 
 Json neighboursJson(const CertifiedResult& result) {

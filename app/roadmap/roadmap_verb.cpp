@@ -35,12 +35,6 @@ struct RoadmapVerb {
   bool valid_only = false, any = false;
 };
 
-/// Robot and allowed pairs, without a scene.
-void readRobot(World& world, const RoadmapVerb& o) {
-  world.readRobot();
-  world.provePairsFor(o.request);
-}
-
 void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
   for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
 }
@@ -106,11 +100,10 @@ void removeEarlier(RoadmapVerb& o) {
 int make(RoadmapVerb& o) {
   removeEarlier(o);
   World world(o.world);
-  readRobot(world, o);
+  world.open(o.request);
   const KinematicTree& tree = *world.robot.tree;
   if (!o.given.empty()) o.make.given = readConfigurations(tree, o.given);
   judgeLimits(tree, "given configuration", o.make.given.size(), [&](std::size_t i) { return o.make.given[i]; });
-  world.readScene();
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   const auto begin = Clock::now();
@@ -127,11 +120,10 @@ int make(RoadmapVerb& o) {
 int certify(RoadmapVerb& o) {
   removeEarlier(o);
   World world(o.world);
-  readRobot(world, o);
+  world.open(o.request);
   Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
   judgeLimits(*world.robot.tree, "vertex", roadmap.numVertices(),
               [&](std::size_t i) { return roadmap.configuration(i); });
-  world.readScene();
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   bool proven = false;  // something of all edges, before

@@ -55,6 +55,7 @@ from ._fcl_artic import (
     Result,
     Robot,
     Scene,
+    ToolDeviation,
     World,
     __version__,
     box,
@@ -82,6 +83,7 @@ from ._fcl_artic import (
     plane,
     read_srdf,
     sphere,
+    tool_deviation,
     triangle,
     unit_notes,
 )
@@ -142,6 +144,7 @@ __all__ = [
     "Robot",
     "Scene",
     "Status",
+    "ToolDeviation",
     "VisibilityExecutor",
     "VisibilityMode",
     "VisibilityRule",
@@ -173,6 +176,7 @@ __all__ = [
     "pose",
     "read_srdf",
     "sphere",
+    "tool_deviation",
     "triangle",
     "unit_notes",
 ]

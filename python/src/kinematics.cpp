@@ -7,6 +7,7 @@
 
 #include "enums.h"
 #include "fcl_artic/in_between.h"
+#include "fcl_artic/tool_line.h"
 #include "recipe.h"
 #include "text/nearest_name.h"
 
@@ -461,6 +462,68 @@ void bindTrajectory(py::module_& module) {
            [](const py::object& self) { return py::cast<const MadeTrajectory&>(self).recipe.reduced(self); });
 }
 
+ToolDeviation toolDeviationOf(py::handle tree, py::handle motion, py::handle link, py::handle tool,
+                              double tolerance_distance, double tolerance_angle, std::uint64_t work_budget) {
+  const auto of = treeOf(tree);
+  const LinkId id = linkOf(*of, link);
+  ToolLineRequest request;
+  request.tool = poseOf(tool, "tool");
+  request.tolerance_distance = tolerance_distance;
+  request.tolerance_angle = tolerance_angle;
+  request.work_budget = work_budget;
+  if (py::isinstance<JointMotion>(motion)) return toolDeviation(*of, py::cast<const JointMotion&>(motion), id, request);
+  if (py::isinstance<JointTrajectory>(motion)) {
+    return toolDeviation(*of, py::cast<const JointTrajectory&>(motion), id, request);
+  }
+  typeError("motion is no JointMotion or JointTrajectory but " + typeName(motion));
+}
+
+void bindToolLine(py::module_& module) {
+  using D = ToolDeviation;
+  py::class_<D>(module, "ToolDeviation", "How far a tool leaves the straight line between its ends: proven brackets.")
+      .def_readonly("distance_lower", &D::distance_lower)
+      .def_readonly("distance_upper", &D::distance_upper)
+      .def_readonly("distance_time", &D::distance_time)
+      .def_readonly("angle_lower", &D::angle_lower)
+      .def_readonly("angle_upper", &D::angle_upper)
+      .def_readonly("angle_time", &D::angle_time)
+      .def_readonly("length", &D::length)
+      .def_readonly("within_tolerance", &D::within_tolerance)
+      .def("certainly_keeps", &D::certainlyKeeps, "Whether the tool certainly keeps as near as that, m and rad.",
+           py::arg("distance"), py::arg("angle"))
+      .def("certainly_leaves", &D::certainlyLeaves, "Whether the tool is farther off at some time, m or rad.",
+           py::arg("distance"), py::arg("angle"))
+      .def("__repr__",
+           [](const D& d) {
+             return py::str("<ToolDeviation: at most {:.6g} m, {:.6g} rad>").format(d.distance_upper, d.angle_upper);
+           })
+      .def(py::pickle(
+          [](const D& d) {
+            return py::make_tuple(d.distance_lower, d.distance_upper, d.distance_time, d.angle_lower, d.angle_upper,
+                                  d.angle_time, d.length, d.within_tolerance);
+          },
+          [](const py::tuple& s) {
+            D d;
+            d.distance_lower = py::cast<double>(s[0]);
+            d.distance_upper = py::cast<double>(s[1]);
+            d.distance_time = py::cast<double>(s[2]);
+            d.angle_lower = py::cast<double>(s[3]);
+            d.angle_upper = py::cast<double>(s[4]);
+            d.angle_time = py::cast<double>(s[5]);
+            d.length = py::cast<double>(s[6]);
+            d.within_tolerance = py::cast<bool>(s[7]);
+            return d;
+          }));
+  const ToolLineRequest usual;
+  module.def(
+      "tool_deviation", &toolDeviationOf,
+      "How far a tool leaves the straight line between its poses at a motion's ends, proven: for welding along a\n"
+      "line while joints go by splines. `tool` is its frame in the link's. Says nothing of contacts.",
+      py::arg("tree"), py::arg("motion"), py::arg("link"), py::kw_only(), py::arg("tool") = py::none(),
+      py::arg("tolerance_distance") = usual.tolerance_distance, py::arg("tolerance_angle") = usual.tolerance_angle,
+      py::arg("work_budget") = usual.work_budget);
+}
+
 }  // namespace
 
 Tree treeInBuilding(std::string name) {
@@ -531,6 +594,7 @@ void bindKinematics(py::module_& module) {
   bindTree(module);
   bindMotion(module);
   bindTrajectory(module);
+  bindToolLine(module);
 }
 
 }  // namespace fcl_artic::python

@@ -7,6 +7,7 @@
 #include "array.h"
 #include "collected.h"
 #include "enums.h"
+#include "query/request_options.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic::python {
@@ -78,31 +79,21 @@ const std::vector<Option<RedonOptions>>& redonOptions() {
 
 const std::vector<Option<Request>>& requestOptions() {
   using R = Request;
-  using C = CertifiedRequest;
-  const auto of = [](const char* name, auto member) { return option<R>(name, kRequest, member); };
-  static const std::vector<Option<R>> options{
-      of("mode", &C::mode),
-      {"max_contacts",
-       [](R& r, py::handle v) {
-         r.request.max_contacts = countOf(v, "max_contacts");
-         r.most_contacts_chosen = true;
-       },
-       [](const R& r) { return py::cast(r.request.max_contacts); }},
-      of("tolerance_time", &C::tolerance_time),
-      of("tolerance_distance", &C::tolerance_distance),
-      of("margin", &C::margin),
-      of("added_margin", &C::added_margin),
-      of("check_scene", &C::check_scene),
-      of("check_self", &C::check_self),
-      of("ignore_initial_contact", &C::ignore_initial_contact),
-      of("certificate", &C::certificate),
-      of("visibility", &C::visibility),
-      of("method", &C::method),
-      of("redon", &C::redon),
-      of("work_budget", &C::work_budget),
-      of("measure_times", &C::measure_times),
-      option<R>("progress", kItself, &R::progress),
-      {"request", [](R&, py::handle) {}, nullptr}};  // readRequest() has begun with it
+  static const std::vector<Option<R>> options = [] {
+    std::vector<Option<R>> all;
+    forEachRequestOption([&](const RequestOption& o, auto member) {
+      all.push_back(option<R>(o.name, kRequest, member));
+      all.back().help = o.help;
+      if (o.name != std::string("max_contacts")) return;
+      all.back().set = [set = all.back().set](R& r, py::handle value) {
+        set(r, value);
+        r.most_contacts_chosen = true;
+      };
+    });
+    all.push_back(option<R>("progress", kItself, &R::progress));
+    all.push_back({"request", [](R&, py::handle) {}, nullptr});  // readRequest() has begun with it
+    return all;
+  }();
   return options;
 }
 
@@ -150,7 +141,7 @@ void bindOptions(Class& bound, const std::vector<Option<T>>& options) {
     if (!option.get) continue;
     bound.def_property(
         option.name, [get = option.get](const T& self) { return get(self); },
-        [set = option.set](T& self, py::handle value) { set(self, value); });
+        [set = option.set](T& self, py::handle value) { set(self, value); }, option.help);
   }
 }
 

@@ -50,6 +50,7 @@ struct Option {
   const char* name;
   std::function<void(T&, py::handle)> set;
   std::function<py::object(const T&)> get;  ///< empty: it is no property
+  const char* help = "";                    ///< the property's docstring, where docstrings.cpp has none
 };
 
 /// Throws the TypeError for a keyword that no function of this name takes.

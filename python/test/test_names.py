@@ -48,6 +48,9 @@ REACHABLE = {
     "VisibilityStatistics": "Result.statistics",
     "QueryStatistics": "Result.statistics",
     "ClearanceRequest": "World.clearance",  # its options
+    "ToolLineRequest": "tool_deviation",  # its options
+    "ToolDeviation": "ToolDeviation",
+    "toolDeviation": "tool_deviation",
     "Clearance": "Clearance",
     "Certificate": "Certificate",
     # manager.h, link_pairs.h
@@ -83,6 +86,8 @@ REACHABLE = {
     "Robot": "Robot",
     "UrdfOptions": "load_urdf",  # its options
     "loadUrdf": "load_urdf",
+    "VirtualJoint": "load_urdf",  # its option virtual_joint
+    "loadVirtualJoint": "load_urdf",
     "PlacedRobot": "combine_robots",
     "combineRobots": "combine_robots",
     "reachUpper": "Robot.reach",

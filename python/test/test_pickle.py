@@ -47,6 +47,9 @@ def test_other_answers_keep_all_their_fields(shared_world, robot, miss):
     clearance = shared_world.clearance(*miss)
     copy = copied(clearance)
     assert repr(copy) == repr(clearance) and copy.lower == clearance.lower and copy.pair == clearance.pair
+    line = fcl_artic.tool_deviation(robot, fcl_artic.JointMotion.linear(robot, *miss), robot.tree.links[-1])
+    copy = copied(line)
+    assert repr(copy) == repr(line) and copy.distance_lower == line.distance_lower and copy.within_tolerance
     answers = shared_world.check_many(*random_motions(robot, 20, angle=0.5))
     copy = copied(answers)
     assert np.array_equal(copy.status, answers.status) and np.array_equal(copy.pair, answers.pair)

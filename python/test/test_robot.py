@@ -120,6 +120,24 @@ def test_base_and_floating_base_place_a_robot(data):
     assert floating.dof == 13 and floating.tree.neutral[6] == 1
 
 
+def test_a_tools_line(data):
+    robot = fcl_artic.load_urdf(data / "puma560" / "puma560.urdf")
+    tool = robot.tree.links[-1]
+    motion = fcl_artic.JointMotion.linear(robot, [0, 0.5, 0, 0, 0.3, 0], [1, 0.5, 0, 0, 0.3, 0])
+    found = fcl_artic.tool_deviation(robot, motion, tool, tolerance_distance=1e-5)
+    assert 0 < found.distance_lower <= found.distance_upper <= found.distance_lower + 1e-5 and found.within_tolerance
+    ends = [robot.tree.link_pose(tool, q)[:3, 3] for q in (motion.configuration(0), motion.configuration(1))]
+    middle = robot.tree.link_pose(tool, motion.configuration(0.5))[:3, 3]
+    assert np.linalg.norm(middle - (ends[0] + ends[1]) / 2) == pytest.approx(found.distance_lower, abs=1e-4)
+    assert found.certainly_keeps(1, 3) and found.certainly_leaves(1e-3, 3) and "ToolDeviation" in repr(found)
+    by_number = fcl_artic.tool_deviation(robot, motion, len(robot.tree.links) - 1, tool=[0, 0, 0.1])
+    assert by_number.length > 0
+    with pytest.raises(TypeError, match="no JointMotion"):
+        fcl_artic.tool_deviation(robot, [0, 1], tool)
+    with pytest.raises(ValueError, match="1e-6 m"):
+        fcl_artic.tool_deviation(robot, fcl_artic.JointMotion.still(robot, np.zeros(6)), tool)
+
+
 def test_an_srdfs_virtual_joint_moves_the_base_when_asked(data):
     path = data / "puma560" / "puma560.urdf"
     root = fcl_artic.load_urdf(path).tree.links[0]

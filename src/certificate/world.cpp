@@ -395,7 +395,7 @@ class ManagedWorld {
   const char* excuse(const ManagedBody& a, const ManagedBody& b) const {
     if (a.link == b.link || (a.link < 0 && b.link < 0)) return "";
     if (a.link < 0 || b.link < 0) {
-      return !registry_.mayTouch(a, b) ? "allowed" : registry_.standStill(a, b) ? "still" : nullptr;
+      return registry_.standStill(a, b) ? "still" : registry_.mayTouch(a, b) ? nullptr : "allowed";
     }
     switch (registry_.excuseOf(a, b)) {
       case Excuse::allowed:

@@ -46,7 +46,7 @@
 #include <fcl/math/motion/triangle_motion_bound_visitor.h>
 
 #include "fcl/fcl_motion.h"
-#include "kinematics/joint_factors.h"
+#include "motion/link_motion.h"
 
 namespace fcl_artic {
 namespace {
@@ -106,54 +106,7 @@ FclLinkMotion::FclLinkMotion(const KinematicTree& tree, const JointMotion& motio
                                 ", FCL's bounds are made for joints at constant speed");
   }
 
-  std::vector<JointId> path;  // from the link up to its root
-  for (LinkId l = link; tree.parentJoint(l) >= 0; l = tree.parentLink(l)) path.push_back(tree.parentJoint(l));
-  const auto chain = std::make_shared<BodyMotion>();
-  RigidTransform fixed;
-  for (auto j = path.rbegin(); j != path.rend(); ++j) {
-    const Joint& joint = tree.joint(*j);
-    fixed = fixed * originOf(joint);
-    const auto addStep = [&](const UnitVector& axis, bool prismatic, double value, double rate) {
-      MotionElement& step = chain->elements.emplace_back();
-      step.kind = prismatic ? MotionElement::Kind::prismatic : MotionElement::Kind::revolute;
-      step.before = fixed;
-      step.axis = axis;
-      step.coefficients(0, 0) = value;
-      step.coefficients(0, 1) = rate;
-      fixed = RigidTransform();
-    };
-    for (const JointFactor& factor : factorsOf(joint)) {
-      const int v = tree.jointVariable(*j) + factor.variable;
-      const auto q = motion.variables().row(v);
-      switch (factor.kind) {
-        case JointFactor::Kind::revolute:
-        case JointFactor::Kind::prismatic: {
-          const bool prismatic = factor.kind == JointFactor::Kind::prismatic;
-          const double m = joint.mimics ? joint.mimic.multiplier : 1;
-          addStep(factor.axis, prismatic, m * q[0], m * q[1]);
-          // A step of its own: the error of a sum that cancels would be far larger than the sum tells.
-          if (joint.mimics && joint.mimic.offset != 0) addStep(factor.axis, prismatic, joint.mimic.offset, 0);
-          break;
-        }
-        case JointFactor::Kind::slide:
-          for (int k = 0; k < 3; ++k) {
-            addStep(UnitVector::along(k), true, motion.variables()(v + k, 0), motion.variables()(v + k, 1));
-          }
-          break;
-        case JointFactor::Kind::turn: {  // about one axis, applied to the orientation at the start
-          const Vector3d w = motion.variables().block<3, 1>(v, 1);
-          const std::optional<UnitVector> axis = UnitVector::within3Ulps(w);
-          if (axis) addStep(*axis, false, 0, lengthAlong(*axis, w));
-          using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-          const Eigen::Matrix3d R0 = RowMajor::Map(&motion.orientations()[9 * quaternionNumber(tree, *j)]);
-          fixed = fixed * RigidTransform(Rotation::within12Ulps(R0, 1e-12).value(), Vector3d::Zero());
-          break;
-        }
-      }
-    }
-  }
-  chain->after = fixed * rigid;
-  chain_ = chain;
+  chain_ = std::make_shared<BodyMotion>(linkMotion(tree, motion, link, rigid));
 
   const auto addSegment = [this](double length, double rate) {
     speed_ += angle_ * length + rate;

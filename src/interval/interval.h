@@ -5,7 +5,7 @@
 //
 // The pair (-lo, hi) is kept instead of (lo, hi): both are bounds from above, so that one direction of rounding serves
 // both, and a sum of intervals is one instruction. Ends lie in [-2^1024, 2^1024) as (-lo, hi) see it: an overflow gives
-// an infinite end, which is true, and no operation makes NaN (doc/INTERVALS.md).
+// an infinite end, which is true, and no operation makes NaN (doc/REDON2004.md).
 #pragma once
 
 #include "interval/rounding.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Functions that make a rotation of a rotation vector (doc/INTERVALS.md, "Turns"). Under RoundUpward, as all intervals.
+// Functions that make a rotation of a rotation vector (doc/REDON2004.md, "Turns"). Under RoundUpward, as all intervals.
 #pragma once
 
 #include "interval/sine_cosine.h"

@@ -20,7 +20,7 @@ using Xml = tinyxml2::XMLElement;
 
 class Collada {
  public:
-  Collada(const Source& source, bool turn) : source_(source) {
+  Collada(const Source& source, bool turn) : source_(source), yield_(source) {
     const std::string wrong = text::parseXml(withoutMark(source), "COLLADA", "a COLLADA file", xml_);
     if (!wrong.empty()) source.refuse(wrong);
     root_ = xml_.RootElement();
@@ -44,6 +44,7 @@ class Collada {
                  !isPlainLibrary(name)) {
         refuseUnknown(*e);
       }
+      if (isOneOf(name, {"library_geometries", "library_visual_scenes", "library_nodes"})) assetOf(*e, asset_);
     }
     if (!scene) source_.refuse("has no <scene>, which says what of it is shown and where");
     const Xml* shown_scene =
@@ -216,9 +217,15 @@ class Collada {
     return out;
   }
 
-  /// The product of a node's transforms, in their order. @param[out] unread  a transform that is not read.
-  Eigen::Affine3d poseOf(const Xml& node, const Xml*& unread) const {
+  struct Pose {
     Eigen::Affine3d M = Eigen::Affine3d::Identity();
+    const Xml* unread = nullptr;  ///< a transform that is not read
+  };
+
+  /// The product of a node's transforms, in their order.
+  Pose poseOf(const Xml& node) const {
+    Pose pose;
+    Eigen::Affine3d& M = pose.M;
     for (const Xml* e = node.FirstChildElement(); e; e = e->NextSiblingElement()) {
       if (is(*e, "translate")) {
         const std::vector<double> x = numbersOf(*e, 3);
@@ -241,23 +248,26 @@ class Collada {
         own.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(x.data());
         M = M * own;
       } else if (is(*e, "skew") || is(*e, "lookat")) {
-        unread = e;
+        pose.unread = e;
       }
     }
-    return M;
+    return pose;
   }
 
   /// @param unread  a transform above that is not read; null: none. It counts where there is geometry below only:
   /// cameras have them.
   void addNode(const Xml& node, const Eigen::Affine3d& M_parent, const Xml* unread, int depth) {
-    constexpr int kDeepest = 100, kMostNodes = 1000000;
-    if (depth > kDeepest || ++nodes_ > kMostNodes)
-      refuse(node, "is one of too many: nodes may refer to each other in a circle");
-    const Eigen::Affine3d M = M_parent * poseOf(node, unread);
+    constexpr int kDeepest = 100;
+    if (depth > kDeepest) refuse(node, "is one of too many: nodes may refer to each other in a circle");
+    const auto [pose, is_new] = poses_.try_emplace(&node);  // once: places may refer to it
+    if (is_new) pose->second = poseOf(node);
+    if (pose->second.unread) unread = pose->second.unread;
+    const Eigen::Affine3d M = M_parent * pose->second.M;
     eachChild(node,
               {"asset", "translate", "scale", "rotate", "matrix", "skew", "lookat", "node", "instance_node",
                "instance_geometry", "instance_controller", "instance_camera", "instance_light", "extra"},
               [&](const Xml& e) {
+                yield_.add(16);  // to go through it takes as long, and it has 4 bytes or more
                 if (is(e, "asset")) assetOf(node, asset_);
                 if (is(e, "node")) addNode(e, M, unread, depth + 1);
                 if (is(e, "instance_node")) addNode(target(e, "url", {"node"}), M, unread, depth + 1);
@@ -268,7 +278,7 @@ class Collada {
                 const Xml& geometry = target(e, "url", {"geometry"});
                 const auto [part, is_new] = parts_.try_emplace(&geometry);
                 if (is_new) readGeometry(geometry, part->second);
-                addPart(part->second, M, source_, soup_);
+                addPart(part->second, M, source_, yield_, soup_);
               });
   }
 
@@ -395,10 +405,12 @@ class Collada {
     });
     if (!position) refuse(vertices, "has no input POSITION");
     const Xml& source = target(*position, "source", {"source"});
+    if (source.FirstChildElement("asset")) assetOf(source, asset_);
     const Xml* common = source.FirstChildElement("technique_common");
     if (!common) refuse(source, "has no <technique_common>");
+    if (common->NextSiblingElement("technique_common")) refuse(source, "has more than one <technique_common>");
     const Xml& accessor = *only(*common, "accessor", {});
-    const std::vector<double> values = valuesOf(target(accessor, "source", {"float_array", "int_array"}));
+    const std::vector<double>& values = valuesOf(target(accessor, "source", {"float_array", "int_array"}));
     const std::size_t count = countOf(accessor, "count"), offset = countOf(accessor, "offset", 0),
                       stride = countOf(accessor, "stride", 1);
     std::size_t columns[3], column = 0;
@@ -420,6 +432,7 @@ class Collada {
     if (offset > values.size() || (count > 0 && (values.size() - offset) / stride < count)) {
       refuse(accessor, "has more entries than its array");
     }
+    yield_.add(count);
     for (std::size_t i = 0; i < count; ++i) {
       const double* at = values.data() + offset + i * stride;
       part.vertices.emplace_back(at[columns[0]], at[columns[1]], at[columns[2]]);
@@ -428,8 +441,11 @@ class Collada {
     return entry->second;
   }
 
-  std::vector<double> valuesOf(const Xml& array) const {
-    std::vector<double> values = numbersOf(array);
+  /// Read once: many sources may refer to it.
+  const std::vector<double>& valuesOf(const Xml& array) {
+    const auto [entry, is_new] = values_.try_emplace(&array);
+    std::vector<double>& values = entry->second;
+    if (is_new) values = numbersOf(array);
     const std::size_t count = countOf(array, "count");
     if (values.size() != count)
       refuse(array, "says that it has " + std::to_string(count) + " numbers, it has " + std::to_string(values.size()));
@@ -443,9 +459,11 @@ class Collada {
   Asset asset_;
   Eigen::Affine3d world_ = Eigen::Affine3d::Identity();
   std::map<const Xml*, Part> parts_;
-  std::map<const Xml*, std::size_t> lengths_;  ///< of lists of vertices
+  std::map<const Xml*, std::size_t> lengths_;         ///< of lists of vertices
+  std::map<const Xml*, std::vector<double>> values_;  ///< of arrays
+  std::map<const Xml*, Pose> poses_;                  ///< of nodes
+  Yield yield_;
   TriangleSoup soup_;
-  int nodes_ = 0;
 };
 
 }  // namespace

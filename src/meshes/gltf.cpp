@@ -37,7 +37,7 @@ std::uint32_t little32(std::string_view bytes, std::size_t at) {
 
 class Gltf {
  public:
-  Gltf(const Source& source, bool turn) : source_(source) {
+  Gltf(const Source& source, bool turn) : source_(source), yield_(source) {
     noteUpAxis('y', false, "glTF", turn, source);
     if (turn) world_.linear() = turnUp('y');
     std::string_view text = source.content;
@@ -114,6 +114,9 @@ class Gltf {
     if (!version || !version->is_string() || version->get<std::string>().substr(0, 2) != "2.") {
       source_.refuse("is no glTF of version 2");
     }
+    checkKeys(*asset, {"version", "minVersion", "generator", "copyright"}, "asset");
+    if (asset->contains("minVersion") && (*asset)["minVersion"] != "2.0")
+      source_.refuse("needs glTF of version " + shown((*asset)["minVersion"].dump()) + "; 2.0 is read");
     checkKeys(
         root_,
         {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "materials", "textures",
@@ -280,7 +283,7 @@ class Gltf {
         const std::size_t mesh = indexOf(node, "mesh", "meshes", what);
         const auto [part, is_new] = parts_.try_emplace(mesh);
         if (is_new) readMesh(mesh, part->second);
-        addPart(part->second, M, source_, soup_);
+        addPart(part->second, M, source_, yield_, soup_);
       }
       if (!node.contains("children")) continue;
       for (const std::size_t child : indicesOf(node, "children", "nodes", what)) open.emplace_back(child, M);
@@ -339,13 +342,14 @@ class Gltf {
     addPrimitive(countOf(primitive, "mode", 4, what), corners, what, part);
   }
 
-  void addPrimitive(std::size_t mode, const std::vector<std::size_t>& c, const std::string& what, Part& part) const {
+  void addPrimitive(std::size_t mode, const std::vector<std::size_t>& c, const std::string& what, Part& part) {
     enum { points, lines, loop, strip, triangles, triangle_strip, triangle_fan };
     const std::size_t n = c.size(), least = mode == points ? 1 : mode <= strip ? 2 : 3;
     if (mode > triangle_fan) source_.refuse(what + " has the unknown mode " + std::to_string(mode));
     if (n < least || (mode == lines && n % 2 != 0) || (mode == triangles && n % 3 != 0)) {
       source_.refuse(what + " has " + std::to_string(n) + " corners, which make no whole number of its parts");
     }
+    yield_.add(mode == triangle_strip || mode == triangle_fan ? 3 * n : n);
     if (mode == points) part.points += n;
     if (mode == lines) part.lines += n / 2;
     if (mode == loop || mode == strip) ++part.lines;
@@ -384,6 +388,7 @@ class Gltf {
         (count > 0 && (bytes.size() - offset < width || (bytes.size() - offset - width) / stride < count - 1))) {
       source_.refuse(what + " goes beyond its bufferView");
     }
+    yield_.add(count * columns);
     values.clear();
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < columns; ++k) {
@@ -417,7 +422,10 @@ class Gltf {
       bytes = bytes_;
     } else {
       if (!buffer["uri"].is_string()) source_.refuse("uri of " + what + " is no text");
-      if (is_new) own = contentOf(buffer["uri"].get<std::string>(), what);
+      if (is_new) {
+        own = contentOf(buffer["uri"].get<std::string>(), what);
+        yield_.addBytes(own.size());
+      }
       bytes = own;
     }
     const std::size_t length = countOf(buffer, "byteLength", what);
@@ -491,6 +499,7 @@ class Gltf {
   std::vector<bool> is_child_;
   std::map<std::size_t, Part> parts_;
   std::map<std::size_t, std::string> buffers_;
+  Yield yield_;
   TriangleSoup soup_;
 };
 

@@ -5,13 +5,18 @@
 
 namespace fcl_artic::meshes {
 
-void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, TriangleSoup& soup) {
-  constexpr std::size_t kMostVertices = 100000000, kMostTriangles = 100000000;
+void Yield::add(std::size_t count) {
+  made_ += count;
+  if (made_ <= kMostCopies + kMostOfByte * bytes_) return;
+  source_.refuse("unfolds to too much: it is of " + std::to_string(bytes_) + " bytes, and shows more than " +
+                 std::to_string(kMostCopies + kMostOfByte * bytes_) +
+                 " vertices and corners, as its nodes show the same meshes again and again; save it with each of them "
+                 "once");
+}
+
+void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, Yield& yield, TriangleSoup& soup) {
+  yield.add(part.vertices.size() + part.corners.size());
   const std::size_t first = soup.vertices.size();
-  if (part.vertices.size() > kMostVertices - first) source.refuse("has more than 100 million vertices");
-  if (part.corners.size() > kMostTriangles - std::min(soup.triangles.size(), kMostTriangles)) {
-    source.refuse("has more than 100 million triangles");
-  }
   for (const Eigen::Vector3d& x : part.vertices) soup.vertices.push_back(M * x);
   const bool mirrored = M.linear().determinant() < 0;
   std::vector<std::size_t> corners;

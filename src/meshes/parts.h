@@ -23,11 +23,30 @@ struct Part {
   }
 };
 
+/// Counts what is made of a file: numbers, vertices and corners that are read or placed, nodes that are gone through.
+/// Places refer to meshes, to other places and to the same bytes again, so that a small file could fill all memory. One
+/// that says each thing once makes at most 8 of its bytes: a number takes one at least, and is a corner of a strip, so
+/// three corners of a triangle, which are read and placed, as the vertices are. kMostCopies are for what it says
+/// repeatedly: about a million triangles, for which FCL's tree takes half a gigabyte.
+class Yield {
+ public:
+  explicit Yield(const Source& source) : source_(source), bytes_(source.content.size()) {}
+  /// Another file that is part of it.
+  void addBytes(std::size_t bytes) { bytes_ += bytes; }
+  /// Before they are made. @throws std::runtime_error for more than the file may make.
+  void add(std::size_t count);
+
+ private:
+  static constexpr std::size_t kMostCopies = 4000000, kMostOfByte = 8;
+
+  const Source& source_;
+  std::size_t bytes_, made_ = 0;
+};
+
 /// Adds a part at a place. Where that mirrors it, the corners of faces change their sense, so that what is outside
 /// stays so.
-/// @throws std::runtime_error as TriangleSoup::addFace(); for more vertices or triangles than 10^8: places may refer to
-/// places.
-void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, TriangleSoup& soup);
+/// @throws std::runtime_error as TriangleSoup::addFace() and Yield.
+void addPart(const Part& part, const Eigen::Affine3d& M, const Source& source, Yield& yield, TriangleSoup& soup);
 
 /// Notes which axis a file says is up, unless a file of the same notes said it before, as a robot may have many.
 /// @param axis  'x' or 'y'. @param said  by the file; else by the format's rules. @param format  such as "COLLADA".

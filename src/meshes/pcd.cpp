@@ -90,13 +90,35 @@ class Pcd {
       const bool is_new = lines.emplace(key == "COLUMNS" ? "FIELDS" : key, std::move(line)).second;
       if (!is_new) source_.refuse("has two lines '" + std::string(key) + "'");
     }
+    if (const auto version = lines.find("VERSION"); version != lines.end()) {
+      const bool known =
+          version->second.size() == 1 && isOneOf(version->second[0], {".5", "0.5", ".6", "0.6", ".7", "0.7"});
+      if (!known) source_.refuse("is of a VERSION other than .5, .6 and .7");
+    }
     readFields(lines);
+    noteUnknownFields();
     readCounts(lines);
     const auto viewpoint = lines.find("VIEWPOINT");
     if (viewpoint != lines.end() && !isIdentity(viewpoint->second)) {
       source_.note("its VIEWPOINT is not applied, points are taken as they stand in the file");
     }
     data_ = lines["DATA"].size() == 1 ? lines["DATA"][0] : std::string_view();
+  }
+
+  /// What surely is neither a place nor an extent.
+  void noteUnknownFields() const {
+    static constexpr std::string_view kPlain[] = {
+        "x",          "y",           "z",         "_",          "rgb",      "rgba",         "r",
+        "g",          "b",           "a",         "normal_x",   "normal_y", "normal_z",     "curvature",
+        "label",      "ring",        "intensity", "time",       "t",        "stamp",        "timestamp",
+        "time_stamp", "offset_time", "ambient",   "near_ir",    "noise",    "reflectivity", "reflectance",
+        "tag",        "line",        "object",    "confidence", "strength", "vp_x",         "vp_y",
+        "vp_z"};
+    std::string unknown;
+    for (const Field& f : fields_) {
+      if (!isOneOf(f.name, kPlain)) unknown += (unknown.empty() ? "'" : ", '") + f.name + "'";
+    }
+    if (!unknown.empty()) source_.note("passed over of each point: " + unknown);
   }
 
   void readFields(const std::map<std::string, Line, std::less<>>& lines) {

@@ -2,6 +2,7 @@
 // PLY: ascii, binary with either end first. A line an entry in ascii.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "meshes/readers.h"
@@ -109,6 +110,7 @@ class Ply {
     readBody([&](const PlyElement& e, const std::vector<std::vector<double>>& entry, std::uint64_t i) {
       if (e.name == "vertex") soup.vertices.push_back(place(entry));
       if (e.name == "edge") ++soup.lines;
+      noteCamera(e, entry);
       if (e.name != "face") return;
       for (const double value : entry[list]) corners.push_back(indexOf(value, i));
       ends.push_back(corners.size());
@@ -128,6 +130,7 @@ class Ply {
     Points points;
     readBody([&](const PlyElement& e, const std::vector<std::vector<double>>& entry, std::uint64_t) {
       if (e.name == "vertex") points.push_back(place(entry));
+      noteCamera(e, entry);
     });
     const std::uint64_t faces = hasFaces() ? find("face")->count : 0;
     if (faces > 0) source_.note("its faces, " + std::to_string(faces) + ", are left out: only its vertices are points");
@@ -238,6 +241,22 @@ class Ply {
     if (!unknown.empty()) source_.note("passed over of each " + e.name + ": " + unknown);
   }
 
+  /// A camera says from where points were seen, and may mean that they are to be taken over from there, as a PCD's
+  /// VIEWPOINT.
+  void noteCamera(const PlyElement& e, const std::vector<std::vector<double>>& entry) {
+    if (e.name != "camera" || camera_noted_) return;
+    static constexpr const char* kPose[] = {"view_px", "view_py", "view_pz", "x_axisx", "x_axisy", "x_axisz",
+                                            "y_axisx", "y_axisy", "y_axisz", "z_axisx", "z_axisy", "z_axisz"};
+    for (std::size_t k = 0; k < std::size(kPose); ++k) {
+      const std::size_t p = e.find(kPose[k]);
+      const double usual = k == 3 || k == 7 || k == 11;  // at the origin, with the axes of the file
+      if (p == e.properties.size() || entry[p] == std::vector<double>{usual}) continue;
+      camera_noted_ = true;
+      return source_.note(
+          "its camera is elsewhere than at the origin, which is not applied: places are taken as they stand");
+    }
+  }
+
   Eigen::Vector3d place(const std::vector<std::vector<double>>& entry) const {
     return {entry[xyz_[0]][0], entry[xyz_[1]][0], entry[xyz_[2]][0]};
   }
@@ -301,7 +320,7 @@ class Ply {
 
   const Source& source_;
   std::string_view body_;  ///< what is yet to be read
-  bool ascii_ = false, big_ = false;
+  bool ascii_ = false, big_ = false, camera_noted_ = false;
   std::vector<PlyElement> elements_;
   std::size_t xyz_[3] = {0, 0, 0};
 };

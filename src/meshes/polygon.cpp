@@ -67,7 +67,7 @@ bool holds(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vect
 
 }  // namespace
 
-std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vector3d>& corners) {
+std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vector3d>& corners, std::size_t& compared) {
   const std::size_t n = corners.size();
   std::vector<std::array<std::size_t, 3>> triangles;
   triangles.reserve(n - 2);
@@ -80,7 +80,6 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
   // any corner is cut off, so that the work ends and no edge is lost.
   std::vector<std::size_t> before(n), after(n);
   for (std::size_t i = 0; i < n; ++i) before[i] = (i + n - 1) % n, after[i] = (i + 1) % n;
-  std::size_t compared = 0;
   const auto isEar = [&](std::size_t i) {
     const Eigen::Vector2d &a = points[before[i]], &b = points[i], &c = points[after[i]];
     if (!(turn(a, b, c) > 0)) return false;

@@ -40,7 +40,8 @@ struct Scalar {
 /// Whether a number that a file gives for each point says how far the point extends.
 inline bool isExtent(std::string_view name) {
   const auto begins = [&](std::string_view start) { return name.substr(0, start.size()) == start; };
-  return name == "w" || name == "size" || name == "scale" || begins("radius") || begins("scale_") || begins("rot_");
+  return name == "w" || name == "scale" || begins("size") || begins("radius") || begins("diameter") ||
+         begins("scale_") || begins("rot_");
 }
 
 }  // namespace fcl_artic::meshes

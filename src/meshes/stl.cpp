@@ -28,7 +28,9 @@ void addStlTriangle(TriangleSoup& soup) {
   soup.triangles.emplace_back(n - 3, n - 2, n - 1);
 }
 
-TriangleSoup readBinaryStl(std::string_view content) {
+TriangleSoup readBinaryStl(const Source& source) {
+  const std::string_view content = source.content, head = content.substr(0, 80);
+  noteComment(source, head.substr(0, head.find('\0')));  // as UNITS=mm
   const std::size_t count = stlTriangles(content);
   TriangleSoup soup;
   soup.vertices.reserve(3 * count);
@@ -123,7 +125,7 @@ TriangleSoup readStl(const Source& source) {
   const bool says_text = isKeyword(Words(withoutMark(source)).next(), "solid");
   if (has_head && content.size() == stlBytes(content)) {
     if (says_text && isText(source)) source.refuse("can be read as text and as binary");
-    return readBinaryStl(content);
+    return readBinaryStl(source);
   }
   if (has_head && !says_text) {
     source.refuse("is cut short or no STL: its head says " + std::to_string(stlTriangles(content)) +

@@ -123,23 +123,38 @@ void noteOpenEnd(const Source& source) {
   source.note("its last line has no line end: the file may be cut short");
 }
 
-void noteUnits(const Source& source) {
+void noteComment(const Source& source, std::string_view line) {
+  std::string letters;
+  for (const char c : line) {
+    const char low = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    // Numbers stay whole: of a place there are three.
+    letters += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? low : ' ';
+  }
+  Words words(letters);
+  bool metres = false, units = false, place = false;
+  std::size_t numbers = 0, others_than_0 = 0;
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    double value = 0;
+    numbers += toNumber(word, value);
+    others_than_0 += value != 0;
+    while (!word.empty() && !std::isalnum(static_cast<unsigned char>(word.back()))) word.remove_suffix(1);
+    metres = metres || isOneOf(word, {"m", "meter", "meters", "metre", "metres"});
+    units = units || word.substr(0, 4) == "unit" ||
+            isOneOf(word, {"mm", "millimeter", "millimeters", "millimetre", "millimetres", "cm", "centimeter",
+                           "centimeters", "centimetre", "centimetres", "inch", "inches", "foot", "feet"});
+    place = place || isOneOf(word, {"offset", "shift", "translation", "translate", "origin"});
+  }
+  if (units && !metres) source.note("says " + shown(line) + ": lengths are taken for metres, unless a scale says else");
+  if (place && numbers >= 3 && others_than_0 > 0)
+    source.note("says " + shown(line) + ", which is not applied: places are taken as they stand");
+}
+
+void noteComments(const Source& source) {
   for (std::string_view text = source.content; !text.empty();) {
     const std::string_view line = text.substr(0, std::min(text.find_first_of("\n\r"), text.size()));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
-    Words first(line);
-    const std::string_view key = first.next();
-    if (key.substr(0, 1) != "#" && !isOneOf(key, {"comment", "obj_info", "solid"})) continue;
-    std::string letters;
-    for (const char c : line) letters += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (letters.find("unit") == letters.npos) continue;
-    std::replace_if(
-        letters.begin(), letters.end(), [](unsigned char c) { return !std::isalnum(c); }, ' ');
-    Words words(letters);
-    bool metres = false;
-    for (std::string_view word = words.next(); !word.empty(); word = words.next())
-      metres = metres || isOneOf(word, {"m", "meter", "meters", "metre", "metres"});
-    if (!metres) return source.note("says " + shown(line) + ": lengths are taken for metres, unless a scale says else");
+    const std::string_view key = Words(line).next();
+    if (key.substr(0, 1) == "#" || isOneOf(key, {"comment", "obj_info", "solid"})) noteComment(source, line);
   }
 }
 

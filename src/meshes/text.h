@@ -35,8 +35,10 @@ std::string_view withoutMark(const Source& source);
 
 /// Notes that a text does not end with a line: its last number may have lost digits.
 void noteOpenEnd(const Source& source);
-/// Notes a comment that speaks of units other than metres.
-void noteUnits(const Source& source);
+/// Notes a line that speaks of units other than metres, or of a shift by three numbers: nobody applies it.
+void noteComment(const Source& source, std::string_view line);
+/// Does so with all comments.
+void noteComments(const Source& source);
 
 /// The words of a text, over its line ends.
 class Words {

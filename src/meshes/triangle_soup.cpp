@@ -48,7 +48,7 @@ void TriangleSoup::addFace(const std::size_t* corners, std::size_t count, const 
   std::vector<Eigen::Vector3d> x;
   x.reserve(count);
   for (std::size_t k = 0; k < count; ++k) x.push_back(vertices[corners[k]]);
-  const auto cut = cutPolygon(x);
+  const auto cut = cutPolygon(x, compared);
   if (cut.empty()) {
     source.refuse("has a face of " + std::to_string(count) +
                   " corners that takes too long to cut: cut it into triangles");

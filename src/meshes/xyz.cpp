@@ -52,6 +52,7 @@ Points readXyz(const Source& source) {
       lines.refuse("has " + std::to_string(count) + " columns, the first line has " + std::to_string(columns));
     }
   }
+  if (columns > 3) source.note("of each point the first 3 numbers are read, of " + std::to_string(columns));
   noteOpenEnd(source);
   return points;
 }

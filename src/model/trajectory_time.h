@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From a piece's own time, [0, 1], to that of its trajectory, rounded outward (doc/NUMERICS.md, "Trajectories").
+// From a piece's own time, [0, 1], to that of its trajectory, rounded outward (doc/PROMISE.md, 3).
 #pragma once
 
 #include <algorithm>

@@ -110,25 +110,16 @@ VariableBounds boundVariable(const MotionElement& element) {
   return bounds;
 }
 
-/// What is known of all points of a body over [0, 1].
-struct PathBounds {
-  double speed = 0, acceleration = 0;  ///< D1, D2
-  double terms = 0;                    ///< lengths that poses are summed from
-  double ulps = 0;                     ///< error of a pose's rotation in 2^-52; of positions in 2^-52 * terms
-  double extent = 0;                   ///< no path is much longer across (only for the choice of K)
-};
-
 // Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product says what it costs. A rotation
 // about an axis or by a vector: sine and cosine, the products that make its entries, and the axis's own rounding are
 // below 40, its product with the rotations before it 9, its angle is off by less than 3 * degree + 3 = 18 times the sum
 // of its terms (Horner's scheme, and the norm of the vector).
 constexpr double kRotationUlps = 64, kAngleUlps = 18;
-// An author's rotations and positions are off by at most 1.5e-12 (Frobenius) and 5e-13 of their length.
-constexpr double kBoundedUlps = 8192;
 // Of the box at a pose: the products and sums that lead to its ends, and those of D1 and D2, twice what they come to.
 constexpr double kBoxUlps = 64;
 
-/// @param reach  largest distance of the body's points from the frame that `after` leads from.
+}  // namespace
+
 PathBounds boundPath(const BodyMotion& motion, double reach) {
   using Kind = MotionElement::Kind;
   PathBounds path;
@@ -172,11 +163,10 @@ PathBounds boundPath(const BodyMotion& motion, double reach) {
   // That D1 and D2 are rounded themselves is less than this part of them.
   const double slack = 1 + 0x1p-40;
   path.speed *= slack;
+  path.angular_speed = a * slack;
   path.acceleration = second_order ? path.acceleration * slack : kInfinity;
   return path;
 }
-
-}  // namespace
 
 int MotionElement::degree() const {
   int degree = kMaxDegree;

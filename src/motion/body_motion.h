@@ -44,6 +44,17 @@ struct BodyMotion {
   RigidTransform poseWithError(double t) const;
 };
 
+/// What is known of all points of a body over [0, 1].
+struct PathBounds {
+  double speed = 0, acceleration = 0;  ///< D1, D2
+  double angular_speed = 0;            ///< of the body, rad per unit of t
+  double terms = 0;                    ///< lengths that poses are summed from
+  double ulps = 0;                     ///< error of a pose's rotation in 2^-52; of positions in 2^-52 * terms
+  double extent = 0;                   ///< no path is much longer across (only for the choice of K)
+};
+/// @param reach  largest distance of the body's points from the frame that `after` leads from.
+PathBounds boundPath(const BodyMotion& motion, double reach);
+
 /// A direction fixed in a body, as its motion has it in the world.
 struct Heading {
   Eigen::Vector3d direction;  ///< at t = 0

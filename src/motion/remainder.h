@@ -6,18 +6,17 @@
 //   X(t) = X0 + tau X1 + tau^2 X2 + e,   |e| <= D3 d^3 / 6   (X a rotation or a position; X1 = d X', X2 = d^2/2 X'')
 #pragma once
 
+#include "numerics/constants.h"
 #include "numerics/lanes.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// 2^-52: bounds the relative error of one operation in any rounding mode.
-constexpr double kUlp = 2.220446049250313e-16;
 /// Roundings of one step of a chain; of certificate and swept boxes on top of a chain, twice what they come to; of a
 /// difference point at a pose (doc/NUMERICS.md, "Pads").
 constexpr double kStepUlps = 24, kCertificateUlps = 160, kPoseUlps = 40;
-/// Of a rotation by a vector; of a motion that its author gives with rotations proper to 1e-12.
-constexpr double kTurnUlps = 512, kBoundedUlps = 8192;
+/// Of a rotation by a vector.
+constexpr double kTurnUlps = 512;
 /// No claim is made about lengths below this, in m. It stands far above whatever underflow, gradual or flushed, can do.
 constexpr double kLeastLength = 1e-40;
 

@@ -106,8 +106,10 @@ Plan::Rows take(const Table& table, const QuantityColumns& columns, const std::v
   for (const std::string& joint : joints) {
     const auto found = std::find(columns.joints.begin(), columns.joints.end(), joint);
     if (found == columns.joints.end()) {
-      throw std::invalid_argument(fmt::format("line {}: joint '{}' has no column of its {}, which others have",
-                                              table.header_line, joint, what));
+      throw std::invalid_argument(
+          fmt::format("line {}: joint '{}' has no column of its {}, which others have "
+                      "(--skip leaves theirs out)",
+                      table.header_line, joint, what));
     }
     order.push_back(columns.at[static_cast<std::size_t>(found - columns.joints.begin())]);
   }
@@ -482,7 +484,12 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
   plan.velocities = take(table, velocities, plan.joints, "velocity");
   plan.accelerations = take(table, accelerations, plan.joints, "acceleration");
   if (!times.empty()) {
-    for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]]);
+    // A clock's seconds since 1970 say nothing of a motion, and leave few digits for it.
+    constexpr double kClock = 1e8;
+    const double first = table.rows.empty() ? 0 : table.rows[0][times[0]], begin = first >= kClock ? first : 0;
+    for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]] - begin);
+    if (begin > 0)
+      plan.notes.push_back(fmt::format("times are a clock's: they are counted from the first, {:.6f} s", begin));
   }
   if (const std::string taken = takenText(tree, table, meanings); !taken.empty()) plan.notes.push_back(taken);
   return plan;

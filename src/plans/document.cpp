@@ -171,6 +171,7 @@ std::vector<double> poseOf(const Json& transform, const std::string& where) {
 /// A joint that moves by poses, and the names of its variables.
 struct PoseJoint {
   JointType type;
+  std::string parent;  ///< the link that it moves against
   std::vector<std::string> variables;
 };
 
@@ -181,7 +182,7 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
     if (joint.type != JointType::planar && joint.type != JointType::floating) {
       refuse(fmt::format("{}: joint '{}' of robot '{}' is neither planar nor floating", where, name, tree.name()));
     }
-    PoseJoint out{joint.type, {}};
+    PoseJoint out{joint.type, joint.parent, {}};
     for (int i = 0; i < tree.numVariables(j); ++i) {
       out.variables.push_back(tree.variableName(tree.jointVariable(j) + i));
     }
@@ -191,6 +192,20 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
       fmt::format("{}: robot '{}' has no planar or floating joint '{}': an SRDF's virtual_joint of this name moves its "
                   "base (--srdf, --virtual-joint)",
                   where, tree.name(), name));
+}
+
+/// Poses are those of a joint against the link that it hangs on. A frame_id is that link's, or, as in MoveIt's
+/// messages, the root's. (MoveIt would take them over from another frame by what it knows of where that stands.)
+void requireFrame(const KinematicTree& tree, const Json& message, const PoseJoint& joint, const std::string& name,
+                  const std::string& where) {
+  const Json* header = find(message, {"header"});
+  const Json* frame = header && header->is_object() ? find(*header, {"frame_id"}) : nullptr;
+  const bool is_root = frame && *frame == tree.linkName(tree.topologicalOrder().front());
+  if (!frame || *frame == "" || *frame == joint.parent || is_root) return;
+  refuse(
+      fmt::format("{}: its poses are in the frame {} (header, frame_id), and joint '{}' moves against '{}': give them "
+                  "in that, or no frame",
+                  where, shown(*frame), name, joint.parent));
 }
 
 /// Values of the joint's variables at a pose.
@@ -245,6 +260,11 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
   const std::string where = "trajectory_start";
   if (!robot_state.is_object()) refuse(where + " is no object");
   requireKnown(robot_state, where, {"joint_state", "multi_dof_joint_state", "attached_collision_objects", "is_diff"});
+  for (const char* key : {"joint_state", "multi_dof_joint_state"}) {
+    const Json* part = find(robot_state, {key});
+    if (part && !part->is_object() && !part->is_null())
+      refuse(fmt::format("{}: '{}' is no object: {}", where, key, shown(*part)));
+  }
   if (const Json* joints = find(robot_state, {"joint_state"}); joints && joints->is_object()) {
     requireKnown(*joints, where, {"header", "name", "position", "velocity", "effort"});
     const std::vector<std::string> names = textsOf(listOf(*joints, "name", where), where);
@@ -275,6 +295,7 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
       const std::vector<double> pose = poseOf(transforms[i], where);
       if (isJoint(tree, names[i])) {
         const PoseJoint joint = poseJoint(tree, names[i], where);
+        requireFrame(tree, *poses, joint, names[i], where);
         const std::vector<double> values = valuesAt(joint, pose, where);
         for (std::size_t v = 0; v < values.size(); ++v) start.state[joint.variables[v]] = values[v];
         continue;
@@ -351,7 +372,10 @@ void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
   const std::vector<std::string> names =
       textsOf(listOf(message, "joint_names", "multi_dof_joint_trajectory"), "joint_names");
   std::vector<PoseJoint> joints;
-  for (const std::string& name : names) joints.push_back(poseJoint(tree, name, "multi_dof_joint_trajectory"));
+  for (const std::string& name : names) {
+    joints.push_back(poseJoint(tree, name, "multi_dof_joint_trajectory"));
+    requireFrame(tree, message, joints.back(), name, "multi_dof_joint_trajectory");
+  }
   if (points.empty()) return;
   const bool first = plan.positions.empty();
   if (!first && plan.positions.size() != points.size()) {

@@ -421,6 +421,17 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     plan.joints = given.joints;
   }
   std::vector<std::string> notes = plan.notes;
+  if (options.degrees && !given.positions.empty()) {
+    double most = 0;
+    for (const std::vector<double>& row : given.positions) {
+      for (std::size_t j = 0; j < std::min(row.size(), columns.variables.size()); ++j) {
+        if (tree.isAngle(columns.variables[j])) most = std::max(most, std::abs(row[j]));
+      }
+    }
+    if (most <= 2 * kHalfTurn) {
+      notes.push_back(fmt::format("--degrees: no angle is beyond {:.3g} degrees: are these radians?", most));
+    }
+  }
   requireRows(plan.positions, "positions", waypoints, columns);
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);

@@ -80,7 +80,11 @@ Array parseOne(std::string_view content, const std::string& name) {
       std::string("fiuUS").find(d[1]) == std::string::npos) {
     refuse(fmt::format("'{}' is of type '{}': real numbers are read, and texts for names", name, d));
   }
-  array.fortran = valueOf(header, "fortran_order", name).substr(0, 4) == "True";
+  const std::string_view order = valueOf(header, "fortran_order", name);
+  array.fortran = order.substr(0, 4) == "True";
+  if (!array.fortran && order.substr(0, 5) != "False") {
+    refuse(fmt::format("'{}': the fortran_order of its header is neither True nor False", name));
+  }
   std::string_view shape = valueOf(header, "shape", name);
   if (shape.empty() || shape[0] != '(') refuse(fmt::format("'{}': its header has no shape", name));
   shape = shape.substr(1, std::min(shape.find(')'), shape.size()) - 1);
@@ -88,6 +92,8 @@ Array parseOne(std::string_view content, const std::string& name) {
   std::size_t total = 1;
   for (std::size_t i = 0; i < shape.size();) {
     if (shape[i] < '0' || shape[i] > '9') {
+      if (std::string_view(", L").find(shape[i]) == std::string_view::npos)  // L: of Python 2
+        refuse(fmt::format("'{}': its header has a shape of other than whole numbers", name));
       ++i;
       continue;
     }

@@ -75,11 +75,11 @@ Plan parseOmplPath(std::string_view content) {
       if (--depth < 0)
         throw std::invalid_argument(
             fmt::format("line {}: a bracket that nothing opens (waypoint {})", number, plan.positions.size()));
-    } else if (line.substr(0, 14) == "Compound state" && open != std::string_view::npos &&
-               close == std::string_view::npos) {
+    } else if (line == "Compound state [") {
       ++depth;
-    } else if (open != std::string_view::npos && close != std::string_view::npos && close > open) {
-      const std::string_view state = line.substr(0, std::min(line.find_first_of(" [\t"), open));
+    } else if (open != std::string_view::npos && close == line.size() - 1) {
+      const std::string_view before = line.substr(0, open),
+                             state = before.substr(0, before.find_last_not_of(kBlank) + 1);
       if (std::find(std::begin(kStates), std::end(kStates), state) == std::end(kStates)) {
         throw std::invalid_argument(
             fmt::format("line {}: '{}' is no state of joints: RealVectorState, SO2State and "

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -40,18 +41,28 @@ class Builder : public YAML::EventHandler {
  public:
   std::vector<Json> documents;
 
-  void OnDocumentStart(const YAML::Mark&) override { document_ = text::DocumentBuilder(); }
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    // At a sign that begins no value, the parser gives an empty document, and the next one at the same sign, for ever.
+    if (mark.pos <= begin_) refuse(mark, "a sign that begins no value");
+    begin_ = mark.pos;
+    document_ = text::DocumentBuilder();
+  }
   void OnDocumentEnd() override { documents.push_back(document_.take()); }
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add(mark, nullptr); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark, "an alias, which is not read"); }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& value) override {
-    add(mark, tag == "!" || expectsKey() ? Json(value) : valueOf(value));
+    const bool text = tag == "!" || tag == kCore + std::string("str");
+    requireTag(mark, tag, {"!", "bool", "float", "int", "null", "str"});
+    add(mark, text || expectsKey() ? Json(value) : valueOf(value));
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    requireTag(mark, tag, {"!", "seq"});
     open(mark, false);
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    requireTag(mark, tag, {"!", "map"});
     open(mark, true);
   }
   void OnMapEnd() override { close(); }
@@ -61,6 +72,16 @@ class Builder : public YAML::EventHandler {
     bool is_object, has_key;
   };
 
+  static constexpr const char* kCore = "tag:yaml.org,2002:";  ///< Before the names of YAML's own types.
+
+  /// Refuses a tag that may say what a value means: ROS has !degrees.
+  static void requireTag(const YAML::Mark& mark, const std::string& tag, std::initializer_list<const char*> known) {
+    if (tag.empty() || tag == "?") return;
+    for (const char* name : known) {
+      if (tag == name || tag == kCore + std::string(name)) return;
+    }
+    refuse(mark, fmt::format("the tag {}, which is not read: write values in rad and m", tag));
+  }
   [[noreturn]] static void refuse(const YAML::Mark& mark, const std::string& what) {
     throw std::invalid_argument(fmt::format("line {}, column {}: {}", mark.line + 1, mark.column + 1, what));
   }
@@ -97,6 +118,7 @@ class Builder : public YAML::EventHandler {
 
   text::DocumentBuilder document_;
   std::vector<Level> levels_;
+  int begin_ = -1;  ///< of the document, in the text
 };
 
 }  // namespace

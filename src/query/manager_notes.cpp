@@ -54,9 +54,12 @@ std::set<std::pair<std::string, std::string>> touchingStill(const Registry& regi
   request.max_contacts = 0;
   CertifiedPairResult result;
   const auto look = [&](const Placed& a, const Placed& b) {
-    const bool excused = b.body->link < 0 ? registry.mayTouch(*a.body, *b.body) && registry.standStill(*a.body, *b.body)
-                                          : registry.excuseOf(*a.body, *b.body) == Excuse::still;
-    if (!excused || ((a.lower.array() > b.upper.array()) || (b.lower.array() > a.upper.array())).any()) return;
+    const bool said = b.body->link < 0 ? !registry.mayTouch(*a.body, *b.body)
+                                       : registry.allowed().allowed(a.body->name, b.body->name) ||
+                                             a.body->mayTouchLink(*b.body) || b.body->mayTouchLink(*a.body);
+    if (said || !registry.standStill(*a.body, *b.body) ||
+        ((a.lower.array() > b.upper.array()) || (b.lower.array() > a.upper.array())).any())
+      return;
     solvePair({*a.body->shape, a.motion}, {*b.body->shape, b.motion}, request, result);
     if (!result.isFree()) touching.insert(std::minmax(a.body->name, b.body->name));
   };

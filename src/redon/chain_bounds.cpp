@@ -28,7 +28,7 @@ using interval_chain::StepBounds;
 namespace {
 
 /// Turns over an interval, summed over a chain in rad, from which on interval products cut something off the Taylor
-/// enclosure, whose remainder grows with the third power (doc/INTERVALS.md, widths).
+/// enclosure, whose remainder grows with the third power (doc/REDON2004.md, "Enclosures").
 constexpr double kSmallTurn = 3;
 
 /// 2^-52 times that, rounded up.
@@ -124,7 +124,7 @@ IntervalMat3 turnAbout(const IntervalVec3& u, Interval angle) {
   return J;
 }
 
-/// exp([q]) for a rotation vector of any course (doc/NUMERICS.md, section 2: `turnFactor`).
+/// exp([q]) for a rotation vector of any course (doc/NUMERICS.md, section 2: `turnByVector`).
 void turnByVector(const Variable* v, Factor& f) {
   const IntervalVec3 q(v[0].q, v[1].q, v[2].q), q1(v[0].q1, v[1].q1, v[2].q1), q2(v[0].q2, v[1].q2, v[2].q2);
   const Interval g = (square(q[0]) + square(q[1])) + square(q[2]);
@@ -162,7 +162,7 @@ void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
     source.bounds(source.self, T.lower() > 0 ? T.lower() : 0, T.upper() < 1 ? T.upper() : 1, bound);
   }
   const double half = (T - Interval(middle)).magnitude();
-  constexpr double part = interval_chain::kBoundedUlps * interval_chain::kUlp;
+  constexpr double part = kBoundedUlps * kUlp;
   const auto drift = [&](double b) { return plusMinus((Interval(half) * b).upper()); };
   const auto far = [&](double b) { return plusMinus((Interval(b) * (1 + part)).upper()); };
 

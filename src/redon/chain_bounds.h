@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Bounds on M_0i(t) down the kinematic tree over a time interval (Redon 2004, Section 3 and 5.2.1), for every step of a
-// sweep: arms, free bodies, moving obstacles and pairs of links alike. Derivations: doc/INTERVALS.md.
+// sweep: arms, free bodies, moving obstacles and pairs of links alike. Derivations: doc/REDON2004.md.
 #pragma once
 
 #include <memory>

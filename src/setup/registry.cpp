@@ -182,9 +182,9 @@ bool Registry::standStill(const ManagedBody& a, const ManagedBody& b) const {
 }
 
 Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
+  if (standStill(a, b)) return Excuse::still;  // before what callers excuse: of these `free` takes no exception
   if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
   if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
-  if (standStill(a, b)) return Excuse::still;
   if (a.attached || b.attached || !neighbours_) return Excuse::none;
   return neighbours_->leavesOut(*tree_, a, b) ? Excuse::neighbours : Excuse::none;
 }
@@ -298,12 +298,11 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
     }
     fresh.push_back(std::move(body));
   }
-  // Numbers are given anew: "obstacle0" is another object.
-  const bool named_again = !names.empty();
+  // Numbers are given anew: "obstacle0" is another object, unless somebody has named it so.
+  const std::unordered_set<std::string> named_again(names.begin(), names.end());
   obstacle_names_.swap(taken);  // those of before
   keepNames([&](const std::string& name) {
-    if (taken.count(name) == 0) return true;  // a link's
-    if (named_again) return obstacle_names_.count(name) > 0;
+    if (taken.count(name) == 0 || named_again.count(name) > 0) return true;  // a link's, or one that is given again
     const auto stays = [&](const ManagedBody& body) { return body.name == name; };
     return std::any_of(links_.begin(), links_.end(), stays) || std::any_of(moving_.begin(), moving_.end(), stays);
   });

@@ -433,7 +433,7 @@ bool RangeProof::mustFail(const Box& box, std::size_t moved, double margin) cons
   return false;
 }
 
-/// Lemma 8: the engine moves one step over its whole range while the others stand in the middle of theirs; the margin
+/// Lemma 12: the engine moves one step over its whole range while the others stand in the middle of theirs; the margin
 /// pays for A's ways by the steps before it and for B's by the steps after it.
 RangeProof::Tried RangeProof::tryBox(const Box& box, std::uint64_t work) {
   measureWays(box);

@@ -159,7 +159,7 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   std::istringstream rows(read(csv));
   std::string line;
   int lines = 0;
-  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 27) << line;
+  for (; std::getline(rows, line); ++lines) EXPECT_EQ(std::count(line.begin(), line.end(), ','), 28) << line;
   EXPECT_EQ(lines, 3);
   const Outcome error = certifyFile("plans.jsonl", free + "\n" + wrong + "\n" + hit + "\n" + "{\n");
   EXPECT_EQ(error.status, 2);
@@ -490,6 +490,39 @@ TEST_F(CertifyProgramTest, APlanAndWhatItIsMendedToAreShown) {
   EXPECT_EQ(drawn.status, 1) << drawn.err;
   EXPECT_EQ(read(path("plan.png")).rfind("\x89PNG", 0), 0u);
 #endif
+}
+
+// Straight, and by way of a point 0.3 m off.
+TEST_F(CertifyProgramTest, AToolKeepsToItsLine) {
+  const std::string far_away =
+      R"(<collision><origin xyz="0 0 9"/><geometry><sphere radius="0.1"/></geometry></collision>)";
+  const auto certify = [&](const std::string& csv, const std::string& options) {
+    return this->run("certify " + write("way.csv", csv) + " " + gantry(far_away) + " --json " + options);
+  };
+  const std::string straight = "x,y\n0,0\n0.5,0.15\n1,0.3\n", corner = "x,y\n0,0\n0.5,0.3\n1,0\n";
+  const auto lineOf = [](const Outcome& run) { return Json::parse(run.out).at("plans").at(0).at("line"); };
+  const Outcome kept = certify(straight, "--line tool=1mm,0.1deg");
+  ASSERT_EQ(kept.status, 0) << kept.out << kept.err;
+  EXPECT_EQ(lineOf(kept).at("status"), "kept");
+  EXPECT_LT(lineOf(kept).at("distance_upper"), 1e-3);
+  const Outcome left = certify(corner, "--line tool=29cm --out " + path("none.csv"));
+  EXPECT_EQ(left.status, 2) << left.out;
+  EXPECT_NE(left.err.find("'29cm' is no distance with its unit"), std::string::npos) << left.err;
+  const Outcome far = certify(corner, "--line tool=290mm --out " + path("none.csv"));
+  EXPECT_EQ(far.status, 1) << far.err;
+  EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
+  EXPECT_EQ(lineOf(far).at("status"), "left");
+  EXPECT_NEAR(lineOf(far).at("distance_lower").get<double>(), 0.3, 1e-2);
+  EXPECT_EQ(Json::parse(far.out).at("summary").at("left_line"), 1);
+  EXPECT_EQ(Json::parse(far.out).at("summary").at("free"), 0);
+  EXPECT_EQ(certify(corner, "--line tool=310mm").status, 0);
+  // A point 1 m beside the tool goes the same way.
+  EXPECT_EQ(certify(straight, "--line tool=1mm,1deg@0,1,0").status, 0);
+  EXPECT_EQ(certify(straight, "--line hand=1mm").status, 2);
+  EXPECT_EQ(certify(straight, "--line tool=1").status, 2);
+  EXPECT_EQ(certify("x,y\n0,0\n0,0\n", "--line tool=1mm").status, 2);
+  const Outcome text = this->run("certify " + write("way.csv", corner) + " " + gantry(far_away) + " --line tool=1mm");
+  EXPECT_NE(text.out.find("'tool' LEAVES its line of 1 m: at most 300"), std::string::npos) << text.out;
 }
 
 // A table that the block rests on, or stands 1 mm above: it touches, or is nearer than the clearance, all the time.

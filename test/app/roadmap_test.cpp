@@ -350,11 +350,11 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
   EXPECT_EQ(q, (std::vector<double>{0.5, 0.25, 1.75, -0.5}));
   // In a scene that always stands there they are to be free.
   const Outcome touching = run("roadmap make " + armAndBall() + " --out " + path("x.h5") + " --vertices 30 --with " +
-                               write("bad.csv", "rail,hinge\n0,1.0471975511965976\n"));
+                               write("bad.csv", "hinge,rail\n1.0471975511965976,0\n"));
   EXPECT_EQ(touching.status, 2);
   EXPECT_NE(touching.err.find("given configuration 0 is not proven free: arm and ball"), std::string::npos)
       << touching.err;
-  EXPECT_NE(make("x.h5", "--with " + write("far.csv", "rail,hinge\n0,3\n")).err.find("given configuration 0: "),
+  EXPECT_NE(make("x.h5", "--with " + write("far.csv", "hinge,rail\n3,0\n")).err.find("given configuration 0: "),
             std::string::npos);
   // Limits as of plans: a sensor's error is noted.
   const Outcome near = make("near.h5", "--vertices 3 --with " + write("near.csv", "rail,hinge\n0,2.0009\n"));

@@ -81,6 +81,21 @@ TEST_F(TrajectoryProgramTest, TangentHalfAngleGoesByTangents) {
   EXPECT_NE(beyond.err.find("hinge"), std::string::npos) << beyond.err;
 }
 
+/// joint_trajectory_controller goes as the values say: never the shorter way round.
+TEST_F(TrajectoryProgramTest, TheControllerTakesNoShorterWay) {
+  const std::string line = write("one.jsonl", "{\"from\": [0, 0], \"to\": [0.5, 0]}\n");
+  for (const std::string& motion : {std::string(" --from 0,0 --to 0.5,0"), " --lines " + line}) {
+    EXPECT_EQ(this->run("check " + armAndBall() + motion + " --interpolation jtc").status, 0) << motion;
+    const Outcome both = this->run("check " + armAndBall() + motion + " --interpolation jtc --shortest");
+    EXPECT_EQ(both.status, 2) << motion;
+    EXPECT_NE(both.err.find("--shortest excludes --interpolation jtc"), std::string::npos) << both.err;
+  }
+  const std::string csv = "t,hinge,rail\n0,0,0\n1,0.5,0\n";
+  for (const char* kind : {"jtc", "jtc-upsampled", "jtc-none"}) {
+    EXPECT_EQ(check(csv, std::string("--shortest --interpolation ") + kind).status, 2) << kind;
+  }
+}
+
 TEST_F(TrajectoryProgramTest, NobodyGuessesWhereAJointStands) {
   const std::string csv = "t,hinge\n0,0\n1,0.5\n", wanted = "has no joint 'rail': --state rail=VALUE";
   for (const std::string& motion :

@@ -95,8 +95,8 @@ TEST_F(Machine, AFreeMotionIsProvenAgain) {
   const CertifiedResult result = ask({0, 0, 0}, {0, -1, 0.5});
   ASSERT_TRUE(result.isFree());
   expectProven(result.certificate);
-  // base and arm, base and hand, slider and hand, and four links with the post.
-  EXPECT_EQ(verdictOn(*result.certificate).checked, 9u);
+  // The post with all but the base, which stands still beside it, and five pairs of links.
+  EXPECT_EQ(verdictOn(*result.certificate).checked, 8u);
   EXPECT_LT(result.certificate->proof.size(), 120u);
 }
 
@@ -201,6 +201,7 @@ TEST_F(Machine, InitialContactsAreLeftOutUntilTheyEnd) {
   manager_->unregisterObject(post_.get());
   const auto floor = box({0.5, 0.5, 0.2}, {0, 0, -0.15});
   manager_->registerObject(floor, "floor");
+  manager_->disallow("base", "floor");  // else they stand still against each other, and nobody asks
   CertifiedRequest request;
   request.ignore_initial_contact = true;
   const CertifiedResult result = ask({0, 0, 0}, {0, -1, 0.5}, request);

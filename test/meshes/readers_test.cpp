@@ -72,6 +72,15 @@ TEST(StlText, KeepsDecimals) {
   EXPECT_EQ(soup.vertices[1], Vector3d(451237.038, 5411234.492, 312.537));
 }
 
+TEST(StlBinary, AUnitOfItsHeadIsNoted) {
+  std::string content = "UNITS=mm";
+  content.resize(80, '\0');
+  content += std::string("\1\0\0\0", 4) + std::string(50, '\0');
+  read(readStl, content);
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "'UNITS=mm': lengths are taken for metres");
+}
+
 TEST(StlText, ThatIsBinaryTooIsRefused) {
   std::string text = "solid" + std::string(75, ' ') + std::string("\4\0\0\0", 4) + "\n" + kFacet + "endsolid\n";
   text.resize(84 + 50 * 4, ' ');
@@ -250,10 +259,10 @@ TEST(TextFiles, WithoutALastLineEndAreNoted) {
   }
 }
 
-TEST(TextFiles, UnitsOfACommentAreNoted) {
+TEST(TextFiles, UnitsAndShiftsOfACommentAreNoted) {
   const auto notesOf = [](const std::string& content) {
     notes.clear();
-    noteUnits({"file", content, "file", &notes});
+    noteComments({"file", content, "file", &notes});
     return notes.size();
   };
   EXPECT_EQ(notesOf("v 0 0 0\n  # File units = centimeters\n"), 1u);
@@ -262,6 +271,10 @@ TEST(TextFiles, UnitsOfACommentAreNoted) {
   EXPECT_EQ(notesOf("solid part UNITS=mm\n"), 1u);
   EXPECT_EQ(notesOf("# Units: meters\n# made at the unit of robots\n"), 1u) << "the second one";
   EXPECT_EQ(notesOf("# Units: m\nusemtl unit\n# untied\n"), 0u);
+  EXPECT_EQ(notesOf("# all lengths in mm\n# from millimetres to metres\n# 3 inches of snow\n"), 2u) << "1st and 3rd";
+  EXPECT_EQ(notesOf("ply\ncomment offset 451000 5411000 -3.5\n"), 1u);
+  expectContains(notes.at(0), "which is not applied");
+  EXPECT_EQ(notesOf("# origin 0 0 0\n# shift left\n# offset: 1 2\n# 1 2 3\n"), 0u);
 }
 
 // ---- COLLADA
@@ -329,6 +342,40 @@ TEST(ColladaFile, WhatIsNotReadIsRefused) {
   expectContains(errorOf(readDae, short_array), "says that it has 9 numbers, it has 8");
 }
 
+TEST(ColladaFile, UnitsWithinAreThatOfTheFile) {
+  const std::string other = "<asset><unit meter=\"0.001\"/></asset>", same = "<asset><unit meter=\"0.5\"/></asset>";
+  const auto with = [](const std::string& asset, const std::string& after) {
+    std::string text = collada(kTriangles, kHere, "<library_nodes></library_nodes>");
+    return text.insert(text.find(after) + after.size(), asset);
+  };
+  for (const char* after :
+       {"<library_geometries>", "<library_nodes>", "<library_visual_scenes>", "<source id=\"p\">"}) {
+    expectContains(errorOf(readDae, with(other, after)), "has another unit");
+    EXPECT_EQ(read(readDae, with(same, after)).triangles.size(), 1u) << after;
+  }
+  std::string two = collada(kTriangles, kHere);
+  const std::size_t common = two.find("<technique_common>"), end = two.find("</source>");
+  two.insert(end, two.substr(common, end - common));
+  expectContains(errorOf(readDae, two), "more than one <technique_common>");
+}
+
+// Nodes that show nodes that show nodes: of 3 kB, 10^8 triangles.
+TEST(ColladaFile, InstancesOfInstancesAreBounded) {
+  const auto nodes = [](int levels, const std::string& leaf) {
+    std::string library = "<library_nodes><node id=\"n0\">" + leaf + "</node>";
+    for (int k = 1; k <= levels; ++k) {
+      library += "<node id=\"n" + std::to_string(k) + "\">";
+      for (int copies = 0; copies < 10; ++copies) library += "<instance_node url=\"#n" + std::to_string(k - 1) + "\"/>";
+      library += "</node>";
+    }
+    return library + "</library_nodes>";
+  };
+  const auto show = [](int level) { return "<instance_node url=\"#n" + std::to_string(level) + "\"/>"; };
+  EXPECT_EQ(read(readDae, collada(kTriangles, show(3), nodes(3, kHere))).triangles.size(), 1000u);
+  expectContains(errorOf(readDae, collada(kTriangles, show(8), nodes(8, kHere))), "unfolds to too much: it is of ");
+  expectContains(errorOf(readDae, collada(kTriangles, kHere + show(8), nodes(8, ""))), "unfolds to too much");
+}
+
 TEST(ColladaFile, GeometryThatTheSceneDoesNotShowIsNoted) {
   read(readDae,
        collada(kTriangles, kHere, "<library_geometries><geometry id=\"h\"><mesh/></geometry></library_geometries>"));
@@ -393,6 +440,35 @@ TEST(GltfFile, WhatIsNotReadIsRefused) {
   content.replace(content.find("\"count\":3"), 9, "\"count\":4");
   expectContains(error(content), "beyond its bufferView");
   expectContains(error(std::string(200000, '[')), "no glTF");
+  content = gltf("");
+  content.replace(content.find("\"2.0\""), 5, "\"2.1\",\"minVersion\":\"2.1\"");
+  expectContains(error(content), "needs glTF of version '\"2.1\"'");
+  content = gltf("");
+  content.replace(content.find("\"2.0\""), 5, "\"2.0\",\"unit\":\"mm\"");
+  expectContains(error(content), "asset has 'unit', which is not read");
+}
+
+// Primitives that share their numbers.
+TEST(GltfFile, WhatIsThereRepeatedlyIsBounded) {
+  std::string content = gltf("");
+  const std::string one = "{\"attributes\":{\"POSITION\":0}}", many = [&] {
+    std::string all = "{\"attributes\":{\"POSITION\":0}}";
+    for (int k = 0; k < 200; ++k) all += ",{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":5}";
+    return all;
+  }();
+  content.replace(content.find(one), one.size(), many);
+  const std::string indices = "\"type\":\"VEC3\"}";
+  content.replace(content.find(indices), indices.size(),
+                  indices + ",{\"bufferView\":1,\"componentType\":5121,\"count\":30000,\"type\":\"SCALAR\"}");
+  content.replace(content.find("\"bufferViews\":["), 15, "\"bufferViews\":[");
+  const std::string view = "\"byteLength\":36}],\"buffers\":[";
+  content.replace(content.find(view), view.size(),
+                  "\"byteLength\":36},{\"buffer\":1,\"byteLength\":30000}],\"buffers\":[");
+  const std::string end = "AAAAAAAAAAAAAEAAAAAA\"}]";
+  content.replace(content.find(end), end.size(),
+                  end.substr(0, end.size() - 1) + ",{\"byteLength\":30000,\"uri\":\"data:;base64," +
+                      std::string(40000, 'A') + "\"}]");
+  expectContains(errorOf(readAsItStands, content), "unfolds to too much");
 }
 
 #endif
@@ -422,6 +498,24 @@ TEST(Xyz, HasOneSeparatorAndOneNumberOfColumns) {
   expectContains(cloudError(readXyz, "1 2 3\n1,2,3\n"), "line 2");
   expectContains(cloudError(readXyz, "1 2 3\n1 2 3 4\n"), "4 columns, the first line has 3");
   expectContains(cloudError(readXyz, "1 2\n"), "three numbers");
+  cloudOf(readXyz, "1 2 3 0.5\n");
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "of each point the first 3 numbers are read, of 4");
+}
+
+TEST(PlyPoints, ACameraThatIsElsewhereIsNoted) {
+  const auto notesOf = [](const std::string& view) {
+    cloudOf(readPlyPoints,
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+            "element camera 1\nproperty float view_px\nproperty float x_axisx\nproperty float x_axisy\nproperty float "
+            "focal\nend_header\n1 2 3\n" +
+                view + " 0\n");
+    return notes.size();
+  };
+  EXPECT_EQ(notesOf("0 1 0"), 0u);
+  EXPECT_EQ(notesOf("5 1 0"), 1u);
+  EXPECT_EQ(notesOf("0 0 1"), 1u);
+  expectContains(notes.at(0), "its camera is elsewhere than at the origin");
 }
 
 std::string pcd(const std::string& more, const std::string& body,
@@ -441,6 +535,20 @@ TEST(PcdFile, CountsAgreeAndNothingIsLeftOver) {
   EXPECT_EQ(cloudOf(readPcd, head + std::string(12, '\0') + std::string(100, '\0')).size(), 1u)
       << "zeros up to a page's end";
   expectContains(cloudError(readPcd, head + std::string(24, '\1')), "goes on after its last point");
+}
+
+TEST(PcdFile, FieldsThatNobodyKnowsAreNoted) {
+  const auto text = [](const std::string& field, const std::string& version) {
+    return "VERSION " + version + "\nFIELDS x y z " + field +
+           "\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3 4\n";
+  };
+  cloudOf(readPcd, text("intensity", "0.7"));
+  EXPECT_TRUE(notes.empty());
+  cloudOf(readPcd, text("dx", ".7"));
+  ASSERT_EQ(notes.size(), 1u);
+  expectContains(notes[0], "passed over of each point: 'dx'");
+  expectContains(cloudError(readPcd, text("diameter", ".7")), "have an extent ('diameter')");
+  expectContains(cloudError(readPcd, text("intensity", ".8")), "a VERSION other than");
 }
 
 TEST(PcdFile, AViewpointThatIsNoneIsNoted) {

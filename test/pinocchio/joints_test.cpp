@@ -173,6 +173,10 @@ TEST(PinocchioJoints, WhatIsNotThereIsNamed) {
   EXPECT_NE(alone(JointModelHelicalUnaligned(Eigen::Vector3d::UnitX(), 0.1)).find("joint 'screw'"), std::string::npos);
   EXPECT_NE(alone(JointModelComposite(JointModelHX(0.1))).find("joint 'screw' is a JointModelComposite"),
             std::string::npos);
+  // pinocchio asserts unit axes; in a build without assertions it slides twice as far along this one.
+  JointModelPrismaticUnaligned slide(Eigen::Vector3d::UnitX());
+  slide.axis *= 2;
+  EXPECT_NE(alone(slide).find("joint 'screw' has an axis that is not of length 1"), std::string::npos);
   Model model;
   model.addJoint(0, JointModelRUBX(), SE3::Identity(), "wheel");
   const PinocchioRobot robot = fromPinocchio(model, {});

@@ -160,6 +160,8 @@ TEST(PlanLogsTest, Degrees) {
   EXPECT_NEAR(spline.trajectory.piece(0).dq()[0], 2 * right, 1e-12);
   // Where values say so, it is asked; where a length is too far, or radians would do, it is not.
   expectContains(refusedWith(tree, log), "are these degrees? --degrees says so; --ignore-limits");
+  expectContains(read(tree, "hinge,rail\n0,0\n1.5,0.5\n", {}, degrees).notes.back(), "are these radians?");
+  for (const std::string& note : read(tree, log, {}, degrees).notes) EXPECT_EQ(note.find("radians"), std::string::npos);
   EXPECT_EQ(refusedWith(tree, "hinge,rail\n0,0\n200,0.5\n").find("degrees?"), std::string::npos);
   EXPECT_EQ(refusedWith(tree, "hinge,rail\n0,0\n90,5\n").find("degrees?"), std::string::npos);
   EXPECT_EQ(refusedWith(tree, log.substr(0, log.find("90")) + "9000,0.5\n", {}, degrees).find("degrees?"),

@@ -190,6 +190,29 @@ TEST(PlanReadersTest, OmplText) {
   expectContains(refusalOf(tree, "0 0\n]\n", Format::ompl), "line 2: a bracket that nothing opens (waypoint 1)");
   expectContains(refusalOf(tree, "0 0\nCompound state [\nSO2State [0]\n", Format::ompl), "waypoint 1, the last state");
   expectContains(refusalOf(tree, "Compound state [\nSO2State [0]\n", Format::ompl), "cut short");
+  // Numbers that stand where none belong.
+  expectContains(refusalOf(tree, "0 0\nRealVectorState [0 0] 1 0.5\n", Format::ompl), "line 2: 'RealVectorState'");
+  expectContains(refusalOf(tree, "0 0\nRealVectorState 1 [0 0]\n", Format::ompl), "'RealVectorState 1' is no state");
+  expectContains(refusalOf(tree, "Compound state [ 1\nRealVectorState [0 0]\n]\n", Format::ompl), "line 1: 'Compound'");
+}
+
+/// Tags say what a value means: ROS has !degrees and !radians.
+TEST(PlanReadersTest, TagsOfYaml) {
+  const KinematicTree tree = armTree();
+  const auto yaml = [](const std::string& value) { return "waypoints:\n- [0, 0]\n- [" + value + ", 0.5]\n"; };
+  EXPECT_EQ(only(tree, yaml("!!float 1"), Format::yaml).waypoints[1][0], 1);
+  expectContains(refusalOf(tree, yaml("!degrees 1"), Format::yaml), "line 3, column 4: the tag !degrees, which is not");
+  expectContains(refusalOf(tree, yaml("!!str 1"), Format::yaml), "is not a number");
+  expectContains(refusalOf(tree, "waypoints: !degrees\n- [0, 0]\n- [1, 0.5]\n", Format::yaml), "the tag !degrees");
+  expectContains(refusalOf(tree, "!millimetres\nwaypoints:\n- [0, 0]\n- [1, 0.5]\n", Format::yaml), "the tag !mill");
+}
+
+// For yaml-cpp a comma in place of a value is an empty document, again and again.
+TEST(PlanReadersTest, SignsOfYamlThatBeginNoValueAreRefused) {
+  const KinematicTree tree = armTree();
+  expectContains(refusalOf(tree, "!\"\",65535,", Format::yaml), "line 1, column 4: a sign that begins no value");
+  expectContains(refusalOf(tree, ",", Format::yaml), "a sign that begins no value");
+  EXPECT_EQ(parsePlans(tree, "--- [[0, 0], [1, 0.5]]\n--- [[0, 0], [1, 0.25]]\n...\n", Format::yaml).size(), 2u);
 }
 
 TEST(PlanReadersTest, Arrays) {
@@ -225,6 +248,17 @@ TEST(PlanReadersTest, Arrays) {
   damaged[80] = static_cast<char>(damaged[80] ^ 8);
   expectContains(refusalOf(tree, damaged, Format::numpy), "'positions.npy'");
   expectContains(refusalOf(tree, own.substr(0, own.size() - 40), Format::numpy), "cut short");
+}
+
+TEST(PlanReadersTest, HeadsOfArraysAreReadStrictly) {
+  const KinematicTree tree = armTree();
+  const std::string data = raw<double>({0, 0, 1, 0.5});
+  EXPECT_EQ(only(tree, npy("<f8", false, "(2L, 2)", data), Format::numpy).waypoints[1][1], 0.5);
+  expectContains(refusalOf(tree, npy("<f8", false, "(-2, 2)", data), Format::numpy),
+                 "a shape of other than whole numbers");
+  std::string text = npy("<f8", false, "(2, 2)", data);
+  text.replace(text.find("False"), 5, "1    ");
+  expectContains(refusalOf(tree, text, Format::numpy), "fortran_order of its header is neither True nor False");
 }
 
 TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
@@ -270,6 +304,14 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
 }
 
 /// What is certified is all that an object holds, for the robot that it names.
+TEST(PlanReadersTest, AClocksTimesAreCountedFromTheFirst) {
+  const KinematicTree tree = armTree();
+  const Plan plan = parsePlans(tree, "time,hinge,rail\n1700000000.5,0,0\n1700000002,1,0\n", Format::csv).at(0);
+  EXPECT_EQ(plan.times, (std::vector<double>{0, 1.5}));
+  expectContains(plan.notes.at(0), "counted from the first, 1700000000.500000 s");
+  EXPECT_EQ(parsePlans(tree, "time,hinge,rail\n5,0,0\n7,1,0\n", Format::csv).at(0).times, (std::vector<double>{5, 7}));
+}
+
 TEST(PlanReadersTest, AnObjectHoldsOnePlanOfThisRobot) {
   const KinematicTree tree = armTree();
   const std::string
@@ -284,13 +326,14 @@ TEST(PlanReadersTest, AnObjectHoldsOnePlanOfThisRobot) {
     return plans.at(0).error;
   };
   for (const std::string& two : {R"({"trajectory": [)" + robot + R"(], "planned_trajectory": )" + robot + "}",
-                                 R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": )" + joints + "}",
                                  R"({"joint_trajectory": )" + joints + R"(, "waypoints": [[0, 0], [1, 0]]})",
                                  R"({"joint_trajectory": )" + joints + ", " + points + "}",
                                  R"({"plans": [{"from": [0, 0], "to": [1, 0]}], "trajectory": )" + robot + "}",
                                  R"({"from": [0, 0], "to": [1, 0], "msg": )" + robot + "}"}) {
     expectContains(errorOf(two), "it holds more than one plan, in '");
   }
+  expectContains(errorOf(R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": )" + joints + "}"),
+                 "joint 'hinge' of robot 'arm' is neither planar nor floating");
   for (const std::string& one :
        {R"({"trajectory": )" + joints + R"(, "multi_dof_trajectory": {"joint_names": [], "points": []}})",
         R"({"goal": {"trajectory": )" + joints + "}}", std::string(R"({"start": [0, 0], "goal": [1, 0]})"),
@@ -534,6 +577,9 @@ TEST(PlanReadersTest, NothingOfADocumentIsPassedOver) {
   };
   json(start(R"({"joint_state": {"name": ["rail", "rail"], "position": [0, 1]}})"), "joint 'rail' is there twice");
   json(start(R"({"joint_states": {}})"), "trajectory_start: the key 'joint_states' is not known");
+  json(start(R"({"joint_state": [{"name": ["rail"], "position": [1]}]})"),
+       "trajectory_start: 'joint_state' is no object");
+  json(start(R"({"multi_dof_joint_state": "base"})"), "trajectory_start: 'multi_dof_joint_state' is no object");
   const std::string scaled = R"({"positions": [0, 0], "scale": 2, )";
   std::string point = joints;
   json(point.replace(point.find("{\"positions\": [0, 0], "), 22, scaled), "waypoint 0: the key 'scale' is not known");
@@ -555,6 +601,18 @@ TEST(PlanReadersTest, BasesOfAGoalMove) {
   EXPECT_EQ(plan.joints, (std::vector<std::string>{"wheel", "drive/x", "drive/y", "drive/theta"}));
   ASSERT_EQ(plan.positions.size(), 2u);
   EXPECT_EQ(plan.positions[1], (std::vector<double>{1, 1, 2, 0}));
+
+  // The poses are against the link that the joint hangs on: another frame may stand elsewhere.
+  const auto errorIn = [&](const std::string& frame) {
+    std::string framed = text;
+    const std::string at = "\"joint_names\": [\"drive\"]";
+    framed.insert(framed.find(at), "\"header\": {\"frame_id\": \"" + frame + "\"}, ");
+    return parsePlans(tree, framed, Format::json).at(0).error;
+  };
+  EXPECT_EQ(errorIn(""), "");
+  EXPECT_EQ(errorIn(tree.joint(tree.jointId("drive")).parent), "");
+  expectContains(errorIn("map"),
+                 "its poses are in the frame \"map\" (header, frame_id), and joint 'drive' moves against");
 }
 
 TEST(PlanReadersTest, TextsThatAreCutShortAreSaid) {

@@ -20,8 +20,8 @@
 #include <fcl/math/motion/translation_motion.h>
 #include <gtest/gtest.h>
 
+#include "all_modes.h"
 #include "arms.h"
-#include "control_bits.h"
 #include "fcl_artic/fcl_artic.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "meshes.h"
@@ -29,6 +29,12 @@
 #include "text/nearest_name.h"
 #include "text/xml.h"
 
+#ifdef FCL_ARTIC_HDF5
+#include "hdf5/hdf5.h"
+#endif
+#ifdef FCL_ARTIC_VERIFIER
+#include "proof.h"
+#endif
 #ifdef FCL_ARTIC_PLANS
 #include "plans/motion.h"
 #include "plans/plan.h"
@@ -40,59 +46,14 @@ namespace rounding_test {
 using namespace fcl_artic;
 using Eigen::Isometry3d;
 using Eigen::MatrixXd;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using premises_test::expectSameInAllModes;
+using premises_test::Said;
 using test::makeJoint;
 using test::object;
 using test::pose;
-
-/// What an entry says.
-struct Said {
-  std::ostringstream words;     ///< to be the same
-  std::vector<double> numbers;  ///< to be the same but for rounding and tolerances
-
-  void add(double x) { numbers.push_back(x); }
-  template <class M>
-  void addAll(const M& matrix) {
-    for (Eigen::Index i = 0; i < matrix.size(); ++i) add(matrix.derived().coeff(i % matrix.rows(), i / matrix.rows()));
-  }
-  void add(const Isometry3d& M) { addAll(M.matrix()); }
-  /// Verdict and bracket; of a contact that is not certain t_upper is 1.
-  void add(const Bracket& b) {
-    words << b.status << " certain " << b.certain << "; ";
-    add(b.t_lower);
-  }
-};
-
-/// Sums of numbers of some metres; brackets are 1e-6 wide, and their lower ends that far before the contact.
-constexpr double kNear = 3e-6;
-
-void expectSameInAllModes(const std::string& name, const std::function<void(Said&)>& entry) {
-  Said usual;
-  entry(usual);
-  for (const int mode : {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
-    Said said;
-    std::string thrown;
-    std::fesetround(mode);
-    const auto before = numerics_test::controlBits();
-    try {
-      entry(said);
-    } catch (const std::exception& e) {
-      thrown = e.what();
-    }
-    const auto after = numerics_test::controlBits();
-    std::fesetround(FE_TONEAREST);
-    EXPECT_EQ(thrown, "") << name << " in mode " << mode;
-    EXPECT_EQ(after, before) << name << " in mode " << mode;
-    EXPECT_EQ(said.words.str(), usual.words.str()) << name << " in mode " << mode;
-    ASSERT_EQ(said.numbers.size(), usual.numbers.size()) << name << " in mode " << mode;
-    for (std::size_t i = 0; i < usual.numbers.size(); ++i) {
-      if (said.numbers[i] == usual.numbers[i]) continue;  // infinities, too
-      EXPECT_NEAR(said.numbers[i], usual.numbers[i], kNear * (1 + std::abs(usual.numbers[i])))
-          << name << " in mode " << mode << ", number " << i;
-    }
-  }
-}
 
 /// Joints of all types: a wheel that turns forever and its follower, a rail, a drive in the plane, a ball, a drone.
 std::shared_ptr<KinematicTree> allJoints() {
@@ -290,10 +251,23 @@ TEST(RoundingModes, Managers) {
         *cell.tree, {0, 2, 3}, {q0, aside, q1}, {Vector3d(0, 0, 0), Vector3d(0.1, 0, 0), Vector3d(0, 0, 0)})));
     const Clearance clearance = manager.clearance(JointMotion::linear(*cell.tree, q0, aside));
     said.words << (clearance.upper - clearance.lower < 2e-3) << "; ";
+    request = {};
+    request.margin = 0.99 * clearance.lower;
+    said.words << "clear " << manager.isFree(q0, aside, request);
+    request.margin = 1.01 * clearance.upper;
+    said.words << manager.isFree(q0, aside, request) << "; ";
+#ifdef FCL_ARTIC_VERIFIER
+    const verify::World world = verify::readWorld(*free.certificate->world);
+    const std::string record = free.certificate->record();
+    said.words << verify::verifyRecord(world, verify::splitRecords(record).at(0)).reason << "; ";
+#endif
     said.add(manager.boundOffset(cell.links[0].get()));
     cell.manager.detach(cell.carried.get());
     cell.manager.setVisibility(std::make_shared<VisibilityCuller>());
     cell.manager.update();
+    said.add(cell.manager.continuousCollide(q0, q1));
+    const auto post = object(std::make_shared<fcl::Boxd>(0.1, 0.3, 0.7), pose({0.9, 0.4, 0.1}, 0.7, {1, 2, 3}));
+    cell.manager.replaceObstacles({post, cell.box}, {"post", "box"});
     said.add(cell.manager.continuousCollide(q0, q1));
     LinkPairOptions few;
     few.samples = 100;
@@ -377,6 +351,10 @@ TEST_F(RoundingModesOfFiles, RobotsAndScenes) {
                                   "(noname)+++\n* crate\n0.1 0.7 0.3\n0 0 0.3 0.953939\n1\nbox\n0.1 0.3 0.7\n0.1 0 0\n"
                                   "0 0 0 1\n0 0 0 0\n0\n.\n");
   const std::string obj = write("plate.obj", "v 0.1 0.7 0\nv 1.1 .3 0.001\nv 0.2 1e-1 3.3\nf 1 2 3\n");
+  const std::string urdf = write("arm.urdf", R"(<robot name="arm"><link name="base"/><link name="arm"><collision>
+    <origin xyz="0.7 0 0.1" rpy="0.1 0.2 0.3"/><geometry><box size="0.7 0.1 0.3"/></geometry></collision></link>
+    <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/>
+    <origin xyz="0.1 0.3 0" rpy="0.07 0 0"/><axis xyz="0.01 0 1"/></joint></robot>)");
   expectSameInAllModes("files of robots and scenes", [&](Said& said) {
     const Robot robot = loadUrdf(data + "puma560/puma560.urdf");
     for (const std::string& note : robot.notes) said.words << note << '\n';
@@ -408,6 +386,13 @@ TEST_F(RoundingModesOfFiles, RobotsAndScenes) {
       }
       for (const std::string& note : read.notes) said.words << note << '\n';
     }
+    const Robot arm = loadUrdf(urdf);
+    const Robot two = combineRobots({{&arm, "left_"}, {&arm, "right_", pose({1.3, 0.3, 0.1}, 2.9, {0.1, 0, 1})}});
+    for (JointId j = 0; j < two.tree->numJoints(); ++j) said.add(two.tree->joint(j).origin);
+    ArticulatedCollisionManager both(two.tree);
+    two.addTo(both);
+    both.setup();
+    said.add(both.continuousCollide(Vector2d(-2.1, 0.1), Vector2d(2.3, 0.3)));
     const std::string srdf = path("pairs.srdf");
     LinkPairReport report;
     writeSrdf(srdf, "puma560", report);
@@ -441,6 +426,25 @@ TEST(RoundingModes, Plans) {
         }
       }
     }
+  });
+}
+#endif
+
+#ifdef FCL_ARTIC_HDF5
+TEST(RoundingModes, TablesHoldTheVeryNumbers) {
+  const std::vector<double> doubles = {0.1, -0.1, 1.0 / 3, 0x1p-1074, -0x1.fffffffffffffp1023, 1e9};
+  const std::vector<std::int64_t> whole = {(std::int64_t{1} << 62) + 1, -7, 0};
+  expectSameInAllModes("tables", [&](Said& said) {
+    hdf5::Image image;
+    image.add("doubles", {3, 2}, doubles.data());
+    image.add("whole", {3}, whole.data());
+    const hdf5::File file(image.bytes(), "table");
+    std::vector<double> read;
+    file.read("doubles", 0, 3, read);
+    said.words << (read == doubles);
+    std::vector<std::int64_t> numbers;
+    file.read("whole", 0, 3, numbers);
+    said.words << (numbers == whole);
   });
 }
 #endif

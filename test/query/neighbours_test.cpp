@@ -371,4 +371,88 @@ TEST_F(StillPairs, WhateverMovesIsChecked) {
   EXPECT_NEAR(met.t_lower, (2 - 0.15) / 2, 1e-5);
 }
 
+/// A joint between the world and an arm that reaches 1 m along its x axis, moved over what is in the arm's way: an
+/// obstacle, or a post of the world's own.
+/// @param how  a limit leaves the joint one value ("locked"), or it follows one that moves nothing ("mimic").
+void expectThatItMoves(JointType type, const std::string& how) {
+  auto tree = std::make_shared<KinematicTree>("arm");
+  for (const char* link : {"world", "lead", "arm"}) tree->addLink(link);
+  if (how == "mimic") tree->addJoint(Joint::prismatic("lead", "world", "lead", Vector3d::UnitZ()));
+  Joint joint;
+  joint.name = "joint";
+  joint.type = type;
+  joint.parent = "world";
+  joint.child = "arm";
+  joint.axis = type == JointType::prismatic ? Vector3d::UnitY() : Vector3d::UnitZ();
+  if (how == "locked") joint.lower = joint.upper = 0.25;
+  joint.mimics = how == "mimic";
+  if (joint.mimics) joint.mimic = {"lead", 1, 0};
+  tree->addJoint(joint);
+  VectorXd q0 = tree->neutralConfiguration(), q1 = q0;
+  if (type == JointType::spherical) {
+    q1 << 0, 0, std::sin(1), std::cos(1);
+  } else {
+    q1[tree->dof() > 1 ? 1 : 0] = 2;
+  }
+  const JointMotion motion = JointMotion::linear(*tree, q0, q1);
+  const Isometry3d met = tree->linkPose(tree->linkId("arm"), motion.configuration(0.5)) * to(1, 0, 0);
+  for (const bool own : {false, true}) {
+    ArticulatedCollisionManager manager(tree);
+    manager.bind("arm", box(0.1, 0.1, 0.1), to(1, 0, 0));
+    const auto post = box(0.1, 0.1, 0.1);
+    if (own) {
+      manager.bind("world", post, met);
+      manager.disallow("arm", "world");  // the rule for neighbours can't decide on joints without limits
+    } else {
+      post->setTransform(met);
+      manager.registerObject(post, "post");
+    }
+    manager.setup();
+    const CertifiedResult result = manager.continuousCollide(motion);
+    EXPECT_EQ(result.status, Status::contact) << static_cast<int>(type) << ' ' << how << ' ' << own;
+    EXPECT_GT(result.t_lower, 0.3) << static_cast<int>(type) << ' ' << how << ' ' << own;
+  }
+}
+
+TEST(StillPairsOfJoints, NoneThatAJointOfAnyKindMoves) {
+  for (const JointType type : {JointType::revolute, JointType::continuous, JointType::prismatic, JointType::planar,
+                               JointType::spherical, JointType::floating}) {
+    expectThatItMoves(type, "");
+  }
+  for (const JointType type : {JointType::revolute, JointType::continuous, JointType::prismatic}) {
+    expectThatItMoves(type, "mimic");
+    if (type != JointType::continuous) expectThatItMoves(type, "locked");
+  }
+}
+
+// Two that are carried are checked against each other, whatever links they may touch.
+TEST(StillPairsOfJoints, TwoThatAreCarriedMeet) {
+  const PostRobot robot;
+  ArticulatedCollisionManager manager(robot.tree);
+  const auto tool = box(0.1, 0.1, 0.1), lamp = box(0.1, 0.1, 0.1);
+  manager.registerObject(tool, "tool");
+  manager.registerObject(lamp, "lamp");
+  manager.attach("arm", tool, to(1, 0, 0), {"base"});
+  manager.attach("base", lamp, to(0, 1, 0), {"arm"});
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(3)).status, Status::contact);
+}
+
+// The next obstacle of a name is another object.
+TEST(StillPairsOfJoints, WhatWasAllowedGoesWithItsObstacle) {
+  const PostRobot robot;
+  ArticulatedCollisionManager manager(robot.tree);
+  manager.bind("arm", box(0.1, 0.1, 0.1), to(1, 0, 0));
+  const auto first = box(0.1, 0.1, 0.1), second = box(0.1, 0.1, 0.1);
+  for (const auto& post : {first, second}) post->setTransform(to(0, 1, 0));
+  manager.registerObject(first, "post");
+  manager.allow("arm", "post");
+  manager.setup();
+  EXPECT_TRUE(manager.continuousCollide(at(0), at(3)).isFree());
+  manager.unregisterObject(first);
+  manager.registerObject(second, "post");
+  manager.setup();
+  EXPECT_EQ(manager.continuousCollide(at(0), at(3)).status, Status::contact);
+}
+
 }  // namespace neighbours_test

@@ -265,6 +265,12 @@ TEST(ReplaceObstacles, MarginsAndAllowedPairsAreOfNamesThatAreGivenAgain) {
   manager.allow("obstacle0", "slide");
   manager.replaceObstacles({other});
   EXPECT_TRUE(touchesAt(run(), 2.5 / 4));
+  // Nor is it where some names are given, and this object has none.
+  manager.allow("obstacle0", "slide");
+  manager.setMargin("obstacle0", 0.2);
+  manager.replaceObstacles({wall, ball(0.1, {0, 9, 0})}, {"", "lamp"});
+  EXPECT_TRUE(touchesAt(run(), 2.5 / 4));
+  EXPECT_TRUE(manager.allowedCollisions().pairs().empty());
 }
 
 // Carried objects, margins and allowed pairs go with the robot, those of obstacles stay behind.

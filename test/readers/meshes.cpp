@@ -61,12 +61,13 @@ void addMeshFormats(std::vector<FileFormat>& formats) {
       {"dae",
        {{"forgets a translation", "<translate>[^<]*</translate>"},
         {"forgets a rotation", "<rotate>[^<]*</rotate>"},
-        {"forgets a scale", "<scale>[^<]*</scale>"},
+        {"forgets a scale", "<scale[^>]*>[^<]*</scale>"},
         {"forgets a matrix", "<matrix>[^<]*</matrix>"},
-        {"skips an instance", "<instance_geometry[^>]*/>"}}},
+        {"skips an instance", "<instance_geometry[^>]*(/>|[^/]>.*?</instance_geometry>)"}}},
       {"gltf",
        {{"forgets a translation", ",\"translation\":\\[[^\\]]*\\]"},
         {"forgets a rotation", ",\"rotation\":\\[[^\\]]*\\]"},
+        {"forgets a scale", ",\"scale\":\\[[^\\]]*\\]"},
         {"forgets a matrix", "\"matrix\":\\[[^\\]]*\\],"}}}};
   for (const std::string& format : writtenFormats()) {
     const auto faults = kFaults.find(format);

@@ -37,6 +37,8 @@ TEST_P(RandomFiles, AreReadAsTheyAreWritten) {
                 found.changed_read + found.changed_refused, found.changed_read, found.changed_refused);
     EXPECT_GE(found.changed_refused, files / 5);
     EXPECT_GE(found.faults.size(), 3 + format.faults.size()) << "some fault never made a difference";
+    for (const auto& [name, pattern] : format.faults)
+      EXPECT_EQ(found.faults.count(name), 1u) << name << " never made a difference";
     for (const auto& [name, seen] : found.faults) {
       if (asked) std::printf("  a reader that %s: seen in %d of %d\n", name.c_str(), seen.seen, seen.files);
       EXPECT_GE(seen.files, files / 40) << name;

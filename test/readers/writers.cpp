@@ -583,7 +583,7 @@ class ColladaWriter {
         transforms += "<translate>" + three + "</translate>";
         M = product(M, shift(fromShown(x), fromShown(y), fromShown(z)));
       } else if (kind == 1 && x != 0 && y != 0 && z != 0) {
-        transforms += "<scale sid=\"s\">" + three + "</scale>";
+        transforms += (coin(random_) ? "<scale>" : "<scale sid=\"s\">") + three + "</scale>";
         M = product(M, scaling(fromShown(x), fromShown(y), fromShown(z)));
       } else if (kind == 2 && (x != 0 || y != 0 || z != 0)) {
         const double angle = 90 * small(random_);
@@ -610,7 +610,7 @@ class ColladaWriter {
     if (coin(random_) || depth == 0) {
       const int number = below(random_, static_cast<int>(geometries_.size()));
       parts += "<instance_geometry url=\"#g" + std::to_string(number) +
-               "\"><bind_material><technique_common/></bind_material></instance_geometry>";
+               (coin(random_) ? "\"/>" : "\"><bind_material><technique_common/></bind_material></instance_geometry>");
       addPlaced(geometries_[static_cast<std::size_t>(number)].faces, M, file_);
       file_.lines += geometries_[static_cast<std::size_t>(number)].lines;
     }

@@ -404,6 +404,27 @@ TEST(TesseractContactManager, EveryShape) {
   EXPECT_FALSE(manager.hasCollisionObject("odd"));
 }
 
+// A mirrored, stretched or sheared pose has a quaternion too, of another place.
+TEST(TesseractContactManager, PosesThatAreNotRigidAreRefused) {
+  TesseractContactManager manager;
+  add(manager, "ball", std::make_shared<geometry::Sphere>(0.02));
+  add(manager, "wall", std::make_shared<geometry::Box>(0.1, 1, 1));
+  manager.setActiveCollisionObjects({"ball"});
+  (void)contacts(manager);
+  Eigen::Isometry3d mirrored = Eigen::Isometry3d::Identity(), stretched = mirrored, sheared = mirrored;
+  mirrored.linear() = Eigen::Vector3d(1, 1, -1).asDiagonal();
+  stretched.linear() *= 2;
+  sheared.linear()(0, 1) = 1e-5;
+  for (const Eigen::Isometry3d& pose : {mirrored, stretched, sheared}) {
+    for (const char* object : {"ball", "wall"}) {
+      EXPECT_THROW(manager.setCollisionObjectsTransform(object, at(1, 0, 0), pose), std::invalid_argument);
+      EXPECT_THROW(manager.setCollisionObjectsTransform(object, pose), std::invalid_argument);
+    }
+    EXPECT_THROW(manager.addCollisionObject("odd", 0, {std::make_shared<geometry::Sphere>(1)}, {pose}),
+                 std::invalid_argument);
+  }
+}
+
 TEST(TesseractContactManager, PlugIn) {
   const std::string config = std::string("contact_manager_plugins:\n  search_paths:\n    - ") +
                              FCL_ARTIC_PLUGIN_FOLDER +

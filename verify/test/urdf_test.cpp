@@ -509,6 +509,16 @@ TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
             std::string::npos);
   EXPECT_NE(answer("<disable_collisions link1='a' link2='b' link1='c'/>"), "same");
   EXPECT_NE(answer("<disable_collisions link1='a'/>").find("missing"), std::string::npos);
+  const std::string pair = "<disable_collisions link1='a' link2='b' reason='Never'/>";
+  EXPECT_EQ(answer("text <virtual_joint name='v' type='fixed'/><gripper/>" + pair), "same");
+  EXPECT_EQ(answer("<disable_default_collisions link='a' reason='Default'/>"), "same");
+  for (const char* other : {"<enable_colisions link1='a' link2='b'/>", "<disable_colisions link1='a' link2='b'/>",
+                            "<Enable link1='a' link2='b'/>", "<collision_margins/>", "<xacro:if value='1'/>"}) {
+    EXPECT_NE(answer(pair + other).find("not known in <robot>"), std::string::npos) << other;
+  }
+  EXPECT_NE(answer("<disable_collisions link1='a' link2='b'><enable/></disable_collisions>").find("<enable>"),
+            std::string::npos);
+  EXPECT_NE(answer("<disable_default_collisions link='a' except='b'/>").find("except"), std::string::npos);
 }
 
 }  // namespace

@@ -301,6 +301,12 @@ class PinocchioReader {
       throw std::invalid_argument("fromPinocchio: joint '" + name + "' is a " + joint.shortname() +
                                   ", or has one within it, which fcl_artic has no joint for");
     }
+    // pinocchio takes axes as they are: it would slide so many times as far along a longer one, where this library goes
+    // by the direction alone.
+    for (const Step& step : visitor.steps) {
+      if (std::abs(step.axis.norm() - 1) <= 1e-9) continue;
+      throw std::invalid_argument("fromPinocchio: joint '" + name + "' has an axis that is not of length 1");
+    }
     return visitor.steps;
   }
 
@@ -447,10 +453,10 @@ class PinocchioReader {
 ///
 /// Objects that are registered or attached afterwards are checked against all geometries. A body that coal sweeps with
 /// a ball is refused where a margin would have to stand for that (PinocchioOptions::swept_radius_as_margin takes it).
-/// @throws std::invalid_argument, naming the joint, for a kind that this library has not (helical ones), and for mimic
-///   joints of more than one variable; naming the geometry, for one that fromCoal() or the manager refuses, such as a
-///   Halfspace or Plane that a joint moves; and for a collision pair on one joint, whose bodies never move against each
-///   other.
+/// @throws std::invalid_argument, naming the joint, for a kind that this library has not (helical ones), for an axis
+///   that is not of length 1 within 1e-9, and for mimic joints of more than one variable; naming the geometry, for one
+///   that fromCoal() or the manager refuses, such as a Halfspace or Plane that a joint moves; and for a collision pair
+///   on one joint, whose bodies never move against each other.
 inline PinocchioRobot fromPinocchio(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries,
                                     const PinocchioOptions& options = {}) {
   return detail::PinocchioReader(model, geometries, options).read();

@@ -44,9 +44,15 @@ struct Object {
   int variable = -1;    ///< its first one, if it is active
 };
 
+/// As the manager has it of obstacles' poses. (An active object's becomes a quaternion, which any matrix would give.)
 void requirePose(const ObjectId& id, const Eigen::Isometry3d& pose) {
-  if (pose.matrix().allFinite() && pose.translation().cwiseAbs().maxCoeff() <= 1e5) return;
-  throw std::invalid_argument("object '" + id.name() + "' has a pose that is not finite or farther than 1e5 m away");
+  if (!pose.matrix().allFinite() || pose.translation().cwiseAbs().maxCoeff() > 1e5) {
+    throw std::invalid_argument("object '" + id.name() + "' has a pose that is not finite or farther than 1e5 m away");
+  }
+  const Eigen::Matrix3d R = pose.matrix().topLeftCorner<3, 3>();
+  const Eigen::Matrix3d defect = R.transpose() * R - Eigen::Matrix3d::Identity();
+  if (defect.cwiseAbs().maxCoeff() <= 1e-6 && R.determinant() > 0) return;
+  throw std::invalid_argument("object '" + id.name() + "' has a pose that is not rigid to 1e-6");
 }
 
 /// Position and quaternion x, y, z, w.

@@ -218,7 +218,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   const meshes::Source source{path, content, where, notes};
   meshes::TriangleSoup soup = readMesh(source, collada_up_axis, import_meshes);
   soup.tell(source);
-  meshes::noteUnits(source);
+  meshes::noteComments(source);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
   return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);
 }

@@ -30,7 +30,7 @@ std::shared_ptr<PointCloud> loadPointCloud(const std::string& path, double radiu
   } else {
     source.refuse("its name ends in none of .pcd, .ply and .xyz");
   }
-  meshes::noteUnits(source);
+  meshes::noteComments(source);
   const std::size_t all = points.size();
   const auto isNear = [](const Eigen::Vector3d& x) {
     return (x.array() == -std::numeric_limits<double>::infinity()).any();

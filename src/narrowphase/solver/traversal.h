@@ -16,7 +16,7 @@ namespace FCL_ARTIC_ISA {
 /// is known already. Measured: a quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
-/// 0.35 to 1.4 is within 30 % (doc/NUMERICS.md).
+/// 0.35 to 1.4 is within 30 %.
 constexpr double kSplitTime = 0.7;
 /// Hulls that overlap in this number of lanes are left to their triangles.
 constexpr int kMostHullOverlaps = 2;

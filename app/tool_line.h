@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a verb says about a tool that is to follow a straight line.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "fcl_artic/tool_line.h"
+
+namespace fcl_artic::app {
+
+/// A tool, and how far it may leave its line.
+struct ToolLine {
+  std::string link;
+  Eigen::Isometry3d tool = Eigen::Isometry3d::Identity();
+  double distance = 0;  ///< m
+  double angle = 3.2;   ///< rad; above pi: any
+  bool any_angle() const { return angle > 3.15; }
+};
+
+/// Adds --line to the group.
+void addToolLine(CLI::App& verb, std::string& text, const std::string& group);
+/// Reads "LINK=1mm", "LINK=1mm,0.5deg" or, with the tool's frame in the link's, "LINK=1mm,0.5deg@POSE".
+/// @throws std::invalid_argument beginning with --line, also for a link that the robot does not have.
+ToolLine parseToolLine(const KinematicTree& tree, const std::string& text);
+
+/// What became of it on one motion.
+struct ToolLineAnswer {
+  ToolLine asked;
+  ToolDeviation found;
+
+  bool kept() const { return found.certainlyKeeps(asked.distance, asked.angle); }
+  bool left() const { return found.certainlyLeaves(asked.distance, asked.angle); }
+  int exitStatus() const;
+  /// "kept", "left" or "undecided".
+  const char* verdict() const;
+  std::string text() const;
+  nlohmann::ordered_json json() const;
+};
+ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& motion, const ToolLine& line);
+
+}  // namespace fcl_artic::app

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The options of a request, once: the program's options, Python's keywords with their docstrings, and JSON go by this
+// table.
+#pragma once
+
+#include "fcl_artic/request.h"
+
+namespace fcl_artic {
+
+struct RequestOption {
+  const char* name;     ///< in Python and in JSON
+  const char* program;  ///< of the program's option; of a flag that is on by default, what switches it off; null: none
+  const char* help;     ///< of what is on by default, an imperative
+};
+
+/// Calls visit(option, member) for each, in the order in which they are listed.
+template <class Visit>
+void forEachRequestOption(const Visit& visit) {
+  using C = CertifiedRequest;
+  visit(RequestOption{"mode", nullptr, "Which contacts are looked for."}, &C::mode);
+  visit(RequestOption{"max_contacts", nullptr,
+                      "Contacts to report at most; 0: the verdict alone, which takes less time."},
+        &C::max_contacts);
+  visit(RequestOption{"tolerance_time", "--tolerance-time",
+                      "Wanted width of the bracket of the contact time, in the motion's time."},
+        &C::tolerance_time);
+  visit(
+      RequestOption{
+          "tolerance_distance", "--tolerance-distance",
+          "A gap below this, m, may count as touching where it can't be proven: contact that is not certain."},
+      &C::tolerance_distance);
+  visit(RequestOption{"margin", "--margin",
+                      "Nearer than this counts as touching, m. Margins of a body's or pair's own replace it."},
+        &C::margin);
+  visit(RequestOption{"added_margin", nullptr, "Added to every margin, also to those of bodies and pairs, m."},
+        &C::added_margin);
+  visit(RequestOption{"check_scene", "--no-scene", "Check links against obstacles."}, &C::check_scene);
+  visit(RequestOption{"check_self", "--no-self", "Check links against links."}, &C::check_self);
+  visit(RequestOption{"ignore_initial_contact", "--ignore-initial-contact",
+                      "Pairs that touch at the start, or are within their margin, may separate: they are checked from "
+                      "then on. One that never separates is never checked, and the answer counts it. All of a body is "
+                      "one: a link that touches one point of a cloud is not checked against the others."},
+        &C::ignore_initial_contact);
+  visit(RequestOption{"certificate", nullptr, "Whether a proof is asked for."}, &C::certificate);
+  visit(RequestOption{"visibility", nullptr, "When stage 2, culling by visibility, is used."}, &C::visibility);
+  visit(RequestOption{"method", nullptr, "The library's own method, or the paper's."}, &C::method);
+  visit(RequestOption{"redon", nullptr, "Options of the paper's method."}, &C::redon);
+  visit(RequestOption{"work_budget", "--budget", "Tests after which the answer is undecided; 0: no limit."},
+        &C::work_budget);
+  visit(RequestOption{"measure_times", nullptr, "Whether the statistics have times."}, &C::measure_times);
+}
+
+}  // namespace fcl_artic
