@@ -257,7 +257,7 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.joints = o.variables.joints;
   o.certify.motion.state = parseValues(tree, o.variables.state, "--state");
   o.certify.motion.ignore_limits = o.variables.ignore_limits;
-  o.certify.motion.limit_tolerance = o.columns.limit_tolerance;
+  o.certify.motion.limit_tolerance = o.variables.limit_tolerance;
   o.certify.motion.degrees = o.columns.degrees;
   o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;

@@ -109,8 +109,8 @@ std::string mendedText(const CertifiedPlan& plan) {
 
 std::string sumText(const CertifyReport& r) {
   const Sum sum = sumOf(r.plans);
-  std::string text = fmt::format("{} plans: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(), sum.free,
-                                 sum.contact, sum.undecided, sum.wrong);
+  std::string text = fmt::format("{} plan{}: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(),
+                                 r.plans.size() == 1 ? "" : "s", sum.free, sum.contact, sum.undecided, sum.wrong);
   if (sum.left_line > 0)
     text += fmt::format(", {} without contact that leave, or may leave, the tool's line", sum.left_line);
   const bool mending = std::any_of(r.plans.begin(), r.plans.end(),

@@ -5,13 +5,17 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "configuration.h"
 #include "exit_status.h"
 #include "outputs.h"
 #include "progress.h"
@@ -29,9 +33,14 @@ constexpr LinkPairKind kKinds[] = {LinkPairKind::never, LinkPairKind::always, Li
 struct SrdfVerb {
   RobotOptions robot;
   std::string check, write, images;
+  std::vector<std::string> allow_at;
   LinkPairOptions search;
   bool json = false;
 };
+
+std::string pairsText(std::size_t n) {
+  return fmt::format("{} pair{}", n, n == 1 ? "" : "s");
+}
 
 const char* meaningOf(LinkPairKind kind) {
   switch (kind) {
@@ -47,13 +56,22 @@ const char* meaningOf(LinkPairKind kind) {
   return "";
 }
 
-/// Values of the joints that are not at rest, which is 0 or as near as the limits let them.
-std::string configurationText(const KinematicTree& tree, const Eigen::VectorXd& q) {
-  const Eigen::VectorXd rest = tree.neutralConfiguration();
-  std::string text;
+/// All joints at 0, or as near as the limits let them.
+Eigen::VectorXd restOf(const KinematicTree& tree) {
+  Eigen::VectorXd rest = tree.neutralConfiguration();
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
-    if (q[v] == (hasLimits(joint) ? std::clamp(rest[v], joint.lower, joint.upper) : rest[v])) continue;
+    if (hasLimits(joint)) rest[v] = std::clamp(rest[v], joint.lower, joint.upper);
+  }
+  return rest;
+}
+
+/// Values of the joints that are not at rest.
+std::string configurationText(const KinematicTree& tree, const Eigen::VectorXd& q) {
+  const Eigen::VectorXd rest = restOf(tree);
+  std::string text;
+  for (int v = 0; v < tree.dof(); ++v) {
+    if (q[v] == rest[v]) continue;
     text += fmt::format("{}{}={:.6g}", text.empty() ? "" : ",", tree.variableName(v), q[v]);
   }
   return text.empty() ? "rest" : text;
@@ -135,6 +153,46 @@ void drawTouching(const Robot& robot, const LinkPairReport& report, const std::s
   }
 }
 
+/// Values of all joints; where some are named, the others are at rest, and "rest" names none.
+Eigen::VectorXd allowedAt(const KinematicTree& tree, const std::vector<std::string>& words) {
+  const char* const option = "--allow-at";
+  if (words == std::vector<std::string>{"rest"}) return restOf(tree);
+  const bool named = words.front().find('=') != std::string::npos;
+  if (!named) return parseConfiguration(tree, words, option);
+  const Eigen::VectorXd rest = restOf(tree);
+  std::map<std::string, double> others;
+  for (int v = 0; v < tree.dof(); ++v) others[tree.variableName(v)] = rest[v];
+  for (const auto& [name, value] : parseValues(tree, words, option)) others.erase(name);
+  return parseConfiguration(tree, words, option, others);
+}
+
+/// Pairs that touch in a configuration, or are too near to tell, of those that need a check.
+std::vector<SrdfPair> touchingAt(Robot robot, const LinkPairReport& report, const Eigen::VectorXd& q, double margin) {
+  robot.allowed = report.needNoCheck();
+  robot.allowed.setComplete();
+  ArticulatedCollisionManager manager(robot.tree);
+  robot.addTo(manager);
+  manager.setup();
+  CertifiedRequest request;
+  request.mode = ContactMode::firstOfEveryPair;
+  request.max_contacts = report.pairs.size();
+  request.margin = margin;
+  std::vector<SrdfPair> pairs;
+  for (const CertifiedContact& c : manager.collide(q, request).contacts) {
+    pairs.push_back({c.body1.name, c.body2.name, "Unproven"});
+  }
+  return pairs;
+}
+
+/// " and, unproven, 2 pairs that touch at elbow=1: a and b; b and c".
+std::string allowedText(const std::vector<SrdfPair>& pairs, const std::string& at) {
+  std::string text =
+      fmt::format(" and, unproven, {} that touch{} at {}", pairsText(pairs.size()), pairs.size() == 1 ? "es" : "", at);
+  for (const SrdfPair& pair : pairs)
+    text += fmt::format("{} {} and {}", &pair == &pairs.front() ? ":" : ";", pair.link1, pair.link2);
+  return text;
+}
+
 /// Exit status for the pairs reported: those that an SRDF disables, or all.
 int exitStatusOf(const LinkPairReport& disabled) {
   if (disabled.count(LinkPairKind::sometimes) > 0) return kExitContact;
@@ -159,6 +217,8 @@ int runSrdf(SrdfVerb& options) {
   Robot robot = loadUrdf(options.robot.robot, urdfOptions(options.robot));
   const KinematicTree& tree = *robot.tree;
   if (!options.images.empty()) removePictures(tree, options.images);
+  std::optional<Eigen::VectorXd> allow_at;  // read before the long work
+  if (!options.allow_at.empty()) allow_at = allowedAt(tree, options.allow_at);
   std::optional<AllowedCollisionMatrix> disabled;
   if (!options.check.empty()) disabled = loadSrdf(options.check, tree, &robot.notes);
   const LinkPairReport report = classify(robot, options.search);
@@ -178,7 +238,7 @@ int runSrdf(SrdfVerb& options) {
     }
     fmt::print("{}\n", out.dump(2));
   } else if (disabled) {
-    fmt::print("{} disables {} pairs of links with geometry:\n", options.check, of_file.pairs.size());
+    fmt::print("{} disables {} of links with geometry:\n", options.check, pairsText(of_file.pairs.size()));
     printPairs(tree, of_file, false);
     LinkPairReport missing;
     for (const LinkPairFinding& pair : report.pairs) {
@@ -190,14 +250,19 @@ int runSrdf(SrdfVerb& options) {
       printPairs(tree, missing, true);
     }
   } else {
-    fmt::print("{}: {} pairs of links with geometry:\n", tree.name(), report.pairs.size());
+    fmt::print("{}: {} of links with geometry:\n", tree.name(), pairsText(report.pairs.size()));
     printPairs(tree, report, true);
   }
   if (!options.json) {
     for (const std::string& note : robot.notes) fmt::print("note: {}\n", note);
   }
-  if (!options.write.empty()) writeSrdf(options.write, tree.name(), report);
-  if (!options.write.empty() && !options.json) fmt::print("{} written to {}\n", summaryOf(report), options.write);
+  if (!options.write.empty()) {
+    std::vector<SrdfPair> touching;
+    if (allow_at) touching = touchingAt(robot, report, *allow_at, options.search.margin);
+    writeSrdf(options.write, tree.name(), report, touching);
+    const std::string more = allow_at ? allowedText(touching, configurationText(tree, *allow_at)) : "";
+    if (!options.json) fmt::print("{}{} written to {}\n", summaryOf(report), more, options.write);
+  }
   if (!options.images.empty()) drawTouching(robot, disabled ? of_file : report, options.images);
   return disabled ? exitStatusOf(of_file) : kExitFree;
 }
@@ -216,8 +281,8 @@ std::string summaryOf(const LinkPairReport& report) {
   const std::size_t all = report.needNoCheck().pairs().size(), apart = report.count(LinkPairKind::never);
   const std::size_t always = report.alwaysTouching().pairs().size();
   return fmt::format(
-      "{} pairs of links that need no check ({} proven apart, {} neighbours that touch, {} others always in contact)",
-      all, apart, all - apart - always, always);
+      "{} of links that need no check ({} proven apart, {} neighbours that touch, {} others always in contact)",
+      pairsText(all), apart, all - apart - always, always);
 }
 
 std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairReport& disabled, double margin) {
@@ -266,7 +331,13 @@ void addSrdf(CLI::App& program, int& exit_status) {
       "sometimes; 3 neither is known of one; 2 error.");
   addRobotFile(*srdf, o.robot);
   srdf->add_option("--check", o.check, "Look at the pairs that this SRDF disables")->type_name("FILE");
-  srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");
+  CLI::Option* write =
+      srdf->add_option("--write", o.write, "Write the pairs that need no check, as SRDF")->type_name("FILE");
+  srdf->add_option("--allow-at", o.allow_at,
+                   "Have --write allow the pairs too that touch in this configuration, marked as unproven: all values, "
+                   "NAME=VALUE of those that are not at rest, or 'rest'")
+      ->needs(write)
+      ->type_name("Q");
   srdf->add_flag("--solid-meshes", o.robot.solid_meshes, "Meshes are solids: what lies within one touches it");
   srdf->add_option("--margin", o.search.margin, "Links must keep this distance to count as apart, in m")
       ->check(CLI::NonNegativeNumber)

@@ -109,8 +109,12 @@ Straight straightOf(const KinematicTree& tree, const plans::PlanMotion& motion, 
   add(way.piece(0).configuration(0), motion.times[0], true);
   for (std::size_t k = 0; k < way.numPieces(); ++k) {
     const JointMotion& piece = way.piece(k);
-    // As the next piece begins: there are the plan's own numbers.
-    const VectorXd end = k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : piece.configuration(1);
+    // As the next piece begins: there are the plan's own numbers. At the goal they are the plan's but for whole turns.
+    VectorXd end = k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : piece.configuration(1);
+    if (k + 1 == way.numPieces()) {
+      const VectorXd& goal = motion.waypoints.back();
+      end = ((end - goal).array().abs() < 1).select(goal, end);
+    }
     const bool free = isFree(piece);
     const double step = (end - out.points.back()).lpNorm<Eigen::Infinity>();
     const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMostParts);

@@ -21,6 +21,13 @@ void addPlanVariables(CLI::App& verb, PlanVariables& options) {
   verb.add_flag("--ignore-limits", options.ignore_limits,
                 "Waypoints beyond the joints' limits are noted, and certified all the same")
       ->group("Plans");
+  verb.add_option(
+          "--limit-tolerance", options.limit_tolerance,
+          "By so much a waypoint may be beyond a joint's limits, as sensors are, and is noted: rad; for lengths "
+          "a tenth of it, in m")
+      ->check(requireNotNegative)
+      ->group("Plans")
+      ->capture_default_str();
 }
 
 void addPlanColumns(CLI::App& verb, PlanColumnOptions& options) {
@@ -43,13 +50,6 @@ void addPlanColumns(CLI::App& verb, PlanColumnOptions& options) {
       ->group("Plans")
       ->type_name("NAME");
   verb.add_flag("--degrees", options.degrees, "Angles in the plans are in degrees")->group("Plans");
-  verb.add_option(
-          "--limit-tolerance", options.limit_tolerance,
-          "By so much a waypoint may be beyond a joint's limits, as sensors are, and is noted: rad; for lengths "
-          "a tenth of it, in m")
-      ->check(requireNotNegative)
-      ->group("Plans")
-      ->capture_default_str();
 }
 
 void InterpolationOptions::require() const {

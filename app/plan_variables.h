@@ -17,19 +17,19 @@ struct PlanVariables {
   std::vector<std::string> state;   ///< NAME=VALUE, of joints that plans do not name
   std::string turns = "ask";
   bool ignore_limits = false;
+  double limit_tolerance = plans::kLimitTolerance;  ///< rad
 };
 
 /// What verbs say of columns and units of files of plans.
 struct PlanColumnOptions {
   plans::ColumnOptions columns;
   bool degrees = false;
-  double limit_tolerance = plans::MotionOptions().limit_tolerance;  ///< rad
 };
 
-/// Adds --columns, --skip, --time, --degrees and --limit-tolerance.
+/// Adds --columns, --skip, --time and --degrees.
 void addPlanColumns(CLI::App& verb, PlanColumnOptions& options);
 
-/// Adds --turns, --joints, --state and --ignore-limits.
+/// Adds --turns, --joints, --state, --ignore-limits and --limit-tolerance.
 void addPlanVariables(CLI::App& verb, PlanVariables& options);
 
 /// What lies between waypoints.

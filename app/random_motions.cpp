@@ -9,11 +9,17 @@
 #include <Eigen/Geometry>
 
 #include "angles.h"
+#include "kinematics/largest_joint_value.h"
 
 namespace fcl_artic::app {
 namespace {
 
 constexpr double kPlaces = 1e6;  // a multiple of its inverse is what its six decimals read as
+
+/// Limits beyond what a motion's joint values may be, as a virtual joint's of +-999999 m, are none to draw from.
+bool isLimited(const Joint& joint) {
+  return hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kLargestJointValue;
+}
 
 /// The values that variable v may begin with; v is no part of a quaternion.
 struct Range {
@@ -21,7 +27,7 @@ struct Range {
 };
 Range rangeOf(const KinematicTree& tree, int v) {
   const Joint& joint = tree.joint(tree.variableJoint(v));
-  if (hasLimits(joint)) return {joint.lower, joint.upper};
+  if (isLimited(joint)) return {joint.lower, joint.upper};
   const double reach = tree.isAngle(v) ? kPi : 1;
   return {-reach, reach};
 }
@@ -87,7 +93,7 @@ int numSteps(const KinematicTree& tree, const MotionEnds& ends, double resolutio
     }
     const double moved = std::abs(ends.to[v] - ends.from[v]);
     const Range range = rangeOf(tree, v);
-    if (hasLimits(tree.joint(tree.variableJoint(v)))) {
+    if (isLimited(tree.joint(tree.variableJoint(v)))) {
       square += moved * moved;
       extent_square += (range.high - range.low) * (range.high - range.low);
     } else {

@@ -104,6 +104,7 @@ void Robot::readLink(const Xml::Element& e) {
     xml_.only(*c, {"name", "concave", "group", "mask"}, {"origin", "geometry"},
               {"material", "verbose", "contact_coefficients", "drake:proximity_properties"});
     Collision collision = readShape(*c);
+    if (collision.kind == Geometry::sphere && collision.numbers[0] == 0) continue;  // a point is no body
     collision.place = readPlace(*c);
     link.collisions.push_back(std::move(collision));
   }

@@ -148,7 +148,9 @@ void addIdeas(CLI::App& bench, int& exit_status) {
   verb->add_option("--passes", o.passes, "Runs of each query; the fastest counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb->add_option("--budget", o.budget, "Tests after which a query ends undecided; 0: no limit")
+  verb->add_option(
+          "--budget", o.budget,
+          "Tests after which a query ends undecided; 0: the library's own, after which the standard method answers")
       ->capture_default_str();
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->callback([options, &exit_status] { exit_status = runIdeas(*options); });

@@ -112,6 +112,7 @@ Json describe(const WorldOptions& world, const World& read, const EdgesOptions& 
                   {"point_radius", world.point_radius},
                   {"unknown_cells", world.unknown_cells},
                   {"ignore_limits", o.columns.ignore_limits},
+                  {"limit_tolerance", o.columns.limit_tolerance},
                   {"turns", static_cast<int>(o.columns.turns)},
                   {"certificates", o.certificates}});
   return {{"version", FCL_ARTIC_VERSION},
@@ -196,7 +197,7 @@ class Stage {
 /// Answers blocks.
 class Answerer {
  public:
-  Answerer(Stage& stage, const EdgeSource& edges, const EdgesOptions& options, const RunFolder& folder, int threads)
+  Answerer(Stage& stage, EdgeSource& edges, const EdgesOptions& options, const RunFolder& folder, int threads)
       : stage_(stage), edges_(edges), options_(options), folder_(folder), threads_(threads) {}
 
   /// Computes a block.
@@ -272,7 +273,7 @@ class Answerer {
   }
 
   Stage& stage_;
-  const EdgeSource& edges_;
+  EdgeSource& edges_;
   const EdgesOptions& options_;
   const RunFolder& folder_;
   int threads_;
@@ -294,7 +295,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   world.open(o.request);
   const KinematicTree& tree = *world.robot.tree;
   o.columns.state = parseValues(tree, o.state, "--state");
-  const EdgeSource edges(tree, o.edges, o.columns);
+  EdgeSource edges(tree, o.edges, o.columns);
   const SceneSource scenes = o.scenes.empty() ? SceneSource() : SceneSource(o.scenes, sceneOptions(world_options));
   folder.emplace(o.out, describe(world_options, world, o, edges, scenes));
   const bool speaks = ranks.rank() == 0 && !o.quiet;
@@ -349,6 +350,9 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   for (std::size_t i = 0; i < std::min(kErrorsShown, errors.size()); ++i)
     fmt::print(stderr, "fcl_artic: error: {}\n", errors[i]);
   if (errors.size() > kErrorsShown) fmt::print(stderr, "fcl_artic: {} more errors\n", errors.size() - kErrorsShown);
+  if (!o.quiet) {
+    for (const std::string& note : edges.limitNotes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+  }
   if (!answerer.refusal().empty())
     fmt::print(stderr, "fcl_artic: error: rows are refused, the first: {}\n", answerer.refusal());
   const bool unwritten = world.unwritten.exitStatus(kExitFree) != kExitFree;

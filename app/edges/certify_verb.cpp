@@ -29,6 +29,7 @@ int runCertifyEdges(EdgesVerb& o) {
   o.edges.columns.joints = o.variables.joints;
   o.edges.columns.turns = turnsOf(o.variables);
   o.edges.columns.ignore_limits = o.variables.ignore_limits;
+  o.edges.columns.limit_tolerance = o.variables.limit_tolerance;
   o.edges.state = o.variables.state;
   o.edges.request.mode = o.any ? ContactMode::any : ContactMode::first;
   o.edges.request.certificate = o.edges.certificates;

@@ -23,7 +23,10 @@ std::vector<std::string> variableNames(const KinematicTree& tree) {
 }  // namespace
 
 EdgeSource::EdgeSource(const KinematicTree& tree, const std::string& path, EdgeOptions options)
-    : tree_(tree), file_(path), options_(std::move(options)) {
+    : tree_(tree),
+      file_(path),
+      options_(std::move(options)),
+      limits_(tree, options_.limit_tolerance, options_.ignore_limits) {
   const bool ends = file_.has("from") || file_.has("to");
   if (ends + file_.has("configurations") + file_.has("waypoints") > 1) {
     throw std::runtime_error(
@@ -177,17 +180,13 @@ Eigen::VectorXd EdgeSource::configuration(const double* row) const {
 }
 
 /// What keeps a configuration from being one of the robot's; empty: nothing.
-std::string EdgeSource::faultOf(const Eigen::VectorXd& q) const {
+std::string EdgeSource::faultOf(const Eigen::VectorXd& q) {
   for (Eigen::Index v = 0; v < q.size(); ++v) {
     if (!std::isfinite(q[v])) return fmt::format("joint '{}' is {}", tree_.variableName(static_cast<int>(v)), q[v]);
   }
-  if (options_.ignore_limits) return {};
   for (const int v : variables_) {
-    const Joint& joint = tree_.joint(tree_.variableJoint(v));
-    if (hasLimits(joint) && !(q[v] >= joint.lower && q[v] <= joint.upper)) {
-      return fmt::format(
-          "joint '{}' at {} is beyond its limits [{}, {}]; --ignore-limits has it certified all the same", joint.name,
-          q[v], joint.lower, joint.upper);
+    if (const std::string why = limits_.refusal(v, q[v]); !why.empty()) {
+      return why + "; --ignore-limits has it certified all the same";
     }
   }
   return {};
@@ -207,7 +206,7 @@ std::string EdgeSource::turnFaultOf(const Eigen::VectorXd& q0, const Eigen::Vect
   return {};
 }
 
-void EdgeSource::addEdge(std::size_t row, const double* from, const double* to, EdgeRows& rows) const {
+void EdgeSource::addEdge(std::size_t row, const double* from, const double* to, EdgeRows& rows) {
   const Eigen::VectorXd q0 = configuration(from), q1 = configuration(to);
   std::string fault = faultOf(q0);
   if (fault.empty()) fault = faultOf(q1);
@@ -226,7 +225,7 @@ void EdgeSource::addEdge(std::size_t row, const double* from, const double* to, 
 }
 
 void EdgeSource::addTrajectory(std::size_t row, const double* waypoints, std::size_t count, const double* times,
-                               EdgeRows& rows) const {
+                               EdgeRows& rows) {
   std::string fault;
   std::vector<Eigen::VectorXd> way;
   std::vector<double> at;
@@ -252,7 +251,7 @@ void EdgeSource::addTrajectory(std::size_t row, const double* waypoints, std::si
   rows.refused.emplace_back(row, std::move(fault));
 }
 
-void EdgeSource::read(std::size_t begin, std::size_t count, EdgeRows& rows) const {
+void EdgeSource::read(std::size_t begin, std::size_t count, EdgeRows& rows) {
   rows = EdgeRows();
   const std::size_t n = variables_.size();
   if (kind_ == Kind::ends) {

@@ -21,6 +21,7 @@ struct EdgeOptions {
   std::map<std::string, double> state;  ///< of variables that have no column
   plans::Turns turns = plans::Turns::ask;
   bool ignore_limits = false;
+  double limit_tolerance = plans::kLimitTolerance;
 };
 
 /// Motions of some rows.
@@ -50,7 +51,9 @@ class EdgeSource {
   /// Scenes of rows; of files that have them.
   std::vector<std::int64_t> scenes(std::size_t begin, std::size_t count) const;
   /// Motions of rows [begin, begin + count).
-  void read(std::size_t begin, std::size_t count, EdgeRows& rows) const;
+  void read(std::size_t begin, std::size_t count, EdgeRows& rows);
+  /// What was accepted in rows that were read, though beyond a limit.
+  std::vector<std::string> limitNotes() const { return limits_.notes(); }
 
  private:
   enum class Kind { ends, numbers, waypoints };
@@ -59,16 +62,16 @@ class EdgeSource {
   void readColumns(const std::string& dataset);
   std::string hashAll() const;
   Eigen::VectorXd configuration(const double* row) const;
-  std::string faultOf(const Eigen::VectorXd& q) const;
+  std::string faultOf(const Eigen::VectorXd& q);
   std::string turnFaultOf(const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) const;
-  void addEdge(std::size_t row, const double* from, const double* to, EdgeRows& rows) const;
-  void addTrajectory(std::size_t row, const double* waypoints, std::size_t count, const double* times,
-                     EdgeRows& rows) const;
+  void addEdge(std::size_t row, const double* from, const double* to, EdgeRows& rows);
+  void addTrajectory(std::size_t row, const double* waypoints, std::size_t count, const double* times, EdgeRows& rows);
   std::string place(std::size_t row) const;
 
   const KinematicTree& tree_;
   hdf5::File file_;
   EdgeOptions options_;
+  plans::LimitJudge limits_;
   Kind kind_ = Kind::ends;
   std::size_t size_ = 0;
   bool has_scenes_ = false, has_times_ = false;

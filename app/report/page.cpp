@@ -233,7 +233,11 @@ Json distancesJson(const Distances& distances) {
     return std::any_of(distances.steps.begin(), distances.steps.end(),
                        [&](const DistanceStep& s) { return (s.*which).statistics.pairs > 0; });
   };
-  Json out{{"most", distances.most}, {"times", times}, {"obstacles", nullptr}, {"links", nullptr}};
+  // Each step is a part of one piece, which knows each pair once; a query that guesses a contact first looks at none.
+  std::uint64_t pairs = 0;
+  for (const DistanceStep& step : distances.steps)
+    pairs = std::max(pairs, step.obstacles.statistics.pairs + step.links.statistics.pairs);
+  Json out{{"most", distances.most}, {"times", times}, {"pairs", pairs}, {"obstacles", nullptr}, {"links", nullptr}};
   if (measured(&DistanceStep::obstacles)) out["obstacles"] = clearanceSteps(distances.steps, &DistanceStep::obstacles);
   if (measured(&DistanceStep::links)) out["links"] = clearanceSteps(distances.steps, &DistanceStep::links);
   return out;
@@ -299,7 +303,8 @@ Json motionJson(const Report& report, const std::vector<PageBody>& bodies, const
   }
   return {{"center", numbersJson(center)}, {"times", times},         {"frames", links.size() + movers.size()},
           {"poses", base64(poses)},        {"variables", variables}, {"values", base64(joint_values)},
-          {"shapes", shapes.json()},       {"bodies", body_list},    {"distances", distancesJson(distances)}};
+          {"shapes", shapes.json()},       {"bodies", body_list},    {"distances", distancesJson(distances)},
+          {"pieces", report.pieces}};
 }
 
 /// JSON for within a page's <script>: nothing in it ends the script or begins a comment, and names that are no UTF-8

@@ -21,6 +21,8 @@ function decoded(text, Numbers) {
   for (let i = 0; i < bytes.length; ++i) out[i] = bytes.charCodeAt(i);
   return new Numbers(out.buffer);
 }
+/** A number with so many decimals; no "-0.0000". */
+const fixed = (x, decimals) => (Number(x.toFixed(decimals)) + 0).toFixed(decimals);
 const shown = (x, digits = 5) => (x === 0 ? '0' : String(Number(x.toPrecision(digits))));
 /** Rounded so that a bound stays one. */
 function roundedTo(x, digits, round) {
@@ -898,7 +900,11 @@ function bracketText(lower, upper) {
   while (digits < 15 && lower !== upper && shown(lower, digits) === shown(upper, digits)) ++digits;
   return `${shown(lower, digits + 1)} to ${shown(upper, digits + 1)}`;
 }
-const vectorText = (v) => `(${v.map((x) => shown(x, 5)).join(', ')})`;
+/** To five digits of its largest number: what is smaller than these is 0. */
+function vectorText(v) {
+  const least = 1e-5 * Math.max(...v.map(Math.abs));
+  return `(${v.map((x) => shown(Math.abs(x) < least ? 0 : x, 5)).join(', ')})`;
+}
 const bodyText = (body) => (body.kind === 'attached object' ? `${body.name} (on ${body.link})` : body.name)
   + (body.triangle === null ? '' : `, triangle ${body.triangle}`);
 
@@ -912,9 +918,9 @@ function writeContacts() {
     ];
     if (i === chosen) {
       rows.push(['body 1', bodyText(c.body1)], ['body 2', bodyText(c.body2)], ['features', c.feature],
-        ['point', vectorText(c.point), c.point.join(', ')], ['normal', vectorText(c.normal), c.normal.join(', ')],
-        ['nearest 1', vectorText(c.nearest1), c.nearest1.join(', ')], ['nearest 2', vectorText(c.nearest2), c.nearest2.join(', ')],
-        ['approach', `${shown(c.approach_speed, 4)} m per t`]);
+        ['point', `${vectorText(c.point)} m`, c.point.join(', ')], ['normal', vectorText(c.normal), c.normal.join(', ')],
+        ['nearest 1', `${vectorText(c.nearest1)} m`, c.nearest1.join(', ')], ['nearest 2', `${vectorText(c.nearest2)} m`, c.nearest2.join(', ')],
+        ['approach', `${shown(c.approach_speed, 4)} m per unit of t`]);
     }
     return element('div', {class: i === chosen ? 'card' : 'card other'}, title, table(rows));
   }));
@@ -930,8 +936,8 @@ function choose(i) {
 /** A joint's value, and an angle's in degrees. */
 function jointTexts(v, value) {
   const unit = motion.variables[v].unit;
-  if (unit === 'rad') return [`${value.toFixed(4)} rad`, `${(value * 180 / Math.PI).toFixed(1)}°`];
-  return [unit === 'm' ? `${value.toFixed(4)} m` : value.toFixed(4), ''];
+  if (unit === 'rad') return [`${fixed(value, 4)} rad`, `${fixed(value * 180 / Math.PI, 1)}°`];
+  return [unit === 'm' ? `${fixed(value, 4)} m` : fixed(value, 4), ''];
 }
 let jointCells = [];  // two a joint
 function writeJoints() {
@@ -956,9 +962,13 @@ function writeBodies() {
     return label;
   }));
 }
+/** Of what a request says. */
+const UNITS = {tolerance_time: 'of t', tolerance_distance: 'm', margin: 'm', budget: 'tests'};
+const PIECES = motion.pieces;
 function writeFacts() {
   const s = answer.statistics, r = answer.request;
-  $('subtitle').textContent = `${answer.robot} · t from ${shown(BEGIN, 6)} to ${shown(END, 6)} · ${s.pairs} pairs of bodies checked`;
+  $('subtitle').textContent = `${answer.robot} · t from ${shown(BEGIN, 6)} to ${shown(END, 6)}`
+    + (motion.distances.pairs === undefined ? '' : ` · ${motion.distances.pairs} ${motion.distances.pairs === 1 ? 'pair' : 'pairs'} of bodies checked`);
   const rows = [['status', answer.status], ['certain', answer.certain ? 'yes' : 'no'],
     ['t_lower', shown(answer.t_lower, 12), String(answer.t_lower)], ['t_upper', shown(answer.t_upper, 12), String(answer.t_upper)],
     ['allowed pairs not proven apart', answer.unproven_allowed_pairs]];
@@ -967,10 +977,10 @@ function writeFacts() {
   if (answer.clearance) rows.push(['clearance, at least', `${shown(answer.clearance.lower, 6)} m`]);
   if (answer.certificate) rows.push(['certificate', answer.certificate.missing || `${answer.certificate.proof_bytes} bytes`]);
   $('facts').replaceChildren(table(rows));
-  $('request').replaceChildren(r ? table(Object.entries(r).map(([key, value]) => [words(key), typeof value === 'boolean' ? (value ? 'yes' : 'no') : value]), true)
+  $('request').replaceChildren(r ? table(Object.entries(r).map(([key, value]) => [words(key), typeof value === 'boolean' ? (value ? 'yes' : 'no') : key in UNITS ? `${value} ${UNITS[key]}` : value]), true)
     : element('p', {}, 'It is not known here what was asked for.'));
   const numbers = Object.entries(s).filter(([, value]) => typeof value === 'number');
-  $('work').replaceChildren(table(numbers.map(([key, value]) => (key.endsWith('_us') ? [words(key), `${shown(value / 1000, 4)} ms`] : [words(key), value])), true));
+  $('work').replaceChildren(table(numbers.map(([key, value]) => (key.endsWith('_us') ? [words(key), `${shown(value / 1000, 4)} ms`] : [key === 'pairs' && PIECES > 1 ? 'pairs, in all pieces' : words(key), value])), true));
   $('notes-of').hidden = answer.notes.length === 0;
   $('notes').replaceChildren(...answer.notes.map((note) => element('p', {}, note)));
 }

@@ -56,8 +56,6 @@ Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
   still.mode = ContactMode::any;
   for (std::size_t i = 0; i < options.given.size(); ++i) {
     const Eigen::VectorXd& q = options.given[i];
-    const std::vector<std::string> beyond = tree.limitNotes(q);
-    if (!beyond.empty()) throw std::invalid_argument(fmt::format("roadmap: given configuration {}: {}", i, beyond[0]));
     const CertifiedResult result = manager.collide(q, still);
     if (!result.isFree()) {
       const CertifiedContact* const c = result.first();

@@ -47,7 +47,7 @@ struct RoadmapOptions {
 /// @param request  must not ignore contact at the start: a vertex is to be free, and edges are gone along both ways.
 /// @param[out] tried  edges that were asked.
 /// @throws std::invalid_argument for joints that a roadmap has no distance for (planar, floating, spherical), lengths
-///   without limits, a given configuration that is beyond limits or not proven free; std::runtime_error where hardly
+///   without limits, a given configuration that is not proven free; std::runtime_error where hardly
 ///   any configuration is free.
 Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedRequest& request,
                     const RoadmapOptions& options, std::size_t& tried);

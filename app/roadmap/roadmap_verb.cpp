@@ -16,6 +16,7 @@
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "plans/motion.h"
 #include "plans/plan.h"
 #include "query_options.h"
 #include "roadmap/roadmap.h"
@@ -69,6 +70,21 @@ std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const
   return configurations;
 }
 
+/// Refuses configurations beyond the joints' limits, and notes those that are beyond by no more than the tolerance.
+/// @param configurationOf  of a number below `count`.
+template <class F>
+void judgeLimits(const KinematicTree& tree, const char* what, std::size_t count, const F& configurationOf) {
+  plans::LimitJudge limits(tree);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::VectorXd q = configurationOf(i);
+    for (int v = 0; v < tree.dof(); ++v) {
+      const std::string why = limits.refusal(v, q[v]);
+      if (!why.empty()) throw std::invalid_argument(fmt::format("roadmap: {} {}: {}", what, i, why));
+    }
+  }
+  for (const std::string& note : limits.notes()) fmt::print(stderr, "fcl_artic: note: of {}: {}\n", what, note);
+}
+
 /// What a file of an earlier run must not be taken for.
 void removeEarlier(RoadmapVerb& o) {
   requireRoadmapEnding(o.out);
@@ -85,7 +101,9 @@ int make(RoadmapVerb& o) {
   removeEarlier(o);
   World world(o.world);
   world.open(o.request);
-  if (!o.given.empty()) o.make.given = readConfigurations(*world.robot.tree, o.given);
+  const KinematicTree& tree = *world.robot.tree;
+  if (!o.given.empty()) o.make.given = readConfigurations(tree, o.given);
+  judgeLimits(tree, "given configuration", o.make.given.size(), [&](std::size_t i) { return o.make.given[i]; });
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   const auto begin = Clock::now();
@@ -104,6 +122,8 @@ int certify(RoadmapVerb& o) {
   World world(o.world);
   world.open(o.request);
   Roadmap roadmap = readRoadmap(o.roadmap, *world.robot.tree);
+  judgeLimits(*world.robot.tree, "vertex", roadmap.numVertices(),
+              [&](std::size_t i) { return roadmap.configuration(i); });
   const ArticulatedCollisionManager manager = world.makeManager();
   tellNotes(world, manager);
   bool proven = false;  // something of all edges, before

@@ -65,7 +65,8 @@ struct Effort {
   Method method = Method::standard;
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
-  /// Maximum amount of work; 0: no limit. It is counted in node and leaf tests, for Method::redon2004 also in box
+  /// Maximum amount of work; 0: no limit. (Method::redon2004 leaves a query that takes it more than 2^17 tests to
+  /// Method::standard then.) It is counted in node and leaf tests, for Method::redon2004 also in box
   /// tests, leaf pairs, equations and evaluations, so that the answer does not depend on the machine's speed.
   ///
   /// When it is exceeded, the answer is `undecided`, and what it has proven holds: the motion is free up to t_lower.

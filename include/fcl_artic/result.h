@@ -65,7 +65,9 @@ struct CertifiedContact {
   /// Point of contact in the world, m: at this contact's t_upper if it is certain, else at its t_lower. As the pieces
   /// touch at some time of the bracket, it may be off them by about as much as they move in it.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  /// Unit normal in the world, from body 1 to body 2, at the same time as `point`.
+  /// Unit normal in the world, from body 1 to body 2, at the same time as `point`. Of pieces that are in each other
+  /// from the motion's begin it is the direction along which they part by the least translation, or the normal of the
+  /// features that meet (not with ContactMode::any).
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
   /// Witness points in the world, m: the points of the two pieces (b1 of body 1, b2 of body 2) that are nearest to each
   /// other at t_lower, just before they touch. Both are `point` if the pieces overlap then, as pieces in contact from

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kinematics/angles.h"
+#include "kinematics/largest_joint_value.h"
 #include "kinematics/rotation_vector.h"
 #include "model/sweep.h"
 #include "numerics/rotation.h"
@@ -13,9 +14,6 @@
 
 namespace fcl_artic {
 namespace {
-
-/// Beyond this, rad or m, or as the tangent of half an angle, the error pads of the motion's bounds do not hold.
-constexpr double kLargestJointValue = 1e5;
 
 Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int v) {
   return Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized();

@@ -7,6 +7,7 @@
 
 #include "model/bracket.h"
 #include "narrowphase/elementary.h"
+#include "narrowphase/least_depth.h"
 #include "numerics/assertion.h"
 #include "numerics/baseline_isa.h"
 
@@ -19,6 +20,10 @@ namespace {
 using Eigen::Vector3d;
 using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
+constexpr int kMostIterations = 256;
+/// Rounding, of some 1e-16 of the size, turns the direction between points that are farther apart by 1e-6 rad at most.
+constexpr double kSharp = 1e-10;
+
 const Piece* pieceOf(const Problem& problem, std::int32_t body, std::int32_t piece) {
   return piece < 0 ? nullptr : problem.bodies[body].tree->pieces + piece;
 }
@@ -28,6 +33,16 @@ void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   const auto later = [&](const LeafContact& contact) { return contact.t_lower > t_upper; };
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), later), contacts.end());
   std::stable_sort(contacts.begin(), contacts.end(), comesBefore);
+}
+
+Vector3d middleOf(const Node& node) {
+  return 0.5 * (Eigen::Vector3f::Map(node.lo) + Eigen::Vector3f::Map(node.hi)).cast<double>();
+}
+
+/// From the middle of A's body to that of B's.
+Vector3d betweenMiddles(const baseline::DifferenceBody& body) {
+  const Vector3d a = middleOf(body.tree_a->nodes[0]), b = middleOf(body.tree_b->nodes[0]);
+  return Vector3d::Map(body.place(baseline::Vec3(b.data())).k) - a;
 }
 
 /// Nearest points at t_lower, given as `body`, unless the pieces overlap: those of a half-space or plane and a bounded
@@ -47,14 +62,31 @@ void nearestToWall(const baseline::DifferenceBody& body, LeafContact& contact) {
   contact.t_nearest = contact.t_lower;
 }
 
+/// The normal of bounded pieces that are in each other from the start, where no features have given it.
+/// @param towards  from A's body to B's.
+void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
+  if (contact.feature >= 0 || contact.t_lower > 0) return;
+  const auto lowest = [&](const Vector3d& n) -> Vector3d {
+    baseline::DifferencePoint point;
+    body.support(baseline::Vec3(n.data()), point);
+    return Vector3d::Map(point.w.k);
+  };
+  // Cores that are apart, within their rounding, have the direction of their nearest points.
+  baseline::GjkResult cores;
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, 0, kMostIterations, cores);
+  if (!cores.overlap) cores.n.store(contact.normal);
+  const double size = baseline::norm(body.pose.c) + towards.norm();
+  if (!cores.overlap && cores.lower > kSharp * size) return;
+  Vector3d::Map(contact.normal) = LeastDepth(lowest, Vector3d(Vector3d::Map(contact.normal)), towards).direction();
+}
+
 /// The same of two bounded pieces; and where no features have given the normal, the direction along which most of this
 /// gap is seen: a better one than the solver's last, which was found for its own steps.
-void nearestPoints(const baseline::DifferenceBody& body, LeafContact& contact) {
-  constexpr int kMostIterations = 256;
+void nearestPoints(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
   baseline::GjkResult found;
   const double radii = body.a->radius + body.b->radius;
   baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, radii, kMostIterations, found);
-  if (found.overlap) return;
+  if (found.overlap) return leastDepth(body, towards, contact);
   baseline::originWeights(found.simplex);
   baseline::Vec3 a, b;
   baseline::combine(body, found.simplex, a, b);
@@ -63,8 +95,7 @@ void nearestPoints(const baseline::DifferenceBody& body, LeafContact& contact) {
   // than the one at which they touch.
   const double gap = found.lower - radii;
   if (!(between - radii <= 2 * std::max(0.0, gap) + 1e-12 * size)) return;
-  // Rounding, of some 1e-16 of the size, turns the direction by 1e-6 rad at most.
-  const bool sharp = between > 1e-10 * size;
+  const bool sharp = between > kSharp * size;
   const baseline::Vec3 n = sharp ? (b - a) * (1 / between) : found.n;
   (a + n * body.a->radius).store(contact.nearest_a);
   (b - n * body.b->radius).store(contact.nearest_b);
@@ -158,7 +189,7 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
     body.tree_b = problem.bodies[contact.body_b].tree;
     const bool wall_a = baseline::unbounded(*body.a), wall_b = baseline::unbounded(*body.b);
     if (wall_a != wall_b) nearestToWall(body, contact);
-    if (!wall_a && !wall_b) nearestPoints(body, contact);
+    if (!wall_a && !wall_b) nearestPoints(body, betweenMiddles(body), contact);
   }
 
   const Vector3d point = Vector3d::Map(contact.point), normal = Vector3d::Map(contact.normal);

@@ -142,7 +142,7 @@ void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
   }
 }
 
-constexpr double kLengthTolerance = 0.1;  // m for a rad, of MotionOptions::limit_tolerance
+constexpr double kLengthTolerance = 0.1;  // m for a rad, of a tolerance of limits
 
 /// By how much a value is beyond a joint's limits; 0 within.
 double beyondLimits(const Joint& joint, double value) {
@@ -168,20 +168,18 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns&
     const int v = columns.variables[j];
     const Joint& joint = tree.joint(tree.variableJoint(v));
     const bool angle = tree.isAngle(v);
-    const double tolerance = options.limit_tolerance * (angle ? 1 : kLengthTolerance);
+    LimitJudge judge(tree, options.limit_tolerance, options.ignore_limits);
     std::size_t first = 0, last = 0, count = 0;
     double most = 0;
     for (std::size_t k = 0; k < plan.positions.size(); ++k) {
       const double value = plan.positions[k][j], beyond = beyondLimits(joint, value);
       if (beyond == 0) continue;
-      if (beyond > tolerance && !options.ignore_limits) {
+      if (const std::string why = judge.refusal(v, value); !why.empty()) {
         // More than a turn is seldom an angle in rad.
         const bool degrees =
             angle && !options.degrees && std::abs(value) > 2 * kHalfTurn && areDegrees(tree, plan, columns);
-        refuse(fmt::format(
-            "waypoint {}: joint '{}' at {} is beyond its limits [{}, {}]; {}--ignore-limits has it "
-            "certified all the same",
-            k, joint.name, value, joint.lower, joint.upper, degrees ? "are these degrees? --degrees says so; " : ""));
+        refuse(fmt::format("waypoint {}: {}; {}--ignore-limits has it certified all the same", k, why,
+                           degrees ? "are these degrees? --degrees says so; " : ""));
       }
       if (count++ == 0) first = k;
       last = k;
@@ -330,6 +328,33 @@ std::vector<VectorXd> spread(const Plan::Rows& rows, const PlanColumns& columns,
 }
 
 }  // namespace
+
+LimitJudge::LimitJudge(const KinematicTree& tree, double tolerance, bool ignore)
+    : tree_(tree), tolerance_(tolerance), ignore_(ignore), most_(static_cast<std::size_t>(tree.dof()), 0) {}
+
+std::string LimitJudge::refusal(int v, double value) {
+  const Joint& joint = tree_.joint(tree_.variableJoint(v));
+  const double beyond = beyondLimits(joint, value);
+  const double tolerance = tolerance_ * (tree_.isAngle(v) ? 1 : kLengthTolerance);
+  if (beyond > tolerance && !ignore_) {
+    return fmt::format("joint '{}' at {} is beyond its limits [{}, {}]", joint.name, value, joint.lower, joint.upper);
+  }
+  double& most = most_[static_cast<std::size_t>(v)];
+  most = std::max(most, beyond);
+  return {};
+}
+
+std::vector<std::string> LimitJudge::notes() const {
+  std::vector<std::string> notes;
+  for (int v = 0; v < tree_.dof(); ++v) {
+    const double most = most_[static_cast<std::size_t>(v)];
+    if (most == 0) continue;
+    const Joint& joint = tree_.joint(tree_.variableJoint(v));
+    notes.push_back(fmt::format("joint '{}': some values are beyond its limits [{}, {}], by at most {:.2g} {}",
+                                joint.name, joint.lower, joint.upper, most, tree_.isAngle(v) ? "rad" : "m"));
+  }
+  return notes;
+}
 
 Interpolation interpolationNamed(const std::string& name) {
   for (const auto& known : kInterpolations) {

@@ -60,16 +60,37 @@ enum class Turns {
   shortest  ///< the shorter way round (JointTrajectory::Unwrap::yes)
 };
 
+/// By so much a value may be beyond a joint's limit, as a sensor's may, and is noted: rad, and for lengths a tenth of
+/// it in m.
+constexpr double kLimitTolerance = 1e-3;
+
+/// Judges values by the limits of their joints, and keeps of each joint how far they are beyond at most.
+class LimitJudge {
+ public:
+  /// @param tree  must outlive this object.
+  /// @param tolerance  as kLimitTolerance, at least 0.
+  /// @param ignore  refuses nothing.
+  explicit LimitJudge(const KinematicTree& tree, double tolerance = kLimitTolerance, bool ignore = false);
+  /// @return why a value of variable v is refused, as an end of a sentence; empty: it is not.
+  std::string refusal(int v, double value);
+  /// What was accepted though beyond, a note for each joint.
+  std::vector<std::string> notes() const;
+
+ private:
+  const KinematicTree& tree_;
+  double tolerance_;
+  bool ignore_;
+  std::vector<double> most_;  ///< by variable
+};
+
 struct MotionOptions {
   Interpolation interpolation = Interpolation::automatic;
   double blend = 0;  ///< s; half the duration of a blend
   Turns turns = Turns::ask;
-  bool ignore_limits = false;  ///< waypoints beyond the joints' limits are noted, not refused
-  /// By so much a waypoint may be beyond a limit, as a sensor's may, and is noted; rad, and for lengths a tenth of it
-  /// in m. At least 0.
-  double limit_tolerance = 1e-3;
-  bool degrees = false;                 ///< angles of the plan, and their rates, are in degrees
-  std::vector<std::string> joints;      ///< names for plans without names, in their order; empty: all variables
+  bool ignore_limits = false;                ///< waypoints beyond the joints' limits are noted, not refused
+  double limit_tolerance = kLimitTolerance;  ///< of waypoints; at least 0
+  bool degrees = false;                      ///< angles of the plan, and their rates, are in degrees
+  std::vector<std::string> joints;           ///< names for plans without names, in their order; empty: all variables
   std::map<std::string, double> state;  ///< values of joints that plans do not name; before those of the plan itself
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "model/bracket.h"
@@ -26,6 +28,10 @@ using Clock = std::chrono::steady_clock;
 
 /// Their equations and elements take some 100 MB at most.
 constexpr std::size_t kMostLeaves = 1 << 15;
+
+/// Without a work budget a query by the paper's method ends here, in units of workOf(), and is the engine's: bodies
+/// that slide on each other are divided down to the narrowest intervals all along their way. A unit takes 0.1 to 1 us.
+constexpr std::uint64_t kMostWork = 1 << 17;
 
 /// Adds up the time of stages, where it is asked for.
 class StageClock {
@@ -99,6 +105,7 @@ class Run {
   bool ours(PairId pair) const;
   bool choosePairs();
   bool touchesAtStart(Answer& answer);
+  void leaveAll(Answer& answer);
   void solveRest(const Query& query, Answer& answer);
   void findPairs();
   Found search(const std::vector<BodyPair>& pairs, double limit);
@@ -176,6 +183,13 @@ bool Run::touchesAtStart(Answer& answer) {
   return false;
 }
 
+/// All pairs are the engine's.
+void Run::leaveAll(Answer& answer) {
+  counts_.pairs_by_standard = 0;
+  for (const PairId p : problem_.pairs()) counts_.pairs_by_standard += asked(p);
+  engine_.solve(problem_, query_, answer);
+}
+
 /// The engine's pairs.
 void Run::solveRest(const Query& query, Answer& answer) {
   w_.scene_allowed.assign(static_cast<std::size_t>(problem_.num_scene_pairs), 1);
@@ -201,7 +215,7 @@ void Run::solveRest(const Query& query, Answer& answer) {
 void Run::findPairs() {
   StageClock clock(query_.measure_times);
   const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
-  w_.culling.begin(problem_, query_, options_, counts_);
+  w_.culling.begin(problem_, w_.rest_query, options_, counts_);
   w_.culling.bodyPairs(wanted, treeOf_, w_.pairs);
   clock.lap(counts_.culling_us);
   if (query_.num_advisors) {
@@ -312,12 +326,7 @@ void Run::keepFirst(std::size_t begin, double bracket) {
 void Run::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
-  if (!choosePairs() || touchesAtStart(answer)) {
-    counts_.pairs_by_standard = 0;
-    for (const PairId p : problem_.pairs()) counts_.pairs_by_standard += asked(p);
-    engine_.solve(problem_, query_, answer);
-    return;
-  }
+  if (!choosePairs() || touchesAtStart(answer)) return leaveAll(answer);
   // Of the paper's pairs nothing is known while the engine looks at its own.
   Progress progress{query_.progress, query_.progress_context};
   Query& query = w_.rest_query;
@@ -331,7 +340,8 @@ void Run::solve(Answer& answer) {
   double t_upper = engine::provenBy(answer);
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
-  const RoundUpward upward;
+  std::optional<RoundUpward> upward(std::in_place);
+  if (query.work_budget == 0) query.work_budget = kMostWork;
   w_.solver.begin(problem_, query, options_, counts_);
   const auto take = [&](const std::vector<BodyPair>& pairs, const Found& found) {
     for (const BodyPair& pair : pairs) provenFree(pair.index, found.free_until);
@@ -352,6 +362,11 @@ void Run::solve(Answer& answer) {
       take(w_.one, found);
       keepFirst(before, latestBegin(found, query_.tolerance_time));
     }
+  }
+  if (out_of_budget && query_.work_budget == 0 && workOf(counts_) > kMostWork) {
+    upward.reset();
+    w_.contacts.clear();
+    return leaveAll(answer);
   }
   const double t_lower = w_.free_until.empty() ? 1 : *std::min_element(w_.free_until.begin(), w_.free_until.end());
   const bool undecided = out_of_budget || (!contact && t_lower < 1);

@@ -147,6 +147,8 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   const Outcome fine = certifyFile("plans.jsonl", free + "\n" + free + "\n");
   EXPECT_EQ(fine.status, 0) << fine.err;
   EXPECT_NE(fine.out.find("2 plans: 2 free, 0 in contact, 0 undecided, 0 wrong"), std::string::npos) << fine.out;
+  const Outcome one = certifyFile("one.jsonl", wrong + "\n");
+  EXPECT_NE(one.out.find("1 plan: 0 free, 0 in contact, 0 undecided, 1 wrong"), std::string::npos) << one.out;
   const std::string csv = path("rows.csv");
   const Outcome mixed =
       certifyFile("plans.jsonl", free + "\n" + hit + "\n", "--failed-only --clearance --threads 2 --csv " + csv);
@@ -428,6 +430,18 @@ TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
           .status,
       0);
   EXPECT_EQ(this->run("certify " + path("wide.json") + " " + gantry() + " --margin 0.05").status, 0);
+}
+
+// A straight motion's end, as computed, is not the plan's number.
+TEST_F(CertifyProgramTest, MendedPlansEndAtThePlansOwnNumbers) {
+  const double from = -0.3, to = 0.9;
+  ASSERT_NE(from + (to - from), to);
+  const std::string out = path("safe.csv");
+  const Outcome run = this->run("certify " + write("way.csv", "time,x,y\n0,-0.3,0\n1,0.9,0\n") + " " + gantry() +
+                                " --mend --out " + out);
+  ASSERT_EQ(run.status, 0) << run.out << run.err;
+  const std::string rows = read(out), last = rows.substr(rows.rfind('\n', rows.size() - 2) + 1);
+  EXPECT_EQ(last.substr(last.find(',')), ",0.9,0\n") << rows;
 }
 
 TEST_F(CertifyProgramTest, MendedPlansKeepAClearanceAndSayWhatTheyAre) {

@@ -484,6 +484,42 @@ TEST_F(EdgesTest, RowsThatAreNoMotionAreRefusedNotFree) {
   EXPECT_EQ(column<std::int64_t>(File(path("beyond/table.h5")), "status")[2], 2);
 }
 
+// The arm's limits are -1 to 2 rad and -1 to 1 m; of the file's columns the rail comes first.
+TEST_F(EdgesTest, LimitsAreAsTolerantAsThoseOfPlans) {
+  arm();
+  writeScenes();
+  const double from[] = {0, 2.0009, 0, 2.0011, 1.00009, 0, 1.00011, 0}, to[] = {0, 2.0001, 0, 2, 1, 0, 1, 0};
+  Image image;
+  image.add("from", {4, 2}, from);
+  image.add("to", {4, 2}, to);
+  image.attribute("from", "joints", std::vector<std::string>{"rail", "hinge"});
+  write("edges.h5", image.bytes());
+  const auto refused = [&](const std::string& out) {
+    std::vector<bool> rows;
+    for (const auto status : column<std::int64_t>(File(path(out + "/table.h5")), "status")) rows.push_back(status == 4);
+    rows.resize(4);  // of the first scene
+    return rows;
+  };
+  const Outcome outcome = run(command("made"));
+  EXPECT_EQ(refused("made"), (std::vector<bool>{false, true, false, true})) << outcome.err;
+  const auto notes = [](const Outcome& o) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = o.err.find("beyond its limits", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_NE(outcome.err.find("note: joint 'hinge': some values are beyond its limits [-1, 2], by at most 0.0009 rad"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("joint 'rail': some values are beyond its limits [-1, 1], by at most 9e-05 m"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(notes(outcome), 3u) << "a note a joint, and the first row that is refused: " << outcome.err;
+  EXPECT_EQ(run(command("wide", "--limit-tolerance 0.01")).status, 0);
+  EXPECT_EQ(refused("wide"), std::vector<bool>(4, false));
+  (void)run(command("strict", "--limit-tolerance 0"));
+  EXPECT_EQ(refused("strict"), std::vector<bool>(4, true));
+}
+
 // What an earlier library has proven may be wrong: its rows and roadmaps are not believed.
 TEST_F(EdgesTest, HashesKnowTheErrata) {
   std::istringstream errata(read(std::string(FCL_ARTIC_SOURCE) + "/doc/ERRATA.md"));

@@ -137,6 +137,33 @@ TEST_F(ProgramTest, PageOfATrajectoryIsInItsOwnTime) {
   EXPECT_EQ(motion.at("times").back(), 14);
   EXPECT_EQ(motion.at("distances").at("times").front(), 10);
   EXPECT_EQ(motion.at("distances").at("times").back(), 14);
+  // A pair counts once, whatever the number of pieces that are asked.
+  EXPECT_EQ(motion.at("pieces"), 2);
+  const Outcome straight = this->run("check " + armAndBall() + " --from 0,0 --to 0.3,0 --json");
+  EXPECT_EQ(motion.at("distances").at("pairs"), Json::parse(straight.out).at("statistics").at("pairs"));
+  EXPECT_EQ(answer.at("statistics").at("pairs"), 2 * motion.at("distances").at("pairs").get<int>());
+}
+
+// The page's own functions, run by node where that is found.
+TEST_F(ProgramTest, NumbersOfAPageArePlain) {
+  if (std::system("command -v node >/dev/null 2>&1") != 0) GTEST_SKIP() << "node is not found";
+  const std::string file = path("hit.html");
+  ASSERT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --html " + file).status, 1);
+  const std::string page = read(file);
+  const auto functionOf = [&](const std::string& begin, const std::string& end) {
+    const std::string body = between(page, begin, end);
+    EXPECT_NE(body, "") << begin;
+    return begin + body + end;
+  };
+  const std::string script = write(
+      "numbers.js", functionOf("const fixed = ", ";\n") + functionOf("const shown = ", ";\n") +
+                        functionOf("function vectorText(", "\n}\n") +
+                        "console.log([fixed(-1e-9, 4), fixed(-0.25, 1), fixed(0, 4), vectorText([0, -1, 1.2e-17]), "
+                        "vectorText([0.5, -3e-5, -2]), vectorText([0, 0, 0])].join('|'));\n");
+  ASSERT_EQ(std::system(("node " + script + " >" + path("out")).c_str()), 0);
+  EXPECT_EQ(read(path("out")), "0.0000|-0.3|0.0000|(0, -1, 0)|(0.5, -0.00003, -2)|(0, 0, 0)\n");
+  for (const char* unit : {"vectorText(c.point)} m", "vectorText(c.nearest1)} m", "m per unit of t"})
+    EXPECT_NE(page.find(unit), std::string::npos) << unit;
 }
 
 TEST_F(ProgramTest, NamesInAPageAreTextOnly) {

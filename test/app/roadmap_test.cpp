@@ -356,6 +356,13 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
       << touching.err;
   EXPECT_NE(make("x.h5", "--with " + write("far.csv", "hinge,rail\n3,0\n")).err.find("given configuration 0: "),
             std::string::npos);
+  // Limits as of plans: a sensor's error is noted.
+  const Outcome near = make("near.h5", "--vertices 3 --with " + write("near.csv", "rail,hinge\n0,2.0009\n"));
+  EXPECT_EQ(near.status, 0);
+  EXPECT_NE(near.err.find("given configuration: joint 'hinge': some values are beyond its limits [-1, 2], by at most "
+                          "0.0009 rad"),
+            std::string::npos)
+      << near.err;
   EXPECT_NE(make("x.dot").err.find("written as .h5, .graphml or .csv"), std::string::npos);
   EXPECT_NE(certify("arm.urdf", "x.h5").err.find("can't be read as an HDF5 file"), std::string::npos);
 }

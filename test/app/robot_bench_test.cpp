@@ -42,6 +42,29 @@ double turn(const MotionEnds& ends, int first) {
   return a.angularDistance(b);
 }
 
+/// A virtual joint, as some makers give it, of a robot that drives.
+KinematicTree driving() {
+  KinematicTree tree("driving");
+  for (const char* link : {"world", "a", "b"}) tree.addLink(link);
+  const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
+  tree.addJoint(Joint::prismatic("x", "world", "a", Eigen::Vector3d::UnitX(), here, -999999, 999999));
+  tree.addJoint(Joint::revolute("turn", "a", "b", Eigen::Vector3d::UnitZ(), here, -999999, 999999));
+  return tree;
+}
+
+TEST(RandomMotionsTest, LimitsThatNoMotionMayReachAreNone) {
+  const KinematicTree tree = driving();
+  RandomMotions random(tree, 0.1, 1);
+  for (int i = 0; i < 100; ++i) {
+    const MotionEnds ends = random.next();
+    EXPECT_NO_THROW(JointMotion::linear(tree, ends.from, ends.to));
+    EXPECT_LE(std::abs(ends.from[0]), 1);
+    EXPECT_LE(std::abs(ends.from[1]), M_PI);
+    EXPECT_LE(std::abs(ends.to[1] - ends.from[1]), 0.1 + 1e-6);
+    EXPECT_LT(numSteps(tree, ends, 0.01), 10);
+  }
+}
+
 TEST(RandomMotionsTest, KeepWithinLimitsAndStep) {
   const KinematicTree tree = manyJoints();
   const double angle = 0.1;

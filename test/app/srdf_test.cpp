@@ -84,6 +84,30 @@ TEST_F(SrdfVerbTest, WhatItWritesIsRight) {
   EXPECT_EQ(run("srdf " + robot + " --check " + file).status, 0);
 }
 
+// At rest left reaches from 0 to 0.5 m and right from 0.8 m on; turned to each other they touch.
+TEST_F(SrdfVerbTest, AllowsWhatTouchesInAConfigurationAndSaysThatItIsUnproven) {
+  const std::string robot = twoArms(), file = path("made.srdf"), write = "srdf " + robot + " --write " + file;
+  const Outcome rest = run(write + " --allow-at rest");
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_NE(rest.out.find("and, unproven, 0 pairs that touch at rest written to"), std::string::npos) << rest.out;
+  EXPECT_EQ(read(file).find("Unproven"), std::string::npos);
+  for (const char* at : {"right_hinge=3", "0,3,0"}) {
+    const Outcome turned = run(write + " --allow-at " + at);
+    ASSERT_EQ(turned.status, 0) << turned.err;
+    EXPECT_NE(turned.out.find("1 pair that touches at right_hinge=3: left and right written to"), std::string::npos)
+        << turned.out;
+    EXPECT_NE(read(file).find("link1=\"left\" link2=\"right\" reason=\"Unproven\""), std::string::npos) << read(file);
+  }
+  EXPECT_NE(read(file).find("reason=\"Never\""), std::string::npos);
+  // It is allowed, and no answer is silent about it.
+  const Outcome check = run("check " + robot + " --srdf " + file + " --from 0,3,0 --to 0,3.05,0");
+  EXPECT_EQ(check.out.rfind("NOTHING CHECKED but for 1 allowed pair not proven apart", 0), 0u) << check.out;
+  const Outcome wrong = run(write + " --allow-at elbow=3");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("--allow-at"), std::string::npos) << wrong.err;
+  EXPECT_EQ(run("srdf " + robot + " --allow-at rest").status, 2) << "nothing is written";
+}
+
 TEST_F(SrdfVerbTest, AnswersSayWhatTheyRestOn) {
   const std::string motion = " --from 0,0,0 --to 0,0.5,0";
   const std::string right = srdf("right.srdf", "left", "lamp"), wrong = srdf("wrong.srdf", "left", "right");

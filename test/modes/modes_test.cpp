@@ -46,6 +46,43 @@ TEST(Modes, WorldsThatFoundFaults) {
   for (const std::string& finding : tally.findings) ADD_FAILURE() << finding;
 }
 
+/// Bodies that slide along each other, of which the paper's method bounds equations for a minute on end.
+TEST(Modes, ThePapersMethodEndsWithoutABudget) {
+  constexpr std::uint64_t kMostWork = 1 << 17, kOneStep = 1 << 16;  // redon/redon.cpp; what is begun is ended
+  const auto ask = [](std::uint64_t seed, fcl_artic::CertifiedRequest request, fcl_artic::CertifiedResult& result) {
+    modes::Random random(seed);
+    if (random.chance(0.3)) random.snap(0.05);
+    modes::World(random).ask(request, result);
+  };
+  fcl_artic::CertifiedRequest first, every;
+  first.redon.refinement_level = every.redon.refinement_level = 2;
+  first.redon.simultaneous = first.redon.newton = first.redon.in_time_order = first.redon.early_validity = false;
+  every.mode = fcl_artic::ContactMode::firstOfEveryPair;
+  every.max_contacts = 100;
+  every.redon.enclosure = fcl_artic::MotionEnclosure::intervalChain;
+  every.redon.in_time_order = every.redon.early_validity = false;
+  for (auto& [seed, request] : {std::pair(20u, first), std::pair(62u, every)}) {
+    fcl_artic::CertifiedResult standard, result, in_budget;
+    ask(seed, request, standard);
+    fcl_artic::CertifiedRequest paper = request;
+    paper.method = fcl_artic::Method::redon2004;
+    ask(seed, paper, result);
+    const fcl_artic::RedonStatistics& s = result.statistics.redon;
+    const std::uint64_t work = s.box_tests + s.leaf_pairs + s.equations + s.evaluations;
+    EXPECT_GT(work, kMostWork) << seed;
+    EXPECT_LT(work, kMostWork + kOneStep) << seed;
+    EXPECT_GT(s.pairs_by_standard, 0u);
+    EXPECT_EQ(result.status, standard.status);
+    EXPECT_EQ(result.t_lower, standard.t_lower);
+    EXPECT_EQ(result.t_upper, standard.t_upper);
+    EXPECT_EQ(result.contacts.size(), standard.contacts.size());
+    // A budget is the caller's: then nobody else is asked.
+    paper.work_budget = 1000;
+    ask(seed, paper, in_budget);
+    EXPECT_EQ(in_budget.status, fcl_artic::Status::undecided) << seed;
+  }
+}
+
 }  // namespace
 
 }  // namespace modes_test

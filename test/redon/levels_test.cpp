@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Section 5.1.1: each link's own refinement level; and 5.2.4: what Newton's step saves.
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 #include <random>
 #include <utility>
@@ -293,6 +294,7 @@ TEST(Levels, LeafPairsOfSeveralSetsHaveOneFirstContact) {
     request.redon.refinement_level = 0;
     request.redon.in_time_order = in_time_order;
     request.redon.early_validity = request.redon.newton = false;  // many intervals: progress is told of now and then
+    request.work_budget = std::uint64_t{1} << 40;                 // more than a query without one takes
     int told = 0;
     request.progress = [&](double t_lower) {
       ++told;

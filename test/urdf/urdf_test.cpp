@@ -397,6 +397,20 @@ TEST_F(UrdfTest, IsRefusedByAManagerOfAnotherRobot) {
   EXPECT_TRUE(manager.boundObjects().empty() && none.boundObjects().empty());
 }
 
+// Points of contact, as some makers mark them for simulators.
+TEST_F(UrdfTest, ASphereOfRadiusZeroIsNoBody) {
+  const Robot r = load(linkWith(collision("<sphere radius='0'/>") + collision("<box size='1 1 1'/>") +
+                                collision("<sphere radius='0.0'/>", "<origin xyz='1 0 0'/>")));
+  ASSERT_EQ(r.geometry.size(), 1u);
+  EXPECT_EQ(r.geometry[0].source, "box");
+  ASSERT_EQ(r.notes.size(), 2u);
+  EXPECT_EQ(r.notes[0], "link 'a' has a sphere of radius 0: it is no body, and is not checked");
+  // Other shapes without a size are none that can be left out.
+  EXPECT_NE(errorOf(linkWith(collision("<sphere radius='-1'/>"))).find("is not a positive length"), std::string::npos);
+  EXPECT_NE(errorOf(linkWith(collision("<cylinder radius='0' length='1'/>"))).find("is not a positive length"),
+            std::string::npos);
+}
+
 TEST_F(UrdfTest, VisualAndInertialElementsDoNotMatter) {
   // urdfdom alone goes on without the collision elements of a link whose visual or inertial element it cannot read.
   const Robot r =
@@ -461,7 +475,7 @@ TEST_F(UrdfTest, BrokenFilesGiveErrorsThatNameFileAndReason) {
       {"zero scale", linkWith(collision("<mesh filename='t.obj' scale='0 1 1'/>")), "scale"},
       {"bad scale", linkWith(collision("<mesh filename='t.obj' scale='1 1'/>")), "scale"},
       {"negative box", linkWith(collision("<box size='1 -1 1'/>")), "link 'a': box size -1"},
-      {"zero sphere", linkWith(collision("<sphere radius='0'/>")), "link 'a': sphere radius 0"},
+      {"negative sphere", linkWith(collision("<sphere radius='-1'/>")), "link 'a': sphere radius -1"},
       {"bad sphere", linkWith(collision("<sphere radius='big'/>")), "big"},
       {"zero cylinder", linkWith(collision("<cylinder radius='1' length='0'/>")), "link 'a': cylinder length 0"},
       {"unknown shape", linkWith(collision("<torus radius='1'/>")), "torus"},

@@ -88,6 +88,11 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
            {"name=\"j2\"", "name=\"j9\""},
            {"<parent link=\"hand\"/><child link=\"finger\"/>", "<parent link=\"arm\"/><child link=\"finger\"/>"}})
     EXPECT_NE(said(goodWorld(), replaced(kUrdf, what, by)), "same") << what << " -> " << by;
+  // A sphere of radius 0 is no body.
+  EXPECT_EQ(said(goodWorld(), replaced(kUrdf, "<link name=\"empty\"/>",
+                                       "<link name=\"empty\"><collision><geometry><sphere "
+                                       "radius=\"0\"/></geometry></collision></link>")),
+            "same");
   // The world without a body, with a moved one, with a triangle less or more.
   const std::string g = goodWorld();
   for (const std::string& world :

@@ -159,6 +159,11 @@ FCL_ARTIC_EXPORT LinkPairReport generateAllowedCollisions(const Robot& robot, co
 /// whole or, if this throws, not at all.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report);
+/// Writes the same file with pairs that the caller allows, each with its own reason.
+/// @param others  those that the report has too are left to it.
+/// @throws std::runtime_error naming file and reason.
+FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report,
+                                const std::vector<SrdfPair>& others);
 
 /// Obstacles read from a scene file.
 struct Scene {

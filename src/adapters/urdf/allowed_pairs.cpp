@@ -4,6 +4,8 @@
 #include <tinyxml2.h>
 
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
@@ -27,21 +29,32 @@ LinkPairReport generateAllowedCollisions(const Robot& robot, const LinkPairOptio
 }
 
 void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report) {
+  writeSrdf(path, robot_name, report, {});
+}
+
+void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report,
+               const std::vector<SrdfPair>& others) {
   tinyxml2::XMLDocument document;
   document.InsertEndChild(document.NewDeclaration());
   document.InsertEndChild(document.NewComment(
       " Never: proven apart for all joint values within their limits. Always: in contact in all configurations that "
-      "were tried. Adjacent: the same, or too near to decide, of links with at most one moving joint between them. "));
+      "were tried. Adjacent: the same, or too near to decide, of links with at most one moving joint between them. "
+      "Another reason is the writer's: nothing is proven of the pair. "));
   tinyxml2::XMLElement* robot = document.NewElement("robot");
   robot->SetAttribute("name", robot_name.c_str());
   document.InsertEndChild(robot);
   const AllowedCollisionMatrix need_no_check = report.needNoCheck();
-  for (const LinkPairFinding& pair : report.pairs) {
-    if (!need_no_check.allowed(pair.link1, pair.link2)) continue;
+  const auto add = [&](const std::string& link1, const std::string& link2, const char* reason) {
     tinyxml2::XMLElement* element = robot->InsertNewChildElement("disable_collisions");
-    element->SetAttribute("link1", pair.link1.c_str());
-    element->SetAttribute("link2", pair.link2.c_str());
-    element->SetAttribute("reason", reasonOf(pair));
+    element->SetAttribute("link1", link1.c_str());
+    element->SetAttribute("link2", link2.c_str());
+    element->SetAttribute("reason", reason);
+  };
+  for (const LinkPairFinding& pair : report.pairs) {
+    if (need_no_check.allowed(pair.link1, pair.link2)) add(pair.link1, pair.link2, reasonOf(pair));
+  }
+  for (const SrdfPair& pair : others) {
+    if (!need_no_check.allowed(pair.link1, pair.link2)) add(pair.link1, pair.link2, pair.reason.c_str());
   }
   tinyxml2::XMLPrinter printer;
   document.Print(&printer);

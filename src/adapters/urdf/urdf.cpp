@@ -556,6 +556,11 @@ class GeometryFactory {
   std::map<Key, Mesh> meshes_;
 };
 
+/// A sphere of radius 0, by which makers of robots give simulators a point of contact.
+bool isPoint(const urdf::Geometry& geometry) {
+  return geometry.type == urdf::Geometry::SPHERE && static_cast<const urdf::Sphere&>(geometry).radius == 0;
+}
+
 }  // namespace
 
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
@@ -596,6 +601,10 @@ Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
     const std::string part = where + ": link '" + link.name + "'";
     if (link.collision_array.size() != in_file.collisions) fail(part, "has a collision element that cannot be read");
     for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+      if (isPoint(*collision->geometry)) {
+        robot.notes.push_back("link '" + link.name + "' has a sphere of radius 0: it is no body, and is not checked");
+        continue;
+      }
       const auto made = factory.make(part, *collision->geometry);
       robot.geometry.push_back(
           {id, toEigen(collision->origin), std::make_shared<fcl::CollisionObjectd>(made.geometry), made.source});
