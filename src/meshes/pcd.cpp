@@ -108,12 +108,12 @@ class Pcd {
   /// What surely is neither a place nor an extent.
   void noteUnknownFields() const {
     static constexpr std::string_view kPlain[] = {
-        "x",          "y",           "z",         "_",          "rgb",      "rgba",         "r",
-        "g",          "b",           "a",         "normal_x",   "normal_y", "normal_z",     "curvature",
-        "label",      "ring",        "intensity", "time",       "t",        "stamp",        "timestamp",
-        "time_stamp", "offset_time", "ambient",   "near_ir",    "noise",    "reflectivity", "reflectance",
-        "tag",        "line",        "object",    "confidence", "strength", "vp_x",         "vp_y",
-        "vp_z"};
+        "x",           "y",          "z",           "_",         "rgb",        "rgba",     "r",
+        "g",           "b",          "a",           "normal",    "normal_x",   "normal_y", "normal_z",
+        "curvature",   "label",      "ring",        "intensity", "time",       "t",        "stamp",
+        "timestamp",   "time_stamp", "offset_time", "ambient",   "near_ir",    "noise",    "reflectivity",
+        "reflectance", "tag",        "line",        "object",    "confidence", "strength", "vp_x",
+        "vp_y",        "vp_z"};
     std::string unknown;
     for (const Field& f : fields_) {
       if (!isOneOf(f.name, kPlain)) unknown += (unknown.empty() ? "'" : ", '") + f.name + "'";

@@ -67,7 +67,14 @@ engine::Placement makeInversePlacement(const Carrier& carrier, const RigidTransf
 
 FrameSweep FrameSweep::fromWorld(const KinematicTree& tree) {
   FrameSweep sweep(tree, -1);
-  for (LinkId link : tree.topologicalOrder()) sweep.carrier(link);
+  // As carrier() goes, each joint once: a parent comes before its children.
+  std::vector<Carrier> carriers(static_cast<std::size_t>(tree.numLinks()));
+  for (const LinkId link : tree.topologicalOrder()) {
+    const LinkId parent = tree.parentLink(link);
+    if (parent < 0) continue;
+    carriers[static_cast<std::size_t>(link)] =
+        sweep.cross(carriers[static_cast<std::size_t>(parent)], tree.parentJoint(link), true);
+  }
   return sweep;
 }
 
@@ -146,7 +153,8 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
     const std::size_t f = down ? i : factors.size() - 1 - i;
     const JointFactor& factor = factors[f];
     const int parent = to.step;
-    const auto known = std::find_if(origin_.begin(), origin_.end(), [&](const Origin& o) {
+    // A step comes after its parent; in a chain, it is the next one.
+    const auto known = std::find_if(origin_.begin() + parent + 1, origin_.end(), [&](const Origin& o) {
       return o.parent == parent && o.joint == id && o.factor == f && o.down == down;
     });
     if (known != origin_.end()) {

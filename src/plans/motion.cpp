@@ -380,11 +380,13 @@ const char* toString(Interpolation interpolation) {
 Plan inRadians(const KinematicTree& tree, const Plan& plan) {
   if (plan.has_degrees) refuse("values end with deg, and --degrees says that all angles are in degrees: leave one out");
   Plan out = plan;
+  double most = 0;
   std::vector<bool> angles;
   for (const std::string& joint : plan.joints) angles.push_back(tree.isAngle(variableOf(tree, joint, "the plan")));
   for (Plan::Rows* rows : {&out.positions, &out.velocities, &out.accelerations}) {
     for (std::vector<double>& row : *rows) {
       for (std::size_t j = 0; j < std::min(row.size(), angles.size()); ++j) {
+        if (angles[j] && rows == &out.positions) most = std::max(most, std::abs(row[j]));
         if (angles[j]) row[j] *= kRadiansPerDegree;
       }
     }
@@ -392,6 +394,8 @@ Plan inRadians(const KinematicTree& tree, const Plan& plan) {
   for (auto& [name, value] : out.state) {
     if (tree.isAngle(variableOf(tree, name, "the state of the other joints"))) value *= kRadiansPerDegree;
   }
+  if (most <= 2 * kHalfTurn)
+    out.notes.push_back(fmt::format("no angle is beyond {:.3g} deg: are these radians?", most));
   return out;
 }
 
@@ -421,17 +425,6 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     plan.joints = given.joints;
   }
   std::vector<std::string> notes = plan.notes;
-  if (options.degrees && !given.positions.empty()) {
-    double most = 0;
-    for (const std::vector<double>& row : given.positions) {
-      for (std::size_t j = 0; j < std::min(row.size(), columns.variables.size()); ++j) {
-        if (tree.isAngle(columns.variables[j])) most = std::max(most, std::abs(row[j]));
-      }
-    }
-    if (most <= 2 * kHalfTurn) {
-      notes.push_back(fmt::format("--degrees: no angle is beyond {:.3g} degrees: are these radians?", most));
-    }
-  }
   requireRows(plan.positions, "positions", waypoints, columns);
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);

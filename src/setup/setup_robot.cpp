@@ -46,7 +46,12 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
     links[i].shape->innerBalls();
     links[i].shape->lineSweptSphere();
   });
-  std::vector<int> depth(links.size(), 0);
+  const engine::SweepView world = sweeps_[0].view();
+  std::vector<int> depth_of_step(static_cast<std::size_t>(world.num_steps)), depth(links.size(), 0);
+  for (std::size_t s = 0; s < depth_of_step.size(); ++s) {
+    const int parent = world.steps[s].parent;  // comes before it
+    depth_of_step[s] = 1 + (parent < 0 ? 0 : depth_of_step[static_cast<std::size_t>(parent)]);
+  }
   std::vector<Carrier> carriers(links.size());
   for (std::size_t i = 0; i < links.size(); ++i) {
     const ManagedBody& link = links[i];
@@ -67,7 +72,7 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
     const double reach = Eigen::Vector3d::Map(&lss[0]).norm() + Eigen::Vector3d::Map(&lss[3]).norm();
     body.lss[6] = lss[6] + 0x1p-52 * (body.placement.ulps + 16) * (lss[6] + reach + body.placement.length);
     link.worldBox(in_step, body.placement, body.lo, body.hi);  // right where step < 0, not used elsewhere
-    for (int s = carrier.step; s >= 0; s = sweeps_[0].view().steps[s].parent) ++depth[i];
+    if (carrier.step >= 0) depth[i] = depth_of_step[static_cast<std::size_t>(carrier.step)];
   }
   movers_.resize(links.size());
   for (std::size_t i = 0; i < links.size(); ++i) movers_[i] = static_cast<std::int32_t>(i);

@@ -41,6 +41,24 @@ TEST_F(SrdfTest, DefaultsYieldToNamedPairs) {
   EXPECT_FALSE(matrix.allowed("b", "c"));
 }
 
+TEST_F(SrdfTest, NamesAreUtf8) {
+  const auto errorOf = [&](const std::string& body, bool virtual_joint) {
+    try {
+      load(body);
+      if (virtual_joint) loadVirtualJoint(write("r.srdf", "<robot name='r'>" + body + "</robot>"));
+      return std::string("is read");
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+  };
+  expectContains(errorOf("\n<disable_collisions link1='a' link2='caf\xE9'/>", false), "line 2, <disable_collisions>");
+  expectContains(errorOf("\n<disable_collisions link1='a' link2='caf\xE9'/>", false),
+                 "no UTF-8; save the file as UTF-8");
+  const std::string moving = "<virtual_joint name='v' type='planar' parent_frame='caf\xE9' child_link='a'/>";
+  EXPECT_EQ(errorOf(moving, false), "is read");
+  expectContains(errorOf(moving, true), "the attribute 'parent_frame' of <virtual_joint> has bytes that are no UTF-8");
+}
+
 // A maker's SRDF names links that not all of its URDFs have. Passed over, such entries leave no pair unchecked.
 TEST_F(SrdfTest, EntriesWithLinksThatTheRobotLacksAreNoted) {
   const auto matrix = load(

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -366,6 +367,58 @@ TEST_F(UrdfTest, NotesWhatIsUnusual) {
   EXPECT_FALSE(hasLimits(limp.tree->joint(0)));
   EXPECT_TRUE(hasLimits(limp.tree->joint(1)));
   EXPECT_FALSE(hasLimits(limp.tree->joint(2)));
+
+  // The end that is missing is 0 by URDF's rules, which few people know.
+  const Robot half = load("<link name='a'/><link name='b'/><link name='c'/><link name='d'/><link name='e'/>" +
+                          joint("low", "revolute", "a", "b", limits("lower='-2'")) +
+                          joint("high", "prismatic", "b", "c", limits("upper='2'")) +
+                          joint("wheel", "continuous", "c", "d", limits("upper='2'")) +
+                          joint("whole", "revolute", "d", "e", limits("lower='-2' upper='2'")));
+  ASSERT_EQ(half.notes.size(), 3u);
+  expectContains(half.notes[0], "joint 'low' has a limit with 'lower' and no 'upper', which is 0 then");
+  expectContains(half.notes[1], "joint 'high' has a limit with 'upper' and no 'lower', which is 0 then");
+  EXPECT_EQ(half.tree->joint(0).lower, -2);
+  EXPECT_EQ(half.tree->joint(0).upper, 0);
+}
+
+// What a set-up does for each link does not grow with those above it. (It took 8 s, with the cube of the links.)
+TEST_F(UrdfTest, ChainsOfThousandsOfLinksAreSetUpAtOnce) {
+  constexpr int kLinks = 3000;
+  std::string body = linkWith(collision("<sphere radius='0.01'/>"));
+  for (int k = 1; k <= kLinks; ++k) {
+    const std::string parent = k == 1 ? "a" : "l" + std::to_string(k - 1), link = "l" + std::to_string(k);
+    body += "<link name='" + link + "'/>" +
+            joint("j" + std::to_string(k), "continuous", parent, link, "<origin xyz='0 0 0.1'/><axis xyz='0 1 0'/>");
+  }
+  const Robot chain = load(body);
+  ArticulatedCollisionManager manager(chain.tree);
+  chain.addTo(manager);
+  const std::clock_t begin = std::clock();
+  manager.setup();
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1);  // a twentieth of that
+}
+
+// Python's strings, and messages of all kinds, are of characters.
+TEST_F(UrdfTest, NamesAreUtf8) {
+  const std::string latin1 = "caf\xE9", utf8 = "caf\xC3\xA9";
+  EXPECT_EQ(load("<link name='" + utf8 + "'/>").tree->linkName(0), utf8);
+  const auto errorOf = [&](const std::string& body) {
+    try {
+      load("<!-- " + latin1 + " -->\n" + body);  // not in a comment
+      return std::string("is read");
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_EQ(errorOf("<link name='a'/>"), "is read");
+  expectContains(errorOf("<link name='" + latin1 + "'/>"), "line 2, <link>");
+  expectContains(errorOf("<link name='" + latin1 + "'/>"), "no UTF-8; save the file as UTF-8");
+  const std::string links = "<link name='a'/><link name='b'/>";
+  expectContains(errorOf(links + joint(latin1, "fixed", "a", "b", "")),
+                 "the attribute 'name' has bytes that are no UTF-8");
+  for (const char* wrong : {"\xC0\x80", "\xED\xA0\x80", "\xF5\x80\x80\x80", "\xE2\x82", "\x80", "\xF0\x80\x80\x80"}) {
+    expectContains(errorOf("<link name='a" + std::string(wrong) + "'/>"), "no UTF-8");
+  }
 }
 
 TEST_F(UrdfTest, IsBoundAsAWholeOrNotAtAll) {

@@ -3,6 +3,7 @@
 #include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include "files/files.h"
 #include "meshes/readers.h"
 #include "meshes/text.h"
+#include "text/utf8.h"
 
 namespace fcl_artic {
 namespace {
@@ -106,10 +108,21 @@ class MoveItSceneReader {
     return words >> word && words >> word;
   }
 
+  /// The number of the line that was read last.
+  std::size_t line() {
+    in_.clear();
+    const std::string read = in_.str().substr(0, static_cast<std::size_t>(in_.tellg()));
+    return static_cast<std::size_t>(std::count(read.begin(), read.end() - 1, '\n')) + 1;
+  }
+
   void readObject(bool has_pose) {
     std::string name;
     std::getline(in_ >> std::ws, name);
     name.erase(name.find_last_not_of(" \t\r") + 1);
+    if (!text::isUtf8(name)) {
+      fail(where_, "line " + std::to_string(line()) + ": the object's name '" + name +
+                       "' has bytes that are no UTF-8; save the file as UTF-8");
+    }
     const std::string part = where_ + ": object '" + name + "'";
     const Eigen::Isometry3d M_object = has_pose ? pose(part) : Eigen::Isometry3d::Identity();
     const auto shapes = count(part, "number of shapes");
@@ -454,7 +467,10 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
   if (!(options.scale > 0 && std::isfinite(options.scale))) {
     throw std::invalid_argument("loadScene: a scale of " + detail::text(options.scale) + " is not above 0 and finite");
   }
-  const std::string ending = detail::endingOf(path);
+  const std::string ending = detail::endingOf(path), stem = fs::path(path).stem().string();
+  if (!text::isUtf8(stem)) {
+    fail("'" + path + "'", "the file's name, which its obstacles have, has bytes that are no UTF-8; rename the file");
+  }
   SceneBuilder builder(options);
   if (ending == ".urdf") {
     readRobot(path, builder);
@@ -467,10 +483,9 @@ Scene loadScene(const std::string& path, const SceneOptions& options) {
       fail("'" + path + "'",
            "is a point cloud: say how large its points are (--point-radius, SceneOptions::point_radius)");
     }
-    builder.add(fs::path(path).stem().string(), loadPointCloud(path, options.point_radius, &builder.scene.notes),
-                Eigen::Isometry3d::Identity());
+    builder.add(stem, loadPointCloud(path, options.point_radius, &builder.scene.notes), Eigen::Isometry3d::Identity());
   } else {
-    builder.add(fs::path(path).stem().string(),
+    builder.add(stem,
                 loadMesh(path, Eigen::Vector3d::Ones(), &builder.scene.notes, options.solid_meshes,
                          options.collada_up_axis, options.import_meshes),
                 Eigen::Isometry3d::Identity());

@@ -10,6 +10,7 @@
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "text/nearest_name.h"
+#include "text/utf8.h"
 #include "urdf_elements.h"
 
 namespace fcl_artic {
@@ -150,17 +151,20 @@ class SrdfReader {
 }  // namespace
 
 std::optional<VirtualJoint> loadVirtualJoint(const std::string& path) {
-  const std::string where = "'" + path + "'", xml = files::read(path);
+  const std::string where = "'" + path + "'";
   tinyxml2::XMLDocument document;
-  if (document.Parse(xml.c_str(), xml.size()) != tinyxml2::XML_SUCCESS) fail(where, document.ErrorStr());
-  const tinyxml2::XMLElement* robot = document.RootElement();
-  if (!robot || std::string(robot->Name()) != "robot") fail(where, "is not an SRDF: the root element is not <robot>");
+  const tinyxml2::XMLElement* robot =
+      &detail::parseUnderstood(where, files::read(path), detail::Vocabulary::srdf, document);
   std::optional<VirtualJoint> found;
   for (auto* e = robot->FirstChildElement("virtual_joint"); e; e = e->NextSiblingElement("virtual_joint")) {
     const std::string line = where + ", line " + std::to_string(e->GetLineNum());
     const auto attribute = [&](const char* name) -> std::string {
       const char* value = e->Attribute(name);
       if (!value || !*value) fail(line, std::string("<virtual_joint> has no attribute '") + name + "'");
+      if (!text::isUtf8(value)) {
+        fail(line, std::string("the attribute '") + name +
+                       "' of <virtual_joint> has bytes that are no UTF-8; save the " + "file as UTF-8");
+      }
       return value;
     };
     const std::string type = attribute("type");

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -63,7 +64,7 @@ struct Document {
     bool has_visual = false;
   };
   std::vector<Link> links;
-  std::vector<std::string> joints;
+  std::vector<std::string> joints, notes;
   std::string xml;  ///< the file without visual and inertial elements, whose errors are of no concern here
 };
 
@@ -81,6 +82,18 @@ Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) 
   return link;
 }
 
+/// A limit of which one end is missing: urdfdom takes it for 0, as URDF's rules say, which seldom is what was meant.
+void noteLimit(const tinyxml2::XMLElement& joint, std::vector<std::string>& notes) {
+  const char* const type = joint.Attribute("type");
+  const tinyxml2::XMLElement* const limit = joint.FirstChildElement("limit");
+  if (!type || !limit || (std::strcmp(type, "revolute") != 0 && std::strcmp(type, "prismatic") != 0)) return;
+  const bool lower = limit->Attribute("lower"), upper = limit->Attribute("upper");
+  if (lower == upper) return;
+  notes.push_back("joint '" + std::string(joint.Attribute("name")) + "' has a limit with '" +
+                  (lower ? "lower" : "upper") + "' and no '" + (lower ? "upper" : "lower") +
+                  "', which is 0 then by the rules of URDF");
+}
+
 Document readDocument(const std::string& where, const std::string& file) {
   tinyxml2::XMLDocument xml;
   tinyxml2::XMLElement& robot = detail::parseUnderstood(where, file, detail::Vocabulary::urdf, xml);
@@ -89,7 +102,10 @@ Document readDocument(const std::string& where, const std::string& file) {
     const std::string kind = e->Name();
     const char* name = e->Attribute("name");
     if (kind == "link" && name) document.links.push_back(readLink(name, *e));
-    if (kind == "joint" && name) document.joints.push_back(name);
+    if (kind == "joint" && name) {
+      document.joints.push_back(name);
+      noteLimit(*e, document.notes);
+    }
   }
   // (Of visual elements only, and so of no concern here.)
   while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
@@ -589,6 +605,7 @@ Robot loadUrdf(const std::string& path, const UrdfOptions& options) {
   const std::string where = "'" + path + "'";
   const Document document = readDocument(where, files::read(path));
   Robot robot;
+  robot.notes = document.notes;
   const urdf::ModelInterfaceSharedPtr model = parse(where, document.xml, robot.notes);
   robot.tree = makeTree(where, *model, document, options, robot.notes);
 

@@ -10,6 +10,7 @@
 
 #include "detail.h"
 #include "text/nearest_name.h"
+#include "text/utf8.h"
 #include "text/xml_root.h"
 
 namespace fcl_artic::detail {
@@ -155,7 +156,11 @@ class Strict {
   void attributes(const tinyxml2::XMLElement& e, const Grammar& of) const {
     for (const tinyxml2::XMLAttribute* a = e.FirstAttribute(); a; a = a->Next()) {
       const std::string name = a->Name();  // there once: tinyxml2 sees to that
-      if (name == "xmlns" || name.rfind("xmlns:", 0) == 0 || of.attributes.count(name)) continue;
+      if (of.attributes.count(name)) {
+        if (text::isUtf8(a->Value())) continue;
+        refuse(e, "the attribute '" + name + "' has bytes that are no UTF-8; save the file as UTF-8");
+      }
+      if (name == "xmlns" || name.rfind("xmlns:", 0) == 0) continue;
       // Another vocabulary's word for it, such as drake:acceleration, is passed over as ours is.
       if (of.passed_over_attributes.count(name.substr(name.find(':') + 1))) continue;
       // Of an axis that some writers give angles, all of them 0, they say nothing.
