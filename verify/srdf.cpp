@@ -34,6 +34,15 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
   std::set<std::string> links, others;
   for (const Body& body : world.bodies) (body.role == Role::link ? links : others).insert(body.name);
   for (const std::string& name : others) links.erase(name);  // the SRDF's word is about links
+  // A slip in the name of one that is to be checked would leave the pair that is meant disabled by default.
+  for (const auto& [a, b] : enabled) {
+    for (const auto& [name, other] : {std::make_pair(a, b), std::make_pair(b, a)}) {
+      if (defaults.count(other) > 0 && links.count(name) == 0)
+        result.differences.push_back("the SRDF enables the pair of " + inQuotes(other) +
+                                     ", which it disables by default, with " + inQuotes(name) +
+                                     ", and the world has no such link with geometry");
+    }
+  }
   std::size_t found = 0;
   for (const auto& [pair, reason] : world.unchecked) {
     if (reason == Reason::touch_link || reason == Reason::still) continue;

@@ -512,6 +512,9 @@ TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
   const std::string pair = "<disable_collisions link1='a' link2='b' reason='Never'/>";
   EXPECT_EQ(answer("text <virtual_joint name='v' type='fixed'/><gripper/>" + pair), "same");
   EXPECT_EQ(answer("<disable_default_collisions link='a' reason='Default'/>"), "same");
+  EXPECT_NE(
+      answer("<disable_default_collisions link='a'/><enable_collisions link1='a' link2='B'/>").find("has no such link"),
+      std::string::npos);
   for (const char* other : {"<enable_colisions link1='a' link2='b'/>", "<disable_colisions link1='a' link2='b'/>",
                             "<Enable link1='a' link2='b'/>", "<collision_margins/>", "<xacro:if value='1'/>"}) {
     EXPECT_NE(answer(pair + other).find("not known in <robot>"), std::string::npos) << other;
