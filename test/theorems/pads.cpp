@@ -35,7 +35,7 @@ using recording::tape;
 
 /// Room for what norms of computed vectors exceed those of the model's by: U <= 2^32 ulps.
 constexpr Real kMore = 1 + 0x1p-20, kMoreOfAll = 1 + 0x1p-17;
-const Real kU = kernel::kUlp.value;
+const Real kU = fcl_artic::kUlp.value;
 
 // ---- Shares of kCertificateUlps. What Gappa does not prove is set aside as in NUMERICS: the rounding of d itself 2, a
 // direction longer than 1 by its own rounding 10.
