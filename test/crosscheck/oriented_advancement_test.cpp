@@ -174,6 +174,8 @@ CertifiedResult askCertified(const ArticulatedCollisionManager& manager, const Q
   request.redon = way.redon;
   request.check_self = self;
   request.check_scene = !self;
+  // With a budget of the caller's the paper's method leaves no query to the standard one for its work.
+  if (way.method == Method::redon2004) request.work_budget = std::uint64_t{1} << 40;
   CertifiedResult result;
   manager.continuousCollide(*query.motion, request, result);
   return result;
