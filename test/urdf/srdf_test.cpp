@@ -234,13 +234,21 @@ TEST_F(SrdfTest, ProofsGoWithTheRobot) {
     manager.setup();
     return manager.collide(Eigen::Vector2d(1, 0)).unproven_allowed_pairs;
   };
-  const std::size_t always = report.alwaysTouching().pairs().size();  // neighbours do not count
-  const auto never = std::count_if(report.pairs.begin(), report.pairs.end(), [](const LinkPairFinding& pair) {
-    return pair.kind == LinkPairKind::never && !pair.neighbours;  // of those set-up has proofs of its own
+  // Those that stand still against each other are no exceptions, and of neighbours set-up has proofs of its own.
+  const auto standStill = [](const std::string& a, const std::string& b) {
+    const std::set<std::string> on_base{"base", "plate", "near", "far", "wall", "shelf"};
+    return on_base.count(a) > 0 && on_base.count(b) > 0;
+  };
+  const auto touching = report.alwaysTouching().pairs();
+  const auto always = std::count_if(touching.begin(), touching.end(),
+                                    [&](const auto& pair) { return !standStill(pair.first, pair.second); });
+  const auto never = std::count_if(report.pairs.begin(), report.pairs.end(), [&](const LinkPairFinding& pair) {
+    return pair.kind == LinkPairKind::never && !pair.neighbours && !standStill(pair.link1, pair.link2);
   });
-  EXPECT_EQ(unproven(), static_cast<std::size_t>(never) + always);
+  EXPECT_GT(never, 0);
+  EXPECT_EQ(unproven(), static_cast<std::size_t>(never + always));
   robot.proofs = report.proofs;
-  EXPECT_EQ(unproven(), always);
+  EXPECT_EQ(unproven(), static_cast<std::size_t>(always));
 }
 
 // Of neighbours the file's word is the only one.
