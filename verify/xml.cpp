@@ -145,11 +145,16 @@ std::string Xml::attribute(const Element& e, const char* name) const {
 }
 
 std::vector<double> Xml::numbers(const Element* e, const char* name, const char* otherwise, std::size_t count) const {
-  const char* const value = e == nullptr ? nullptr : e->Attribute(name);
-  if (value == nullptr && otherwise == nullptr) refuse(*e, std::string("the attribute '") + name + "' is missing");
+  const char* value = e == nullptr ? nullptr : e->Attribute(name);
+  if (value == nullptr) value = otherwise;
+  if (value == nullptr) {
+    const std::string why = std::string("the attribute '") + name + "' is missing";
+    if (e != nullptr) refuse(*e, why);
+    throw BadInput(why);
+  }
   std::vector<double> numbers;
   try {
-    numbers = decimals(value == nullptr ? otherwise : value);
+    numbers = decimals(value);
   } catch (const BadInput& error) {
     refuse(*e, std::string("the attribute '") + name + "': " + error.what());
   }

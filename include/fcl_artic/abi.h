@@ -25,6 +25,7 @@ inline constexpr bool kDebugContainers = false;
 /// defines the member for its own flags alone. With others the linker ends with its name.
 template <int EigenMaxAlignBytes, int EigenMallocAlreadyAligned, class EigenIndex, bool GlibcxxDebug>
 struct Abi {
+  // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): what the linker shows
   static const char these_compiler_flags_do_not_match_those_of_libfcl_artic__see_Install_in_its_manual;
 };
 
