@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -107,10 +108,13 @@ nlohmann::ordered_json ToolLineAnswer::json() const {
 ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& motion, const ToolLine& line) {
   // The brackets are narrow against what is allowed: an answer is open only within a hundredth of that.
   constexpr double kPart = 0.01;
+  // Some seconds: limits that are narrower still against the motion leave the answer undecided.
+  constexpr std::uint64_t kMostPoses = 1 << 21;
   ToolLineRequest request;
+  request.work_budget = kMostPoses;
   request.tool = line.tool;
   if (line.distance > 0) request.tolerance_distance = kPart * line.distance;
-  if (line.angle > 0) request.tolerance_angle = kPart * line.angle;
+  if (line.angle > 0 && !line.any_angle()) request.tolerance_angle = kPart * line.angle;
   return {line, toolDeviation(tree, motion, line.link, request)};
 }
 

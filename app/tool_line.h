@@ -3,6 +3,8 @@
 // What a verb says about a tool that is to follow a straight line.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -16,9 +18,10 @@ namespace fcl_artic::app {
 struct ToolLine {
   std::string link;
   Eigen::Isometry3d tool = Eigen::Isometry3d::Identity();
-  double distance = 0;  ///< m
-  double angle = 3.2;   ///< rad; above pi: any
-  bool any_angle() const { return angle > 3.15; }
+  double distance = 0;                                     ///< m
+  double angle = std::numeric_limits<double>::infinity();  ///< rad; infinite: any
+
+  bool any_angle() const { return std::isinf(angle); }
 };
 
 /// Adds --line to the group.
