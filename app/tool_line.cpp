@@ -88,7 +88,7 @@ std::string ToolLineAnswer::text() const {
                : "may leave",
       found.length, 1e3 * found.distance_upper, limit(fmt::format("{:g} mm", 1e3 * asked.distance), false),
       found.distance_time, found.angle_upper / kRadiansPerDegree,
-      limit(fmt::format("{:g} deg", asked.angle / kRadiansPerDegree), asked.any_angle()));
+      limit(fmt::format("{:g} deg", asked.angle / kRadiansPerDegree), asked.anyAngle()));
 }
 
 nlohmann::ordered_json ToolLineAnswer::json() const {
@@ -99,7 +99,7 @@ nlohmann::ordered_json ToolLineAnswer::json() const {
           {"distance_lower", found.distance_lower},
           {"distance_upper", found.distance_upper},
           {"distance_t", found.distance_time},
-          {"angle_allowed", asked.any_angle() ? nlohmann::ordered_json() : nlohmann::ordered_json(asked.angle)},
+          {"angle_allowed", asked.anyAngle() ? nlohmann::ordered_json() : nlohmann::ordered_json(asked.angle)},
           {"angle_lower", found.angle_lower},
           {"angle_upper", found.angle_upper},
           {"angle_t", found.angle_time}};
@@ -114,7 +114,7 @@ ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& mot
   request.work_budget = kMostPoses;
   request.tool = line.tool;
   if (line.distance > 0) request.tolerance_distance = kPart * line.distance;
-  if (line.angle > 0 && !line.any_angle()) request.tolerance_angle = kPart * line.angle;
+  if (line.angle > 0 && !line.anyAngle()) request.tolerance_angle = kPart * line.angle;
   return {line, toolDeviation(tree, motion, line.link, request)};
 }
 

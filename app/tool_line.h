@@ -21,7 +21,7 @@ struct ToolLine {
   double distance = 0;                                     ///< m
   double angle = std::numeric_limits<double>::infinity();  ///< rad; infinite: any
 
-  bool any_angle() const { return std::isinf(angle); }
+  bool anyAngle() const { return std::isinf(angle); }
 };
 
 /// Adds --line to the group.
