@@ -12,11 +12,13 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// One body seen from the other. `m` is the motion of `moving` in the frame of `still`.
+/// One body seen from the other. `m` is the motion of `moving` in the frame of `still`. They are to be more than
+/// `margin` apart; `pad` is what rounding may take of that.
 struct Side {
   RigidLanes m;
   const TreeView* still;
   const TreeView* moving;
+  double margin, pad;
 };
 
 /// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and
@@ -37,27 +39,24 @@ FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const V
   }
 }
 
-/// What a gap between the cores has to be larger than along a unit direction, for the pieces to be more than `margin`
+/// What a gap between the cores has to be larger than along a unit direction, for the pieces to be more than the margin
 /// apart: radii, what the quadratic leaves out, rounding.
-FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piece& moving, double margin, double pad) {
-  return margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + pad;
+FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piece& moving) {
+  return side.margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + side.pad;
 }
 
-/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than `margin` apart
+/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than the margin apart
 /// over the whole interval.
 /// @param n  in the frame of side.still.
-/// @param sign  +1 or -1 where n, or -n, separated some lane (still to moving); else left as it was.
 FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
-                                             unsigned lanes, double margin, double pad, double& sign) {
+                                             unsigned lanes) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
   movingRange(side, moving, n, lanes, lower, upper);
-  const double slack = slackOf(side, still, moving, margin, pad);
+  const double slack = slackOf(side, still, moving);
   const unsigned above = greater(min(min(lower[0], lower[1]), lower[2]), Lanes(s_upper + slack));
   const unsigned below = greater(Lanes(s_lower - slack), max(max(upper[0], upper[1]), upper[2]));
-  if (above) sign = 1;
-  if (below) sign = -1;
   return above | below;
 }
 
@@ -89,15 +88,14 @@ inline double positivePrefix(const double* G) {
   return 0;
 }
 
-/// Bernstein coefficients of a lower bound of the gap beyond `margin` along n, over each lane's interval.
+/// Bernstein coefficients of a lower bound of the gap beyond the margin along n, over each lane's interval.
 /// @param n  in the frame of side.still, from still to moving.
-FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const Vec3& n, double margin,
-                               double pad, Lanes* G) {
+FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const Vec3& n, Lanes* G) {
   double s_lower, s_upper;
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
   movingRange(side, moving, n, kAllLanes, G, upper);
-  const Lanes slack(s_upper + slackOf(side, still, moving, margin, pad));
+  const Lanes slack(s_upper + slackOf(side, still, moving));
   for (int k = 0; k < 3; ++k) G[k] = G[k] - slack;
 }
 
@@ -114,14 +112,14 @@ struct TurningDirection {
 /// of its points is higher.
 /// @param side  B seen from A: the pad is derived for the direct motion (doc/NUMERICS.md, "Pads").
 FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const TurningDirection& n,
-                               double margin, double pad, Lanes* G) {
+                               Lanes* G) {
   const Lanes third(1.0 / 3);
   Lanes g[4];
   Lanes s_lower[2], s_upper[2];
   coreRange(*side.still, still, n.begin, s_lower[0], s_upper[0]);
   coreRange(*side.still, still, n.end, s_lower[1], s_upper[1]);
-  const Lanes length = sqrt(max(dot(n.begin, n.begin), dot(n.end, n.end))) *
-                       Lanes((1 + 8 * kUlp) * slackOf(side, still, moving, margin, pad));
+  const Lanes length =
+      sqrt(max(dot(n.begin, n.begin), dot(n.end, n.end))) * Lanes((1 + 8 * kUlp) * slackOf(side, still, moving));
   for (int k = 0; k < 4; ++k) {
     // Point k of the cubic: (k n_1 X_(k-1) + (3 - k) n_0 X_k) / 3.
     Vec3Lanes u = spread(Vec3(0, 0, 0));

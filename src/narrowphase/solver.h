@@ -46,7 +46,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   }
   if (!task.ended()) containment.report(open);
   if (!task.ended() && horizon.end() > 0) {
-    search.testHulls(open, [&](int i) { return stage_one.direction(i); });
+    search.testHulls(open, stage_one);
     if (query.any && !horizon.isOver()) any.tryOverlaps(open);
     if (!horizon.isOver()) search.run(open);
   }
@@ -84,15 +84,15 @@ inline void Solver::answerWithWhatIsFound(Answer& answer) {
 }
 
 inline void Solver::pairMotion(PairId pair, double tm, double d, engine::PairMotion& seen) {
-  motion.set(pair, TimeBatch::around(tm, d));
-  const RigidLanes& m = motion.seenFromA();
+  const Seen motion = motions.of(pair, TimeBatch::around(tm, d));
+  const RigidLanes& m = motion->seenFromA();
   for (int order = 0; order < 3; ++order) {
     laneOf(m.R[order], 0).store(seen.R[order]);
     laneOf(m.c[order], 0).store(seen.c[order]);
   }
   seen.rem_c = m.rem_c;
   seen.rem_R = m.rem_R;
-  seen.pad = motion.pad();
+  seen.pad = motion->pad();
 }
 
 }  // namespace FCL_ARTIC_ISA

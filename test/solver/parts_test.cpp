@@ -241,49 +241,47 @@ TEST(SweptFrames, AreMadeOncePerBatchAndKeptOfTheWholeMotion) {
 TEST(RelativeMotion, SeesEachBodyFromTheOther) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(TwoBalls::kPair, world.task.whole);
-  const DifferenceBody at = world.motion.differenceAt(world.round[0].piece, world.round[1].piece, 3);
+  const Seen motion = world.motions.of(TwoBalls::kPair, world.task.whole);
+  const DifferenceBody at = motion->differenceAt(world.round[0].piece, world.round[1].piece, 3);
   EXPECT_NEAR(at.pose.c[2], -2 + 4 * world.task.whole.at[3], 1e-14);
-  EXPECT_NEAR(world.motion.differenceAt(world.round[0].piece, world.round[1].piece, 3, 1).pose.c[2], 0,
+  EXPECT_NEAR(motion->differenceAt(world.round[0].piece, world.round[1].piece, 3, 1).pose.c[2], 0,
               1e-12);  // t = 0.5
   for (int k = 0; k < kLanes; ++k) {
-    EXPECT_NEAR(world.motion.side(1).m.c[0][2][k], -(-2 + 4 * world.task.whole.at[k]), 1e-14);
+    EXPECT_NEAR(motion->side(1).m.c[0][2][k], -(-2 + 4 * world.task.whole.at[k]), 1e-14);
   }
-  EXPECT_NEAR(world.motion.amplitude(), 0.25, 1e-9);  // half a lane: 1/16 of 4 m
-  const SweptBox& box = world.motion.sweptNode(0, 0);
+  EXPECT_NEAR(motion->amplitude(), 0.25, 1e-9);  // half a lane: 1/16 of 4 m
+  const SweptBox& box = motion->sweptNode(0, 0);
   const FloatLanes below = spread(-2.25f), above = spread(-1.25f);
   EXPECT_EQ(lanesOf(greater(box.lo[2], below)) & 1, 0u);  // lane 0: from -2.25 to -1.25
   EXPECT_EQ(lanesOf(greater(above, box.hi[2])) & 1, 0u);
-  EXPECT_TRUE(world.motion.isSwept(0, 0));
-  world.motion.set(TwoBalls::kPair, TimeBatch::middles());
-  EXPECT_FALSE(world.motion.isSwept(0, 0));
+  EXPECT_TRUE(motion->isSwept(0, 0));
+  EXPECT_FALSE(world.motions.of(TwoBalls::kPair, TimeBatch::middles())->isSwept(0, 0));
 }
 
 TEST(RelativeMotion, WitnessIsThePairs) {
   TwoBalls world;
   world.asPair().begin();
   const Vec3 up(0, 0, 1);
-  world.motion.set(TwoBalls::kPair, world.task.whole);
-  EXPECT_EQ(world.motion.witness(), nullptr);
-  world.motion.setWitness(up);
-  world.motion.set(TwoBalls::kPair, TimeBatch::middles());  // another batch: it serves still
-  ASSERT_NE(world.motion.witness(), nullptr);
-  EXPECT_EQ((*world.motion.witness())[2], 1);
+  const Seen first = world.motions.of(TwoBalls::kPair, world.task.whole);
+  EXPECT_EQ(first->witness(), nullptr);
+  first->setWitness(up);
+  const Seen other = world.motions.of(TwoBalls::kPair, TimeBatch::middles());  // another batch: it serves still
+  ASSERT_NE(other->witness(), nullptr);
+  EXPECT_EQ((*other->witness())[2], 1);
   world.begin();
-  world.motion.set(TwoBalls::kPair, world.task.whole);
-  EXPECT_EQ(world.motion.witness(), nullptr);
+  EXPECT_EQ(world.motions.of(TwoBalls::kPair, world.task.whole)->witness(), nullptr);
 }
 
 TEST(Traversal, LeavesNoLaneWithContactOut) {
   for (const double shift : {0.0, 0.1, 0.37, 1.9}) {
     TwoBalls world(-2 - shift, 2 - shift);
     world.asPair().begin();
-    world.motion.set(TwoBalls::kPair, world.task.whole);
+    const Seen seen = world.motions.of(TwoBalls::kPair, world.task.whole);
     const unsigned touching = TwoBalls::touching(TwoBalls::kFirst + shift / 4, TwoBalls::kLast + shift / 4);
-    const unsigned blocked = world.traversal.blockedLanes(TwoBalls::kPair, kAllLanes);
+    const unsigned blocked = world.traversal.blockedLanes(seen, kAllLanes);
     EXPECT_EQ(blocked & touching, touching) << shift;
     EXPECT_NE(blocked, kAllLanes) << shift;
-    world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
+    world.traversal.descend(seen, {TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
     unsigned left = 0;
     for (int i = 0; i < world.open.size(); ++i) left |= world.open[i].mask;
     EXPECT_EQ(left & touching, touching) << shift;
@@ -293,9 +291,9 @@ TEST(Traversal, LeavesNoLaneWithContactOut) {
 TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(TwoBalls::kPair, world.task.whole);
+  const Seen seen = world.motions.of(TwoBalls::kPair, world.task.whole);
   world.horizon.suspect(0.2);
-  world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::split, world.open);
+  world.traversal.descend(seen, {TwoBalls::kPair, 0, 0, kAllLanes}, Aim::split, world.open);
   unsigned put_off = 0, looked_at = 0;
   for (int i = 0; i < world.open.size(); ++i) {
     (world.open[i].put_off ? put_off : looked_at) |= world.open[i].mask;
@@ -307,11 +305,11 @@ TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
 TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
   TwoBalls world;
   world.asPair().begin();
-  world.motion.set(TwoBalls::kPair, world.task.whole);
+  const Seen seen = world.motions.of(TwoBalls::kPair, world.task.whole);
   const std::uint64_t none = 0, root = 1;
   world.traversal.knowFreeNodes(TwoBalls::kPair, &root);
   world.traversal.knowFreeNodes(TwoBalls::kPair, &none);  // another advisor, which knows nothing
-  world.traversal.descend({TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
+  world.traversal.descend(seen, {TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
   EXPECT_EQ(world.open.size(), 0);
 }
 
@@ -404,13 +402,11 @@ TEST(HullSimplices, AreOfThePairAndTheQuery) {
 TEST(PoseProofs, ProveContactWhereItIs) {
   TwoBalls world;
   world.asPair().query.any = true;
-  world.begin();
-  world.motion.set(TwoBalls::kPair, world.task.whole);
   for (int k = 0; k < kLanes; ++k) {
     world.begin();
-    world.motion.set(TwoBalls::kPair, world.task.whole);
+    const Seen seen = world.motions.of(TwoBalls::kPair, world.task.whole);
     const bool touch = k == 3 || k == 4;  // at 0.4375 and 0.5625; 0.3125 and 0.6875 are the very ends
-    EXPECT_EQ(world.proofs.leaves(0, 0, k), touch) << k;
+    EXPECT_EQ(world.proofs.leaves(seen, 0, 0, k), touch) << k;
     ASSERT_EQ(world.contacts.size(), touch) << k;
     if (touch) {
       EXPECT_EQ(world.contacts.data()[0].t_upper, world.task.whole.at[k]);
@@ -432,7 +428,7 @@ TEST(Follower, FindsTheRootAndProvesTheContact) {
   ASSERT_TRUE(f.certain);
   EXPECT_GE(f.t_upper, TwoBalls::kFirst);
   EXPECT_LE(f.t_upper - f.t_lower, world.query.tolerance_time);
-  world.follower.record(f);
+  ContactWriter(world).record(f);
   ASSERT_EQ(world.contacts.size(), 1);
   const LeafContact& contact = world.contacts.data()[0];
   EXPECT_NEAR(contact.normal[2], -1, 1e-6);  // from A to B, which comes from below
@@ -516,15 +512,15 @@ TEST(StageOne, TakesWhatAdvisorsClear) {
   world.query.ask(advisor);
   world.begin();
   world.stage_one.cull(world.open);
-  ASSERT_NE(world.stage_one.direction(0), nullptr);
+  ASSERT_NE(world.stage_one.direction(world.open[0]), nullptr);
   world.stage_one.refine(world.traversal, world.open);
   EXPECT_EQ(asked.pairs, 1);
   ASSERT_EQ(world.open.size(), 1);
   EXPECT_EQ(world.open[0].mask, 0b1000u);
+  EXPECT_NE(world.stage_one.direction(world.open[0]), nullptr);
   asked.keep = 0;
   world.stage_one.refine(world.traversal, world.open);
   EXPECT_EQ(world.open.size(), 0);
-  EXPECT_EQ(world.stage_one.direction(0), nullptr);
 }
 
 /// Of two bodies that move the advisor is given what B sweeps where A stands still: a ball that goes straight along z.
@@ -685,7 +681,7 @@ TEST(PairSearch, FindsTheFirstContact) {
     TwoBalls world;
     (as_pair ? world.asPair() : world.asLinkAndObstacle()).begin();
     world.stage_one.cull(world.open);
-    world.search.testHulls(world.open, [](int) { return nullptr; });
+    world.search.testHulls(world.open, world.stage_one);
     world.search.run(world.open);
     const engine::FirstContact& first = world.horizon.first();
     EXPECT_LE(first.t_lower, TwoBalls::kFirst);
@@ -696,7 +692,7 @@ TEST(PairSearch, FindsTheFirstContact) {
   TwoBalls away(0.76, 4.76);
   away.asPair().begin();
   away.stage_one.cull(away.open);
-  away.search.testHulls(away.open, [](int) { return nullptr; });
+  away.search.testHulls(away.open, away.stage_one);
   away.search.run(away.open);
   EXPECT_EQ(away.horizon.first().t_lower, kNever);
   EXPECT_EQ(away.horizon.provenFreeUntil(), 1);

@@ -221,10 +221,10 @@ void separation(const Slice& slice, Statement& s, PieceKind kind) {
   side.still = &still.tree;
   side.moving = &moving.tree;
   const Vec3 n = vector(s, kMore);
-  const Recorded slack = s.input(0, mostSlack(sizes, S));
-  Recorded sign = 0.0;
+  side.margin = s.input(0, mostSlack(sizes, S));
+  side.pad = 0.0;
   recording::comparisons().clear();
-  kernel::certainlySeparated(side, still.piece, moving.piece, n, kernel::kAllLanes, slack, 0.0, sign);
+  kernel::certainlySeparated(side, still.piece, moving.piece, n, kernel::kAllLanes);
   const Nodes u = s.knownDots(bernsteinR(side.m), nodesOf(n), sizes.X);
   s.knownDots(bernsteinC(side.m), nodesOf(n), sizes.C);
   s.knownDots(u, moving.nodes, sizes.X * S * kMoreOfAll);
@@ -244,8 +244,9 @@ void slack(const Slice&, Statement& s) {
   moving.reach = size();
   side.m.rem_c = size();
   side.m.rem_R = size();
-  const Recorded margin = size(), pad = size();
-  s.offByPart(kernel::slackOf(side, still, moving, margin, pad), kSlackUlps * kU);
+  side.margin = size();
+  side.pad = size();
+  s.offByPart(kernel::slackOf(side, still, moving), kSlackUlps * kU);
 }
 
 // ---- Along a direction that turns.
@@ -261,7 +262,9 @@ void turning(const Slice& slice, Statement& s, PieceKind kind, int k) {
   side.moving = &moving.tree;
   const kernel::TurningDirection n = {vectorLanes(s, l), vectorLanes(s, l)};
   Lanes G[3];
-  kernel::gapBound(side, still.piece, moving.piece, n, s.input(0, S), 0.0, G);
+  side.margin = s.input(0, S);
+  side.pad = 0.0;
+  kernel::gapBound(side, still.piece, moving.piece, n, G);
   const Nodes ends = nodesOf(n.begin, n.end);
   Nodes weighted;
   int length = 0;

@@ -2,7 +2,7 @@
 //
 // Poses at which contact is likely, for queries that any contact answers: they are tried before any pair is
 // followed, and the first proof ends the query. Nothing rests on the guesses: a contact that is reported is proven,
-// and its time is the pose's. tryTriangles() serves first contacts too, of bodies in each other at the start.
+// and its time is the pose's.
 //
 // 1. Before stage 1, tryLikely(): balls inside two links, in a pose in which their grid has them meet.
 // 2. In stage 1, tryObstacle(), for a link deep in a solid: a ball inside the link, a hull's vertex in the solid, a
@@ -25,57 +25,13 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Two links are expected to touch if the segments of their line swept spheres are nearer than this part of the radii.
-constexpr double kDeepLinks = 0.7;
-/// Maximum number of pairs of boxes that are tested in one pose, of which two triangles count as kTwoTriangles.
-/// Measured: with half as many, robots that touch at the start take 7 % longer.
-constexpr int kMostAtPose = 1024, kTwoTriangles = 8;
-
-/// Two bodies' boxes at one pose: nothing rests on what is said of them.
-struct BoxesAtPose {
-  float R[9], absolute[9], c[3];
-
-  explicit BoxesAtPose(const PoseAt& pose) {
-    for (int i = 0; i < 9; ++i) {
-      R[i] = static_cast<float>(pose.R[i / 3][i % 3]);
-      absolute[i] = __builtin_fabsf(R[i]);
-    }
-    for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(pose.c[k]);
-  }
-  /// No axis of either box separates them.
-  /// @param[out] nearness  square of their middles' distance, as part of their balls' radii.
-  bool meet(const Node& a, const Node& b, float& nearness) const {
-    float x[3], of_a[3], of_b[3], y[3];
-    for (int k = 0; k < 3; ++k) {
-      of_a[k] = 0.5f * (a.hi[k] - a.lo[k]);
-      of_b[k] = 0.5f * (b.hi[k] - b.lo[k]);
-      y[k] = 0.5f * (b.hi[k] + b.lo[k]);
-    }
-    bool all = true;
-    for (int k = 0; k < 3; ++k) {
-      const float *r = R + 3 * k, *e = absolute + 3 * k;
-      x[k] = c[k] + r[0] * y[0] + r[1] * y[1] + r[2] * y[2] - 0.5f * (a.hi[k] + a.lo[k]);
-      all &= __builtin_fabsf(x[k]) <= of_a[k] + e[0] * of_b[0] + e[1] * of_b[1] + e[2] * of_b[2];
-    }
-    for (int k = 0; k < 3; ++k) {
-      const float z = R[k] * x[0] + R[3 + k] * x[1] + R[6 + k] * x[2];
-      all &=
-          __builtin_fabsf(z) <= of_b[k] + absolute[k] * of_a[0] + absolute[3 + k] * of_a[1] + absolute[6 + k] * of_a[2];
-    }
-    const float radii = static_cast<float>(a.radius + b.radius);
-    nearness = (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / (radii * radii);
-    return all;
-  }
-};
-
 class AnyContact : PartOfSolver {
  public:
-  AnyContact(Task& task, SweptFrames& frames, RelativeMotion& motion, Horizon& horizon, BallProofs& balls,
-             PoseProofs& proofs, Traversal& traversal)
-      : PartOfSolver(task),
-        frames_(frames),
-        motion_(motion),
-        horizon_(horizon),
+  AnyContact(SearchState& state, BallProofs& balls, PoseProofs& proofs, Traversal& traversal)
+      : PartOfSolver(state.task),
+        frames_(state.frames),
+        motions_(state.motions),
+        horizon_(state.horizon),
         balls_(balls),
         proofs_(proofs),
         traversal_(traversal) {}
@@ -94,7 +50,6 @@ class AnyContact : PartOfSolver {
   const Buffer<std::int32_t>& deepestFirst(const Buffer<Entry>& open);
   bool tryLinks(const Entry& e);
   bool tryOverlaps(Buffer<Entry>& open);
-  bool tryTriangles(PairId pair, const TimeBatch& poses, int lane, int most);
 
  private:
   bool isLeafPair(PairId pair) const;
@@ -102,7 +57,7 @@ class AnyContact : PartOfSolver {
   bool tryLeafPair(PairId pair, int lane);
 
   SweptFrames& frames_;
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   BallProofs& balls_;
   PoseProofs& proofs_;
@@ -163,8 +118,7 @@ inline bool AnyContact::isLeafPair(PairId pair) const {
 
 /// The common point that GJK finds of two bodies of one piece each.
 inline bool AnyContact::tryLeafPair(PairId pair, int lane) {
-  motion_.set(pair, whole());
-  return proofs_.leaves(0, 0, lane);
+  return proofs_.leaves(motions_.of(pair, whole()), 0, 0, lane);
 }
 
 /// For a link whose line swept sphere is deep in a solid: tries a ball inside the link, a vertex in the solid, and a
@@ -173,10 +127,10 @@ inline bool AnyContact::tryLeafPair(PairId pair, int lane) {
 inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, bool thin) {
   if (isLeafPair(pair)) return tryLeafPair(pair, lane);
   if (balls_.inSolid(pair, lane)) return true;
-  motion_.set(pair, whole());
-  if (thin && proofs_.chordPierces(lane, near)) return true;
-  if (proofs_.vertexInside(lane)) return true;
-  return !thin && proofs_.chordPierces(lane, near);
+  const Seen seen = motions_.of(pair, whole());
+  if (thin && proofs_.chordPierces(seen, lane, near)) return true;
+  if (proofs_.vertexInside(seen, lane)) return true;
+  return !thin && proofs_.chordPierces(seen, lane, near);
 }
 
 /// For two links whose line swept spheres meet: tries balls inside them at the pose at which the spheres are deepest in
@@ -232,62 +186,20 @@ inline bool AnyContact::tryLinks(const Entry& e) {
   for (unsigned near = guess->near & e.mask; near; near &= near - 1) {
     if (balls_.inLinks(e.pair, __builtin_ctz(near))) return true;
   }
-  return guess->isDeep() && (e.mask >> guess->lane & 1) && tryTriangles(e.pair, whole(), guess->lane, kMostAtPose);
-}
-
-/// Tries the triangles of two bodies at a lane's middle: first those in boxes whose middles are near each other.
-/// @param most  pairs of boxes, as kMostAtPose.
-inline bool AnyContact::tryTriangles(PairId pair, const TimeBatch& poses, int lane, int most) {
-  motion_.set(pair, poses);
-  const TreeView &A = motion_.a(), &B = motion_.b();
-  if (A.pieces[0].kind != PieceKind::vertices || B.pieces[0].kind != PieceKind::vertices) return false;
-  const BoxesAtPose boxes(motion_.differenceAt(A.pieces[0], B.pieces[0], lane).pose);
-  struct NodePair {
-    std::int32_t a, b;
-  };
-  constexpr int kDeepest = 64;
-  NodePair waiting[kDeepest], at = {0, 0};
-  int count = 0;
-  for (int left = most; left > 0 && !horizon_.mustEnd();) {
-    const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
-    if (x.isLeaf() && y.isLeaf()) {
-      ++statistics().leaf_tests;
-      if (proofs_.triangles(x.piece(), y.piece(), lane)) return true;
-      left -= kTwoTriangles;
-    } else {
-      const bool of_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
-      NodePair child[2] = {at, at};
-      bool meet[2];
-      float nearness[2];
-      for (int i = 0; i < 2; ++i) {
-        (of_a ? child[i].a : child[i].b) = (of_a ? x : y).child + i;
-        meet[i] = boxes.meet(A.nodes[child[i].a], B.nodes[child[i].b], nearness[i]);
-      }
-      left -= 2;
-      statistics().node_tests += 2;
-      const int first = !meet[0] || (meet[1] && nearness[1] < nearness[0]);
-      if (meet[first]) {
-        if (meet[1 - first] && count < kDeepest) waiting[count++] = child[1 - first];
-        at = child[first];
-        continue;
-      }
-    }
-    if (!count) return false;
-    at = waiting[--count];
-  }
-  return false;
+  if (!guess->isDeep() || !(e.mask >> guess->lane & 1)) return false;
+  return proofs_.anyTriangles(motions_.of(e.pair, whole()), guess->lane, kMostAtPose);
 }
 
 /// Whether a pair whose hulls overlap rests at t = 0, or nearly so: then it may do so at all poses, with many pieces of
 /// which nothing can be proven. (Without it any contact of two arms on their table took 100 us; now 27.)
 inline bool AnyContact::restsFromTheStart(PairId pair) {
-  motion_.set(pair, whole());
-  const TreeView &A = motion_.a(), &B = motion_.b();
-  const double shallow = kShallow * motion_.smallerRadius();
+  const Seen seen = motions_.of(pair, whole());
+  const TreeView &A = seen->a(), &B = seen->b();
+  const double shallow = kShallow * seen->smallerRadius();
   if (isLeafPair(pair) || !A.outer || !B.outer || depthWithin(traversal_.simplexOf(pair)) > shallow) return false;
   GjkResult g;
   ++statistics().gjk;
-  return abs(restingGap(motion_, 0, g)) <= shallow;
+  return abs(restingGap(seen, 0, g)) <= shallow;
 }
 
 /// Tries the poses in the middles of the lanes in which hulls overlap, with all pieces.
@@ -302,8 +214,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   for (int i = 0; i < overlap_guesses_.size() && !horizon_.isOver(); ++i) {
     const Entry& e = overlap_guesses_[i];
     if (restsFromTheStart(e.pair)) continue;
-    motion_.set(e.pair, middles);
-    traversal_.descend(e, Aim::poses, open);
+    traversal_.descend(motions_.of(e.pair, middles), e, Aim::poses, open);
     open.truncate(roots);
   }
   horizon_.dropSuspicion();

@@ -6,9 +6,7 @@
 #pragma once
 
 #include "convex/piece_kinds.h"
-#include "narrowphase/solver/contact_list.h"
-#include "narrowphase/solver/swept_box.h"
-#include "narrowphase/solver/swept_frames.h"
+#include "narrowphase/solver/search_state.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -73,8 +71,8 @@ inline bool certainlyReachesOut(const ClosedPart& part, const PlacedLink& link, 
 /// Proofs at the middle of a lane of the present batch. What is proven is recorded, and true is returned.
 class BallProofs : PartOfSolver {
  public:
-  BallProofs(Task& task, SweptFrames& frames, ContactList& contacts)
-      : PartOfSolver(task), frames_(frames), contacts_(contacts) {}
+  explicit BallProofs(SearchState& state)
+      : PartOfSolver(state.task), frames_(state.frames), contacts_(state.contacts) {}
 
   double reach(PairId pair) const;
   bool inLinks(PairId pair, int lane);

@@ -11,8 +11,12 @@ namespace FCL_ARTIC_ISA {
 
 class Containment : PartOfSolver {
  public:
-  Containment(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, StageOne& stage_one)
-      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts), stage_one_(stage_one) {}
+  Containment(SearchState& state, StageOne& stage_one)
+      : PartOfSolver(state.task),
+        motions_(state.motions),
+        horizon_(state.horizon),
+        contacts_(state.contacts),
+        stage_one_(stage_one) {}
 
   void begin() { contained_.clear(); }
 
@@ -32,7 +36,7 @@ class Containment : PartOfSolver {
   engine::Containment contained(PairId pair, double t);
   void testAtStart(PairId pair);
 
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   ContactList& contacts_;
   StageOne& stage_one_;
@@ -41,15 +45,15 @@ class Containment : PartOfSolver {
 
 /// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
 [[gnu::noinline]] inline engine::Containment Containment::contained(PairId pair, double t) {
-  motion_.set(pair, TimeBatch::around(t));
+  const Seen seen = motions_.of(pair, TimeBatch::around(t));
   const PairParts bodies = problem().parts(pair);
   const Body &a = body(bodies.a), &b = body(bodies.b);
   engine::PairPose pose;
-  const RigidLanes& m = motion_.seenFromA();
+  const RigidLanes& m = seen->seenFromA();
   laneOf(m.R[0], 0).store(pose.R);
   laneOf(m.c[0], 0).store(pose.c);
   // 4: points are seen both ways, and as far from the frames as both bodies are large (doc/NUMERICS.md).
-  pose.error = 4 * (motion_.poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
+  pose.error = 4 * (seen->poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
   ++statistics().contact_proofs;
   engine::Containment found;
   problem().contained(a, b, pose, found);

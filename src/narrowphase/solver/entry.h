@@ -16,8 +16,9 @@ struct Entry {
   PairId pair;
   std::int32_t a, b;
   unsigned mask;
-  bool put_off = false;  ///< not looked at, as contact was suspected before these lanes
-  bool within = false;   ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
+  bool put_off = false;         ///< not looked at, as contact was suspected before these lanes
+  bool within = false;          ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
+  std::int32_t direction = -1;  ///< of StageOne::direction(); -1: none is known
 
   bool isWhole() const { return a == 0 && b == 0; }
   /// In a lane of its batch; -1: in any.

@@ -4,9 +4,8 @@
 // t_upper by proofs of contact.
 #pragma once
 
-#include "narrowphase/solver/contact_list.h"
 #include "narrowphase/solver/entry.h"
-#include "narrowphase/solver/relative_motion.h"
+#include "narrowphase/solver/search_state.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -31,6 +30,7 @@ struct Candidate {
   Vec3 normal;                    ///< GJK's witness at t_lower
   double gap;                     ///< along it: a lower bound, when GJK ends early far below
   double apart;                   ///< an upper bound of the gap, from points of both
+  double pad;                     ///< of rounding, when it was looked at last
   double speed;                   ///< of the one body seen from the other, about
   bool have_normal;
   Simplex simplex;  ///< GJK's last
@@ -85,29 +85,112 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_
   return best;
 }
 
+/// Two pieces, of A and of B.
+struct PiecePair {
+  const Piece &a, &b;
+
+  bool areBounded() const { return !unbounded(a) && !unbounded(b); }
+};
+/// Those of a candidate.
+inline PiecePair piecesOf(const Candidate& f, Seen seen) {
+  if (f.isHulls()) return {*seen->a().outer, *seen->b().outer};
+  return {seen->a().pieces[f.piece_a], seen->b().pieces[f.piece_b]};
+}
+
+/// Lower bounds of the gap of two pieces over eight lanes: one along a direction that turns, or two along one that does
+/// not, in either frame.
+struct GapBounds {
+  Lanes G[2][3];  ///< Bernstein coefficients
+  int count;
+
+  /// Lanes in which one of them is positive.
+  unsigned positive() const {
+    unsigned lanes = 0;
+    for (int i = 0; i < count; ++i) lanes |= greater(min(min(G[i][0], G[i][1]), G[i][2]), Lanes(0.0));
+    return lanes;
+  }
+  /// The part of a lane, from its begin on, on which one of them is certainly positive.
+  double positivePartOf(int lane) const {
+    double x = 0;
+    for (int i = 0; i < count; ++i) {
+      const double coefficients[3] = {G[i][0][lane], G[i][1][lane], G[i][2][lane]};
+      x = max(x, positivePrefix(coefficients));
+    }
+    return x;
+  }
+};
+
 class Follower : PartOfSolver {
  public:
-  Follower(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts)
-      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts) {}
+  explicit Follower(SearchState& state)
+      : PartOfSolver(state.task), motions_(state.motions), horizon_(state.horizon), contacts_(state.contacts) {}
 
   bool followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes = 0);
   bool decide(Candidate& f, double stop);
   void proveBelowHulls(Candidate& f);
-  void record(Candidate& f);
 
  private:
-  bool proveAhead(Candidate& f, int lane);
+  /// How Candidate::normal turns.
+  struct Turning {
+    double at;  ///< when it was found
+    Vec3 rate = Vec3(0, 0, 0);
+    bool turns = false;
+  };
+  bool look(Candidate& f, Seen seen, int lane, double tau, double accuracy);
+  GapBounds boundGap(const Candidate& f, Seen seen, const Turning& turning);
+  bool proveAhead(Candidate& f, Seen seen, int lane);
   bool prove(Candidate& f);
-  void lookBack(Candidate& f);
-  void piecesOf(const Candidate& f, const Piece*& a, const Piece*& b) const {
-    a = f.isHulls() ? motion_.a().outer : &motion_.a().pieces[f.piece_a];
-    b = f.isHulls() ? motion_.b().outer : &motion_.b().pieces[f.piece_b];
-  }
 
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   ContactList& contacts_;
 };
+
+/// GJK's witness at some time of the present lanes, to f.
+/// @return false: the gap is gone there, or so it seems.
+inline bool Follower::look(Candidate& f, Seen seen, int lane, double tau, double accuracy) {
+  const PiecePair pieces = piecesOf(f, seen);
+  const double radii = pieces.a.radius + pieces.b.radius + seen->margin();
+  const DifferenceBody body = seen->differenceAt(pieces.a, pieces.b, lane, tau);
+  GjkResult g;
+  gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
+  ++statistics().gjk;
+  f.simplex = g.simplex;
+  if (g.overlap) {
+    Simplex nearest = g.simplex;
+    if (!pieces.areBounded()) {
+      f.apart = g.lower - radii;  // there is one direction
+    } else {
+      f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
+    }
+    return false;
+  }
+  f.normal = g.n;
+  seen->setWitness(g.n);
+  f.gap = g.lower - radii;
+  f.apart = g.distance - radii;
+  return f.have_normal = true;
+}
+
+/// Along f.normal, over the lanes of `seen`.
+inline GapBounds Follower::boundGap(const Candidate& f, Seen seen, const Turning& turning) {
+  const PiecePair pieces = piecesOf(f, seen);
+  GapBounds bounds;
+  bounds.count = turning.turns ? 1 : 2;
+  if (turning.turns) {
+    const TimeBatch& batch = seen->batch();
+    TurningDirection n;
+    n.begin = mulAdd(spread(turning.rate), batch.tm - Lanes(turning.at + batch.d), spread(f.normal));
+    n.end = n.begin + spread(turning.rate * (2 * batch.d));
+    gapBound(seen->side(0), pieces.a, pieces.b, n, bounds.G[0]);
+  } else {
+    const Vec3 n = seen->differenceAt(pieces.a, pieces.b, 0).opposite(f.normal);
+    gapBound(seen->side(0), pieces.a, pieces.b, f.normal, bounds.G[0]);
+    gapBound(seen->side(1), pieces.b, pieces.a, n, bounds.G[1]);
+  }
+  statistics().certificates += static_cast<std::uint64_t>(bounds.count);
+  return bounds;
+}
 
 /// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the
 /// first root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so
@@ -120,9 +203,7 @@ class Follower : PartOfSolver {
 inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query().tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
-  double seen = f.t_lower;  // when f.normal was found
-  Vec3 turn(0, 0, 0);       // how it turns, per unit of time
-  bool turns = false;
+  Turning turning = {f.t_lower};
   f.stuck = false;
   for (int round = 0; round < (patient ? 48 : 24); ++round) {
     const double t = f.t_lower;
@@ -134,75 +215,32 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     const TimeBatch batch = TimeBatch::partsOf(from, span);
     const double w = span / kLanes, d = batch.d;
     const double* tm = batch.at;
-    motion_.set(f.entry.pair, batch);
-    f.speed = motion_.amplitude() / d;
+    const Seen seen = motions_.of(f.entry.pair, batch);
+    f.speed = seen->amplitude() / d;
+    f.pad = seen->pad();
     ++statistics().leaf_tests;
-    const Piece *piece_a, *piece_b;
-    piecesOf(f, piece_a, piece_b);
-    const Piece &a = *piece_a, &b = *piece_b;
-    const double radii = a.radius + b.radius + motion_.margin();
-    // A witness at some time of the present lanes; false: the gap is gone there, or so it seems.
-    const auto look = [&](int lane, double tau) {
-      const DifferenceBody body = motion_.differenceAt(a, b, lane, tau);
-      GjkResult g;
-      gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
-      ++statistics().gjk;
-      f.simplex = g.simplex;
-      if (g.overlap) {
-        Simplex nearest = g.simplex;
-        if (unbounded(a) || unbounded(b)) {
-          f.apart = g.lower - radii;  // there is one direction
-        } else {
-          f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
-        }
-        return false;
-      }
-      f.normal = g.n;
-      motion_.setWitness(g.n);
-      f.gap = g.lower - radii;
-      f.apart = g.distance - radii;
-      return f.have_normal = true;
-    };
-    if (!f.have_normal && !look(first ? __builtin_ctz(first_lanes) : 0, -1)) break;
+    if (!f.have_normal && !look(f, seen, first ? __builtin_ctz(first_lanes) : 0, -1, accuracy)) break;
 
-    // One bound along a direction that turns, or two along one that does not, in either frame.
-    Lanes G[2][3];
-    const int bounds = turns ? 1 : 2;
-    if (turns) {
-      TurningDirection n;
-      n.begin = mulAdd(spread(turn), batch.tm - Lanes(seen + d), spread(f.normal));
-      n.end = n.begin + spread(turn * (2 * d));
-      gapBound(motion_.side(0), a, b, n, motion_.margin(), motion_.pad(), G[0]);
-    } else {
-      const Vec3 n = motion_.differenceAt(a, b, 0).opposite(f.normal);
-      gapBound(motion_.side(0), a, b, f.normal, motion_.margin(), motion_.pad(), G[0]);
-      gapBound(motion_.side(1), b, a, n, motion_.margin(), motion_.pad(), G[1]);
-    }
-    statistics().certificates += static_cast<std::uint64_t>(bounds);
-    unsigned separated = first ? kAllLanes & ~first_lanes : 0;
-    for (int i = 0; i < bounds; ++i) separated |= greater(min(min(G[i][0], G[i][1]), G[i][2]), Lanes(0.0));
+    const GapBounds bounds = boundGap(f, seen, turning);
+    const unsigned separated = (first ? kAllLanes & ~first_lanes : 0) | bounds.positive();
     if (separated == kAllLanes) {
       f.t_lower = min(stop, from + span);
       span *= 4;
       continue;
     }
-    if (query().any && round > 0 && proveAhead(f, kLanes - 1)) return false;
+    if (query().any && round > 0 && proveAhead(f, seen, kLanes - 1)) return false;
     const int lane = __builtin_ctz(~separated);
-    double x = 0;
-    for (int i = 0; i < bounds; ++i) {
-      const double coefficients[3] = {G[i][0][lane], G[i][1][lane], G[i][2][lane]};
-      x = max(x, positivePrefix(coefficients));
-    }
+    const double x = bounds.positivePartOf(lane);
     // Lanes before it are free, and it is [tm - d, tm + d].
     const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
-    const double progress = f.t_lower - seen, gap = f.gap;
+    const double progress = f.t_lower - turning.at, gap = f.gap;
     const Vec3 before = f.normal;
-    if (!look(lane, (f.t_lower - tm[lane]) / d)) break;
-    turns = progress > 0 && dot(before, f.normal) > 0.5 && !unbounded(a) && !unbounded(b);
-    turn = turns ? (f.normal - before) / progress : Vec3(0, 0, 0);
-    seen = f.t_lower;
-    if (seen > t && gap > 0) {
+    if (!look(f, seen, lane, (f.t_lower - tm[lane]) / d, accuracy)) break;
+    turning.turns = progress > 0 && dot(before, f.normal) > 0.5 && piecesOf(f, seen).areBounded();
+    turning.rate = turning.turns ? (f.normal - before) / progress : Vec3(0, 0, 0);
+    turning.at = f.t_lower;
+    if (turning.at > t && gap > 0) {
       const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
       if (!patient && left < expected) break;
       span = min(4 * span, max(2 * left, kNarrowestLane));
@@ -219,15 +257,15 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
 
 /// For queries that any contact answers: the lanes of a followed pair reach beyond the contact that is expected. The
 /// pieces that hold the last witness are tried there; where they touch, f becomes their contact.
-inline bool Follower::proveAhead(Candidate& f, int lane) {
-  const TreeView &A = motion_.a(), &B = motion_.b();
+inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
+  const TreeView &A = seen->a(), &B = seen->b();
   const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
   const int piece_b = f.isHulls() ? pieceAtWitness(B, f.simplex, false) : f.piece_b;
   if (piece_a < 0 || piece_b < 0) return false;
   ++statistics().contact_proofs;
-  const DifferenceBody body = motion_.differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
-  if (!certainlyTouching(body, motion_.margin(), motion_.poseError(), f.normal, f.point)) return false;
-  const double t = motion_.batch().at[lane];
+  const DifferenceBody body = seen->differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
+  if (!certainlyTouching(body, seen->margin(), seen->poseError(), f.normal, f.point)) return false;
+  const double t = seen->batch().at[lane];
   if (!contacts_.takeProof(f.entry.pair, t)) return false;
   f.target = Candidate::Target::leafPair;
   f.piece_a = piece_a;
@@ -255,14 +293,15 @@ inline bool Follower::prove(Candidate& f) {
   static const double kOffsets[kLanes] = {0.25, 0.5, 0.999, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
   TimeBatch poses = {};
   for (int k = 0; k < kLanes; ++k) poses.setPose(k, min(1.0, f.t_lower + kOffsets[k] * query().tolerance_time));
-  motion_.set(f.entry.pair, poses);
-  const Piece &a = motion_.a().pieces[f.piece_a], &b = motion_.b().pieces[f.piece_b];
+  const Seen seen = motions_.of(f.entry.pair, poses);
+  f.pad = seen->pad();
+  const Piece &a = seen->a().pieces[f.piece_a], &b = seen->b().pieces[f.piece_b];
   const int head = f.have_normal ? 0 : kLanes - 1;  // never seen apart: in contact at t_lower itself
   for (int i = 0; i < kLanes; ++i) {
     const int k = (head + i) % kLanes;
-    const DifferenceBody body = motion_.differenceAt(a, b, k);
+    const DifferenceBody body = seen->differenceAt(a, b, k);
     ++statistics().contact_proofs;
-    if (certainlyTouching(body, motion_.margin(), motion_.poseError(), f.have_normal ? f.normal : body.pose.c, f.point,
+    if (certainlyTouching(body, seen->margin(), seen->poseError(), f.have_normal ? f.normal : body.pose.c, f.point,
                           &f.simplex) &&
         contacts_.takeProof(f.entry.pair, poses.at[k])) {
       f.certain = true;
@@ -285,80 +324,6 @@ inline void Follower::proveBelowHulls(Candidate& f) {
   below.piece_b = pieceAtWitness(B, f.simplex, false);
   below.simplex.n = 0;  // its points are the hulls', not the pieces'
   if (below.piece_a >= 0 && below.piece_b >= 0 && prove(below)) f = below;
-}
-
-/// A pair that was never seen apart, as it touches where its window begins: looks back, ever farther, to where it was.
-inline void Follower::lookBack(Candidate& f) {
-  TimeBatch poses = {};
-  double step = query().tolerance_time;
-  for (int k = 0; k < kLanes; ++k) {
-    poses.setPose(k, max(0.0, f.t_lower - step));
-    step *= 4;
-  }
-  motion_.set(f.entry.pair, poses);
-  const Piece *a, *b;
-  piecesOf(f, a, b);
-  for (int k = 0; k < kLanes && !f.have_normal; ++k) {
-    const DifferenceBody body = motion_.differenceAt(*a, *b, k);
-    GjkResult g;
-    gjk(body, body.pose.c, 1e-7, a->radius + b->radius + motion_.margin(), 64, g);
-    ++statistics().gjk;
-    if (g.overlap) continue;
-    f.normal = g.n;
-    f.have_normal = true;
-  }
-}
-
-/// Point and normal of a candidate that is stuck, to a new contact.
-inline void Follower::record(Candidate& f) {
-  FCL_ARTIC_ASSERT(f.t_lower >= 0 && f.t_lower <= 1);
-  if (!f.have_normal && f.t_lower > 0) lookBack(f);
-  LeafContact& contact = contacts_.grow(f.entry.pair, f.piece_a, f.piece_b);
-  contact.t_lower = f.t_lower;
-  contact.certain = f.certain;
-  contact.t_upper = f.certain ? f.t_upper : 1;
-  contact.t = f.certain ? f.t_upper : f.t_lower;
-  horizon_.joinLower(f.t_lower);
-  const PairParts parts = problem().parts(f.entry.pair);
-  const Piece &a = body(parts.a).tree->pieces[f.piece_a], &b = body(parts.b).tree->pieces[f.piece_b];
-  const bool wall = unbounded(a) || unbounded(b);
-  // What is missing is seen at t_lower, but a wall's normal at the time at which the contact is reported.
-  const bool complete = f.certain && f.have_normal && !wall;
-  motion_.set(f.entry.pair, complete ? motion_.batch() : TimeBatch::around(wall ? contact.t : f.t_lower));
-  const DifferenceBody body = motion_.differenceAt(a, b, 0);
-  Vec3 point = f.point;
-  if (wall) {  // a plane has two sides: the one from which the other body came, or on which more of it is
-    GjkResult nearer;
-    unboundedGap(body, 0, nearer);
-    f.normal = f.have_normal && dot(nearer.n, f.normal) < 0 ? -nearer.n : nearer.n;
-    f.have_normal = true;
-  }
-  if (!f.certain) {
-    GjkResult g;
-    gjk<true>(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
-    originWeights(g.simplex);
-    if (!f.have_normal && !g.overlap) {
-      f.normal = g.n;
-      f.have_normal = true;
-    }
-    // Midway between the surfaces: the cores' nearest points, each moved out by its radius.
-    const double out = f.have_normal ? 0.5 * (a.radius - b.radius) : 0;
-    Vec3 x, y;
-    combine(body, g.simplex, x, y);
-    point = f.normal * out + (x + y) * 0.5;
-    if (wall) {  // the bounded piece's point that is nearest to the other's border
-      DifferencePoint lowest;
-      body.support(f.normal, lowest);
-      point = unbounded(a) ? body.place(lowest.b) - f.normal * b.radius : lowest.a + f.normal * a.radius;
-    }
-  }
-  if (!f.have_normal) {
-    // In contact from the start: the direction between the pieces' middles.
-    const Vec3 x = middleOf(motion_.a().nodes[f.entry.a]), y = middleOf(motion_.b().nodes[f.entry.b]);
-    f.normal = unitOrZ(body.place(y) - x);
-  }
-  point.store(contact.point);
-  f.normal.store(contact.normal);
 }
 
 }  // namespace FCL_ARTIC_ISA

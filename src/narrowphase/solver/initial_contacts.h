@@ -14,12 +14,11 @@ constexpr double kSeparationLane = 1.0 / 512;
 
 class InitialContacts : PartOfSolver {
  public:
-  InitialContacts(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, Traversal& traversal,
-                  Containment& containment)
-      : PartOfSolver(task),
-        motion_(motion),
-        horizon_(horizon),
-        contacts_(contacts),
+  InitialContacts(SearchState& state, Traversal& traversal, Containment& containment)
+      : PartOfSolver(state.task),
+        motions_(state.motions),
+        horizon_(state.horizon),
+        contacts_(state.contacts),
         traversal_(traversal),
         containment_(containment) {}
 
@@ -30,7 +29,7 @@ class InitialContacts : PartOfSolver {
   bool mayIgnore(PairId pair) const;
   double firstFreeTime(PairId pair, double start, double width);
 
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   ContactList& contacts_;
   Traversal& traversal_;
@@ -42,8 +41,7 @@ inline double InitialContacts::firstFreeTime(PairId pair, double start, double w
   const TimeBatch batch = TimeBatch::partsOf(start, width);
   ++statistics().batches;
   horizon_.watch(batch);
-  motion_.set(pair, batch);
-  const unsigned blocked = traversal_.blockedLanes(pair, kAllLanes);
+  const unsigned blocked = traversal_.blockedLanes(motions_.of(pair, batch), kAllLanes);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(blocked >> lane & 1)) {
       if (task_.ended()) return kNever;
@@ -72,8 +70,7 @@ inline void InitialContacts::collect(const Buffer<Entry>& open) {
     const PairId pair = open[i].pair;
     if (!mayIgnore(pair)) continue;
     horizon_.watch(at_start);
-    motion_.set(pair, at_start);
-    if (traversal_.blockedLanes(pair, 1) || containment_.isContainedAtStart(pair)) {
+    if (traversal_.blockedLanes(motions_.of(pair, at_start), 1) || containment_.isContainedAtStart(pair)) {
       contacts_.ignore(pair, firstFreeTime(pair, 0, 1));
     }
   }

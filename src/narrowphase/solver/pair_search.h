@@ -33,9 +33,10 @@
 
 #include <utility>
 
-#include "narrowphase/solver/any_contact.h"
+#include "narrowphase/solver/contact_writer.h"
 #include "narrowphase/solver/earliest_first.h"
 #include "narrowphase/solver/resting.h"
+#include "narrowphase/solver/stage_one.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -55,28 +56,58 @@ constexpr int kEnoughUncertain = 16;
 /// it: a hundredth of a second, where without a proof all that touches is divided down to the finest lanes.
 constexpr int kMostAfterStart = 1 << 20;
 
+/// A part of the motion. What is searched in it is proven free before.
+struct Window {
+  double start, width;
+  bool finest = false;  ///< it is as narrow as the tolerance: it is not divided on
+
+  double end() const { return start + width; }
+};
+
+/// Entries begin to end of a list that are open in one lane of their batch; -1: in any.
+struct Selection {
+  const Buffer<Entry>& list;
+  int begin, end, lane;
+
+  bool has(int i) const { return list[i].isOpenIn(lane); }
+};
+
+/// Gives a list back the length that it has now.
+class Shortened {
+ public:
+  explicit Shortened(Buffer<Entry>& list) : list_(list), size_(list.size()) {}
+  Shortened(const Shortened&) = delete;
+  Shortened& operator=(const Shortened&) = delete;
+  ~Shortened() { list_.truncate(size_); }
+
+ private:
+  Buffer<Entry>& list_;
+  int size_;
+};
+
 class PairSearch : PartOfSolver {
  public:
-  PairSearch(Task& task, RelativeMotion& motion, Horizon& horizon, ContactList& contacts, Traversal& traversal,
-             Follower& follower, AnyContact& any)
-      : PartOfSolver(task),
-        motion_(motion),
-        horizon_(horizon),
-        contacts_(contacts),
+  PairSearch(SearchState& state, PoseProofs& proofs, Traversal& traversal, Follower& follower, AnyContact& any)
+      : PartOfSolver(state.task),
+        motions_(state.motions),
+        horizon_(state.horizon),
+        contacts_(state.contacts),
+        proofs_(proofs),
         traversal_(traversal),
         follower_(follower),
-        any_(any) {}
+        any_(any),
+        writer_(state) {}
 
   /// Tests boxes and hulls of whole bodies, in the eight parts of [0, 1], for all pairs of `open`, and removes those
   /// that are apart. Where any contact will do, it is looked for in links whose hulls are not.
-  /// @param directionOf  (i) -> the i-th pair's direction, null where there is none (LaneSearch::towards).
-  template <class DirectionOf>
-  void testHulls(Buffer<Entry>& open, const DirectionOf& directionOf);
+  void testHulls(Buffer<Entry>& open, const StageOne& stage_one);
   /// Finds the first contact of all pairs of `open`, or of each of them.
-  void run(Buffer<Entry>& open);
+  void run(const Buffer<Entry>& open);
 
  private:
-  enum class Step { free, done };
+  enum class Step { free, done, split };
+  /// Of leaf pairs at one time: none is known to touch, or one may, or one is recorded as a contact.
+  enum class Touching { no, maybe, recorded };
 
   void watch(const TimeBatch& batch) {
     ++statistics().batches;
@@ -87,14 +118,19 @@ class PairSearch : PartOfSolver {
     const PairParts pair = problem().parts(e.pair);
     return body(pair.a).tree->nodes[e.a].isLeaf() && body(pair.b).tree->nodes[e.b].isLeaf();
   }
-  /// Whether the present pair moves so far in a lane that only its hulls can be separated, and hardly its pieces,
-  /// before the lane is split.
-  bool movesFar() const { return motion_.amplitude() > kLongMotion * motion_.smallerRadius(); }
+  bool haveHulls(PairId pair) const {
+    const PairParts parts = problem().parts(pair);
+    return body(parts.a).tree->outer && body(parts.b).tree->outer;
+  }
+  /// Whether a pair moves so far in a lane that only its hulls can be separated, and hardly its pieces, before the lane
+  /// is split.
+  static bool movesFar(Seen seen) { return seen->amplitude() > kLongMotion * seen->smallerRadius(); }
 
   /// Whether points of both bodies are so near that no proof can separate them. (A direction along which little is
   /// proven says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow
   /// enough to prove such a gap.
-  bool isNear(double apart) const { return apart <= max(0.5 * query().tolerance_distance, motion_.pad()); }
+  bool isNear(double apart, double pad) const { return apart <= max(0.5 * query().tolerance_distance, pad); }
+  bool isNear(const Candidate& f) const { return isNear(f.apart, f.pad); }
 
   /// Of a window in which nothing is divided on.
   double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
@@ -102,31 +138,35 @@ class PairSearch : PartOfSolver {
   double finestEnd(double t) const { return min(1.0, t + finestWidth()); }
 
   Candidate candidateOf(const Entry& e, double start) const;
-  double restingGapOfHulls(int lane, GjkResult& g) {
+  double restingGapOfHulls(Seen seen, int lane, GjkResult& g) {
     ++statistics().gjk;
-    return restingGap(motion_, lane, g);
+    return restingGap(seen, lane, g);
   }
   bool stayNear(const Candidate& f);
   bool restsAt(PairId pair, double t);
-  bool touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane);
-  bool recordTouching(double t, bool may_rest, bool* near = nullptr);
-  void search(Buffer<Entry>& open, int begin, int end);
-  void descendIntoPieces(Buffer<Entry>& open, int begin, int end);
-  void lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later);
-  void solveLane(Buffer<Entry>& open, double start, double stop, int lane, int begin, int end,
-                 unsigned first_lanes = 0);
-  void solvePieces(Buffer<Entry>& open, const Candidate& f, double stop, int lane);
-  Step solveInterval(Buffer<Entry>& open, double start, double width, int begin, int end, int parent_lane);
-  Step solveOpenLane(Buffer<Entry>& open, double start, double width, int begin, int end, int lane, bool finest);
-  Step followLeaves(const Buffer<Entry>& open, double start, double width, int begin, int end, int lane, bool finest,
-                    bool* split);
+  bool touchesAtStart(const Selection& of);
+  Touching lookAtTouching(double t, bool may_rest);
+  void search(const Buffer<Entry>& open, int begin, int end);
+  void descendIntoPieces(const Buffer<Entry>& open, int begin, int end);
+  void lookAtPutOff(unsigned later);
+  void solveLane(const Selection& of, const Window& window, unsigned first_lanes = 0);
+  void followHulls(const Selection& of, const Window& window, unsigned first_lanes);
+  void solvePieces(const Candidate& f, double stop, int lane);
+  Step solveInterval(const Selection& of, const Window& window);
+  Step solveOpenLane(const Selection& of, const Window& window);
+  Step followLeaves(const Selection& of, const Window& window);
+  void followEach(const Window& window);
 
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   ContactList& contacts_;
+  PoseProofs& proofs_;
   Traversal& traversal_;
   Follower& follower_;
   AnyContact& any_;
+  ContactWriter writer_;
+  Buffer<Entry> pieces_;          ///< what the first batch has left undecided
+  Buffer<Entry> stack_;           ///< of narrower windows: what each leaves to those within it
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
@@ -150,13 +190,14 @@ inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
 /// each other.
 inline bool PairSearch::stayNear(const Candidate& f) {
   constexpr double kLater = 64;
-  const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
-  motion_.set(f.entry.pair, TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time)));
-  if (depthWithin(f.simplex) > kShallow * motion_.smallerRadius()) return false;
+  const TimeBatch later = TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time));
+  const Seen seen = motions_.of(f.entry.pair, later);
+  const Piece &a = *seen->a().outer, &b = *seen->b().outer;
+  if (depthWithin(f.simplex) > kShallow * seen->smallerRadius()) return false;
   if (f.t_lower == 0 || !f.have_normal) return true;
   DifferencePoint lowest;
-  motion_.differenceAt(*A.outer, *B.outer, 0).support(f.normal, lowest);
-  return isNear(-(dot(f.normal, lowest.w) - A.outer->radius - B.outer->radius - motion_.margin()));
+  seen->differenceAt(a, b, 0).support(f.normal, lowest);
+  return isNear(-(dot(f.normal, lowest.w) - a.radius - b.radius - seen->margin()), seen->pad());
 }
 
 /// A pair whose hulls touch at t, before which all is free, may rest there, like a cup on a table. Pieces around the
@@ -165,13 +206,13 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 /// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
 inline bool PairSearch::restsAt(PairId pair, double t) {
-  const PairParts parts = problem().parts(pair);
-  const TreeView &A = *body(parts.a).tree, &B = *body(parts.b).tree;
   if (contacts_.watchFrom(pair) > t) return false;
-  motion_.set(pair, TimeBatch::partsOf(t, finestEnd(t) - t));
+  const Seen seen = motions_.of(pair, TimeBatch::partsOf(t, finestEnd(t) - t));
+  const TreeView &A = seen->a(), &B = seen->b();
   GjkResult g;
-  if (restingGapOfHulls(0, g) < -kShallow * motion_.smallerRadius()) return false;
-  if (!g.overlap && !isNear(g.distance - (A.outer->radius + B.outer->radius + motion_.margin()))) return false;
+  if (restingGapOfHulls(seen, 0, g) < -kShallow * seen->smallerRadius()) return false;
+  const double radii = A.outer->radius + B.outer->radius + seen->margin();
+  if (!g.overlap && !isNear(g.distance - radii, seen->pad())) return false;
   if (g.overlap && !originWeights(g.simplex)) return false;
   Vec3 x(0, 0, 0), y(0, 0, 0);  // the witness, in each body's own frame
   for (int i = 0; i < g.simplex.n; ++i) {
@@ -179,9 +220,9 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
     y = y + g.simplex.v[i].b * g.simplex.weight[i];
   }
   std::int32_t near_a[kMostAround], near_b[kMostAround];
-  const double reach = max(query().tolerance_distance, motion_.pad());
-  const int num_a = piecesAround(A, g.simplex, true, x, A.outer->radius + motion_.margin() + reach, near_a);
-  const int num_b = piecesAround(B, g.simplex, false, y, B.outer->radius + motion_.margin() + reach, near_b);
+  const double reach = max(query().tolerance_distance, seen->pad());
+  const int num_a = piecesAround(A, g.simplex, true, x, A.outer->radius + seen->margin() + reach, near_a);
+  const int num_b = piecesAround(B, g.simplex, false, y, B.outer->radius + seen->margin() + reach, near_b);
   touching_.clear();
   for (int i = 0; i < num_a * num_b; ++i) {
     Candidate f = candidateOf({pair, 0, 0, kAllLanes}, t);
@@ -189,68 +230,65 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
     f.piece_b = near_b[i % num_b];
     touching_.push(f);
   }
-  return recordTouching(t, true);
+  return lookAtTouching(t, true) == Touching::recorded;
 }
 
 /// For bodies that overlap at t = 0: triangles that cross there are the contact, or the first leaves that touch; it
 /// does not matter how many others do. (Without it all of them are divided down to the finest lanes.) Where no contact
 /// of them is proven, triangles may cross within the tolerance after it: a body that begins as its own copy shares
 /// faces and edges with it at first, and soon crosses it along a line, which is looked for all over.
-/// @param begin, end  entries of `open` that are left of one pair, those of this lane.
+/// @param of  what is left of one pair.
 /// @return false where others may touch earlier.
-inline bool PairSearch::touchesAtStart(Buffer<Entry>& open, int begin, int end, int lane) {
-  const PairId pair = open[begin].pair;
-  const int out_begin = open.size();
+inline bool PairSearch::touchesAtStart(const Selection& of) {
+  const PairId pair = of.list[of.begin].pair;
   if (contacts_.watchFrom(pair) > 0) return false;
-  if (any_.tryTriangles(pair, TimeBatch::around(0), 0, kMostAtPose)) return true;
+  if (proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMostAtPose)) return true;
+  const Shortened shortened(stack_);
+  const int out_begin = stack_.size();
   const TimeBatch batch = TimeBatch::partsOf(0, finestEnd(0));
   watch(batch);
-  motion_.set(pair, batch);
-  for (int i = begin; i < end && open.size() < out_begin + kEnoughUncertain; ++i) {
-    const Entry e = open[i];
-    if (e.isOpenIn(lane)) traversal_.descend({pair, e.a, e.b, 1}, Aim::poses, open);
+  const Seen seen = motions_.of(pair, batch);
+  for (int i = of.begin; i < of.end && stack_.size() < out_begin + kEnoughUncertain; ++i) {
+    const Entry e = of.list[i];
+    if (e.isOpenIn(of.lane)) traversal_.descend(seen, {pair, e.a, e.b, 1}, Aim::poses, stack_);
   }
   touching_.clear();
-  for (int i = out_begin; i < open.size() && touching_.size() < kEnoughUncertain; ++i) {
-    if (isLeafPair(open[i])) touching_.push(candidateOf(open[i], 0));
+  for (int i = out_begin; i < stack_.size() && touching_.size() < kEnoughUncertain; ++i) {
+    if (isLeafPair(stack_[i])) touching_.push(candidateOf(stack_[i], 0));
   }
-  open.truncate(out_begin);
-  bool near;
-  if (recordTouching(0, false, &near)) return true;
-  if (!near) return false;
+  const Touching touching = lookAtTouching(0, false);
+  if (touching != Touching::maybe) return touching == Touching::recorded;
   const TimeBatch after = TimeBatch::around(min(1.0, 0.5 * query().tolerance_time));
-  return any_.tryTriangles(pair, after, 0, kMostAfterStart);
+  return proofs_.anyTriangles(motions_.of(pair, after), 0, kMostAfterStart);
 }
 
-/// Whether a leaf pair of `touching_` touches at t; it is recorded.
+/// Whether a leaf pair of `touching_` touches at t; then it is recorded.
 /// @param may_rest  also record one that no proof can separate from contact.
-/// @param[out] near  there is such a one.
-inline bool PairSearch::recordTouching(double t, bool may_rest, bool* near) {
+inline PairSearch::Touching PairSearch::lookAtTouching(double t, bool may_rest) {
   const double stop = finestEnd(t);
   Candidate resting = {};
   int uncertain = 0;
   for (int i = 0; i < touching_.size() && (!may_rest || uncertain < kMostAround); ++i) {
     Candidate& f = touching_[i];
     f.target = Candidate::Target::leafPair;
-    const auto isOpen = [&] { return f.t_lower <= t && isNear(f.apart); };
+    const auto isOpen = [&] { return f.t_lower <= t && isNear(f); };
     if (follower_.followToRoot(f, stop, false)) continue;
     if (!f.certain && (!isOpen() || follower_.decide(f, stop))) continue;
     if (f.certain) {
-      follower_.record(f);
-      if (f.t_lower <= t || horizon_.isOver()) return true;
+      writer_.record(f);
+      if (f.t_lower <= t || horizon_.isOver()) return Touching::recorded;
     } else if (isOpen() && uncertain++ == 0) {
       resting = f;
     }
   }
-  if (near) *near = uncertain > 0;
-  if (uncertain == 0 || !may_rest) return false;
+  if (uncertain == 0) return Touching::no;
+  if (!may_rest) return Touching::maybe;
   horizon_.closeAt(t + query().tolerance_time);
-  follower_.record(resting);
-  return true;
+  writer_.record(resting);
+  return Touching::recorded;
 }
 
-template <class DirectionOf>
-inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& directionOf) {
+inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one) {
   any_.forgetOverlaps();
   const int roots = open.size();
   int kept = 0;
@@ -259,12 +297,13 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
     const int i = order.size() ? order[n] : n;
     Entry& e = open[i];
     if (e.mask & horizon_.live()) {
-      motion_.set(e.pair, whole());
-      traversal_.rootsAreTested();
-      e.mask = traversal_.nodesMayTouch(0, 0, e.mask);
+      const Seen seen = motions_.of(e.pair, whole());
+      traversal_.rootsAreTested(seen);
+      e.mask = traversal_.nodesMayTouch(seen, 0, 0, e.mask);
       if (e.mask) {
-        const bool suspect = !query().every_pair && movesFar();
-        const Traversal::HullLook look = traversal_.hullsMayTouch(e.mask, suspect, {true, directionOf(i)});
+        const bool suspect = !query().every_pair && movesFar(seen);
+        const Traversal::HullLook look =
+            traversal_.hullsMayTouch(seen, e.mask, suspect, {true, stage_one.direction(e)});
         e.mask = look.mask;
         e.within = look.within;
         if (look.overlaps) any_.guessOverlap(e.pair, look.overlaps);
@@ -280,12 +319,10 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const DirectionOf& direct
   open.truncate(kept);
 }
 
-inline void PairSearch::run(Buffer<Entry>& open) {
-  const int roots = open.size();
-  if (!query().every_pair) return search(open, 0, roots);
-  for (int i = 0; i < roots && !task_.ended(); ++i) {
+inline void PairSearch::run(const Buffer<Entry>& open) {
+  if (!query().every_pair) return search(open, 0, open.size());
+  for (int i = 0; i < open.size() && !task_.ended(); ++i) {
     const int before = contacts_.size();
-    open.truncate(roots);
     horizon_.dropSuspicion();
     watch(whole());
     search(open, i, i + 1);
@@ -293,115 +330,79 @@ inline void PairSearch::run(Buffer<Entry>& open) {
   }
 }
 
-/// The pairs of open[begin, end), over [0, 1]; what is appended meanwhile is left there.
-inline void PairSearch::search(Buffer<Entry>& open, int begin, int end) {
+/// The pairs of open[begin, end), over [0, 1].
+inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
   horizon_.beginSearch();
-  const int from = open.size();
+  pieces_.clear();
+  stack_.clear();
   if (problem().num_movers == 0 && end - begin == 1) {
     // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where
     // stage 1 or 2 has left one of many, it goes the way of the others: what they discard is not to change an
     // answer's bits.)
     const Entry& e = open[begin];
-    motion_.set(e.pair, whole());
-    if (isLeafPair(e) || (motion_.a().outer && motion_.b().outer && movesFar())) {
+    if (isLeafPair(e) || (haveHulls(e.pair) && movesFar(motions_.of(e.pair, whole())))) {
       const unsigned lanes = e.mask;
       const double start = 0.125 * __builtin_ctz(lanes), stop = 0.125 * (32 - __builtin_clz(lanes));
-      return solveLane(open, start, stop, -1, begin, end, contacts_.watchFrom(e.pair) > 0 ? 0 : lanes);
+      return solveLane({open, begin, end, -1}, {start, stop - start}, contacts_.watchFrom(e.pair) > 0 ? 0 : lanes);
     }
   }
   descendIntoPieces(open, begin, end);
   for (int lane = 0; lane < kLanes && 0.125 * lane < horizon_.end() && !horizon_.isOver(); ++lane) {
-    solveLane(open, 0.125 * lane, 0.125 * (lane + 1), lane, from, open.size());
+    solveLane({pieces_, 0, pieces_.size(), lane}, {0.125 * lane, 0.125});
     const unsigned later = kAllLanes & ~((2u << lane) - 1);
-    if (later && horizon_.end() > 0.125 * (lane + 1)) lookAtPutOff(open, from, later);
+    if (later && horizon_.end() > 0.125 * (lane + 1)) lookAtPutOff(later);
   }
 }
 
-/// Traverses the trees from open[begin, end) on, over the first batch. What stays undecided is appended.
-inline void PairSearch::descendIntoPieces(Buffer<Entry>& open, int begin, int end) {
+/// Traverses the trees from open[begin, end) on, over the first batch. What stays undecided is left in `pieces_`.
+inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, int end) {
   for (int i = begin; i < end && !horizon_.isOver(); ++i) {
     const Entry e = open[i];
     if (!e.mask) continue;
-    motion_.set(e.pair, whole());
-    bool whole_first = movesFar() && !e.within;
-    if (!whole_first && !e.within && !isLeafPair(e) && motion_.a().outer && motion_.b().outer) {
+    const Seen seen = motions_.of(e.pair, whole());
+    bool whole_first = movesFar(seen) && !e.within;
+    if (!whole_first && !e.within && !isLeafPair(e) && haveHulls(e.pair)) {
       GjkResult g;
-      const double gap = abs(restingGapOfHulls(__builtin_ctz(e.mask), g)) / motion_.smallerRadius();
+      const double gap = abs(restingGapOfHulls(seen, __builtin_ctz(e.mask), g)) / seen->smallerRadius();
       whole_first = gap <= kBarely;
       if (!whole_first && gap <= kShallow && (e.mask & 1) && restsAt(e.pair, 0)) continue;
-      motion_.set(e.pair, whole());
     }
     if (whole_first) {
-      open.push({e.pair, e.a, e.b, e.mask});
+      pieces_.push({e.pair, e.a, e.b, e.mask});
     } else {
-      traversal_.descend({e.pair, e.a, e.b, e.mask}, aim(), open);
+      traversal_.descend(motions_.of(e.pair, whole()), {e.pair, e.a, e.b, e.mask}, aim(), pieces_);
     }
   }
 }
 
-/// Examines the entries of open[begin, ...) that were put off after all, if there are any in the next lane: the contact
-/// that was suspected is none.
+/// Examines the entries of `pieces_` that were put off after all, if there are any in the next lane: the contact that
+/// was suspected is none.
 /// @param later  lanes of the first batch that are still to come.
-inline void PairSearch::lookAtPutOff(Buffer<Entry>& open, int begin, unsigned later) {
-  const int end = open.size();
+inline void PairSearch::lookAtPutOff(unsigned later) {
+  const int end = pieces_.size();
   const unsigned next = later & (~later + 1);
   bool any = false;
-  for (int i = begin; i < end; ++i) any = any || (open[i].put_off && (open[i].mask & next));
+  for (int i = 0; i < end; ++i) any = any || (pieces_[i].put_off && (pieces_[i].mask & next));
   if (!any) return;
   horizon_.dropSuspicion();
   watch(whole());
-  for (int i = begin; i < end; ++i) {
-    const Entry e = open[i];
+  for (int i = 0; i < end; ++i) {
+    const Entry e = pieces_[i];
     if (!e.put_off) continue;
-    open[i].mask = 0;
-    open[i].put_off = false;
+    pieces_[i].mask = 0;
+    pieces_[i].put_off = false;
     if (!(e.mask & later)) continue;
-    motion_.set(e.pair, whole());
-    traversal_.descend({e.pair, e.a, e.b, e.mask & later}, aim(), open);
+    traversal_.descend(motions_.of(e.pair, whole()), {e.pair, e.a, e.b, e.mask & later}, aim(), pieces_);
   }
 }
 
 /// Searches one part of the motion: the pairs that may touch in it, in the order in which they meet.
-/// @param lane  of the first batch, whose entries count; -1: all do.
 /// @param first_lanes  see Follower::followToRoot().
-inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop, int lane, int begin, int end,
-                                  unsigned first_lanes) {
-  using Target = Candidate::Target;
-  candidates_.clear();
-  earliest_first_.clear();
-  const int roots = open.size();
-  const bool suspected = lane == 0 && horizon_.contactLane() == 1;  // in this lane
-  for (int i = begin; i < end && !horizon_.isOver();) {
-    // A run of entries of one pair.
-    const int first = open.size();
-    const PairId pair_id = open[i].pair;
-    bool leaves = true;
-    for (; i < end && open[i].pair == pair_id; ++i) {
-      const Entry e = open[i];
-      if (!e.isOpenIn(lane)) continue;
-      leaves = leaves && isLeafPair(e);
-      open.push(e);
-    }
-    const int count = open.size() - first;
-    if (count == 0) continue;
-    Candidate f = candidateOf(open[first], start);
-    f.first = first;
-    f.count = count;
-    // What is left may be one leaf pair, which is followed at once; whole bodies, of which the hulls are followed; or
-    // parts of them that the first batch has come to already.
-    const PairParts pair = problem().parts(pair_id);
-    const bool hulls = f.entry.isWhole() && !leaves && body(pair.a).tree->outer && body(pair.b).tree->outer;
-    f.target = hulls ? Target::hulls : leaves && count == 1 ? Target::leafPair : Target::subtrees;
-    if (hulls) f.simplex = traversal_.simplexOf(pair_id);
-    if (f.t_lower >= stop || (f.target != Target::subtrees && follower_.followToRoot(f, stop, false, first_lanes))) {
-      open.truncate(first);
-      continue;
-    }
-    if (f.certain) return follower_.record(f);
-    earliest_first_.add(f.t_lower, candidates_.size());
-    candidates_.push(f);
-    horizon_.mustEnd();
-  }
+inline void PairSearch::solveLane(const Selection& of, const Window& window, unsigned first_lanes) {
+  const Shortened shortened(stack_);
+  const double stop = window.end();
+  const bool suspected = of.lane == 0 && horizon_.contactLane() == 1;  // in this lane
+  followHulls(of, window, first_lanes);
   while (!earliest_first_.empty() && !horizon_.isOver()) {
     Candidate f = candidates_[earliest_first_.take()];
     horizon_.provenFree(f.t_lower);
@@ -412,145 +413,172 @@ inline void PairSearch::solveLane(Buffer<Entry>& open, double start, double stop
     }
     if (f.isLeafPair() && !f.certain && follower_.decide(f, stop)) continue;
     if (f.certain) {
-      follower_.record(f);
+      writer_.record(f);
       continue;
     }
     horizon_.dropSuspicion();
     // Where something else rests at the start, the search ends there: lanes as narrow as they get, in which nothing is
     // put off, would have all leaves of what is deep in each other asked (14 ms for a link in a table; now 0.1).
     const bool ends_at_start = f.t_lower == 0 && horizon_.end() <= finestWidth();
-    if (ends_at_start && touchesAtStart(open, f.first, f.first + f.count, lane)) continue;
+    if (ends_at_start && touchesAtStart({stack_, f.first, f.first + f.count, of.lane})) continue;
     splits_at_start_ = suspected ? 0 : 1;
-    solvePieces(open, f, stop, lane);
+    solvePieces(f, stop, of.lane);
   }
-  open.truncate(roots);
   FCL_ARTIC_ASSERT(horizon_.provenFreeUntil() <= stop);
   if (!horizon_.isOver()) horizon_.provenFree(stop);
 }
 
+/// Makes a candidate of all entries of each pair, in `candidates_` and `earliest_first_`: one leaf pair, which is
+/// followed at once; whole bodies, of which the hulls are followed; or parts of them that the first batch has come to
+/// already. Those that are free in the window are left out.
+inline void PairSearch::followHulls(const Selection& of, const Window& window, unsigned first_lanes) {
+  using Target = Candidate::Target;
+  candidates_.clear();
+  earliest_first_.clear();
+  for (int i = of.begin; i < of.end && !horizon_.isOver();) {
+    const int first = stack_.size();
+    const PairId pair = of.list[i].pair;
+    bool leaves = true;
+    for (; i < of.end && of.list[i].pair == pair; ++i) {
+      if (!of.has(i)) continue;
+      leaves = leaves && isLeafPair(of.list[i]);
+      stack_.push(of.list[i]);
+    }
+    if (stack_.size() == first) continue;
+    Candidate f = candidateOf(stack_[first], window.start);
+    f.first = first;
+    f.count = stack_.size() - first;
+    const bool hulls = f.entry.isWhole() && !leaves && haveHulls(pair);
+    f.target = hulls ? Target::hulls : leaves && f.count == 1 ? Target::leafPair : Target::subtrees;
+    if (hulls) f.simplex = traversal_.simplexOf(pair);
+    if (f.t_lower >= window.end() ||
+        (f.target != Target::subtrees && follower_.followToRoot(f, window.end(), false, first_lanes))) {
+      stack_.truncate(first);
+      continue;
+    }
+    if (f.certain) return writer_.record(f);
+    earliest_first_.add(f.t_lower, candidates_.size());
+    candidates_.push(f);
+    horizon_.mustEnd();
+  }
+}
+
 /// Searches the pieces of one pair, in a lane of the first batch. Windows of time start short, since surfaces are near
 /// where hulls meet: the smaller body moves kFirstWindow of its radius. They grow eightfold.
-inline void PairSearch::solvePieces(Buffer<Entry>& open, const Candidate& f, double stop, int lane) {
-  const int begin = f.first, end = f.first + f.count, roots = open.size();
+inline void PairSearch::solvePieces(const Candidate& f, double stop, int lane) {
+  const Selection of = {stack_, f.first, f.first + f.count, lane};
+  const Shortened shortened(stack_);
   if (f.target == Candidate::Target::subtrees) {
-    solveOpenLane(open, f.t_lower, stop - f.t_lower, begin, end, lane, false);
-    open.truncate(roots);
+    solveOpenLane(of, {f.t_lower, stop - f.t_lower});
     return;
   }
-  motion_.setWitness(f.entry.pair, f.have_normal ? &f.normal : nullptr);
+  motions_.setWitness(f.entry.pair, f.have_normal ? &f.normal : nullptr);
   const PairParts pair = problem().parts(f.entry.pair);
   const double size = kFirstWindow * min(body(pair.a).tree->nodes[0].radius, body(pair.b).tree->nodes[0].radius);
   stop = min(stop, horizon_.end());
   double span = f.speed * (stop - f.t_lower) > size ? max(size / f.speed, kNarrowestLane) : stop - f.t_lower;
   for (double t = f.t_lower; t < min(stop, horizon_.end()); span *= 8) {
     const double next = t + 1.5 * span < min(stop, horizon_.end()) ? t + span : min(stop, horizon_.end());
-    const Step step = solveInterval(open, t, next - t, begin, end, lane);
-    open.truncate(roots);
-    if (step == Step::done) return;
+    if (solveInterval(of, {t, next - t}) == Step::done) return;
     t = next;
   }
 }
 
-/// One batch over [start, start + width] for open[begin, end), of which those with parent_lane set count (all, when
-/// parent_lane < 0). The pair is proven free before `start`.
-inline PairSearch::Step PairSearch::solveInterval(Buffer<Entry>& open, double start, double width, int begin, int end,
-                                                  int parent_lane) {
-  FCL_ARTIC_ASSERT(begin < end);
-  const TimeBatch batch = TimeBatch::partsOf(start, width);
+/// One batch over a window, for entries of one pair.
+inline PairSearch::Step PairSearch::solveInterval(const Selection& of, const Window& window) {
+  FCL_ARTIC_ASSERT(of.begin < of.end);
+  const TimeBatch batch = TimeBatch::partsOf(window.start, window.width);
   watch(batch);
   if (task_.ended()) return Step::done;
-  const int out_begin = open.size();
+  const Shortened shortened(stack_);
+  const int begin = stack_.size();
   const bool finest = horizon_.isFinest();
-  for (int i = begin; i < end; ++i) {
-    const Entry e = open[i];
-    if (!e.isOpenIn(parent_lane)) continue;
-    motion_.set(e.pair, batch);
-    traversal_.descend({e.pair, e.a, e.b, kAllLanes}, aim(), open);
+  for (int i = of.begin; i < of.end; ++i) {
+    if (!of.has(i)) continue;
+    const Entry e = of.list[i];
+    traversal_.descend(motions_.of(e.pair, batch), {e.pair, e.a, e.b, kAllLanes}, aim(), stack_);
     if (horizon_.isOver()) return Step::done;
   }
-  const int out_end = open.size();
+  const int end = stack_.size();
   for (int lane = 0; lane < kLanes; ++lane) {
     if (batch.start[lane] >= horizon_.end()) break;
-    if (solveOpenLane(open, batch.start[lane], batch.width, out_begin, out_end, lane, finest) == Step::done) {
-      return Step::done;
-    }
-    open.truncate(out_end);
+    const Window of_lane = {batch.start[lane], batch.width, finest};
+    if (solveOpenLane({stack_, begin, end, lane}, of_lane) == Step::done) return Step::done;
   }
   return Step::free;
 }
 
-/// Decides a lane that some of open[begin, end), of one pair, leave undecided: few leaf pairs are followed one by one;
-/// else the lane is split.
-inline PairSearch::Step PairSearch::solveOpenLane(Buffer<Entry>& open, double start, double width, int begin, int end,
-                                                  int lane, bool finest) {
+/// Decides a lane that some entries of one pair leave undecided: few leaf pairs are followed one by one; else the lane
+/// is split.
+inline PairSearch::Step PairSearch::solveOpenLane(const Selection& of, const Window& window) {
   int count = 0;
   bool leaves = true;
-  for (int i = begin; i < end && (finest || count <= kFewLeaves); ++i) {
-    const Entry& e = open[i];
-    if (!e.isOpenIn(lane)) continue;
+  for (int i = of.begin; i < of.end && (window.finest || count <= kFewLeaves); ++i) {
+    if (!of.has(i)) continue;
     ++count;
-    leaves = leaves && isLeafPair(e);
+    leaves = leaves && isLeafPair(of.list[i]);
   }
   if (!count) return Step::free;
-  bool split = true;
-  if (leaves && (finest || count <= kFewLeaves)) {
-    if (followLeaves(open, start, width, begin, end, lane, finest, &split) == Step::done) return Step::done;
+  if (leaves && (window.finest || count <= kFewLeaves)) {
+    const Step step = followLeaves(of, window);
+    if (step != Step::split) return step;
   }
-  if (!split) return Step::free;
-  if (start == 0 && splits_at_start_-- == 0 && touchesAtStart(open, begin, end, lane)) return Step::done;
-  return solveInterval(open, start, width, begin, end, lane);
+  if (window.start == 0 && splits_at_start_-- == 0 && touchesAtStart(of)) return Step::done;
+  return solveInterval(of, window);
 }
 
 /// The leaf pairs that a lane leaves undecided, one by one: how far is each free, and is there contact?
-/// @param[out] split  the lane is to be split: it is wider than the tolerance, or the pairs are farther apart than the
-///   distance tolerance, and nothing is proven.
-inline PairSearch::Step PairSearch::followLeaves(const Buffer<Entry>& open, double start, double width, int begin,
-                                                 int end, int lane, bool finest, bool* split) {
-  const double stop = start + width;
+/// @return Step::split: the lane is to be split, as it is wider than the tolerance, or the pairs are farther apart than
+/// the distance tolerance, and nothing is proven.
+inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Window& window) {
   leaves_.clear();
-  for (int i = begin; i < end; ++i) {
-    if (open[i].isOpenIn(lane)) leaves_.push(candidateOf(open[i], start));
+  for (int i = of.begin; i < of.end; ++i) {
+    if (of.has(i)) leaves_.push(candidateOf(of.list[i], window.start));
   }
-  *split = false;
-  // Of many that can be neither proven apart nor in contact, some are enough: what is not looked at counts as touching
-  // from the lane's begin on. They are taken from all over the list, for neighbours in it are alike.
-  const int stride = leaves_.size() / kEnoughUncertain;
-  for (int i = 1; stride > 1 && i < kEnoughUncertain; ++i) std::swap(leaves_[i], leaves_[i * stride]);
-  int uncertain = 0;
-  for (int i = 0; i < leaves_.size(); ++i) {
-    Candidate& f = leaves_[i];
-    if (!follower_.followToRoot(f, stop, false) && !f.certain) follower_.decide(f, stop);
-    if (horizon_.mustEnd()) return Step::done;
-    uncertain += f.stuck && !f.certain && isNear(f.apart);
-    if (uncertain >= kEnoughUncertain && i + 1 < leaves_.size()) {
-      f.t_lower = max(start, contacts_.watchFrom(f.entry.pair));
-      leaves_.truncate(i + 1);
-    }
-    // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
-    const bool enough = f.certain && f.t_lower <= start && i >= 64;
-    if (enough || horizon_.isOver()) leaves_.truncate(i + 1);
-  }
-  const bool narrow = width <= kNarrowestLane;
+  followEach(window);
+  if (task_.ended()) return Step::done;
+  const bool narrow = window.width <= kNarrowestLane;
   // (Where any contact will do and one is proven, it is recorded whatever is still open.)
   for (int i = 0; i < leaves_.size() && !horizon_.isOver(); ++i) {
     const Candidate& f = leaves_[i];
     if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
-    if (!narrow && (!finest || !isNear(f.apart))) {
+    if (!narrow && (!window.finest || !isNear(f))) {
       // What is proven meanwhile is kept: its time is the answer's already, and the narrower lanes may prove a later
       // one.
       for (int k = 0; k < leaves_.size(); ++k) {
-        if (leaves_[k].certain) follower_.record(leaves_[k]);
+        if (leaves_[k].certain) writer_.record(leaves_[k]);
       }
-      *split = true;
-      return Step::free;
+      return Step::split;
     }
     horizon_.closeAt(f.t_lower + query().tolerance_time);
   }
   const int before = contacts_.size();
   for (int i = 0; i < leaves_.size(); ++i) {
-    if (leaves_[i].stuck && leaves_[i].t_lower <= horizon_.end()) follower_.record(leaves_[i]);
+    if (leaves_[i].stuck && leaves_[i].t_lower <= horizon_.end()) writer_.record(leaves_[i]);
   }
   return contacts_.size() > before ? Step::done : Step::free;
+}
+
+/// Follows the leaf pairs of `leaves_`. Of many that can be neither proven apart nor in contact, some are enough: what
+/// is not looked at counts as touching from the lane's begin on.
+inline void PairSearch::followEach(const Window& window) {
+  // They are taken from all over the list, for neighbours in it are alike.
+  const int stride = leaves_.size() / kEnoughUncertain;
+  for (int i = 1; stride > 1 && i < kEnoughUncertain; ++i) std::swap(leaves_[i], leaves_[i * stride]);
+  int uncertain = 0;
+  for (int i = 0; i < leaves_.size(); ++i) {
+    Candidate& f = leaves_[i];
+    if (!follower_.followToRoot(f, window.end(), false) && !f.certain) follower_.decide(f, window.end());
+    if (horizon_.mustEnd()) return;
+    uncertain += f.stuck && !f.certain && isNear(f);
+    if (uncertain >= kEnoughUncertain && i + 1 < leaves_.size()) {
+      f.t_lower = max(window.start, contacts_.watchFrom(f.entry.pair));
+      leaves_.truncate(i + 1);
+    }
+    // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
+    const bool enough = f.certain && f.t_lower <= window.start && i >= 64;
+    if (enough || horizon_.isOver()) leaves_.truncate(i + 1);
+  }
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -5,12 +5,14 @@
 //   Task             the query at hand, its budget and what it has cost
 //   TimeBatch        eight intervals of time: a value
 //   SweptFrames      the links' frames over a batch
-//   RelativeMotion   two bodies against each other over a batch
+//   RelativeMotions  two bodies against each other over a batch: a value, handed down as Seen
 //   Horizon          when the first contact is, as far as known: the only writer of these times
 //   ContactList      contacts, and the gate through which every proof of contact comes
+//   SearchState      these: what all others share
 //   PoseProofs, BallProofs   contact at one pose, where any will do
 //   Traversal        a pair's node pairs and leaf pairs over a batch
 //   Follower         a leaf pair, or two hulls, followed to where they meet
+//   ContactWriter    point and normal of the contact found there
 //   AnyContact       poses at which contact is likely
 //   StageOne         pairs whose swept bounds meet; and what advisors prove free of them
 //   Containment, InitialContacts   solid meshes within each other, and what is ignored at t = 0
@@ -24,30 +26,21 @@ namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
 /// All parts, put together.
-struct SolverParts {
-  Task task;
-  SweptFrames frames{task};
-  RelativeMotion motion{task, frames};
-  Horizon horizon{task};
-  ContactList contacts{task, horizon};
-  PoseProofs proofs{task, motion, contacts};
-  BallProofs balls{task, frames, contacts};
-  Traversal traversal{task, motion, horizon, contacts, proofs};
-  Follower follower{task, motion, horizon, contacts};
-  AnyContact any{task, frames, motion, horizon, balls, proofs, traversal};
-  StageOne stage_one{task, frames, motion, horizon, contacts, any};
-  Containment containment{task, motion, horizon, contacts, stage_one};
-  InitialContacts initial{task, motion, horizon, contacts, traversal, containment};
-  PairSearch search{task, motion, horizon, contacts, traversal, follower, any};
+struct SolverParts : SearchState {
+  PoseProofs proofs{*this};
+  BallProofs balls{*this};
+  Traversal traversal{*this, proofs};
+  Follower follower{*this};
+  AnyContact any{*this, balls, proofs, traversal};
+  StageOne stage_one{*this, any};
+  Containment containment{*this, stage_one};
+  InitialContacts initial{*this, traversal, containment};
+  PairSearch search{*this, proofs, traversal, follower, any};
   Buffer<Entry> open;  ///< what is not yet decided
 
   /// A new query: nothing is known, and nothing of the last one is left.
   void begin(const Problem& problem, const Query& query) {
-    task.begin(problem, query);
-    frames.begin();
-    motion.begin();
-    horizon.begin();
-    contacts.begin();
+    SearchState::begin(problem, query);
     traversal.begin();
     any.begin();
     containment.begin();

@@ -7,33 +7,74 @@
 
 #include "convex/chord.h"
 #include "convex/contact_proof.h"
-#include "narrowphase/solver/contact_list.h"
-#include "narrowphase/solver/relative_motion.h"
+#include "narrowphase/solver/search_state.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Proofs for the present pair, at a lane's middle. Each returns true if it has proven a contact, which it records with
+/// Two bodies' boxes at one pose: nothing rests on what is said of them.
+struct BoxesAtPose {
+  float R[9], absolute[9], c[3];
+
+  explicit BoxesAtPose(const PoseAt& pose) {
+    for (int i = 0; i < 9; ++i) {
+      R[i] = static_cast<float>(pose.R[i / 3][i % 3]);
+      absolute[i] = __builtin_fabsf(R[i]);
+    }
+    for (int k = 0; k < 3; ++k) c[k] = static_cast<float>(pose.c[k]);
+  }
+  /// No axis of either box separates them.
+  /// @param[out] nearness  square of their middles' distance, as part of their balls' radii.
+  bool meet(const Node& a, const Node& b, float& nearness) const {
+    float x[3], of_a[3], of_b[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+      of_a[k] = 0.5f * (a.hi[k] - a.lo[k]);
+      of_b[k] = 0.5f * (b.hi[k] - b.lo[k]);
+      y[k] = 0.5f * (b.hi[k] + b.lo[k]);
+    }
+    bool all = true;
+    for (int k = 0; k < 3; ++k) {
+      const float *r = R + 3 * k, *e = absolute + 3 * k;
+      x[k] = c[k] + r[0] * y[0] + r[1] * y[1] + r[2] * y[2] - 0.5f * (a.hi[k] + a.lo[k]);
+      all &= __builtin_fabsf(x[k]) <= of_a[k] + e[0] * of_b[0] + e[1] * of_b[1] + e[2] * of_b[2];
+    }
+    for (int k = 0; k < 3; ++k) {
+      const float z = R[k] * x[0] + R[3 + k] * x[1] + R[6 + k] * x[2];
+      all &=
+          __builtin_fabsf(z) <= of_b[k] + absolute[k] * of_a[0] + absolute[3 + k] * of_a[1] + absolute[6 + k] * of_a[2];
+    }
+    const float radii = static_cast<float>(a.radius + b.radius);
+    nearness = (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / (radii * radii);
+    return all;
+  }
+};
+
+/// Proofs of one pair's contact at a lane's middle. Each returns true if it has proven a contact, which it records with
 /// point and normal; false if nothing is proven, or the contact does not count.
 class PoseProofs : PartOfSolver {
  public:
-  PoseProofs(Task& task, RelativeMotion& motion, ContactList& contacts)
-      : PartOfSolver(task), motion_(motion), contacts_(contacts) {}
+  explicit PoseProofs(SearchState& state)
+      : PartOfSolver(state.task), horizon_(state.horizon), contacts_(state.contacts) {}
 
-  bool vertexInside(int lane);
-  bool chordPierces(int lane, const Vec3& near);
-  bool triangles(int piece_a, int piece_b, int lane);
-  bool leaves(int piece_a, int piece_b, int lane);
+  bool vertexInside(Seen seen, int lane);
+  bool chordPierces(Seen seen, int lane, const Vec3& near);
+  bool triangles(Seen seen, int piece_a, int piece_b, int lane);
+  bool anyTriangles(Seen seen, int lane, int most);
+  bool leaves(Seen seen, int piece_a, int piece_b, int lane);
 
  private:
-  LeafContact* record(int piece_a, int piece_b, int lane) {
+  LeafContact* record(Seen seen, int piece_a, int piece_b, int lane) {
     FCL_ARTIC_ASSERT(lane >= 0 && lane < kLanes);
-    return contacts_.record(motion_.pair(), piece_a, piece_b, motion_.batch().at[lane]);
+    return contacts_.record(seen->pair(), piece_a, piece_b, seen->batch().at[lane]);
   }
 
-  RelativeMotion& motion_;
+  Horizon& horizon_;
   ContactList& contacts_;
 };
+
+/// Maximum number of pairs of boxes that are tested in one pose, of which two triangles count as kTwoTriangles.
+/// Measured: with half as many, robots that touch at the start take 7 % longer.
+constexpr int kMostAtPose = 1024, kTwoTriangles = 8;
 
 /// Corners of a triangle, in its tree's frame.
 inline void cornersOf(const TreeView& mesh, const Piece& triangle, Vec3* corners) {
@@ -42,12 +83,12 @@ inline void cornersOf(const TreeView& mesh, const Piece& triangle, Vec3* corners
 
 /// For queries that any contact answers: proves that a vertex of the one body's mesh lies within the other body, a
 /// single solid piece, at a lane's middle. It tries the vertex of the mesh's hull that lies deepest in the solid's box.
-inline bool PoseProofs::vertexInside(int lane) {
+inline bool PoseProofs::vertexInside(Seen seen, int lane) {
   for (int s = 0; s < 2; ++s) {
-    const TreeView &mesh = motion_.moving(s), &solid = motion_.still(s);
+    const TreeView &mesh = seen->moving(s), &solid = seen->still(s);
     if (mesh.pieces[0].kind != PieceKind::vertices || !mesh.outer || mesh.outer->kind != PieceKind::hull) continue;
     if (!isSolid(solid)) continue;
-    const RigidLanes& m = s ? motion_.side(1).m : motion_.seenFromA();
+    const RigidLanes& m = s ? seen->side(1).m : seen->seenFromA();
     DifferenceBody body;
     body.pose = {laneOf(m.R[0], lane), laneOf(m.c[0], lane)};
     const Node& box = solid.nodes[0];
@@ -79,13 +120,12 @@ inline bool PoseProofs::vertexInside(int lane) {
     Vec3 where = body.place(tip);
     const Vec3 guess = where - center;
     // Seen from the other side a pose errs by twice as much (doc/NUMERICS.md, "Pads").
-    const double eps = (s ? 2.5 : 1) * motion_.poseError();
+    const double eps = (s ? 2.5 : 1) * seen->poseError();
     ++statistics().contact_proofs;
-    if (!certainlyWithin(*body.a, where, eps) && !certainlyTouching(body, motion_.margin(), eps, guess, where))
-      continue;
+    if (!certainlyWithin(*body.a, where, eps) && !certainlyTouching(body, seen->margin(), eps, guess, where)) continue;
     const int piece = pieceAt(mesh, tip);
     if (piece < 0) continue;
-    LeafContact* const recorded = record(s ? piece : 0, s ? 0 : piece, lane);
+    LeafContact* const recorded = record(seen, s ? piece : 0, s ? 0 : piece, lane);
     if (!recorded) return false;
     LeafContact& contact = *recorded;
     // Outwards from the solid, through the side of its box that is nearest.
@@ -94,8 +134,8 @@ inline bool PoseProofs::vertexInside(int lane) {
     Vec3 outwards(0, 0, 0);
     outwards[axis] = guess[axis] < 0 ? -1 : 1;
     if (s) {  // the solid is B
-      const Mat3 R = laneOf(motion_.seenFromA().R[0], lane);
-      where = R * where + laneOf(motion_.seenFromA().c[0], lane);
+      const Mat3 R = laneOf(seen->seenFromA().R[0], lane);
+      where = R * where + laneOf(seen->seenFromA().c[0], lane);
       outwards = -(R * outwards);
     }
     where.store(contact.point);
@@ -108,12 +148,12 @@ inline bool PoseProofs::vertexInside(int lane) {
 /// For queries that any contact answers: proves that a chord of A, a single solid piece, pierces a triangle of B's mesh
 /// at a lane's middle.
 /// @param near  a point of A's frame that the chord should pass near to.
-inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
-  const TreeView &solid = motion_.a(), &mesh = motion_.b();
+inline bool PoseProofs::chordPierces(Seen seen, int lane, const Vec3& near) {
+  const TreeView &solid = seen->a(), &mesh = seen->b();
   Vec3 chord[2];
   if (!isSolid(solid) || mesh.pieces[0].kind != PieceKind::vertices || !longChord(solid.pieces[0], near, chord))
     return false;
-  const DifferenceBody body = motion_.differenceAt(solid.pieces[0], mesh.pieces[0], lane);
+  const DifferenceBody body = seen->differenceAt(solid.pieces[0], mesh.pieces[0], lane);
   // The chord's ends, seen from B.
   const Probe probe(body.pose.opposite(body.pose.c - chord[0]), body.pose.opposite(body.pose.c - chord[1]));
   return anyLeaf(
@@ -127,8 +167,8 @@ inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
         if (!probe.meets(corners, weights, part)) return false;
         for (Vec3& corner : corners) corner = body.place(corner);
         ++statistics().contact_proofs;
-        if (!certainlyPierces(chord, corners, motion_.poseError(), weights, part)) return false;
-        LeafContact* const recorded = record(0, index, lane);
+        if (!certainlyPierces(chord, corners, seen->poseError(), weights, part)) return false;
+        LeafContact* const recorded = record(seen, 0, index, lane);
         if (!recorded) return false;
         LeafContact& contact = *recorded;
         // The triangle's normal, towards the mesh's middle.
@@ -141,11 +181,11 @@ inline bool PoseProofs::chordPierces(int lane, const Vec3& near) {
 }
 
 /// Two triangles: an edge of the one may pierce the other at a lane's middle.
-inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
-  const TreeView* trees[2] = {&motion_.a(), &motion_.b()};
+inline bool PoseProofs::triangles(Seen seen, int piece_a, int piece_b, int lane) {
+  const TreeView* trees[2] = {&seen->a(), &seen->b()};
   const int pieces[2] = {piece_a, piece_b};
   Vec3 corners[2][3];
-  const DifferenceBody body = motion_.differenceAt(trees[0]->pieces[piece_a], trees[1]->pieces[piece_b], lane);
+  const DifferenceBody body = seen->differenceAt(trees[0]->pieces[piece_a], trees[1]->pieces[piece_b], lane);
   for (int s = 0; s < 2; ++s) {
     const Piece& piece = trees[s]->pieces[pieces[s]];
     if (piece.kind != PieceKind::vertices || piece.num_vertices != 3) return false;
@@ -159,8 +199,8 @@ inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
       double part;
       if (!Probe(chord[0], chord[1]).meets(corners[1 - s], weights, part)) continue;
       ++statistics().contact_proofs;
-      if (!certainlyPierces(chord, corners[1 - s], motion_.poseError(), weights, part)) continue;
-      LeafContact* const recorded = record(piece_a, piece_b, lane);
+      if (!certainlyPierces(chord, corners[1 - s], seen->poseError(), weights, part)) continue;
+      LeafContact* const recorded = record(seen, piece_a, piece_b, lane);
       if (!recorded) return false;
       LeafContact& contact = *recorded;
       contact.feature = s ? engine::kFaceEdge : engine::kEdgeFace;
@@ -177,16 +217,58 @@ inline bool PoseProofs::triangles(int piece_a, int piece_b, int lane) {
   return false;
 }
 
+/// Tries the triangles of two bodies at a lane's middle: first those in boxes whose middles are near each other.
+/// @param most  pairs of boxes, as kMostAtPose.
+inline bool PoseProofs::anyTriangles(Seen seen, int lane, int most) {
+  const TreeView &A = seen->a(), &B = seen->b();
+  if (A.pieces[0].kind != PieceKind::vertices || B.pieces[0].kind != PieceKind::vertices) return false;
+  const BoxesAtPose boxes(seen->differenceAt(A.pieces[0], B.pieces[0], lane).pose);
+  struct NodePair {
+    std::int32_t a, b;
+  };
+  constexpr int kDeepest = 64;
+  NodePair waiting[kDeepest], at = {0, 0};
+  int count = 0;
+  for (int left = most; left > 0 && !horizon_.mustEnd();) {
+    const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
+    if (x.isLeaf() && y.isLeaf()) {
+      ++statistics().leaf_tests;
+      if (triangles(seen, x.piece(), y.piece(), lane)) return true;
+      left -= kTwoTriangles;
+    } else {
+      const bool of_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
+      NodePair child[2] = {at, at};
+      bool meet[2];
+      float nearness[2];
+      for (int i = 0; i < 2; ++i) {
+        (of_a ? child[i].a : child[i].b) = (of_a ? x : y).child + i;
+        meet[i] = boxes.meet(A.nodes[child[i].a], B.nodes[child[i].b], nearness[i]);
+      }
+      left -= 2;
+      statistics().node_tests += 2;
+      const int first = !meet[0] || (meet[1] && nearness[1] < nearness[0]);
+      if (meet[first]) {
+        if (meet[1 - first] && count < kDeepest) waiting[count++] = child[1 - first];
+        at = child[first];
+        continue;
+      }
+    }
+    if (!count) return false;
+    at = waiting[--count];
+  }
+  return false;
+}
+
 /// Contact of two leaves at a lane's middle, where any contact is asked for.
-inline bool PoseProofs::leaves(int piece_a, int piece_b, int lane) {
-  const Piece &a = motion_.a().pieces[piece_a], &b = motion_.b().pieces[piece_b];
-  const DifferenceBody body = motion_.differenceAt(a, b, lane);
-  if (triangles(piece_a, piece_b, lane)) return true;
+inline bool PoseProofs::leaves(Seen seen, int piece_a, int piece_b, int lane) {
+  const Piece &a = seen->a().pieces[piece_a], &b = seen->b().pieces[piece_b];
+  const DifferenceBody body = seen->differenceAt(a, b, lane);
+  if (triangles(seen, piece_a, piece_b, lane)) return true;
   ++statistics().contact_proofs;
-  const Vec3 start = motion_.witness() ? *motion_.witness() : body.pose.c;
+  const Vec3 start = seen->witness() ? *seen->witness() : body.pose.c;
   Vec3 point;
-  if (!certainlyTouching(body, motion_.margin(), motion_.poseError(), start, point)) return false;
-  LeafContact* const recorded = record(piece_a, piece_b, lane);
+  if (!certainlyTouching(body, seen->margin(), seen->poseError(), start, point)) return false;
+  LeafContact* const recorded = record(seen, piece_a, piece_b, lane);
   if (!recorded) return false;
   point.store(recorded->point);
   unitOrZ(start).store(recorded->normal);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the two bodies of one pair move against each other over one batch: made when first asked for, and kept until
-// another pair or batch is.
+// How the two bodies of one pair move against each other over one batch. RelativeMotions makes it when it is asked for,
+// and keeps one: what the search asks of next is mostly the same pair over the same batch.
 #pragma once
 
 #include "convex/contact_proof.h"
@@ -16,33 +16,11 @@ class RelativeMotion : PartOfSolver {
  public:
   RelativeMotion(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
 
-  /// A new query: nothing is known.
-  void begin() {
-    pair_ = witness_pair_ = engine::kNoPair;
-    of_batch_ = -1;
-    // Epochs only ever grow; long before they overflow the stamps are made new.
-    if (epoch_ > 1 << 30) {
-      epoch_ = 0;
-      __builtin_memset(cached_, -1, sizeof cached_);
-    }
-  }
-
-  /// From now on this is the motion of `pair` over `batch`.
-  void set(PairId pair, const TimeBatch& batch) {
-    FCL_ARTIC_ASSERT(engine::indexOf(pair) < static_cast<std::size_t>(problem().numPairs()));
-    frames_.set(batch);
-    if (pair_ == pair && of_batch_ == frames_.number()) return;
-    pair_ = pair;
-    of_batch_ = frames_.number();
-    relate();
-    ++epoch_;
-    pool_.clear();
-    if (witness_pair_ != pair) have_witness_ = false;
-    witness_pair_ = pair;
-  }
-
   PairId pair() const { return pair_; }
-  const TimeBatch& batch() const { return frames_.batch(); }
+  const TimeBatch& batch() const {
+    FCL_ARTIC_ASSERT(of_batch_ == frames_.number());
+    return frames_.batch();
+  }
   /// Another batch has another number.
   std::int32_t batchNumber() const { return frames_.number(); }
   const TreeView& a() const { return *side_[0].still; }
@@ -86,13 +64,6 @@ class RelativeMotion : PartOfSolver {
     witness_ = direction;
     have_witness_ = true;
   }
-  /// That of a pair that is to be set next; null: none.
-  void setWitness(PairId pair, const Vec3* direction) {
-    witness_pair_ = pair;
-    have_witness_ = false;
-    if (direction) setWitness(*direction);
-  }
-
   /// The pieces at a lane's middle, or, but for the remainder, at any tau of it.
   DifferenceBody differenceAt(const Piece& piece_a, const Piece& piece_b, int lane, double tau = 0) const {
     DifferenceBody body;
@@ -124,8 +95,14 @@ class RelativeMotion : PartOfSolver {
     const Cached& cached = cached_[s][node & (kCached - 1)];
     return cached.epoch == epoch_ && cached.node == node;
   }
+  /// Another pair or batch has another one.
+  std::int32_t epoch() const { return epoch_; }
 
  private:
+  friend class RelativeMotions;
+
+  void begin();
+  void set(PairId pair, const TimeBatch& batch);
   void relate();
 
   SweptFrames& frames_;
@@ -149,6 +126,30 @@ class RelativeMotion : PartOfSolver {
   std::int32_t epoch_ = 0;
 };
 
+/// A new query: nothing is known.
+inline void RelativeMotion::begin() {
+  pair_ = witness_pair_ = engine::kNoPair;
+  of_batch_ = -1;
+  // Epochs only ever grow; long before they overflow the stamps are made new.
+  if (epoch_ > 1 << 30) {
+    epoch_ = 0;
+    __builtin_memset(cached_, -1, sizeof cached_);
+  }
+}
+
+inline void RelativeMotion::set(PairId pair, const TimeBatch& batch) {
+  FCL_ARTIC_ASSERT(engine::indexOf(pair) < static_cast<std::size_t>(problem().numPairs()));
+  frames_.set(batch);
+  if (pair_ == pair && of_batch_ == frames_.number()) return;
+  pair_ = pair;
+  of_batch_ = frames_.number();
+  relate();
+  ++epoch_;
+  pool_.clear();
+  if (witness_pair_ != pair) have_witness_ = false;
+  witness_pair_ = pair;
+}
+
 /// Both ways, with remainders and pads.
 inline void RelativeMotion::relate() {
   margin_ = query().margins.of(pair_);
@@ -166,6 +167,10 @@ inline void RelativeMotion::relate() {
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
+  for (Side& side : side_) {
+    side.margin = margin_;
+    side.pad = pad_;
+  }
 
   const bool from_a = B.tree->nodes[0].radius < engine::kUnbounded;
   const Side& seen = from_a ? side_[0] : side(1);
@@ -173,6 +178,45 @@ inline void RelativeMotion::relate() {
   const Vec3Lanes v = seen.m.R[1] * middleOf(root) + seen.m.c[1];
   amplitude_ = sqrt(maxLane(dot(v, v))) + bounds.rates.a * d * root.radius;
 }
+
+/// The motion of one pair over one batch, handed down to all that looks at it. It is there until another pair or batch
+/// is asked for; whoever has asked for another one meanwhile asks for this one again.
+class Seen {
+ public:
+  explicit Seen(RelativeMotion& motion) : motion_(&motion), epoch_(motion.epoch()) {}
+  RelativeMotion& operator*() const {
+    FCL_ARTIC_ASSERT(motion_->epoch() == epoch_);
+    return *motion_;
+  }
+  RelativeMotion* operator->() const { return &**this; }
+
+ private:
+  RelativeMotion* motion_;
+  std::int32_t epoch_;
+};
+
+/// Makes them, one at a time.
+class RelativeMotions {
+ public:
+  RelativeMotions(Task& task, SweptFrames& frames) : motion_(task, frames) {}
+
+  /// A new query: nothing is known.
+  void begin() { motion_.begin(); }
+  Seen of(PairId pair, const TimeBatch& batch) {
+    motion_.set(pair, batch);
+    return Seen(motion_);
+  }
+  /// The direction that GJK is to be taken to have found last between pieces of a pair that is asked for next; null:
+  /// none.
+  void setWitness(PairId pair, const Vec3* direction) {
+    motion_.witness_pair_ = pair;
+    motion_.have_witness_ = false;
+    if (direction) motion_.setWitness(*direction);
+  }
+
+ private:
+  RelativeMotion motion_;
+};
 
 }  // namespace FCL_ARTIC_ISA
 }  // namespace fcl_artic

@@ -12,8 +12,6 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Hulls may rest on each other if their depth is at most about this part of the smaller body's radius.
-constexpr double kShallow = 0.01;
 /// Maximum number of a body's pieces that are examined around a point where it may rest.
 constexpr int kMostAround = 4;
 
@@ -82,12 +80,11 @@ inline double restingGap(const DifferenceBody& hulls, double radii, double shall
   return depthWithin(g.simplex) + radii > shallow ? -kFarApart : gapWhereTheyRest(hulls, g.simplex) - radii;
 }
 
-/// The same of the present pair, where a lane of the present batch begins. (In a wide lane the pose is off by what the
-/// quadratic leaves out.)
-inline double restingGap(const RelativeMotion& motion, int lane, GjkResult& g) {
-  const Piece &a = *motion.a().outer, &b = *motion.b().outer;
-  return restingGap(motion.differenceAt(a, b, lane, -1), a.radius + b.radius + motion.margin(),
-                    kShallow * motion.smallerRadius(), g);
+/// The same of a pair's hulls, where a lane begins. (In a wide lane the pose is off by what the quadratic leaves out.)
+inline double restingGap(Seen seen, int lane, GjkResult& g) {
+  const Piece &a = *seen->a().outer, &b = *seen->b().outer;
+  return restingGap(seen->differenceAt(a, b, lane, -1), a.radius + b.radius + seen->margin(),
+                    kShallow * seen->smallerRadius(), g);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -10,14 +10,6 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A body is expected to touch whatever is nearer to its line swept sphere's segment than this part of the radius.
-/// Measured: from 0.7 on to 1 it makes no difference, below contacts are found later.
-constexpr double kDeep = 0.7;
-/// And where no ball or vertex of it is inside, its triangles may meet at that pose if it is as deep as this part.
-constexpr double kVeryDeep = 0.35;
-/// In solids narrower than this part of a line swept sphere's radius vertices are looked for after chords.
-constexpr double kThin = 0.5;
-
 /// Asks for an object's cache lines before they are needed.
 template <class T>
 FCL_ARTIC_INLINE void prefetch(const T* object) {
@@ -32,16 +24,20 @@ struct BoxHit {
 
 class StageOne : PartOfSolver {
  public:
-  StageOne(Task& task, SweptFrames& frames, RelativeMotion& motion, Horizon& horizon, const ContactList& contacts,
-           AnyContact& any)
-      : PartOfSolver(task), frames_(frames), motion_(motion), horizon_(horizon), contacts_(contacts), any_(any) {}
+  StageOne(SearchState& state, AnyContact& any)
+      : PartOfSolver(state.task),
+        frames_(state.frames),
+        motions_(state.motions),
+        horizon_(state.horizon),
+        contacts_(state.contacts),
+        any_(any) {}
 
   /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
   void cull(Buffer<Entry>& open);
   /// Pairs that advisors prove free (stage 2) are left out of `open`.
   void refine(Traversal& traversal, Buffer<Entry>& open);
-  /// Of the i-th pair left: from A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
-  const Vec3Lanes* direction(int i) const { return i < directions_.size() ? &directions_[i] : nullptr; }
+  /// From A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
+  const Vec3Lanes* direction(const Entry& e) const { return e.direction < 0 ? nullptr : &directions_[e.direction]; }
 
   const Buffer<BoxHit>& meetObstacles(int mover);
   /// Lanes in which the boxes of two movers are certainly apart.
@@ -63,7 +59,7 @@ class StageOne : PartOfSolver {
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
-  RelativeMotion& motion_;
+  RelativeMotions& motions_;
   Horizon& horizon_;
   const ContactList& contacts_;
   AnyContact& any_;
@@ -76,7 +72,7 @@ class StageOne : PartOfSolver {
   Buffer<std::int32_t> open_nodes_;
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidates_;
-  Buffer<Vec3Lanes> directions_;  ///< of pairs of links and still obstacles, which come first
+  Buffer<Vec3Lanes> directions_;  ///< of pairs of links and still obstacles (Entry::direction)
 };
 
 /// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). Of a moving
@@ -187,7 +183,7 @@ inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engi
   double least = square[__builtin_ctz(deep)];
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
   const int lane = middleLane(deep & ~greater(square, Lanes(least)));
-  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThin * lss.radius;
+  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThinSolid * lss.radius;
   if (any_.tryObstacle(pair, lane, laneOf(nearest, lane), thin)) return;
   if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
 }
@@ -199,7 +195,8 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
     if (problem().isAllowed(pair)) continue;
     Vec3Lanes direction;
     if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction)) {
-      open.push({pair, 0, 0, left});
+      Entry& entry = open.grow() = {pair, 0, 0, left};
+      entry.direction = directions_.size();
       directions_.push(direction);
       prefetch(problem().still_bounds[met[i].obstacle].tree);
     }
@@ -315,12 +312,12 @@ inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
 /// The same of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands still.
 /// @param lss  in B's tree frame.
 inline void StageOne::sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts) {
-  motion_.set(pair, whole());
+  const Seen seen = motions_.of(pair, whole());
   PointLanes ends[2];
   double radius = 0;
   for (int end = 0; end < 2; ++end) {
     const Vec3 p(lss + 3 * end);
-    radius = max(radius, lss[6] + motion_.seePoint(p, ends[end]));
+    radius = max(radius, lss[6] + seen->seePoint(p, ends[end]));
   }
   for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, ends, radius, parts[lane]);
 }
@@ -353,7 +350,7 @@ inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& trav
   const int asked = candidates_.size();
   if (!asked) return;
   advisor.clear(advisor.self, problem(), swept_links_.data(), candidates_.data(), asked);
-  int kept = 0, directions = 0, next = 0;
+  int kept = 0, next = 0;
   for (int i = 0; i < open.size(); ++i) {
     Entry e = open[i];
     if (next < asked && candidates_[next].pair == e.pair) {  // it may clear parts, nothing else
@@ -362,16 +359,10 @@ inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& trav
       e.mask &= answer.lanes;
       if (e.mask && answer.free_nodes) traversal.knowFreeNodes(e.pair, answer.free_nodes);
     }
-    if (!e.mask) continue;
-    if (i < directions_.size()) {
-      directions_[kept] = directions_[i];
-      directions = kept + 1;
-    }
-    open[kept++] = e;
+    if (e.mask) open[kept++] = e;
   }
   FCL_ARTIC_ASSERT(next == asked);
   open.truncate(kept);
-  directions_.truncate(directions);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -4,6 +4,7 @@
 // handed back.
 #pragma once
 
+#include "narrowphase/solver/depths.h"
 #include "narrowphase/solver/entry.h"
 #include "narrowphase/solver/hull_simplices.h"
 #include "narrowphase/solver/pose_proofs.h"
@@ -27,8 +28,6 @@ constexpr int kMostPartOverlaps = 1;
 constexpr int kMostOpen = 512;
 /// The same for leaves at single poses, neither proven apart nor in contact, as where bodies rest on each other.
 constexpr int kMostOpenAtPoses = 16;
-/// A body less deep in another one's hull, as part of its radius, may rest on it.
-constexpr double kBarely = 1e-6;
 /// GJK stops when it knows the gap to this part: enough for a direction.
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -107,7 +106,8 @@ enum class Aim {
   decide,  ///< only which lanes are free matters
 };
 
-/// The search for directions that certify whole lanes.
+/// The search for directions that certify whole lanes. It pays for bodies' hulls, not for parts of them, nor for
+/// leaves.
 struct LaneSearch {
   bool wanted = false;
   /// Initial guesses, from A to B in A's frame, one a lane. Null: where the witness at a lane's middle does not certify
@@ -115,11 +115,18 @@ struct LaneSearch {
   const Vec3Lanes* towards = nullptr;
 };
 
-/// All are of the present pair and batch (RelativeMotion), in the lanes that Horizon watches.
+/// How directions are looked for that keep two pieces apart.
+struct DirectionSearch {
+  int most_overlaps;  ///< number of lanes with overlap at the middle that ends the search
+  Simplex& last;      ///< GJK begins with it, and leaves there the one that it ends with
+  LaneSearch lanes = {};
+};
+
+/// One pair over one batch, in the lanes that Horizon watches.
 class Traversal : PartOfSolver {
  public:
-  Traversal(Task& task, RelativeMotion& motion, Horizon& horizon, const ContactList& contacts, PoseProofs& proofs)
-      : PartOfSolver(task), motion_(motion), horizon_(horizon), contacts_(contacts), proofs_(proofs) {}
+  Traversal(SearchState& state, PoseProofs& proofs)
+      : PartOfSolver(state.task), horizon_(state.horizon), contacts_(state.contacts), proofs_(proofs) {}
 
   /// A new query.
   void begin() {
@@ -134,41 +141,41 @@ class Traversal : PartOfSolver {
   Simplex& simplexOf(PairId pair) { return simplices_.of(pair); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
-  unsigned nodesMayTouch(int a, int b, unsigned mask);
-  /// Root nodes of all pairs have been tested over the present batch: descend() spares that.
-  void rootsAreTested() { roots_tested_ = motion_.batchNumber(); }
+  unsigned nodesMayTouch(Seen seen, int a, int b, unsigned mask);
+  /// Root nodes of all pairs have been tested over this batch: descend() spares that.
+  void rootsAreTested(Seen seen) { roots_tested_ = seen->batchNumber(); }
 
   struct HullLook {
     unsigned mask;      ///< lanes in which the hulls around both bodies are not certainly apart
     bool within;        ///< Entry::within
     unsigned overlaps;  ///< lanes at whose middles GJK claims that they overlap
   };
-  HullLook hullsMayTouch(unsigned mask, bool suspect, LaneSearch search);
+  HullLook hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search);
 
   /// Goes down from a pair of nodes in the lanes of `mask`. What stays undecided is appended to `open`.
-  void descend(const Entry& root, Aim aim, Buffer<Entry>& open);
+  void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
   /// Lanes of `mask` in which the pair's bodies are not certainly apart.
-  unsigned blockedLanes(PairId pair, unsigned mask);
+  unsigned blockedLanes(Seen seen, unsigned mask);
 
  private:
-  unsigned traverse(const Entry& root, Aim aim, Buffer<Entry>& open);
-  unsigned partsMayTouch(int a, int b, unsigned mask);
-  unsigned apartFromUnbounded(int a, int b);
-  unsigned apartAcrossRods(const Node& a, const Node& b, unsigned mask);
-  unsigned leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect);
-  bool isWithin();
-  /// Lanes of `mask` in which direction n, in the frame of side s's still body, certainly keeps the pieces apart.
-  FCL_ARTIC_INLINE unsigned separated(int s, const Piece& still, const Piece& moving, const Vec3& n, unsigned mask) {
+  unsigned traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
+  unsigned partsMayTouch(Seen seen, int a, int b, unsigned mask);
+  unsigned apartFromUnbounded(Seen seen, int a, int b);
+  unsigned apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask);
+  unsigned leavesMayTouch(Seen seen, int piece_a, int piece_b, unsigned mask, bool suspect);
+  bool isWithin(Seen seen);
+  bool isKnownFree(PairId pair, int node) const;
+  /// Lanes of `mask` in which direction n, in the frame of side.still, certainly keeps the pieces apart.
+  FCL_ARTIC_INLINE unsigned separated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
+                                      unsigned mask) {
     ++statistics().certificates;
-    double sign;
-    return certainlySeparated(motion_.side(s), still, moving, n, mask, motion_.margin(), motion_.pad(), sign);
+    return certainlySeparated(side, still, moving, n, mask);
   }
   bool provesAny() const { return query().any && contacts_.watching(); }
   template <class F>
-  unsigned notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last, LaneSearch search,
+  unsigned notSeparated(Seen seen, const Piece& a, const Piece& b, unsigned mask, DirectionSearch search,
                         const F& onOverlap);
 
-  RelativeMotion& motion_;
   Horizon& horizon_;
   const ContactList& contacts_;
   PoseProofs& proofs_;
@@ -185,22 +192,22 @@ class Traversal : PartOfSolver {
   Buffer<Entry> undecided_;         ///< stays empty
 };
 
-inline unsigned Traversal::nodesMayTouch(int a, int b, unsigned mask) {
+inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask) {
   ++statistics().node_tests;
-  const Node &A = motion_.a().nodes[a], &B = motion_.b().nodes[b];
+  const Node &A = seen->a().nodes[a], &B = seen->b().nodes[b];
   // Of two nodes one has mostly been met before: its swept box is there.
-  const int known = motion_.isSwept(0, b) ? 0 : 1;
-  const auto box = [&](int s) { return apart(motion_.sweptNode(s, s ? a : b), s ? B : A); };
+  const int known = seen->isSwept(0, b) ? 0 : 1;
+  const auto box = [&](int s) { return apart(seen->sweptNode(s, s ? a : b), s ? B : A); };
   mask &= ~box(known);
   if (!mask) return 0;
   // The swept box of a node that is larger than the other seldom separates more, and it would have to be computed.
   const int other = 1 - known;
-  if (motion_.isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
+  if (seen->isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
     mask &= ~box(other);
   if (!mask) return 0;
-  if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(a, b);
+  if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(seen, a, b);
   if (across_rods_.isTime()) {
-    mask &= ~apartAcrossRods(A, B, mask);
+    mask &= ~apartAcrossRods(seen, A, B, mask);
     across_rods_.tell(!mask);
   }
   return mask;
@@ -209,28 +216,28 @@ inline unsigned Traversal::nodesMayTouch(int a, int b, unsigned mask) {
 /// Lanes in which two rods are apart along what is across both: rods that pass each other askew meet in each other's
 /// frame until they are as near as they are long. (Of two tubes of slivers, forty times as long as wide, half a million
 /// pairs of triangles were looked at, all but 2,000 of them apart in this way.)
-inline unsigned Traversal::apartAcrossRods(const Node& a, const Node& b, unsigned mask) {
+inline unsigned Traversal::apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask) {
   const int axis_a = axisOfRod(a), axis_b = axis_a < 0 ? -1 : axisOfRod(b);
   if (axis_b < 0) return 0;
-  const Side& side = motion_.side(0);
+  const Side& side = seen->side(0);
   const int lane = middleLane(mask);
   const auto along = [](int axis) { return Vec3(axis == 0, axis == 1, axis == 2); };
   const Vec3 n = cross(along(axis_a), laneOf(side.m.R[0], lane) * along(axis_b));
   const double length = norm(n);
   constexpr double kAskew = 1e-6;  // of rods as good as parallel the direction is rounding
   if (!(length > kAskew)) return 0;
-  return separated(0, boxOf(a), boxOf(b), n * (1 / length), mask);
+  return separated(side, boxOf(a), boxOf(b), n * (1 / length), mask);
 }
 
 /// Lanes in which a node is apart from the whole of an unbounded body, along that one's normal.
-inline unsigned Traversal::apartFromUnbounded(int a, int b) {
+inline unsigned Traversal::apartFromUnbounded(Seen seen, int a, int b) {
   unsigned apart = 0;
   for (int s = 0; s < 2; ++s) {
-    const Side& side = motion_.side(s);
+    const Side& side = seen->side(s);
     const Piece& still = side.still->pieces[0];
     const Node& node = side.moving->nodes[s ? a : b];
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
-    apart |= separated(s, still, boxOf(node), sizeOf(still), kAllLanes);
+    apart |= separated(side, still, boxOf(node), sizeOf(still), kAllLanes);
   }
   return apart;
 }
@@ -238,74 +245,73 @@ inline unsigned Traversal::apartFromUnbounded(int a, int b) {
 /// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
 /// lanes and, if `search` wants them, those that it finds for whole lanes. Each is frozen in one frame and in the
 /// other, and tried on all lanes.
-/// @param most  number of lanes with overlap at the middle that ends the search.
-/// @param last  in: the simplex that GJK begins with; out: the one it ends with.
-/// @param search  for whole lanes. It pays for bodies' hulls, not for parts of them, nor for leaves.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
-inline unsigned Traversal::notSeparated(const Piece& a, const Piece& b, unsigned mask, int most, Simplex& last,
-                                        LaneSearch search, const F& onOverlap) {
+inline unsigned Traversal::notSeparated(Seen seen, const Piece& a, const Piece& b, unsigned mask,
+                                        DirectionSearch search, const F& onOverlap) {
   Vec3 guess;
   bool have_guess = false;
   unsigned untried = mask;
-  search.wanted = search.wanted && !unbounded(a) && !unbounded(b);
-  const double slack = search.wanted ? slackOf(motion_.side(0), a, b, motion_.margin(), motion_.pad()) : 0;
+  const bool whole_lanes = search.lanes.wanted && !unbounded(a) && !unbounded(b);
+  const Vec3Lanes* const towards = search.lanes.towards;
+  const double slack = whole_lanes ? slackOf(seen->side(0), a, b) : 0;
   const auto separatesWhole = [&](int lane) {
     GjkResult g;
-    searchNearest(SweptDifference(motion_.side(0), a, b, lane), guess, kWitnessAccuracy, slack, slack, 48, g);
+    searchNearest(SweptDifference(seen->side(0), a, b, lane), guess, kWitnessAccuracy, slack, slack, 48, g);
     ++statistics().gjk;
     if (!(g.lower > slack)) return false;
-    mask &= ~separated(0, a, b, g.n, mask);
+    mask &= ~separated(seen->side(0), a, b, g.n, mask);
     return !(mask >> lane & 1);
   };
-  for (; most > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0; untried &= mask) {
+  for (int left = search.most_overlaps; left > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0;
+       untried &= mask) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
     const int lane = middleLane(untried);
     untried &= ~(1u << lane);
-    if (search.wanted && search.towards) {
-      guess = laneOf(*search.towards, lane);
+    if (whole_lanes && towards) {
+      guess = laneOf(*towards, lane);
       have_guess = true;
       if (separatesWhole(lane)) continue;
     }
-    const DifferenceBody body = motion_.differenceAt(a, b, lane);
+    const DifferenceBody body = seen->differenceAt(a, b, lane);
     if (!have_guess) guess = body.pose.c;
     GjkResult g;
-    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + motion_.margin(), 48, g, &last);
-    last = g.simplex;
+    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + seen->margin(), 48, g, &search.last);
+    search.last = g.simplex;
     ++statistics().gjk;
     guess = g.n;
     have_guess = true;
     if (g.overlap) {
-      --most;
+      --left;
       onOverlap(lane);
       continue;
     }
-    motion_.setWitness(g.n);
+    seen->setWitness(g.n);
     // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving
     // one's 24.
     const Vec3 n = body.opposite(g.n);
     const int first = a.num_vertices > b.num_vertices ? 0 : 1;
     for (int i = 0; i < 2 && mask; ++i) {
-      mask &= ~((first + i) & 1 ? separated(1, b, a, n, mask) : separated(0, a, b, g.n, mask));
+      mask &= ~((first + i) & 1 ? separated(seen->side(1), b, a, n, mask) : separated(seen->side(0), a, b, g.n, mask));
     }
-    if (search.wanted && !search.towards && (mask >> lane & 1)) separatesWhole(lane);
+    if (whole_lanes && !towards && (mask >> lane & 1)) separatesWhole(lane);
   }
   return mask;
 }
 
 /// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
 /// (Hulls without their roundings: with them GJK may end at a face, from which no depth is known.)
-inline bool Traversal::isWithin() {
+inline bool Traversal::isWithin(Seen seen) {
   for (int s = 0; s < 2; ++s) {
-    const Node &large = motion_.still(s).nodes[0], &small = motion_.moving(s).nodes[0];
-    if (motion_.still(s).num_pieces == 1 || large.radius < 2 * small.radius) continue;
-    const Side& side = motion_.side(s);
+    const Node &large = seen->still(s).nodes[0], &small = seen->moving(s).nodes[0];
+    if (seen->still(s).num_pieces == 1 || large.radius < 2 * small.radius) continue;
+    const Side& side = seen->side(s);
     const Vec3 x = laneOf(side.m.R[0], kLanes / 2) * middleOf(small) + laneOf(side.m.c[0], kLanes / 2);
     bool inside = true;
     for (int k = 0; k < 3; ++k) inside = inside && x[k] > large.lo[k] && x[k] < large.hi[k];
     if (!inside) continue;
-    const Piece &a = *motion_.a().outer, &b = *motion_.b().outer;
-    const DifferenceBody body = motion_.differenceAt(a, b, kLanes / 2);
+    const Piece &a = *seen->a().outer, &b = *seen->b().outer;
+    const DifferenceBody body = seen->differenceAt(a, b, kLanes / 2);
     GjkResult g;
     gjk(body, body.pose.c, kWitnessAccuracy, 0, 48, g);
     ++statistics().gjk;
@@ -316,82 +322,85 @@ inline bool Traversal::isWithin() {
 
 /// What most pairs of neighbours need, before any of their triangles is looked at.
 /// @param suspect  overlapping hulls count as suspected contact.
-/// @param search  as in notSeparated().
-inline Traversal::HullLook Traversal::hullsMayTouch(unsigned mask, bool suspect, LaneSearch search) {
-  const TreeView &A = motion_.a(), &B = motion_.b();
-  if (A.num_pieces == 1 && B.num_pieces == 1) return {provesAny() ? leavesMayTouch(0, 0, mask, true) : mask, false, 0};
+inline Traversal::HullLook Traversal::hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search) {
+  const TreeView &A = seen->a(), &B = seen->b();
+  if (A.num_pieces == 1 && B.num_pieces == 1)
+    return {provesAny() ? leavesMayTouch(seen, 0, 0, mask, true) : mask, false, 0};
   if (!A.outer || !B.outer) return {mask, false, 0};
-  if (isWithin()) return {mask, true, 0};
+  if (isWithin(seen)) return {mask, true, 0};
   unsigned overlaps = 0;
-  mask = notSeparated(*A.outer, *B.outer, mask, kMostHullOverlaps, simplexOf(motion_.pair()), search, [&](int lane) {
+  const DirectionSearch of_hulls = {kMostHullOverlaps, simplexOf(seen->pair()), search};
+  mask = notSeparated(seen, *A.outer, *B.outer, mask, of_hulls, [&](int lane) {
     overlaps |= 1u << lane;
-    if (provesAny() && proofs_.vertexInside(lane)) return;
-    if (suspect) horizon_.suspect(motion_.batch().at[lane]);
+    if (provesAny() && proofs_.vertexInside(seen, lane)) return;
+    if (suspect) horizon_.suspect(seen->batch().at[lane]);
   });
   return {mask, false, overlaps};
 }
 
 /// Lanes of `mask` in which the hulls around what is below two nodes are not certainly apart: a concave body is cut
 /// into convex parts by them.
-inline unsigned Traversal::partsMayTouch(int a, int b, unsigned mask) {
+inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask) {
   const auto part = [](const TreeView& tree, int node, const TreeView& other) -> const Piece* {
     const bool whole = tree.num_pieces == 1 ||
                        (node == 0 && (tree.parts || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
     if (whole) return tree.outer;
     return tree.part_of_node && tree.part_of_node[node] >= 0 ? tree.parts + tree.part_of_node[node] : nullptr;
   };
-  const TreeView &A = motion_.a(), &B = motion_.b();
+  const TreeView &A = seen->a(), &B = seen->b();
   if (!A.parts && !B.parts) return mask;
   const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
   Simplex last;
-  return y ? notSeparated(*x, *y, mask, kMostPartOverlaps, last, {}, [](int) {}) : mask;
+  return y ? notSeparated(seen, *x, *y, mask, {kMostPartOverlaps, last}, [](int) {}) : mask;
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
 /// @param suspect  overlap counts as suspected contact.
-inline unsigned Traversal::leavesMayTouch(int piece_a, int piece_b, unsigned mask, bool suspect) {
+inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, unsigned mask, bool suspect) {
   ++statistics().leaf_tests;
-  const Piece &a = motion_.a().pieces[piece_a], &b = motion_.b().pieces[piece_b];
+  const Piece &a = seen->a().pieces[piece_a], &b = seen->b().pieces[piece_b];
   // A direction that keeps neighbours apart mostly serves here too.
-  if (motion_.witness()) mask &= ~separated(0, a, b, *motion_.witness(), mask);
-  if (mask && hasDirection(a)) mask &= ~separated(0, a, b, sizeOf(a), mask);
-  if (mask && hasDirection(b)) mask &= ~separated(1, b, a, sizeOf(b), mask);
+  if (seen->witness()) mask &= ~separated(seen->side(0), a, b, *seen->witness(), mask);
+  if (mask && hasDirection(a)) mask &= ~separated(seen->side(0), a, b, sizeOf(a), mask);
+  if (mask && hasDirection(b)) mask &= ~separated(seen->side(1), b, a, sizeOf(b), mask);
   if (!mask) return 0;
   Simplex last;
-  return notSeparated(a, b, mask, kLanes, last, {}, [&](int lane) {
-    const double t = motion_.batch().at[lane];
-    if (t < contacts_.watchFrom(motion_.pair())) return;
-    if (provesAny() && proofs_.leaves(piece_a, piece_b, lane)) return;
+  return notSeparated(seen, a, b, mask, {kLanes, last}, [&](int lane) {
+    const double t = seen->batch().at[lane];
+    if (t < contacts_.watchFrom(seen->pair())) return;
+    if (provesAny() && proofs_.leaves(seen, piece_a, piece_b, lane)) return;
     if (suspect) horizon_.suspect(t);
   });
 }
 
-inline void Traversal::descend(const Entry& root, Aim aim, Buffer<Entry>& open) {
-  FCL_ARTIC_ASSERT(aim != Aim::decide);
-  traverse(root, aim, open);
+/// Whether a node of a pair's still body is proven free over the whole motion.
+inline bool Traversal::isKnownFree(PairId pair, int node) const {
+  bool free = false;
+  for (int i = 0; i < free_nodes_.size(); ++i) {
+    free |= free_nodes_[i].pair == pair && (free_nodes_[i].nodes[node / 64] >> node % 64 & 1);
+  }
+  return free;
 }
 
-inline unsigned Traversal::blockedLanes(PairId pair, unsigned mask) {
+inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
+  FCL_ARTIC_ASSERT(aim != Aim::decide);
+  traverse(seen, root, aim, open);
+}
+
+inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes);  // all are looked at
-  mask = nodesMayTouch(0, 0, mask);
-  if (mask) mask = hullsMayTouch(mask, false, {}).mask;
-  return mask ? traverse({pair, 0, 0, mask}, Aim::decide, undecided_) : 0;
+  mask = nodesMayTouch(seen, 0, 0, mask);
+  if (mask) mask = hullsMayTouch(seen, mask, false, {}).mask;
+  return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::decide, undecided_) : 0;
 }
 
 /// Dual traversal. What stays undecided is appended to `open`, or, where only free lanes matter, they are returned.
-inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& open) {
-  FCL_ARTIC_ASSERT(root.pair == motion_.pair() && root.mask != 0 && root.mask <= kAllLanes);
-  const Node *A = motion_.a().nodes, *B = motion_.b().nodes;
-  const auto isFree = [&](int node) {
-    bool free = false;
-    for (int i = 0; i < free_nodes_.size(); ++i) {
-      free |= free_nodes_[i].pair == root.pair && (free_nodes_[i].nodes[node / 64] >> node % 64 & 1);
-    }
-    return free;
-  };
+inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
+  FCL_ARTIC_ASSERT(root.pair == seen->pair() && root.mask != 0 && root.mask <= kAllLanes);
+  const Node *A = seen->a().nodes, *B = seen->b().nodes;
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
-  const double split_time = aim == Aim::split ? kSplitTime * motion_.amplitude() : 0;
+  const double split_time = aim == Aim::split ? kSplitTime * seen->amplitude() : 0;
   const int most = aim == Aim::split   ? open.size() + kMostOpen
                    : aim == Aim::poses ? open.size() + kMostOpenAtPoses
                                        : 0x7fffffff;
@@ -413,13 +422,13 @@ inline unsigned Traversal::traverse(const Entry& root, Aim aim, Buffer<Entry>& o
       if (!e.mask) continue;
     }
     if (horizon_.mustEnd()) break;
-    if (free_nodes_.size() && isFree(e.a)) continue;
-    if (!e.isWhole() || roots_tested_ != motion_.batchNumber()) e.mask = nodesMayTouch(e.a, e.b, e.mask);
-    if (e.mask && !e.isWhole()) e.mask = partsMayTouch(e.a, e.b, e.mask);
+    if (free_nodes_.size() && isKnownFree(e.pair, e.a)) continue;
+    if (!e.isWhole() || roots_tested_ != seen->batchNumber()) e.mask = nodesMayTouch(seen, e.a, e.b, e.mask);
+    if (e.mask && !e.isWhole()) e.mask = partsMayTouch(seen, e.a, e.b, e.mask);
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
     if (x.isLeaf() && y.isLeaf()) {
-      e.mask = leavesMayTouch(x.piece(), y.piece(), e.mask, aim != Aim::decide);
+      e.mask = leavesMayTouch(seen, x.piece(), y.piece(), e.mask, aim != Aim::decide);
       if (!e.mask) continue;
       if (aim == Aim::decide) {
         blocked |= e.mask;
