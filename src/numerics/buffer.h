@@ -36,9 +36,11 @@ class Buffer {
     FCL_ARTIC_ASSERT(size >= 0 && size <= size_);
     size_ = size;
   }
+  /// @param value  may be an entry of this buffer.
   void push(const T& value) {
+    const T copy = value;
     if (size_ == capacity_) reserve(size_ < 32 ? 64 : 2 * size_);
-    data_[size_++] = value;
+    data_[size_++] = copy;
   }
   T& grow() {
     if (size_ == capacity_) reserve(size_ < 32 ? 64 : 2 * size_);

@@ -111,6 +111,7 @@ inline double BallProofs::reach(PairId pair) const {
 inline bool BallProofs::inLinks(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &A = body(bodies.a), &B = body(bodies.b);
+  if (!A.balls || !B.balls) return false;
   const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
   const PlacedLink a = placedLink(A.mover, lane), b = placedLink(B.mover, lane);
   const double error = 4 * differenceError(a, b);

@@ -25,10 +25,10 @@ struct Candidate {
   Entry entry;
   Target target;
   std::int32_t piece_a, piece_b;  ///< of a leaf pair
-  std::int32_t first, count;      ///< of a lane of the first batch: its entries
+  std::int32_t first, count;      ///< of a lane of the first batch: its entries on PairSearch's stack
   double t_lower;                 ///< free before
   Vec3 normal;                    ///< GJK's witness at t_lower
-  double gap;                     ///< along it: a lower bound, when GJK ends early far below
+  double gap;                     ///< along it: a lower bound, far below it where GJK ends early
   double apart;                   ///< an upper bound of the gap, from points of both
   double pad;                     ///< of rounding, when it was looked at last
   double speed;                   ///< of the one body seen from the other, about
@@ -85,12 +85,6 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_
   return best;
 }
 
-/// Two pieces, of A and of B.
-struct PiecePair {
-  const Piece &a, &b;
-
-  bool areBounded() const { return !unbounded(a) && !unbounded(b); }
-};
 /// Those of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
   if (f.isHulls()) return {*seen->a().outer, *seen->b().outer};
@@ -196,7 +190,8 @@ inline GapBounds Follower::boundGap(const Candidate& f, Seen seen, const Turning
 /// first root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so
 /// far. Two directions say how they turn: from then on the certificate's turns likewise, and the steps are those
 /// of a secant method.
-/// @param patient  goes on to the last; else the search ends where contact is to be expected within the tolerance.
+/// @param patient  goes on until no step gets farther, for 48 rounds at most; else the search ends where contact is to
+/// be expected within the tolerance.
 /// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
 /// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do,
 /// has proven one (f.certain).

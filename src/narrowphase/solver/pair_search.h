@@ -3,11 +3,13 @@
 // The search for the first contact among the pairs that the stages have left: earliest part of the motion first,
 // and in it the pair that meets first.
 //
-// 1. testHulls(), the first batch: over the eight parts of [0, 1] boxes and then hulls of whole bodies are tested,
-//    which part most neighbours before any triangle is examined. GJK finds directions for a whole part of the
-//    motion (swept_difference.h), between a link and an obstacle from stage 1's direction on, and witnesses at the
-//    middle. If GJK claims an overlap, later parts are put off (Horizon::suspect()); if the claim proves wrong,
-//    lookAtPutOff() examines them.
+// A *part* is one of the eight equal intervals of a batch of time, the lanes.
+//
+// 1. testHulls(), the first batch: over the eight parts of [0, 1] it tests boxes and then hulls of whole bodies. They
+//    prove most neighbours apart before any triangle is examined. GJK finds directions for a whole part of the motion
+//    (swept_difference.h), between a link and an obstacle from stage 1's direction on, and witnesses at the middle. If
+//    GJK claims an overlap, later parts are put off (Horizon::suspect()). If the claim proves wrong, lookAtPutOff()
+//    examines them.
 // 2. search(): a problem of one pair, as the drop-in asks it, is followed from its first open part to its last at
 //    once. For many pairs descendIntoPieces() traverses their trees over the first batch, and solveLane() takes the
 //    parts one after the other.
@@ -17,14 +19,14 @@
 // 4. The pair that meets first is solved first, and a contact found ends the search in the others. If a mesh is
 //    convex, its triangle at the hulls' witness touches at that very time, which is proven at once
 //    (proveBelowHulls()). If bodies rest on each other there, pieces at the hulls' witness are tried first
-//    (restsAt()); if they are in each other from t = 0 on, triangles that cross there, the first leaves that touch,
-//    and triangles that cross within the tolerance after it (touchesAtStart()).
+//    (recordWhereTheyRest()). If they are in each other from t = 0 on, recordAtStart() tries triangles that cross
+//    there, the first leaves that touch, and triangles that cross within the tolerance after it.
 // 5. solvePieces() searches below the hulls: windows of time, each again in eight parts (solveInterval()), with a
-//    dual traversal (Traversal::descend()). Swept boxes part pairs of nodes, one box for each node and batch
-//    whatever the other node is; so do the hulls around their subtrees, which cut a bent link into convex parts.
-//    Triangles' normals, the last direction and GJK's witness at the middle of one part, frozen in either frame,
-//    part pairs of leaves; each direction is tried on all parts at once. Nodes smaller than the motion are left to
-//    the next level.
+//    dual traversal (Traversal::descend()). Swept boxes prove pairs of nodes apart, one box for each node and batch,
+//    whatever the other node is. So do the hulls around their subtrees, which cut a bent link into convex parts.
+//    Directions prove pairs of leaves apart: triangles' normals, the last direction, and GJK's witness at the middle of
+//    one part. Each is held fixed in one body's frame or the other's, and tried on all parts at once. Nodes smaller
+//    than the motion are left to the next level.
 // 6. followLeaves() follows the few leaf pairs left in a part one by one: followToRoot() finds t_lower, decide()
 //    finds t_upper by proofs of contact within the tolerance after it. If neither decides, the part is divided,
 //    down to the tolerance. A pair that is then nearer than the distance tolerance or the pad of rounding is a
@@ -43,8 +45,8 @@ namespace FCL_ARTIC_ISA {
 
 /// Maximum number of leaf pairs in a lane that are followed one by one; if there are more, the lane is split first.
 constexpr int kFewLeaves = 12;
-/// Length of the first window of time in which pieces are examined: the motion covers this part of the smaller body's
-/// radius in it.
+/// Length of the first window of time in which pieces are examined: in it the bodies move about this part of the
+/// smaller body's radius against each other.
 constexpr double kFirstWindow = 0.4;
 /// A body's pieces are not examined in lanes of the first batch if half a lane moves it by more than this part of the
 /// smaller body's radius.
@@ -52,11 +54,12 @@ constexpr double kLongMotion = 0.2;
 
 /// Maximum number of leaf pairs of one lane that are recorded although nothing can be proven of them.
 constexpr int kEnoughUncertain = 16;
-/// Maximum number of pairs of boxes, as kMostAtPose, that are tested right after the start where nothing was proven at
-/// it: a hundredth of a second, where without a proof all that touches is divided down to the finest lanes.
+/// Maximum number of pairs of boxes, as kMostAtPose, that are tested right after the start if no contact is proven at
+/// the start. They take a hundredth of a second. Without a proof the search would divide all that touches down to the
+/// finest lanes.
 constexpr int kMostAfterStart = 1 << 20;
 
-/// A part of the motion. What is searched in it is proven free before.
+/// An interval of time. All that is searched in it is proven free before its start.
 struct Window {
   double start, width;
   bool finest = false;  ///< it is as narrow as the tolerance: it is not divided on
@@ -64,7 +67,7 @@ struct Window {
   double end() const { return start + width; }
 };
 
-/// Entries begin to end of a list that are open in one lane of their batch; -1: in any.
+/// Entries begin to end of a list that are open in one lane of their batch; lane -1: all of them.
 struct Selection {
   const Buffer<Entry>& list;
   int begin, end, lane;
@@ -72,7 +75,7 @@ struct Selection {
   bool has(int i) const { return list[i].isOpenIn(lane); }
 };
 
-/// Gives a list back the length that it has now.
+/// On destruction, cuts a list to the length that it had on construction.
 class Shortened {
  public:
   explicit Shortened(Buffer<Entry>& list) : list_(list), size_(list.size()) {}
@@ -126,9 +129,9 @@ class PairSearch : PartOfSolver {
   /// is split.
   static bool movesFar(Seen seen) { return seen->amplitude() > kLongMotion * seen->smallerRadius(); }
 
-  /// Whether points of both bodies are so near that no proof can separate them. (A direction along which little is
-  /// proven says nothing.) What lies within the pad of rounding is near whatever the tolerance: no lane is narrow
-  /// enough to prove such a gap.
+  /// Whether points of both bodies are so near that no proof can separate them. (A small gap that is proven along one
+  /// direction does not show that they are near.) Points within the pad of rounding are near whatever the tolerance: no
+  /// lane is narrow enough to prove such a gap.
   bool isNear(double apart, double pad) const { return apart <= max(0.5 * query().tolerance_distance, pad); }
   bool isNear(const Candidate& f) const { return isNear(f.apart, f.pad); }
 
@@ -143,9 +146,9 @@ class PairSearch : PartOfSolver {
     return restingGap(seen, lane, g);
   }
   bool stayNear(const Candidate& f);
-  bool restsAt(PairId pair, double t);
-  bool touchesAtStart(const Selection& of);
-  Touching lookAtTouching(double t, bool may_rest);
+  bool recordWhereTheyRest(PairId pair, double t);
+  bool recordAtStart(const Selection& of);
+  Touching recordTouching(double t, bool may_rest);
   void search(const Buffer<Entry>& open, int begin, int end);
   void descendIntoPieces(const Buffer<Entry>& open, int begin, int end);
   void lookAtPutOff(unsigned later);
@@ -171,7 +174,7 @@ class PairSearch : PartOfSolver {
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
-  int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before touchesAtStart() is asked
+  int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before recordAtStart() is asked
 };
 
 /// What an entry stands for, to be followed from `start`.
@@ -186,8 +189,8 @@ inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
   return f;
 }
 
-/// Whether hulls that were followed to f.t_lower are where bodies rest, and do not just pass there on their way into
-/// each other.
+/// Whether hulls that were followed to f.t_lower are hardly in each other a little later, as hulls of bodies that rest
+/// are.
 inline bool PairSearch::stayNear(const Candidate& f) {
   constexpr double kLater = 64;
   const TimeBatch later = TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time));
@@ -205,7 +208,7 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 /// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
 /// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
-inline bool PairSearch::restsAt(PairId pair, double t) {
+inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
   if (contacts_.watchFrom(pair) > t) return false;
   const Seen seen = motions_.of(pair, TimeBatch::partsOf(t, finestEnd(t) - t));
   const TreeView &A = seen->a(), &B = seen->b();
@@ -230,7 +233,7 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
     f.piece_b = near_b[i % num_b];
     touching_.push(f);
   }
-  return lookAtTouching(t, true) == Touching::recorded;
+  return recordTouching(t, true) == Touching::recorded;
 }
 
 /// For bodies that overlap at t = 0: triangles that cross there are the contact, or the first leaves that touch; it
@@ -239,7 +242,7 @@ inline bool PairSearch::restsAt(PairId pair, double t) {
 /// faces and edges with it at first, and soon crosses it along a line, which is looked for all over.
 /// @param of  what is left of one pair.
 /// @return false where others may touch earlier.
-inline bool PairSearch::touchesAtStart(const Selection& of) {
+inline bool PairSearch::recordAtStart(const Selection& of) {
   const PairId pair = of.list[of.begin].pair;
   if (contacts_.watchFrom(pair) > 0) return false;
   if (proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMostAtPose)) return true;
@@ -256,15 +259,16 @@ inline bool PairSearch::touchesAtStart(const Selection& of) {
   for (int i = out_begin; i < stack_.size() && touching_.size() < kEnoughUncertain; ++i) {
     if (isLeafPair(stack_[i])) touching_.push(candidateOf(stack_[i], 0));
   }
-  const Touching touching = lookAtTouching(0, false);
+  const Touching touching = recordTouching(0, false);
   if (touching != Touching::maybe) return touching == Touching::recorded;
   const TimeBatch after = TimeBatch::around(min(1.0, 0.5 * query().tolerance_time));
   return proofs_.anyTriangles(motions_.of(pair, after), 0, kMostAfterStart);
 }
 
 /// Whether a leaf pair of `touching_` touches at t; then it is recorded.
-/// @param may_rest  also record one that no proof can separate from contact.
-inline PairSearch::Touching PairSearch::lookAtTouching(double t, bool may_rest) {
+/// @param may_rest  if no contact at t is proven, record the first pair that is near at t and of which nothing is
+/// proven.
+inline PairSearch::Touching PairSearch::recordTouching(double t, bool may_rest) {
   const double stop = finestEnd(t);
   Candidate resting = {};
   int uncertain = 0;
@@ -365,7 +369,7 @@ inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, 
       GjkResult g;
       const double gap = abs(restingGapOfHulls(seen, __builtin_ctz(e.mask), g)) / seen->smallerRadius();
       whole_first = gap <= kBarely;
-      if (!whole_first && gap <= kShallow && (e.mask & 1) && restsAt(e.pair, 0)) continue;
+      if (!whole_first && gap <= kShallow && (e.mask & 1) && recordWhereTheyRest(e.pair, 0)) continue;
     }
     if (whole_first) {
       pieces_.push({e.pair, e.a, e.b, e.mask});
@@ -409,7 +413,7 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
     if (f.t_lower >= horizon_.end()) break;
     if (f.isHulls()) {
       follower_.proveBelowHulls(f);
-      if (!f.certain && stayNear(f) && restsAt(f.entry.pair, f.t_lower)) continue;
+      if (!f.certain && stayNear(f) && recordWhereTheyRest(f.entry.pair, f.t_lower)) continue;
     }
     if (f.isLeafPair() && !f.certain && follower_.decide(f, stop)) continue;
     if (f.certain) {
@@ -417,10 +421,11 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
       continue;
     }
     horizon_.dropSuspicion();
-    // Where something else rests at the start, the search ends there: lanes as narrow as they get, in which nothing is
-    // put off, would have all leaves of what is deep in each other asked (14 ms for a link in a table; now 0.1).
+    // If another pair is taken to touch at t = 0, the search ends within the finest window. Nothing is put off in lanes
+    // that narrow, so that every leaf of bodies deep in each other would be examined (14 ms for a link in a table; 0.1
+    // at the start).
     const bool ends_at_start = f.t_lower == 0 && horizon_.end() <= finestWidth();
-    if (ends_at_start && touchesAtStart({stack_, f.first, f.first + f.count, of.lane})) continue;
+    if (ends_at_start && recordAtStart({stack_, f.first, f.first + f.count, of.lane})) continue;
     splits_at_start_ = suspected ? 0 : 1;
     solvePieces(f, stop, of.lane);
   }
@@ -428,7 +433,7 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
   if (!horizon_.isOver()) horizon_.provenFree(stop);
 }
 
-/// Makes a candidate of all entries of each pair, in `candidates_` and `earliest_first_`: one leaf pair, which is
+/// Makes one candidate per pair, of all its entries, in `candidates_` and `earliest_first_`: one leaf pair, which is
 /// followed at once; whole bodies, of which the hulls are followed; or parts of them that the first batch has come to
 /// already. Those that are free in the window are left out.
 inline void PairSearch::followHulls(const Selection& of, const Window& window, unsigned first_lanes) {
@@ -523,7 +528,7 @@ inline PairSearch::Step PairSearch::solveOpenLane(const Selection& of, const Win
     const Step step = followLeaves(of, window);
     if (step != Step::split) return step;
   }
-  if (window.start == 0 && splits_at_start_-- == 0 && touchesAtStart(of)) return Step::done;
+  if (window.start == 0 && splits_at_start_-- == 0 && recordAtStart(of)) return Step::done;
   return solveInterval(of, window);
 }
 
@@ -543,8 +548,8 @@ inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Wind
     const Candidate& f = leaves_[i];
     if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
     if (!narrow && (!window.finest || !isNear(f))) {
-      // What is proven meanwhile is kept: its time is the answer's already, and the narrower lanes may prove a later
-      // one.
+      // Contacts proven meanwhile are kept: the horizon ends at their time, and narrower lanes may prove later ones
+      // only.
       for (int k = 0; k < leaves_.size(); ++k) {
         if (leaves_[k].certain) writer_.record(leaves_[k]);
       }

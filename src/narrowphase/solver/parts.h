@@ -5,7 +5,7 @@
 //   Task             the query at hand, its budget and what it has cost
 //   TimeBatch        eight intervals of time: a value
 //   SweptFrames      the links' frames over a batch
-//   RelativeMotions  two bodies against each other over a batch: a value, handed down as Seen
+//   RelativeMotions  two bodies against each other over a batch, handed down as Seen
 //   Horizon          when the first contact is, as far as known: the only writer of these times
 //   ContactList      contacts, and the gate through which every proof of contact comes
 //   SearchState      these: what all others share

@@ -12,6 +12,13 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
+/// Two pieces, of A and of B.
+struct PiecePair {
+  const Piece &a, &b;
+
+  bool areBounded() const { return !unbounded(a) && !unbounded(b); }
+};
+
 class RelativeMotion : PartOfSolver {
  public:
   RelativeMotion(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
@@ -22,7 +29,7 @@ class RelativeMotion : PartOfSolver {
     return frames_.batch();
   }
   /// Another batch has another number.
-  std::int32_t batchNumber() const { return frames_.number(); }
+  std::int32_t batchNumber() const { return of_batch_; }
   const TreeView& a() const { return *side_[0].still; }
   const TreeView& b() const { return *side_[0].moving; }
   double smallerRadius() const { return min(a().nodes[0].radius, b().nodes[0].radius); }
@@ -47,7 +54,7 @@ class RelativeMotion : PartOfSolver {
     const double reach = norm(p) * (1 + 8 * kUlp), sizes = max(a().extent + b().extent, kLeastLength);
     return m.rem_c + m.rem_R * reach + pad_ * (1 + reach / sizes);
   }
-  /// A body's tree where it stands still (`side`) or moves.
+  /// In side(s): the tree of the body that stands still; of the one that moves.
   const TreeView& still(int s) const { return *side_[s].still; }
   const TreeView& moving(int s) const { return *side_[s].moving; }
 
@@ -206,8 +213,7 @@ class RelativeMotions {
     motion_.set(pair, batch);
     return Seen(motion_);
   }
-  /// The direction that GJK is to be taken to have found last between pieces of a pair that is asked for next; null:
-  /// none.
+  /// Sets the direction that witness() returns when this pair is asked for next; null: none.
   void setWitness(PairId pair, const Vec3* direction) {
     motion_.witness_pair_ = pair;
     motion_.have_witness_ = false;

@@ -102,7 +102,7 @@ class Worth {
 enum class Aim {
   split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
   leaves,  ///< the same, down to the leaves: lanes are as narrow as they get
-  poses,   ///< the same at single poses, for contacts to be proven: ends where many leaves can't be decided
+  poses,   ///< as `leaves`, at single poses, for contacts to be proven: ends where many leaves can't be decided
   decide,  ///< only which lanes are free matters
 };
 
@@ -130,7 +130,8 @@ class Traversal : PartOfSolver {
 
   /// A new query.
   void begin() {
-    for (Buffer<Entry>& stack : stack_) stack.clear();  // what the caller's progress threw out of a query is left
+    for (Buffer<Entry>& stack : stack_)
+      stack.clear();  // if the caller's progress threw, entries of the last query are still here
     free_nodes_.clear();
     simplices_.begin();
     across_rods_.begin();
@@ -142,7 +143,7 @@ class Traversal : PartOfSolver {
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
   unsigned nodesMayTouch(Seen seen, int a, int b, unsigned mask);
-  /// Root nodes of all pairs have been tested over this batch: descend() spares that.
+  /// Says that the root nodes of all pairs are tested over this batch: descend() does not test them over it again.
   void rootsAreTested(Seen seen) { roots_tested_ = seen->batchNumber(); }
 
   struct HullLook {
@@ -173,8 +174,7 @@ class Traversal : PartOfSolver {
   }
   bool provesAny() const { return query().any && contacts_.watching(); }
   template <class F>
-  unsigned notSeparated(Seen seen, const Piece& a, const Piece& b, unsigned mask, DirectionSearch search,
-                        const F& onOverlap);
+  unsigned notSeparated(Seen seen, const PiecePair& pieces, unsigned mask, DirectionSearch search, const F& onOverlap);
 
   Horizon& horizon_;
   const ContactList& contacts_;
@@ -247,12 +247,13 @@ inline unsigned Traversal::apartFromUnbounded(Seen seen, int a, int b) {
 /// other, and tried on all lanes.
 /// @param onOverlap  called with a lane at whose middle GJK claims overlap.
 template <class F>
-inline unsigned Traversal::notSeparated(Seen seen, const Piece& a, const Piece& b, unsigned mask,
-                                        DirectionSearch search, const F& onOverlap) {
+inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsigned mask, DirectionSearch search,
+                                        const F& onOverlap) {
+  const Piece &a = pieces.a, &b = pieces.b;
   Vec3 guess;
   bool have_guess = false;
   unsigned untried = mask;
-  const bool whole_lanes = search.lanes.wanted && !unbounded(a) && !unbounded(b);
+  const bool whole_lanes = search.lanes.wanted && pieces.areBounded();
   const Vec3Lanes* const towards = search.lanes.towards;
   const double slack = whole_lanes ? slackOf(seen->side(0), a, b) : 0;
   const auto separatesWhole = [&](int lane) {
@@ -330,7 +331,7 @@ inline Traversal::HullLook Traversal::hullsMayTouch(Seen seen, unsigned mask, bo
   if (isWithin(seen)) return {mask, true, 0};
   unsigned overlaps = 0;
   const DirectionSearch of_hulls = {kMostHullOverlaps, simplexOf(seen->pair()), search};
-  mask = notSeparated(seen, *A.outer, *B.outer, mask, of_hulls, [&](int lane) {
+  mask = notSeparated(seen, {*A.outer, *B.outer}, mask, of_hulls, [&](int lane) {
     overlaps |= 1u << lane;
     if (provesAny() && proofs_.vertexInside(seen, lane)) return;
     if (suspect) horizon_.suspect(seen->batch().at[lane]);
@@ -351,7 +352,7 @@ inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask)
   if (!A.parts && !B.parts) return mask;
   const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
   Simplex last;
-  return y ? notSeparated(seen, *x, *y, mask, {kMostPartOverlaps, last}, [](int) {}) : mask;
+  return y ? notSeparated(seen, {*x, *y}, mask, {kMostPartOverlaps, last}, [](int) {}) : mask;
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
@@ -365,7 +366,7 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
   if (mask && hasDirection(b)) mask &= ~separated(seen->side(1), b, a, sizeOf(b), mask);
   if (!mask) return 0;
   Simplex last;
-  return notSeparated(seen, a, b, mask, {kLanes, last}, [&](int lane) {
+  return notSeparated(seen, {a, b}, mask, {kLanes, last}, [&](int lane) {
     const double t = seen->batch().at[lane];
     if (t < contacts_.watchFrom(seen->pair())) return;
     if (provesAny() && proofs_.leaves(seen, piece_a, piece_b, lane)) return;
@@ -388,13 +389,14 @@ inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Ent
 }
 
 inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
-  FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes);  // all are looked at
+  FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes && horizon_.contactLane() == 0);  // all are looked at
   mask = nodesMayTouch(seen, 0, 0, mask);
   if (mask) mask = hullsMayTouch(seen, mask, false, {}).mask;
   return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::decide, undecided_) : 0;
 }
 
-/// Dual traversal. What stays undecided is appended to `open`, or, where only free lanes matter, they are returned.
+/// Dual traversal. Entries that stay undecided are appended to `open`. With Aim::decide none is: the lanes that are not
+/// proven free are returned.
 inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
   FCL_ARTIC_ASSERT(root.pair == seen->pair() && root.mask != 0 && root.mask <= kAllLanes);
   const Node *A = seen->a().nodes, *B = seen->b().nodes;
@@ -417,7 +419,11 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
     }
     held = false;
     if (const unsigned later = e.mask & ~(horizon_.live() & ~blocked)) {
-      if (aim != Aim::decide) open.push({e.pair, e.a, e.b, later, true});
+      if (aim == Aim::decide) {
+        blocked |= later;
+      } else {
+        open.push({e.pair, e.a, e.b, later, true});
+      }
       e.mask &= ~later;
       if (!e.mask) continue;
     }
@@ -435,8 +441,8 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
       } else {
         open.push(e);
       }
-    } else if (e.mask == horizon_.contactLane() || (isSmaller(x, split_time) && isSmaller(y, split_time)) ||
-               open.size() > most) {
+    } else if ((aim != Aim::decide && e.mask == horizon_.contactLane()) ||
+               (isSmaller(x, split_time) && isSmaller(y, split_time)) || open.size() > most) {
       open.push(e);
     } else {
       if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
