@@ -95,8 +95,7 @@ std::string verifierInterpolation(plans::Interpolation kind, const std::string& 
 }
 
 plans::Turns turnsOf(const PlanVariables& options) {
-  if (options.turns == "given") return plans::Turns::given;
-  return options.turns == "shortest" ? plans::Turns::shortest : plans::Turns::ask;
+  return plans::turnsNamed(options.turns);
 }
 
 }  // namespace fcl_artic::app

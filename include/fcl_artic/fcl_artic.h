@@ -13,6 +13,7 @@
 #include "fcl_artic/fcl_link_motion.h"
 #include "fcl_artic/in_between.h"
 #include "fcl_artic/instruction_set.h"
+#include "fcl_artic/interpolation.h"
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/manager.h"

@@ -83,13 +83,6 @@ LoadedPlan planOfState(const py::tuple& state) {
   return LoadedPlan(treeOf(state[0]), std::move(plan), std::move(options));
 }
 
-plans::Turns turnsNamed(const std::string& name) {
-  if (name == "ask") return plans::Turns::ask;
-  if (name == "given") return plans::Turns::given;
-  if (name == "shortest") return plans::Turns::shortest;
-  valueError("turns is '" + name + "', not 'ask', 'given' or 'shortest'");
-}
-
 std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string& interpolation, double blend,
                              const std::string& turns, bool ignore_limits, const std::vector<std::string>& joints,
                              const std::map<std::string, double>& state, const std::optional<std::string>& format,
@@ -103,7 +96,7 @@ std::vector<LoadedPlan> load(py::handle path, py::handle tree, const std::string
     valueError("interpolation='blends' and a blend above 0 go together");
   }
   options.blend = blend;
-  options.turns = turnsNamed(turns);
+  options.turns = plans::turnsNamed(turns);
   options.ignore_limits = ignore_limits;
   options.joints = joints;
   options.state = state;

@@ -20,17 +20,6 @@ using Eigen::VectorXd;
 // rounding of a file decides, 1e-6 with the six digits that OMPL and ROS print.
 constexpr double kNearHalfTurn = 2e-6;
 
-const std::vector<std::pair<const char*, Interpolation>> kInterpolations{
-    {"auto", Interpolation::automatic},
-    {"linear", Interpolation::linear},
-    {"cubic", Interpolation::cubic},
-    {"quintic", Interpolation::quintic},
-    {"blends", Interpolation::blends},
-    {"jtc", Interpolation::jtc},
-    {"jtc-upsampled", Interpolation::jtcUpsampled},
-    {"jtc-none", Interpolation::jtcNone},
-    {"tangent-half-angle", Interpolation::tangentHalfAngle}};
-
 std::string plural(std::size_t n, const std::string& what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
 }
@@ -244,68 +233,6 @@ void requireSenses(const KinematicTree& tree, const std::vector<VectorXd>& q) {
   }
 }
 
-bool isController(Interpolation kind) {
-  return kind == Interpolation::jtc || kind == Interpolation::jtcUpsampled || kind == Interpolation::jtcNone;
-}
-
-/// joint_trajectory_controller takes the values of joints that turn forever as they are.
-Turns turnsOf(const MotionOptions& options) {
-  if (options.interpolation == Interpolation::tangentHalfAngle && options.turns == Turns::shortest) {
-    refuse("tangent-half-angle says which way round a joint goes, and --turns shortest another way");
-  }
-  if (!isController(options.interpolation)) return options.turns;
-  if (options.turns == Turns::shortest) {
-    refuse(fmt::format("{} goes from waypoint to waypoint as the values say, and --turns shortest another way",
-                       toString(options.interpolation)));
-  }
-  return Turns::given;
-}
-
-Interpolation chosen(const Plan& plan, const MotionOptions& options) {
-  Interpolation kind = options.interpolation;
-  const bool positions_only = plan.velocities.empty() && plan.accelerations.empty();
-  if (kind == Interpolation::jtcNone || kind == Interpolation::tangentHalfAngle) return kind;
-  if (kind == Interpolation::jtcUpsampled && positions_only) return kind;
-  if (kind == Interpolation::automatic || isController(kind)) {
-    if (plan.velocities.empty() && !plan.accelerations.empty()) {
-      refuse("it has accelerations and no velocities: --interpolation says what is meant");
-    }
-    if (plan.velocities.empty()) return Interpolation::linear;
-    kind = plan.accelerations.empty() ? Interpolation::cubic : Interpolation::quintic;
-  }
-  const bool polynomial = kind == Interpolation::cubic || kind == Interpolation::quintic;
-  if (polynomial && plan.velocities.empty())
-    refuse(fmt::format("{} needs velocities, the plan has none", toString(kind)));
-  if (kind == Interpolation::quintic && plan.accelerations.empty()) {
-    refuse("quintic needs accelerations, the plan has none");
-  }
-  if (kind != Interpolation::linear && plan.times.empty()) {  // of a curve that depends on them
-    refuse(fmt::format("{} needs times, the plan has none", toString(kind)));
-  }
-  return kind;
-}
-
-/// Velocities at the waypoints of the spline of cubics that goes from rest to rest and whose acceleration has no jump.
-/// With h_k = t_{k+1} - t_k and slopes s_k = (q_{k+1} - q_k) / h_k, the accelerations before and after waypoint k,
-/// (2 v_{k-1} + 4 v_k - 6 s_{k-1}) / h_{k-1} and (6 s_k - 4 v_k - 2 v_{k+1}) / h_k, are the same if
-///   a v_{k-1} + 2 v_k + b v_{k+1} = 3 (a s_{k-1} + b s_k),  a = h_k / (h_{k-1} + h_k),  b = h_{k-1} / (h_{k-1} + h_k).
-/// The diagonal exceeds the rest of its row by 1, so elimination goes without pivots, and errors do not grow
-/// (doc/NUMERICS.md, section 12).
-std::vector<VectorXd> restToRestVelocities(const std::vector<double>& t, const std::vector<VectorXd>& q) {
-  const std::size_t n = q.size();
-  std::vector<VectorXd> v(n, VectorXd::Zero(q[0].size()));
-  std::vector<double> over(n, 0);  // what is left above the diagonal, of a diagonal of 1
-  for (std::size_t k = 1; k + 1 < n; ++k) {
-    const double before = t[k] - t[k - 1], after = t[k + 1] - t[k], both = before + after;
-    const double a = after / both, b = before / both, pivot = 2 - a * over[k - 1];
-    const VectorXd wanted = 3 * (a * ((q[k] - q[k - 1]) / before) + b * ((q[k + 1] - q[k]) / after));
-    v[k] = (wanted - a * v[k - 1]) / pivot;
-    over[k] = b / pivot;
-  }
-  for (std::size_t k = n - 1; k-- > 1;) v[k] -= over[k] * v[k + 1];
-  return v;
-}
-
 /// joint_trajectory_controller runs single values.
 void requireNoQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& q, Interpolation kind) {
   for (const JointId j : tree.quaternionJoints()) {
@@ -354,27 +281,6 @@ std::vector<std::string> LimitJudge::notes() const {
                                 joint.name, joint.lower, joint.upper, most, tree_.isAngle(v) ? "rad" : "m"));
   }
   return notes;
-}
-
-Interpolation interpolationNamed(const std::string& name) {
-  for (const auto& known : kInterpolations) {
-    if (name == known.first) return known.second;
-  }
-  if (name == "totg") {
-    refuse(
-        "totg rounds the corners of a path, and the controller then runs a spline through samples of that: certify "
-        "its result, by --interpolation jtc");
-  }
-  std::string names;
-  for (const auto& known : kInterpolations) names += (names.empty() ? "" : ", ") + std::string(known.first);
-  refuse(fmt::format("'{}' is no interpolation: {} are", name, names));
-}
-
-const char* toString(Interpolation interpolation) {
-  for (const auto& known : kInterpolations) {
-    if (interpolation == known.second) return known.first;
-  }
-  return "";
 }
 
 Plan inRadians(const KinematicTree& tree, const Plan& plan) {
@@ -434,8 +340,9 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
   for (std::size_t k = 0; !timed && k < waypoints; ++k) times.push_back(static_cast<double>(k));
   requireTimes(times, waypoints);
   judgeLimits(tree, plan, columns, options, notes);
-  const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, turnsOf(options));
-  const Interpolation kind = chosen(plan, options);
+  const JointTrajectory::Unwrap unwrap = judgeTurns(tree, plan, columns, turnsOf(options.interpolation, options.turns));
+  const Interpolation kind =
+      curveOf(options.interpolation, {timed, !plan.velocities.empty(), !plan.accelerations.empty()});
   if (timed && times.front() > 0) {
     notes.push_back(
         fmt::format("the first waypoint is at t = {:g}: the way to it is no part of the plan", times.front()));
@@ -455,33 +362,13 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     notes.emplace_back("it has no times: its waypoints follow each other at equal times, as by policy_frequency");
   }
   const VectorXd zero = VectorXd::Zero(tree.dof());
-  const auto trajectory = [&]() -> JointTrajectory {
-    switch (kind) {
-      case Interpolation::cubic:
-        return JointTrajectory::cubic(tree, times, q, spread(plan.velocities, columns, zero), unwrap);
-      case Interpolation::quintic:
-        return JointTrajectory::quintic(tree, times, q, spread(plan.velocities, columns, zero),
-                                        spread(plan.accelerations, columns, zero), unwrap);
-      case Interpolation::blends:
-        return JointTrajectory::parabolicBlends(tree, times, q, options.blend, unwrap);
-      case Interpolation::tangentHalfAngle:
-        return JointTrajectory::tangentHalfAngle(tree, times, q);
-      case Interpolation::jtcUpsampled:
-        return JointTrajectory::cubic(tree, times, q, restToRestVelocities(times, q), unwrap);
-      case Interpolation::jtcNone:
-      case Interpolation::automatic:
-      case Interpolation::jtc:
-      case Interpolation::linear:
-        break;
-    }
-    return JointTrajectory::linear(tree, times, q, unwrap);
-  };
+  const Waypoints through{times, q, spread(plan.velocities, columns, zero), spread(plan.accelerations, columns, zero)};
   std::map<std::string, double> others;
   for (int v = 0; v < tree.dof(); ++v) {
     const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
     if (!named) others[tree.variableName(v)] = rest[v];
   }
-  JointTrajectory motion = trajectory();
+  JointTrajectory motion = makeTrajectory(tree, kind, through, options.blend, unwrap);
   return {kind,
           columns.names,
           !plan.joints.empty(),

@@ -10,55 +10,18 @@
 
 #include <Eigen/Core>
 
+#include "fcl_artic/interpolation.h"
 #include "fcl_artic/trajectory.h"
 #include "plans/plan.h"
 
 namespace fcl_artic::plans {
 
-/// What lies between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
-///
-/// - linear: q0 + s d; a quaternion turns the shorter way at constant speed. Velocities do not count.
-/// - cubic (Hermite), with velocities v: q0 + c1 s + c2 s² + c3 s³,
-///     c1 = h v0,  c2 = 3 d - 2 h v0 - h v1,  c3 = h v0 + h v1 - 2 d.
-/// - quintic, with velocities and accelerations a: q0 + c1 s + ... + c5 s⁵,
-///     c1 = h v0,  c2 = h² a0 / 2,  c3 = 10 d - 6 h v0 - 4 h v1 - 3/2 h² a0 + 1/2 h² a1,
-///     c4 = -15 d + 8 h v0 + 7 h v1 + 3/2 h² a0 - h² a1,  c5 = 6 d - 3 h (v0 + v1) - 1/2 h² (a0 - a1).
-/// - jtcUpsampled: the one spline of cubics whose velocity and acceleration go on at the inner waypoints, from rest to
-///   rest; of a plan with velocities as automatic.
-/// - blends: straight lines joined by parabolas, at constant acceleration from `blend` before each inner waypoint to
-///   `blend` after it (JointTrajectory::parabolicBlends()).
-///
-/// - tangentHalfAngle: JointTrajectory::tangentHalfAngle().
-///
-/// Cubic and quintic are the only polynomials of these degrees with these values at both ends, and so those of
-/// ros_control's and ros2_control's joint_trajectory_controller, which takes the highest degree that both points have
-/// values for, as `automatic` and `jtc` do. Of joints that turn forever it takes the values as they are. Rounding of
-/// their coefficients moves them by no more than 2e-13 of the largest of |q|, h |v| and h² |a| of the two waypoints
-/// (doc/NUMERICS.md, section 12); what is certified is the polynomial with these coefficients.
-enum class Interpolation {
-  automatic,  ///< quintic where velocities and accelerations are given, cubic where velocities are, else linear
-  linear,
-  cubic,
-  quintic,
-  blends,
-  jtc,               ///< as automatic: what joint_trajectory_controller runs by `interpolation_method: splines`
-  jtcUpsampled,      ///< what it runs of a message on its topic, by `positions_upsampling.enable: true`
-  jtcNone,           ///< `interpolation_method: none`: each waypoint at once; taken as linear, and noted
-  tangentHalfAngle,  ///< the tangent of half of each angle goes straight
-};
-
-/// Of an option's value: "auto", "linear", "cubic", "quintic", "blends", "jtc", "jtc-upsampled", "jtc-none" or
-/// "tangent-half-angle". @throws std::invalid_argument, which says of "totg" what to do.
-Interpolation interpolationNamed(const std::string& name);
-const char* toString(Interpolation interpolation);
-
-/// How joints that turn forever go from value to value, where that makes a difference: where a step is longer than half
-/// a turn.
-enum class Turns {
-  ask,      ///< such a step is refused, and both ways named
-  given,    ///< as the values say
-  shortest  ///< the shorter way round (JointTrajectory::Unwrap::yes)
-};
+// The names of the way between waypoints are the library's (fcl_artic/interpolation.h).
+using fcl_artic::Interpolation;
+using fcl_artic::interpolationNamed;
+using fcl_artic::toString;
+using fcl_artic::Turns;
+using fcl_artic::turnsNamed;
 
 /// By so much a value may be beyond a joint's limit, as a sensor's may, and is noted: rad, and for lengths a tenth of
 /// it in m.

@@ -63,7 +63,7 @@ TEST_F(TrajectoryProgramTest, CurvesAreThoseOfCertify) {
   EXPECT_NE(none.err.find("cubic needs velocities"), std::string::npos) << none.err;
   const Outcome totg = check(positions, rest + "--interpolation totg");
   EXPECT_EQ(totg.status, 2);
-  EXPECT_NE(totg.err.find("--interpolation jtc"), std::string::npos) << totg.err;
+  EXPECT_NE(totg.err.find("by interpolation jtc"), std::string::npos) << totg.err;
 }
 
 /// The contact's time is that of its tangent; a trajectory of one piece and a motion say the same.

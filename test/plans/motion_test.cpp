@@ -231,8 +231,13 @@ TEST(PlanMotionTest, CurvesHaveTheNamesOfWhatRunsThem) {
   EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::cubic);
   options.interpolation = Interpolation::jtc;
   EXPECT_EQ(toMotion(tree, plan, options).interpolation, Interpolation::cubic);
-  expectContains(refusal([] { (void)interpolationNamed("totg"); }), "--interpolation jtc");
+  expectContains(refusal([] { (void)interpolationNamed("totg"); }), "by interpolation jtc");
   expectContains(refusal([] { (void)interpolationNamed("wild"); }), "auto, linear, cubic");
+  expectContains(refusal([] { (void)turnsNamed("wild"); }), "'wild' is no value of turns: ask, given, shortest are");
+  expectContains(refusal([] {
+                   (void)restToRestVelocities({0, 1}, {Eigen::VectorXd::Zero(1)});
+                 }),
+                 "2 times for 1 waypoints");
 
   // The controller takes turns as they are, and has no quaternions.
   const KinematicTree cart = cartTree();

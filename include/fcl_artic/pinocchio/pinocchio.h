@@ -381,13 +381,8 @@ class PinocchioReader {
     const auto& a = geometries_.geometryObjects[pair.first];
     const auto& b = geometries_.geometryObjects[pair.second];
     if (a.disableCollision || b.disableCollision) return;
-    if (a.parentJoint == b.parentJoint) {
-      throw std::invalid_argument("fromPinocchio: collision pair '" + a.name + "', '" + b.name +
-                                  "': both are on joint '" + model_.names.at(a.parentJoint) +
-                                  "' and never move against each other; remove the pair (removeCollisionPair())");
-    }
     checked[std::min(pair.first, pair.second)].insert(std::max(pair.first, pair.second));
-    if (a.parentJoint == 0 || b.parentJoint == 0) return;
+    if (a.parentJoint == 0 || b.parentJoint == 0 || a.parentJoint == b.parentJoint) return;
     const std::size_t child = a.parentJoint > b.parentJoint ? pair.first : pair.second;
     const std::size_t parent = child == pair.first ? pair.second : pair.first;
     if (attached[child] || attached[parent]) return;
@@ -421,7 +416,7 @@ class PinocchioReader {
     return geometry.swept_radius;
   }
 
-  /// Every pair of the geometry model's is checked, or nothing is returned at all.
+  /// Every pair of the geometry model's that a joint moves is checked, or nothing is returned at all.
   void requireChecked(const std::vector<std::set<std::size_t>>& checked) const {
     std::set<std::pair<std::string, std::string>> pairs;
     for (const auto& [a, b] : robot_.manager->checkedLinkPairs()) pairs.insert(std::minmax(a, b));
@@ -429,7 +424,8 @@ class PinocchioReader {
       for (const std::size_t b : checked[a]) {
         const auto& x = geometries_.geometryObjects[a];
         const auto& y = geometries_.geometryObjects[b];
-        if (x.parentJoint == 0 || y.parentJoint == 0 || pairs.count(std::minmax(x.name, y.name))) continue;
+        if (x.parentJoint == y.parentJoint || x.parentJoint == 0 || y.parentJoint == 0) continue;
+        if (pairs.count(std::minmax(x.name, y.name))) continue;
         throw std::logic_error("fromPinocchio: collision pair '" + x.name + "', '" + y.name + "' is not checked");
       }
     }
@@ -449,14 +445,15 @@ class PinocchioReader {
 
 /// Makes a manager of a pinocchio model and its collision geometry: joints, geometries (fromCoal()) and collision
 /// pairs. Of geometries, pairs that are listed are checked, neighbours too, and all others allowed; pairs of a geometry
-/// whose `disableCollision` is set are allowed as well. Both models are copied.
+/// whose `disableCollision` is set are allowed as well. Two geometries on one joint never move against each other, so
+/// no motion has them touch: ArticulatedCollisionManager::notes() names those that do, but of two on the universe,
+/// which are obstacles. Both models are copied.
 ///
 /// Objects that are registered or attached afterwards are checked against all geometries. A body that coal sweeps with
 /// a ball is refused where a margin would have to stand for that (PinocchioOptions::swept_radius_as_margin takes it).
 /// @throws std::invalid_argument, naming the joint, for a kind that this library has not (helical ones), for an axis
 ///   that is not of length 1 within 1e-9, and for mimic joints of more than one variable; naming the geometry, for one
-///   that fromCoal() or the manager refuses, such as a Halfspace or Plane that a joint moves; and for a collision pair
-///   on one joint, whose bodies never move against each other.
+///   that fromCoal() or the manager refuses, such as a Halfspace or Plane that a joint moves.
 inline PinocchioRobot fromPinocchio(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries,
                                     const PinocchioOptions& options = {}) {
   return detail::PinocchioReader(model, geometries, options).read();

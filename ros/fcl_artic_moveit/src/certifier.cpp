@@ -158,16 +158,20 @@ bool sameBodies(const Verdict::Contact& a, const Verdict::Contact& b) {
 /// The first contacts of the other pairs that touch between the two waypoints of the first one.
 void addOthers(const Cell& cell, const Motion& motion, fcl_artic::CertifiedRequest request, Verdict& verdict) {
   constexpr std::size_t kMost = 1000;
-  const std::size_t k = std::min(verdict.waypoint, motion.trajectory.numPieces() - 1);
   request.mode = fcl_artic::ContactMode::firstOfEveryPair;
   request.max_contacts = kMost;
-  const double begin = motion.trajectory.times()[k], duration = motion.trajectory.times()[k + 1] - begin;
-  const fcl_artic::CertifiedResult result = cell.manager().continuousCollide(motion.trajectory.piece(k), request);
-  for (const fcl_artic::CertifiedContact& one : result.contacts) {
-    Verdict::Contact contact = contactOf(cell, one, begin + one.t_lower * duration, one.certain);
-    const auto known = [&](const Verdict::Contact& other) { return sameBodies(contact, other); };
-    if (std::none_of(verdict.contacts.begin(), verdict.contacts.end(), known)) {
-      verdict.contacts.push_back(std::move(contact));
+  const std::size_t before = std::min(verdict.waypoint, motion.times.size() - 2);
+  const std::vector<double>& times = motion.trajectory.times();  // blends have more pieces than waypoints
+  for (std::size_t k = 0; k < motion.trajectory.numPieces(); ++k) {
+    if (times[k + 1] <= motion.times[before] || times[k] >= motion.times[before + 1]) continue;
+    const fcl_artic::CertifiedResult result = cell.manager().continuousCollide(motion.trajectory.piece(k), request);
+    for (const fcl_artic::CertifiedContact& one : result.contacts) {
+      const double t = times[k] + one.t_lower * (times[k + 1] - times[k]);
+      Verdict::Contact contact = contactOf(cell, one, t, one.certain);
+      const auto known = [&](const Verdict::Contact& other) { return sameBodies(contact, other); };
+      if (std::none_of(verdict.contacts.begin(), verdict.contacts.end(), known)) {
+        verdict.contacts.push_back(std::move(contact));
+      }
     }
   }
 }
@@ -217,6 +221,11 @@ void CertifierOptions::check() const {
   requireDistance("the margin", margin, " m");
   requireDistance("the mimic tolerance", motion.mimic_tolerance, "");
   requireDistance("the time limit", time_limit, " s");
+  requireDistance("the blend", motion.blend, " s");
+  if (motion.interpolation == Interpolation::blends && motion.blend == 0) {
+    throw std::invalid_argument("interpolation blends needs a blend above 0 s");
+  }
+  (void)fcl_artic::turnsOf(motion.interpolation, motion.turns);
 }
 
 Certifier::Certifier() = default;

@@ -38,8 +38,12 @@ class Parameters {
   /// Declares them, with what the node's YAML files say of them.
   /// @throws std::invalid_argument, rclcpp's exceptions, naming the parameter.
   Parameters(rclcpp::Node& node, std::string prefix) : node_(node), prefix_(std::move(prefix)) {
-    declare("interpolation", rclcpp::ParameterValue("auto"),
-            "what lies between two waypoints: auto, linear, cubic, quintic, jtc, jtc-none");
+    declare(
+        "interpolation", rclcpp::ParameterValue("auto"),
+        "what lies between two waypoints, as fcl_artic certify names it. joint_trajectory_controller: jtc by its "
+        "interpolation_method splines, jtc-none by none, jtc-upsampled of its topic by positions_upsampling.enable; "
+        "others: auto, linear, cubic, quintic, blends, tangent-half-angle");
+    declare("blend", rclcpp::ParameterValue(0.0), "s, half the duration of a blend, of interpolation blends", 0);
     declare("turns", rclcpp::ParameterValue("ask"),
             "steps of half a turn or more of joints that turn forever: ask, given, shortest");
     declare("margin", rclcpp::ParameterValue(0.0), "m that every pair has to keep beyond the padding", 0);
@@ -74,6 +78,7 @@ class Parameters {
     try {
       out.certifier.motion.interpolation = interpolationNamed(text("interpolation", changed));
       out.certifier.motion.turns = turnsNamed(text("turns", changed));
+      out.certifier.motion.blend = number("blend", changed);
       out.certifier.margin = number("margin", changed);
       out.certifier.motion.mimic_tolerance = number("mimic_tolerance", changed);
       out.certifier.time_limit = number("time_limit", changed);

@@ -23,22 +23,6 @@ constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr double kNearHalfTurn = 2e-6;  // cosine of half the angle between quaternions, below which no sense is sure
 constexpr double kSame = 1e-6;          // rad or m: within it a joint outside the group counts as standing still
 
-const std::vector<std::pair<const char*, Interpolation>> kInterpolations{
-    {"auto", Interpolation::automatic},  {"linear", Interpolation::linear}, {"cubic", Interpolation::cubic},
-    {"quintic", Interpolation::quintic}, {"jtc", Interpolation::jtc},       {"jtc-none", Interpolation::jtc_none}};
-const std::vector<std::pair<const char*, Turns>> kTurns{
-    {"ask", Turns::ask}, {"given", Turns::given}, {"shortest", Turns::shortest}};
-
-template <class T>
-T named(const std::vector<std::pair<const char*, T>>& all, const std::string& name, const char* what) {
-  std::string known;
-  for (const auto& one : all) {
-    if (name == one.first) return one.second;
-    known += (known.empty() ? "" : ", ") + std::string(one.first);
-  }
-  throw std::invalid_argument("'" + name + "' is no value of " + what + ": " + known + " are");
-}
-
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument(what);
 }
@@ -128,35 +112,22 @@ bool allHave(const RobotTrajectory& trajectory, const char* what, bool (RobotSta
 }
 
 Interpolation chosen(const RobotTrajectory& trajectory, Interpolation asked, bool timed) {
-  Interpolation kind = asked;
-  if (kind == Interpolation::jtc_none) return Interpolation::linear;
-  if (kind == Interpolation::automatic || kind == Interpolation::jtc) {
-    if (!timed) return Interpolation::linear;  // rates say nothing without times
-    const bool velocities = allHave(trajectory, "velocities", &RobotState::hasVelocities);
-    const bool accelerations = allHave(trajectory, "accelerations", &RobotState::hasAccelerations);
-    if (accelerations && !velocities) {
-      refuse("the waypoints have accelerations and no velocities: the parameter `interpolation` says what is meant");
-    }
-    return accelerations ? Interpolation::quintic : velocities ? Interpolation::cubic : Interpolation::linear;
+  fcl_artic::WaypointValues given{timed, false, false};
+  const bool most = asked == Interpolation::automatic || asked == Interpolation::jtc ||
+                    asked == Interpolation::jtcUpsampled;  // takes the most that there is
+  if (asked == Interpolation::cubic || asked == Interpolation::quintic || (most && timed)) {
+    given.velocities = allHave(trajectory, "velocities", &RobotState::hasVelocities);
   }
-  if (kind == Interpolation::linear) return kind;
-  const std::string name = toString(kind);
-  if (!timed) {
-    refuse("interpolation " + name + " needs times, the trajectory has none: put a time parameterization before");
+  if (asked == Interpolation::quintic || (most && timed)) {  // rates say nothing without times
+    given.accelerations = allHave(trajectory, "accelerations", &RobotState::hasAccelerations);
   }
-  if (!allHave(trajectory, "velocities", &RobotState::hasVelocities)) {
-    refuse("interpolation " + name + " needs velocities, the waypoints have none");
-  }
-  if (kind == Interpolation::quintic && !allHave(trajectory, "accelerations", &RobotState::hasAccelerations)) {
-    refuse("interpolation quintic needs accelerations, the waypoints have none");
-  }
-  return kind;
+  return fcl_artic::curveOf(asked, given);
 }
 
 [[noreturn]] void refuseFloating(const Joint& joint) {
   refuse("joint '" + joint.name +
-         "' floats and moves, and what the velocities of its quaternion mean is not defined: " +
-         "interpolation linear is the way to certify it");
+         "' floats and moves: no controller of joints runs its quaternion, and what the velocities of one mean is not "
+         "defined; interpolation linear is the way to certify it");
 }
 
 void requireNoTurningRates(const RobotTree& robot, const std::vector<VectorXd>& velocities) {
@@ -184,6 +155,8 @@ void requireSenses(const RobotTree& robot, const std::vector<VectorXd>& q) {
 /// What MoveIt's joints mean that this library's do not, or the other way round.
 void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, const std::vector<VectorXd>& q,
                  Interpolation kind, const MotionOptions& options) {
+  const bool controller = fcl_artic::isController(options.interpolation);
+  const bool asks = fcl_artic::turnsOf(options.interpolation, options.turns) == Turns::ask;
   requireSenses(robot, q);
   const auto& tree = *robot.tree;
   const auto moves = [&](int v, int n) {
@@ -195,11 +168,11 @@ void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, cons
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
     if (joint.type == JointType::floating && tree.jointVariable(tree.variableJoint(v)) == v && moves(v, 7) &&
-        kind != Interpolation::linear) {
+        (kind != Interpolation::linear || controller)) {
       refuseFloating(joint);
     }
     if (joint.type == JointType::planar && tree.isAngle(v) && moves(v - 2, 3) &&
-        (options.interpolation == Interpolation::automatic || options.interpolation == Interpolation::jtc)) {
+        (options.interpolation == Interpolation::automatic || controller)) {
       const auto* planar =
           static_cast<const moveit::core::PlanarJointModel*>(trajectory.getRobotModel()->getJointModel(joint.name));
       if (planar->getMotionModel() == moveit::core::PlanarJointModel::DIFF_DRIVE) {
@@ -208,7 +181,7 @@ void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, cons
       }
     }
     const bool forever = joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(v));
-    for (std::size_t k = 1; forever && options.turns == Turns::ask && k < q.size(); ++k) {
+    for (std::size_t k = 1; forever && asks && k < q.size(); ++k) {
       const double step = q[k][v] - q[k - 1][v];
       if (std::abs(step) < kHalfTurn) continue;
       refuse("'" + tree.variableName(v) + "' turns forever and goes by " + shown(step) + " rad from waypoint " +
@@ -219,21 +192,6 @@ void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, cons
 }
 
 }  // namespace
-
-Interpolation interpolationNamed(const std::string& name) {
-  return named(kInterpolations, name, "interpolation");
-}
-
-Turns turnsNamed(const std::string& name) {
-  return named(kTurns, name, "turns");
-}
-
-const char* toString(Interpolation interpolation) {
-  for (const auto& known : kInterpolations) {
-    if (interpolation == known.second) return known.first;
-  }
-  return "";
-}
 
 bool movesWith(const moveit::core::JointModelGroup* group, const moveit::core::JointModel& joint) {
   if (!group) return true;
@@ -273,26 +231,29 @@ Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const
   if (timed && times[0] > 0) {
     notes.push_back("the first waypoint is at t = " + shown(times[0]) + ": the way to it is no part of the trajectory");
   }
-  if (options.interpolation == Interpolation::jtc_none) {
+  if (options.interpolation == Interpolation::jtcNone) {
     notes.emplace_back(
         "interpolation jtc-none: the controller gives each waypoint at once; that all joints go straight "
         "to it, and arrive together, is taken for granted");
   }
   const Interpolation kind = chosen(trajectory, options.interpolation, timed);
+  if (kind == Interpolation::jtcUpsampled) {
+    notes.emplace_back(
+        "interpolation jtc-upsampled: the controller upsamples messages on its topic, and no goals of its action, "
+        "which "
+        "MoveIt sends");
+  }
   judgeJoints(robot, trajectory, q, kind, options);
   const auto unwrap = options.turns == Turns::shortest ? JointTrajectory::Unwrap::yes : JointTrajectory::Unwrap::no;
-  const auto rates = [&](const char* what, const double* (RobotState::*values)() const) {
-    return ratesOf(robot, trajectory, in_group, what, values);
-  };
-  const auto made = [&] {
-    if (kind == Interpolation::linear) return JointTrajectory::linear(*robot.tree, times, q, unwrap);
-    const std::vector<VectorXd> velocities = rates("velocity", &RobotState::getVariableVelocities);
-    requireNoTurningRates(robot, velocities);
-    if (kind == Interpolation::cubic) return JointTrajectory::cubic(*robot.tree, times, q, velocities, unwrap);
-    return JointTrajectory::quintic(*robot.tree, times, q, velocities,
-                                    rates("acceleration", &RobotState::getVariableAccelerations), unwrap);
-  };
-  JointTrajectory motion = made();
+  fcl_artic::Waypoints through{times, q, {}, {}};
+  if (kind == Interpolation::cubic || kind == Interpolation::quintic) {
+    through.velocities = ratesOf(robot, trajectory, in_group, "velocity", &RobotState::getVariableVelocities);
+    requireNoTurningRates(robot, through.velocities);
+  }
+  if (kind == Interpolation::quintic) {
+    through.accelerations = ratesOf(robot, trajectory, in_group, "acceleration", &RobotState::getVariableAccelerations);
+  }
+  JointTrajectory motion = fcl_artic::makeTrajectory(*robot.tree, kind, through, options.blend, unwrap);
   return {kind, timed, std::move(times), std::move(motion), std::move(notes)};
 }
 

@@ -118,6 +118,11 @@ TEST_F(CertifySolution, ParametersCount) {
 TEST_F(CertifySolution, WrongParametersAreNamed) {
   node->declare_parameter<std::string>("a.certify_solution.interpolation", "straight");
   expectContains(refusal([&] { adapter->initialize(node, "a"); }), "'straight' is no value of interpolation");
+  node->declare_parameter<std::string>("e.certify_solution.interpolation", "totg");
+  expectContains(refusal([&] { adapter->initialize(node, "e"); }), "certify its result, by interpolation jtc");
+  node->declare_parameter<std::string>("f.certify_solution.interpolation", "jtc");
+  node->declare_parameter<std::string>("f.certify_solution.turns", "shortest");
+  expectContains(refusal([&] { adapter->initialize(node, "f"); }), "interpolation jtc says which way round");
   node->declare_parameter<std::string>("b.certify_solution.on_undecided", "accept");
   expectContains(refusal([&] { adapter->initialize(node, "b"); }),
                  "b.certify_solution.*: 'accept' is no value of on_undecided");

@@ -63,18 +63,40 @@ TEST(Motion, AutoTakesTheMostThatTheWaypointsGive) {
             Interpolation::cubic);
 }
 
-TEST(Motion, NamesOfTheController) {
+/// The names of `fcl_artic certify --interpolation`, each with the curve that it is of waypoints with all rates and of
+/// positions alone. Half way from 0 to 1: the upsampled spline of rails 0, 1, 0 at times 0, 1, 3 has the velocity
+/// 2 v = 3 (2/3 - 1/6) at the middle one, so 1/2 - 3/4 / 8; the parabola's blend of 0.25 s ends before.
+TEST(Motion, NamesAreThoseOfTheProgram) {
   const Surroundings all(slider());
   const RobotTree robot = toTree(*all.model);
-  const auto made = [&](const char* name) {
-    return toMotion(robot, railTrip(all, true, true), {interpolationNamed(name), Turns::ask});
-  };
-  EXPECT_EQ(made("jtc").interpolation, Interpolation::quintic);
-  EXPECT_TRUE(made("jtc").notes.empty());
-  const Motion none = made("jtc-none");
-  EXPECT_EQ(none.interpolation, Interpolation::linear) << "whatever rates the waypoints have";
-  ASSERT_EQ(none.notes.size(), 1U);
-  expectContains(none.notes[0], "the controller gives each waypoint at once");
+  const struct {
+    const char* name;
+    Interpolation of_rates, of_positions;
+    double half_way;  // of positions alone
+  } curves[] = {{"auto", Interpolation::quintic, Interpolation::linear, 0.5},
+                {"linear", Interpolation::linear, Interpolation::linear, 0.5},
+                {"blends", Interpolation::blends, Interpolation::blends, 0.5},
+                {"jtc", Interpolation::quintic, Interpolation::linear, 0.5},
+                {"jtc-upsampled", Interpolation::quintic, Interpolation::jtcUpsampled, 0.5 - 0.75 / 8},
+                {"jtc-none", Interpolation::jtcNone, Interpolation::jtcNone, 0.5},
+                {"tangent-half-angle", Interpolation::tangentHalfAngle, Interpolation::tangentHalfAngle, 0.5}};
+  for (const auto& curve : curves) {
+    SCOPED_TRACE(curve.name);
+    MotionOptions options;
+    options.interpolation = interpolationNamed(curve.name);
+    options.blend = 0.25;
+    EXPECT_EQ(toMotion(robot, railTrip(all, true, true), options).interpolation, curve.of_rates);
+    const Motion motion = toMotion(robot, railTrip(all, false, false), options);
+    EXPECT_EQ(motion.interpolation, curve.of_positions);
+    EXPECT_NEAR(railAt(motion, 0.5), curve.half_way, 1e-12);
+  }
+  EXPECT_EQ(interpolationNamed("cubic"), Interpolation::cubic);
+  EXPECT_EQ(interpolationNamed("quintic"), Interpolation::quintic);
+  const auto notes = [&](Interpolation kind) { return toMotion(robot, railTrip(all, false, false), {kind}).notes; };
+  EXPECT_TRUE(notes(Interpolation::jtc).empty());
+  expectContains(notes(Interpolation::jtcNone).at(0), "the controller gives each waypoint at once");
+  expectContains(notes(Interpolation::jtcUpsampled).at(0), "no goals of its action");
+  expectContains(refusal([] { (void)interpolationNamed("totg"); }), "certify its result, by interpolation jtc");
 }
 
 TEST(Motion, WaypointsWithoutTimesAreNumbered) {
@@ -118,12 +140,14 @@ TEST(Motion, RefusalsNameWaypointAndJoint) {
   expectContains(why(all.trajectory("all", three), Interpolation::cubic), "cubic needs velocities");
   expectContains(why(railTrip(all, true, false), Interpolation::quintic), "quintic needs accelerations");
   expectContains(why(railTrip(all, false, true)), "accelerations and no velocities");
-  expectContains(why(all.trajectory("all", three, 0), Interpolation::cubic), "cubic needs times");
+  auto untimed = railTrip(all, true, false);
+  for (std::size_t k = 1; k < 3; ++k) untimed.setWayPointDurationFromPrevious(k, 0);
+  expectContains(why(untimed, Interpolation::cubic), "cubic needs times");
   auto trip = railTrip(all, true, false);
   trip.getWayPointPtr(1)->setVariableVelocity("turn", std::numeric_limits<double>::quiet_NaN());
   expectContains(why(trip), "waypoint 1: the velocity of 'turn' is nan");
-  expectContains(refusal([] { (void)interpolationNamed("blends"); }),
-                 "auto, linear, cubic, quintic, jtc, jtc-none are");
+  expectContains(refusal([] { (void)interpolationNamed("straight"); }),
+                 "auto, linear, cubic, quintic, blends, jtc, jtc-upsampled, jtc-none, tangent-half-angle are");
   expectContains(refusal([] { (void)turnsNamed("no"); }), "ask, given, shortest are");
 }
 
@@ -154,6 +178,11 @@ TEST(Motion, JointsThatTurnForever) {
   EXPECT_NEAR(
       std::abs(toMotion(robot, way, {Interpolation::automatic, Turns::shortest}).trajectory.configuration(0.5)[spin]),
       3.14159265358979, 1e-9);
+  // The controller takes the values as they are: nothing is asked, and the shorter way round is none of its ways.
+  EXPECT_NEAR(toMotion(robot, way, {Interpolation::jtc}).trajectory.configuration(0.5)[spin], 0, 1e-12);
+  for (const Interpolation kind : {Interpolation::jtc, Interpolation::jtcUpsampled, Interpolation::jtcNone}) {
+    expectContains(refusal([&] { (void)toMotion(robot, way, {kind, Turns::shortest}); }), "says which way round");
+  }
   const auto turn = all.trajectory("drives", {carAt(0, 0, 3, 0), carAt(0, 0, -3, 0)});
   expectContains(refusal([&] { (void)toMotion(robot, turn); }), "'drive/theta' turns forever");
 }
@@ -174,6 +203,7 @@ TEST(Motion, BaseThatFloatsAndStandsStill) {
 
   auto moves = all.trajectory("flies", {carAt(0, 0, 0, 0), carAt(0, 0, 0, 0, 4)});
   EXPECT_NEAR(toMotion(robot, moves).trajectory.configuration(0.5)[2], 3.5, 1e-12);
+  expectContains(refusal([&] { (void)toMotion(robot, moves, {Interpolation::jtc}); }), "joint 'fly' floats and moves");
   for (std::size_t k = 0; k < 2; ++k) moves.getWayPointPtr(k)->setVariableVelocity("fly/trans_z", 0.5);
   expectContains(refusal([&] { (void)toMotion(robot, moves); }), "joint 'fly' floats and moves");
   auto still = all.trajectory("flies", {carAt(0, 0, 0, 0), carAt(0, 0, 0, 0)});
@@ -258,6 +288,23 @@ TEST(Certifier, FirstContactWorkedNumber) {
   expectContains(verdict.message, "free: proven for");
 }
 
+/// Parabolas around waypoint 1 are pieces of their own: what touches in them before the next waypoint is named too. The
+/// rail is at 0.5 at t = 0.5, before the blend of 0.25 s, and at 0.65 at t = 0.65.
+TEST(Certifier, BlendsHaveMorePiecesThanWaypoints) {
+  Surroundings all(slider());
+  all.add("wall", std::make_shared<shapes::Box>(0.1, 1, 1), {1.7, 0, 0});
+  all.add("far", std::make_shared<shapes::Box>(0.1, 1, 1), {1.99, 0, 0});  // the finger meets it at 0.79, in the blend
+  CertifierOptions options;
+  options.motion.interpolation = Interpolation::blends;
+  options.motion.blend = 0.25;
+  const Verdict verdict = Certifier().certify(*all.env, all.acm, railTrip(all, false, false), nullptr, options);
+  EXPECT_NEAR(verdict.t_lower, 0.5, 1e-5);
+  ASSERT_EQ(verdict.contacts.size(), 3U) << verdict.message;
+  EXPECT_NEAR(verdict.contacts[1].t, 0.65, 1e-5);
+  EXPECT_EQ(verdict.contacts[2].body2.id, "far");
+  EXPECT_GT(verdict.contacts[2].t, 0.79) << "later than straight";
+}
+
 TEST(Certifier, BudgetThatRunsOutIsUndecided) {
   Surroundings all(slider());
   for (int i = 0; i < 40; ++i) {
@@ -294,6 +341,12 @@ TEST(Certifier, BudgetThatRunsOutIsUndecided) {
   options.time_limit = 0;
   options.motion.mimic_tolerance = std::numeric_limits<double>::quiet_NaN();
   expectContains(why(options), "mimic tolerance nan");
+  options.motion.mimic_tolerance = 0;
+  options.motion.interpolation = Interpolation::blends;
+  expectContains(why(options), "blends needs a blend");
+  options.motion.interpolation = Interpolation::jtc;
+  options.motion.turns = Turns::shortest;
+  expectContains(why(options), "says which way round");
 }
 
 /// A jaw that mimics the finger, beside it at y from 0.475 to 0.525. The post's face is at y = 0.5255.

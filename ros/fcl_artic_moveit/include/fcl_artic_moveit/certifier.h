@@ -32,7 +32,8 @@ struct CertifierOptions {
   /// count.
   double time_limit = 0;
 
-  /// @throws std::invalid_argument naming the value: margin, mimic tolerance or time limit negative or not finite.
+  /// @throws std::invalid_argument naming the value: margin, mimic tolerance, blend or time limit negative or not
+  ///   finite; `blends` without a blend; Turns::shortest beside an interpolation that says itself which way round.
   void check() const;
 };
 
@@ -82,9 +83,8 @@ class Certifier {
   /// @param trajectory  whose first waypoint has the attached bodies.
   /// @param start       what the robot starts from; null: waypoint 0 is taken at its word.
   /// @throws std::invalid_argument as CertifierOptions::check(), toMotion() and Cell::update(), for waypoints that
-  /// carry other bodies than the
-  ///   first, and for a first that lacks a body which `start` carries, or has it on another link or elsewhere: nothing
-  ///   is claimed then.
+  ///   carry other bodies than the first, and for a first that lacks a body which `start` carries, or has it on another
+  ///   link or elsewhere: nothing is claimed then.
   Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
                   const robot_trajectory::RobotTrajectory& trajectory, const moveit::core::RobotState* start = nullptr,
                   const CertifierOptions& options = {}) const;

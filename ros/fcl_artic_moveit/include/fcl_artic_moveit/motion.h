@@ -4,49 +4,31 @@
 #include <string>
 #include <vector>
 
-#include <fcl_artic/trajectory.h>
+#include <fcl_artic/interpolation.h>
 #include <moveit/robot_trajectory/robot_trajectory.hpp>
 
 #include "fcl_artic_moveit/robot.h"
 
 namespace fcl_artic_moveit {
 
-/// What lies between two waypoints, by what runs it. The polynomials are those of fcl_artic::JointTrajectory::linear(),
-/// cubic() and quintic().
-enum class Interpolation {
-  automatic,  ///< quintic where the waypoints have velocities and accelerations, cubic with velocities, else linear
-  linear,     ///< straight in the joints; quaternions by the shortest rotation
-  cubic,      ///< the cubic with the waypoints' velocities
-  quintic,    ///< the quintic with their velocities and accelerations
-  jtc,        ///< as automatic: what joint_trajectory_controller runs by `interpolation_method: splines`
-  jtc_none    ///< `interpolation_method: none`: each waypoint at once; taken as linear, and noted
-};
-
-/// How joints that turn forever go where a step is half a turn or longer.
-enum class Turns {
-  ask,      ///< such a step is refused
-  given,    ///< as the values say
-  shortest  ///< the shorter way round, as MoveIt's own interpolation has it
-};
-
-/// Of a parameter's value: "auto", "linear", "cubic", "quintic", "jtc", "jtc-none". @throws std::invalid_argument
-/// naming these.
-Interpolation interpolationNamed(const std::string& name);
-/// Of a parameter's value: "ask", "given", "shortest". @throws std::invalid_argument naming these.
-Turns turnsNamed(const std::string& name);
-const char* toString(Interpolation interpolation);
+// What lies between two waypoints has the names that the program has: fcl_artic/interpolation.h.
+using fcl_artic::Interpolation;
+using fcl_artic::interpolationNamed;
+using fcl_artic::Turns;
+using fcl_artic::turnsNamed;
 
 struct MotionOptions {
   Interpolation interpolation = Interpolation::automatic;
-  Turns turns = Turns::ask;
+  Turns turns = Turns::ask;  ///< that a controller's own interpolation leaves open: fcl_artic::turnsOf()
   /// By how much a mimic joint that moves with the group may be off from where its master has it, as encoders are, rad
   /// or m. What is certified is where the master has it.
   double mimic_tolerance = 1e-3;
+  double blend = 0;  ///< s, half the duration of a blend, of Interpolation::blends
 };
 
 /// A MoveIt trajectory as the motion that is asked about.
 struct Motion {
-  Interpolation interpolation;  ///< that was used: linear, cubic or quintic
+  Interpolation interpolation;  ///< that was used; never automatic or jtc
   bool timed;                   ///< whether the trajectory has times; if not, they are the waypoints' numbers
   std::vector<double> times;    ///< of the waypoints, s, from the trajectory's start, as in its message
   fcl_artic::JointTrajectory trajectory;
@@ -62,8 +44,8 @@ struct Motion {
 /// @throws std::invalid_argument, naming waypoint and joint: no waypoint, a joint outside the group that moves, values
 ///   that are not finite, mimic joints that are elsewhere than their masters have them, times that do not increase,
 ///   waypoints of which only some have velocities or accelerations, an interpolation for which these or the times are
-///   missing, a step of half a turn (Turns::ask), a floating joint that turns by a quintic or moves by a cubic, a
-///   planar joint with differential drive that moves, unless the interpolation is stated.
+///   missing, a step of half a turn (Turns::ask), a floating joint that moves by another curve than linear or by a
+///   controller's, a planar joint with differential drive that moves, unless the interpolation is stated.
 Motion toMotion(const RobotTree& robot, const robot_trajectory::RobotTrajectory& trajectory,
                 const MotionOptions& options = {});
 
