@@ -62,9 +62,9 @@ class Printer {
                   verify::listAsJson(c.notes).c_str(), verify::listAsJson(c.differences).c_str());
       return;
     }
-    const std::string begin = std::string(path) + ": ";
-    for (const std::string& note : c.notes) line(begin, note);
-    for (const std::string& what : c.differences) line(begin, "DIFFERENT: " + what);
+    for (const std::string& note : c.notes) line(std::string(path) + ": ", note);
+    for (const std::string& what : c.differences)
+      std::printf("%s: DIFFERENT: %s\n", verify::shown(path).c_str(), verify::shown(what).c_str());
   }
   void world(const char* path, const verify::World& world) const {
     const std::vector<std::string> lines = verify::linesOf(world);
@@ -354,7 +354,9 @@ class Run {
     else if (obstacles > 0)
       subject.scene = "among this world's obstacles (" + std::to_string(obstacles) + ")";
     if (!motion.self) subject.pairs = "pairs of the robot and an obstacle";
-    if (motion.margin > 0 || motion.added > 0 || !world_.margins.empty() || !world_.pair_margins.empty())
+    const auto isMargin = [](const auto& margin) { return margin.second > 0; };
+    if (motion.margin > 0 || motion.added > 0 || std::any_of(world_.margins.begin(), world_.margins.end(), isMargin) ||
+        std::any_of(world_.pair_margins.begin(), world_.pair_margins.end(), isMargin))
       subject.meets = "comes within its margin";
     return subject;
   }

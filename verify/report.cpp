@@ -98,9 +98,12 @@ std::vector<std::string> linesOf(const World& world, const Motion& motion, const
   lines.push_back("goal, t = " + decimal(motion.until) + ofPiece(last) + ":" +
                   startOrGoal(world, motion.pieces.back(), &motion.until));
   if (motion.duration != 0) lines.push_back("duration: " + decimal(motion.duration) + " s, which no proof uses");
-  if (last > 0)
-    lines.push_back(std::to_string(last + 1) + " pieces: each begins where the one before ends, within " +
-                    decimal(verdict.jump) + " rad or m");
+  if (last > 0) {
+    char jump[20];
+    std::snprintf(jump, sizeof jump, "%.2g", verdict.jump);
+    lines.push_back(std::to_string(last + 1) + " pieces: each begins where the one before ends, within " + jump +
+                    " rad or m");
+  }
   for (std::size_t k = 0; k <= last; ++k)
     for (const auto& [pair, until] : motion.pieces[k].ignored)
       lines.push_back("ignored until t = " + decimal(until) + ofPiece(k) +
@@ -136,14 +139,17 @@ std::string notChecked(const Verdict& v) {
 std::string wrapped(const std::string& begin, std::string_view text) {
   const std::string safe = shown(text);
   std::string all, line = shown(begin);
-  for (std::size_t at = 0, end; at <= safe.size(); at = end + 1) {
-    end = std::min(safe.find(' ', at), safe.size());
-    const bool first = at == 0;
-    if (!first && line.size() + 1 + end - at > 120) {
-      all += line + "\n";
-      line = "   ";
+  std::size_t end = safe.find(": ");  // the list's heading stays whole
+  for (std::size_t at = 0; at < safe.size(); at = end) {
+    end = safe.find(", ", end);
+    const bool last = end == safe.npos;
+    end = last ? safe.size() : end + 2;
+    const std::string item = safe.substr(at, end - at);
+    if (at > 0 && line.size() + item.size() > (last ? 120 : 121)) {  // without the space at the end
+      all += line.substr(0, line.size() - 1) + "\n";
+      line = "    ";
     }
-    line += (first ? "" : " ") + safe.substr(at, end - at);
+    line += item;
   }
   return all + line + "\n";
 }

@@ -49,7 +49,7 @@ expect(1 "DIFFERENT: .*NOT VERIFIED: it is proven of this world, .*\n0 of 1 reco
 file(WRITE ${WORK}/table.urdf "<robot name='t'><link name='table'><collision><origin xyz='0 2 0'/><geometry><box size='1 1 1'/></geometry></collision></link></robot>")
 set(table --scene ${WORK}/table.urdf)
 file(WRITE ${WORK}/plan.csv "time,a,x\n0,0,-3\n1,2,3\n")
-expect(0 "VERIFIED: the robot of this world moves as '.*plan.csv' says among the obstacles of '.*table.urdf', and none of 2 pairs of bodies comes within its margin.\n  not compared with a file: robot \\(--urdf\\), neighbours \\(--srdf\\)\n  not checked: 1 neighbours\n.*the motion is that of '.*plan.csv': waypoints 0 to 1, straight.*every[ \n]+timing.*\n1 of 1 records verified\n  not compared with a file: robot"
+expect(0 "VERIFIED: the robot of this world moves as '.*plan.csv' says among the obstacles of '.*table.urdf', and none of 2 pairs of bodies comes within its margin.\n  not compared with a file: robot \\(--urdf\\), neighbours \\(--srdf\\)\n  not checked: 1 neighbours\n.*the motion is that of '.*plan.csv': waypoints 0 to 1,[ \n]+straight.*every[ \n]+timing.*\n1 of 1 records verified\n  not compared with a file: robot"
   ${world} ${record} ${table} --plan ${WORK}/plan.csv)
 file(WRITE ${WORK}/slower.csv "time,a,x\n0,0,-3\n7,2,3\n")
 expect(0 "that of '.*plan.csv'.*1 of 1 records verified" ${world} ${record} --plan ${WORK}/plan.csv --plan ${WORK}/slower.csv)

@@ -93,24 +93,28 @@ TEST(VerifyReport, AVerdictIsASentenceOfItsSubject) {
 }
 
 TEST(VerifyReport, LongListsAreWrapped) {
-  std::string list = "allowed:", words;
-  for (int k = 0; k < 200; ++k) list += " 'link_" + std::to_string(k) + "' and 'b\n',";
-  const std::string text = wrapped("a.fac: ", list + " VERIFIED");
+  std::string list = "not checked, allowed: ", words;
+  for (int k = 0; k < 200; ++k) list += "'link_" + std::to_string(k) + "' and 'b\n', ";
+  list += "VERIFIED";
+  const std::string text = wrapped("a.fac: ", list);
   std::size_t lines = 0;
   for (std::size_t at = 0, end; at < text.size(); at = end + 1, ++lines) {
     end = text.find('\n', at);
     ASSERT_NE(end, std::string::npos);
     EXPECT_LE(end - at, 120u);
     const std::string line = text.substr(at, end - at);
-    EXPECT_EQ(line.rfind(lines == 0 ? "a.fac: allowed: 'link_0'" : "    ", 0), 0u) << line;
-    words += (lines == 0 ? "" : " ") + line.substr(lines == 0 ? 0 : 4);
+    EXPECT_EQ(line.rfind(lines == 0 ? "a.fac: not checked, allowed: 'link_0' and" : "    'link_", 0), 0u) << line;
+    words += line.substr(lines == 0 ? 0 : 4) + (end + 1 < text.size() ? " " : "");
   }
   EXPECT_GT(lines, 30u);
-  EXPECT_EQ(words, "a.fac: " + shown(list + " VERIFIED"));
+  EXPECT_EQ(words, "a.fac: " + shown(list));
   EXPECT_EQ(text.find("VERIFIED"), std::string::npos);
   EXPECT_EQ(wrapped("  ", "short"), "  short\n");
-  EXPECT_EQ(wrapped("", ""), "\n");
-  EXPECT_EQ(wrapped("", std::string(200, 'x') + " y"), std::string(200, 'x') + "\n    y\n");  // a word stays whole
+  EXPECT_EQ(wrapped("  ", ""), "  \n");
+  EXPECT_EQ(wrapped("", "x"), "x\n");
+  const std::string x(200, 'x');  // what is no list stays whole, and so does an item
+  EXPECT_EQ(wrapped("", x + " " + x), x + " " + x + "\n");
+  EXPECT_EQ(wrapped("", "a: " + x + ", y"), "a: " + x + ",\n    y\n");
 }
 
 TEST(VerifyReport, WithinTheMarginIsNoContact) {
