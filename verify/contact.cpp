@@ -11,8 +11,12 @@
 namespace verify {
 namespace {
 
-/// A point of a body as a witness names it.
-Vec readPoint(const Geometry& g, Bytes& bytes);
+bool atMost(const Tm& a, const Tm& b) {
+  return up(a) <= down(b);
+}
+Tm square(const Tm& a) {
+  return a * a;
+}
 /// Whether x is certainly in the tetrahedron of four vertices of a hull: with each of them replaced by x, its volume
 /// keeps its sign.
 bool insideTetrahedron(const Vec corners[4], const Vec& x) {
@@ -24,12 +28,15 @@ bool insideTetrahedron(const Vec corners[4], const Vec& x) {
   return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s &&
          volume(a, b, c, x) == s;
 }
-/// The unit in which a product of so many lengths comes near 1, from below: 2^-k m, k >= 0. Inequalities between powers
-/// of lengths are looked at in it, for in metres those of small shapes are lost below 2^-64.
-int unitFor(double product, int lengths) {
+/// By which a product of so many lengths comes near 1, from below: 2^k, k >= 0. Inequalities between powers of lengths
+/// are looked at in the unit 2^-k m, for in metres those of small shapes are lost below 2^-64.
+Tm unitFor(double product, int lengths) {
   int k = 0;
   while (k < 30 && std::ldexp(product, lengths * (k + 1)) <= 1) ++k;
-  return k;
+  return constant(integer(std::int64_t{1} << k));
+}
+Vec operator*(const Tm& unit, const Vec& x) {
+  return {unit * x[0], unit * x[1], unit * x[2]};
 }
 /// Whether x, in g's coordinates, is certainly in that piece.
 bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
@@ -37,9 +44,9 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
   const auto half = [&](std::size_t k) { return exactly(n[k] / 2); };
   const auto within = [&](const Tm& value, const Tm& size) { return atMost(value, size) && atMost(-value, size); };
   const auto withinRadius = [&](const Vec& v) {  // |v| <= the first number
-    const int k = unitFor(n[0], 1);
-    const Vec y = doubled(v, k);
-    return atMost(dot(y, y), square(doubled(exactly(n[0]), k)));
+    const Tm unit = unitFor(n[0], 1);
+    const Vec y = unit * v;
+    return atMost(dot(y, y), square(unit * exactly(n[0])));
   };
   switch (g.kind) {
     case Geometry::box:
@@ -54,24 +61,24 @@ bool inside(const Geometry& g, std::uint32_t piece, const Vec& x) {
       return withinRadius(x);
     case Geometry::ellipsoid: {  // sum (x_k / a_k)^2 <= 1, times the square of a b c
       if (!(n[0] > 0 && n[1] > 0 && n[2] > 0)) return false;
-      const int k = unitFor(n[0] * n[1] * n[2], 3);
-      const Vec y = doubled(x, k);
-      const Tm a = doubled(exactly(n[0]), k), b = doubled(exactly(n[1]), k), c = doubled(exactly(n[2]), k);
+      const Tm unit = unitFor(n[0] * n[1] * n[2], 3);
+      const Vec y = unit * x;
+      const Tm a = unit * exactly(n[0]), b = unit * exactly(n[1]), c = unit * exactly(n[2]);
       return atMost(square(y[0] * b * c) + square(a * y[1] * c) + square(a * b * y[2]), square(a * b * c));
     }
     case Geometry::capsule: {  // any point of the segment serves; the nearest is best
       const Fix end = encloseDown(n[1] / 2);
-      const Tm nearest = constant(most(-end, least(end, x[2].c0)));
-      return end >= Fix{0} && withinRadius({x[0], x[1], x[2] - nearest});
+      const Tm nearest = constant(std::max(-end, std::min(end, x[2].c0)));
+      return -end <= end && withinRadius({x[0], x[1], x[2] - nearest});
     }
     case Geometry::cylinder:
       return within(x[2], half(1)) && withinRadius({x[0], x[1], Tm{}});
     case Geometry::cone: {  // sqrt(x^2 + y^2) l <= r (l/2 - z), which says nothing where l is 0
       if (!(n[1] > 0 && within(x[2], half(1)))) return false;
-      const int k = unitFor(n[0] * n[1], 2);
-      const Vec y = doubled(x, k);
-      const Tm r = doubled(exactly(n[0]), k), l = doubled(exactly(n[1]), k);
-      return atMost((square(y[0]) + square(y[1])) * square(l), square(r * (doubled(half(1), k) - y[2])));
+      const Tm unit = unitFor(n[0] * n[1], 2);
+      const Vec y = unit * x;
+      const Tm r = unit * exactly(n[0]), l = unit * exactly(n[1]);
+      return atMost((square(y[0]) + square(y[1])) * square(l), square(r * (unit * half(1) - y[2])));
     }
     case Geometry::halfspace:
       return atMost(dot(pointOf(n.data()), x), exactly(n[3]));
@@ -140,9 +147,10 @@ Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Bud
   const auto pair = std::find_if(
       list.begin(), list.end(), [&](const Opponent& o) { return o.body == static_cast<int>(std::min(first, second)); });
   if (first == second || pair == list.end()) throw NotProven("the contact is between bodies that are not checked");
-  for (const Ignored& ignored : motion.pieces[piece].ignored)
-    if (ignored.a == pair->body && ignored.b == static_cast<int>(std::max(first, second)) && t <= ignored.until)
-      throw NotProven("the contact is at a time at which its pair is ignored");
+  const auto& ignored = motion.pieces[piece].ignored;
+  const auto until = ignored.find(std::minmax(static_cast<int>(first), static_cast<int>(second)));
+  if (until != ignored.end() && t <= until->second)
+    throw NotProven("the contact is at a time at which its pair is ignored");
 
   const Span span{at.x, at.x + at.error};
   Poses poses(world, motion.pieces[piece], budget);

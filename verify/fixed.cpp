@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fixed.h"
 
-#include <gmp.h>
 #include <mpfr.h>
 
 namespace verify {
@@ -9,39 +8,25 @@ namespace {
 
 struct Real {  // an MPFR number that frees itself
   explicit Real(mpfr_prec_t bits) { mpfr_init2(x, bits); }
+  explicit Real(Fix a) : Real(128) {  // which has at most 105 bits: exact
+    Real low(64);
+    mpfr_set_si(x, static_cast<long>(a.v >> 64), MPFR_RNDN);
+    mpfr_set_ui_2exp(low.x, static_cast<std::uint64_t>(a.v), -64, MPFR_RNDN);
+    mpfr_add(x, x, low.x, MPFR_RNDN);
+  }
   ~Real() { mpfr_clear(x); }
   Real(const Real&) = delete;
   Real& operator=(const Real&) = delete;
   mpfr_t x;
 };
 
-struct Integer {
-  Integer() { mpz_init(x); }
-  ~Integer() { mpz_clear(x); }
-  Integer(const Integer&) = delete;
-  Integer& operator=(const Integer&) = delete;
-  mpz_t x;
-};
-
-void set(Integer& z, Uint value) {
-  const std::uint64_t words[2] = {static_cast<std::uint64_t>(value), static_cast<std::uint64_t>(value >> 64)};
-  mpz_import(z.x, 2, -1, sizeof words[0], 0, 0, words);
-}
-
-Int get(const Integer& z) {
-  if (mpz_sizeinbase(z.x, 2) > 105) throw OutOfRange("a number is beyond the verifier's range of 2^40");
-  std::uint64_t words[2] = {0, 0};
-  mpz_export(words, nullptr, -1, sizeof words[0], 0, 0, z.x);
-  const Int magnitude = static_cast<Int>((static_cast<Uint>(words[1]) << 64) | words[0]);
-  return mpz_sgn(z.x) < 0 ? -magnitude : magnitude;
-}
-
-/// floor(2^64 x)
+/// The number of ulps in x, rounded down, for |x| <= 2^40 of 64 bits or more. What is above the integer part is in
+/// [0, 1), and multiples of 2^-64 there have 64 bits: rounded down to x's precision it stays above the same one.
 Fix floorOf(Real& x) {
-  Integer z;
+  const long whole = mpfr_get_si(x.x, MPFR_RNDD);
+  mpfr_sub_si(x.x, x.x, whole, MPFR_RNDD);
   mpfr_mul_2si(x.x, x.x, 64, MPFR_RNDD);  // a power of two: exact
-  mpfr_get_z(z.x, x.x, MPFR_RNDD);
-  return checked(get(z));
+  return checked(whole * kOne + static_cast<Int>(mpfr_get_ui(x.x, MPFR_RNDD)));
 }
 
 }  // namespace
@@ -67,22 +52,17 @@ Fix encloseDown(double value) {
   return e.x - e.error;
 }
 
-// (r - 1)^2 <= 2^64 v < r^2 with r = isqrt(2^64 v) + 1, so r 2^-64 is above the root and at most 1 ulp above it.
+// Rounded up; the floor takes less than the ulp that is added.
 Fix sqrtUp(Fix a) {
-  Integer z;
-  set(z, static_cast<Uint>(a.v < 0 ? 0 : a.v));
-  mpz_mul_2exp(z.x, z.x, 64);
-  mpz_sqrt(z.x, z.x);
-  return checked(get(z) + 1);
+  Real root(std::max(a, Fix{0}));
+  mpfr_sqrt(root.x, root.x, MPFR_RNDU);
+  return floorOf(root) + ulps(1);
 }
 
-// The angle has at most 105 bits, so 128 hold it. MPFR rounds the exact sine to 80 bits downwards: off by less than
-// 2^-79; the floor takes less than one ulp more.
+// MPFR rounds the exact sine to 80 bits downwards: off by less than 2^-79; the floor takes less than one ulp more.
 void sineCosine(Fix angle, Fix& sine, Fix& cosine) {
-  Real x(128), low(64), s(80), c(80);
-  mpfr_set_si(x.x, static_cast<long>(angle.v >> 64), MPFR_RNDN);
-  mpfr_set_ui_2exp(low.x, static_cast<std::uint64_t>(angle.v), -64, MPFR_RNDN);
-  mpfr_add(x.x, x.x, low.x, MPFR_RNDN);
+  const Real x(angle);
+  Real s(80), c(80);
   mpfr_sin_cos(s.x, c.x, x.x, MPFR_RNDD);
   sine = floorOf(s);
   cosine = floorOf(c);

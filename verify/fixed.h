@@ -3,6 +3,7 @@
 // refused, and a refusal is never a proof.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
@@ -59,9 +60,6 @@ inline Fix operator-(Fix a) {
 inline Fix& operator+=(Fix& a, Fix b) {
   return a = a + b;
 }
-inline Fix& operator-=(Fix& a, Fix b) {
-  return a = a - b;
-}
 inline bool operator<(Fix a, Fix b) {
   return a.v < b.v;
 }
@@ -71,31 +69,13 @@ inline bool operator>(Fix a, Fix b) {
 inline bool operator<=(Fix a, Fix b) {
   return a.v <= b.v;
 }
-inline bool operator>=(Fix a, Fix b) {
-  return a.v >= b.v;
-}
-inline bool operator==(Fix a, Fix b) {
-  return a.v == b.v;
-}
 inline Fix abs(Fix a) {
   return Fix{a.v < 0 ? -a.v : a.v};
-}
-inline Fix most(Fix a, Fix b) {
-  return a.v < b.v ? b : a;
-}
-inline Fix least(Fix a, Fix b) {
-  return a.v < b.v ? a : b;
 }
 /// a 2^-k rounded down: less than one ulp too small. (Right shifts of negative numbers round down with every compiler
 /// that has __int128.)
 inline Fix shifted(Fix a, int k) {
   return Fix{a.v >> k};
-}
-
-/// Exactly 2^k times as much, 0 <= k <= 60.
-inline Fix doubled(Fix a, int k) {
-  if (a.v > kMost >> k || a.v < -(kMost >> k)) throw OutOfRange("a number is beyond the verifier's range of 2^40");
-  return Fix{a.v * (static_cast<Int>(1) << k)};
 }
 
 /// The product rounded down: exact - 1 ulp < result <= exact.

@@ -1,32 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The formats: worlds, motions and records, read strictly. Nothing is proven here.
 #include <algorithm>
-#include <set>
 
+#include "places.h"
 #include "proof.h"
 
 namespace verify {
 namespace {
 
+const char* const kRoles[] = {"link", "carried", "obstacle"};
+
 constexpr std::size_t kMostLines = 200u << 20;  // numbers of lines and entries are 32 bits wide
 
-/// Whether a proper rotation may be within 2^-49 of the numbers: without one, the claim would be about nothing at all.
-/// If R + E is that rotation, |E_ij| <= 2^-49, then |R R^T - I|_ij <= sum over k of |R_ik E_jk| + |E_ik R_jk| + |E_ik
-/// E_jk|
-/// <= 2 sqrt(3) 2^-49 + 3 2^-98 < 2^-47, rows of a rotation being of length 1; and R's determinant is near 1.
-bool mayBeRotation(const double numbers[9]) {
+/// Whether a proper rotation is certainly within 2^-49 of the numbers in each entry: without one, the claim would be
+/// about nothing at all. With R = U diag(s) V^T, singular values s >= 0, U V^T is the nearest orthogonal matrix Q, and
+/// entries of R - Q = U diag(s - 1) V^T are at most max |s - 1|. Of the symmetric R R^T - I the eigenvalues are s^2 -
+/// 1, none of which is beyond its Frobenius norm e: |s - 1| = |s^2 - 1| / (s + 1) <= e / (2 - e). So e^2 < 2^-96 is
+/// enough: in whole ulps of 2^-64 it is then at most 2^32 - 1, so e < 2^-48 (1 - 2^-34), and e / (2 - e) < 2^-49. det Q
+/// is the sign of det R. Errors of the products are in the bounds.
+bool isNearRotation(const double numbers[9]) {
   for (int k = 0; k < 9; ++k)
     if (!(std::fabs(numbers[k]) < 2)) return false;
   Vec row[3];
-  for (std::size_t i = 0; i < 9; ++i) row[i / 3][i % 3] = constant(enclose(numbers[i]));
+  for (std::size_t i = 0; i < 9; ++i) row[i / 3][i % 3] = exactly(numbers[i]);
+  Int squares = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      const Fix product = dot(row[i], row[j]).c0;
-      if (abs(i == j ? product - integer(1) : product) > Fix{kOne >> 47}) return false;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Fix off = bound(dot(row[i], row[j]) - constant(integer(i == j)));
+      if (off > Fix{1 << 16}) return false;  // so that no square is too large
+      squares += off.v * off.v;
     }
-  const Vec cross{row[0][1] * row[1][2] - row[0][2] * row[1][1], row[0][2] * row[1][0] - row[0][0] * row[1][2],
-                  row[0][0] * row[1][1] - row[0][1] * row[1][0]};
-  return dot(cross, row[2]).c0 > Fix{0};
+  return squares < Int{1} << 32 && sign(determinant(row[0], row[1], row[2])) > 0;
 }
 
 /// The lines of a text, each cut into words at single spaces.
@@ -139,8 +143,8 @@ class Lines {
   /// Nine numbers near a rotation.
   void rotation(double numbers[9]) {
     for (int k = 0; k < 9; ++k) numbers[k] = number();
-    if (!mayBeRotation(numbers))
-      fail("the nine numbers are no rotation's: R R^T is more than 2^-47 off the identity, or det R is not above 0");
+    if (!isNearRotation(numbers))
+      fail("the nine numbers are not known to be a rotation's: R R^T is 2^-48 off the identity, or det R not above 0");
   }
   double notNegative() {
     const double value = number();
@@ -273,9 +277,28 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
+/// Lines that say nothing: who wrote them meant something else.
+void refuseUnused(const World& world) {
+  std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
+  for (const Body& body : world.bodies) {
+    there[static_cast<std::size_t>(body.name_id)] = 1;
+    used[static_cast<std::size_t>(body.geometry)] = 1;
+  }
+  for (std::size_t k = 0; k < there.size(); ++k)
+    if (!there[k])
+      throw BadInput("world: 'margin' or 'unchecked' names " + inQuotes(world.names[k]) + ": no body is called so");
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
+  for (const auto& [pair, listed] : world.unchecked)
+    if (listed.pairs == 0)
+      throw BadInput("world: 'unchecked' of " + inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                     inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
+                     ": no two bodies of these names would be checked");
+}
+
 World readWorldText(std::string_view text) {
   World world;
-  world.hash = sha256(text.data(), text.size());
+  world.hash = sha256(text);
   Lines lines(text, "world");
   if (!lines.next() || text.substr(0, 18) != "fcl_artic world 1\n")
     lines.fail("the first line is not 'fcl_artic world 1'");
@@ -313,15 +336,9 @@ World readWorldText(std::string_view text) {
     } else if (kind == "body") {
       Body body{};
       const std::string_view role = lines.word();
-      if (role == "link") {
-        body.role = Role::link;
-      } else if (role == "carried") {
-        body.role = Role::carried;
-      } else if (role == "obstacle") {
-        body.role = Role::obstacle;
-      } else {
-        lines.fail("a body's role is link, carried or obstacle");
-      }
+      const auto* const known = std::find(std::begin(kRoles), std::end(kRoles), role);
+      if (known == std::end(kRoles)) lines.fail("a body's role is link, carried or obstacle");
+      body.role = static_cast<Role>(known - kRoles);
       body.name = lines.name();
       body.name_id = idOf(body.name);
       body.frame = static_cast<int>(lines.integer(world.frames.size()));
@@ -355,7 +372,7 @@ World readWorldText(std::string_view text) {
         lines.fail("the reason is still, neighbours, allowed or touch-link");
       }
       const int a = idOf(lines.name()), b = idOf(lines.name());
-      if (!world.unchecked.emplace(std::minmax(a, b), why).second) lines.fail("the pair is listed already");
+      if (!world.unchecked.emplace(std::minmax(a, b), Unchecked{why}).second) lines.fail("the pair is listed already");
     } else {
       lines.fail("there is no item '" + std::string(kind.substr(0, 40)) + "'");
     }
@@ -374,6 +391,7 @@ World readWorldText(std::string_view text) {
     for (Geometry& g : world.geometries)
       if (!g.solid) g.joinSurfaces();
   derivePairs(world);
+  refuseUnused(world);
   return world;
 }
 
@@ -389,7 +407,7 @@ World readWorld(std::string_view text) {
 
 Motion readMotion(std::string_view text, const World& world) {
   Motion motion;
-  motion.hash = sha256(text.data(), text.size());
+  motion.hash = sha256(text);
   Lines lines(text, "motion");
   if (!lines.next() || text.substr(0, 19) != "fcl_artic motion 1\n")
     lines.fail("the first line is not 'fcl_artic motion 1'");
@@ -431,27 +449,36 @@ Motion readMotion(std::string_view text, const World& world) {
       if (motion.pieces.empty()) lines.fail("a 'piece' comes first");
       Piece& piece = motion.pieces.back();
       if (kind == "ignored") {
-        Ignored ignored{};
-        ignored.a = static_cast<int>(lines.integer(world.bodies.size()));
-        ignored.b = static_cast<int>(lines.integer(world.bodies.size()));
-        ignored.until = lines.number();
+        const int a = static_cast<int>(lines.integer(world.bodies.size())),
+                  b = static_cast<int>(lines.integer(world.bodies.size()));
+        const double until = lines.number();
         lines.end();
-        if (ignored.a >= ignored.b) lines.fail("of an ignored pair the lower number comes first");
-        if (!(ignored.until >= 0 && ignored.until <= 1)) lines.fail("the time is in [0, 1]");
-        piece.ignored.push_back(ignored);
+        if (a >= b) lines.fail("of an ignored pair the lower number comes first");
+        if (!(until >= 0 && until <= 1)) lines.fail("the time is in [0, 1]");
+        const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(b)];
+        const auto at =
+            std::lower_bound(list.begin(), list.end(), a, [](const Partner& p, int body) { return p.body < body; });
+        if (at == list.end() || at->body != a || !(at->self ? motion.self : motion.scene))
+          lines.fail("the pair is not checked anyway");
+        double& latest = piece.ignored[{a, b}];
+        latest = std::max(latest, until);
         continue;
       }
       const int variable = static_cast<int>(lines.integer(world.variables.size()));
+      bool is_new;
       if (kind == "q") {
-        Polynomial q{variable, {}};
-        while (lines.more()) q.coefficients.push_back(lines.number());
-        if (q.coefficients.empty() || q.coefficients.size() > 6) lines.fail("a polynomial has 1 to 6 coefficients");
-        piece.polynomials.push_back(std::move(q));
+        std::vector<double> q;
+        while (lines.more()) q.push_back(lines.number());
+        if (q.empty() || q.size() > 6) lines.fail("a polynomial has 1 to 6 coefficients");
+        if (!world.moves[static_cast<std::size_t>(variable)]) lines.fail("the variable moves nothing");
+        is_new = piece.polynomials.emplace(variable, std::move(q)).second;
       } else {
-        Orientation orientation{variable, {}};
-        lines.rotation(orientation.numbers);
-        piece.orientations.push_back(orientation);
+        std::array<double, 9> R;
+        lines.rotation(R.data());
+        if (!world.turns[static_cast<std::size_t>(variable)]) lines.fail("the variable is not that of a 'rotate'");
+        is_new = piece.orientations.emplace(variable, R).second;
       }
+      if (!is_new) lines.fail("a piece states a variable twice");
     } else {
       lines.fail("there is no item '" + std::string(kind.substr(0, 40)) + "'");
     }
@@ -461,30 +488,36 @@ Motion readMotion(std::string_view text, const World& world) {
     if (!seen[item]) lines.fail("one of world, margin, scope, until is missing");
   if (!motion.self && !motion.scene) lines.fail("the scope is empty: nothing is claimed");
   if (motion.pieces.empty()) lines.fail("there is no piece");
-  const auto before = [](const auto& x, const auto& y) { return x.variable < y.variable; };
-  const auto twice = [&](auto& list) {
-    std::sort(list.begin(), list.end(), before);
-    return std::adjacent_find(list.begin(), list.end(),
-                              [](const auto& x, const auto& y) { return x.variable == y.variable; }) != list.end();
-  };
-  for (Piece& piece : motion.pieces) {
-    if (twice(piece.polynomials) || twice(piece.orientations)) lines.fail("a piece states a variable twice");
-    for (const Polynomial& q : piece.polynomials)
-      if (!world.moves[static_cast<std::size_t>(q.variable)])
-        lines.fail("'q' of the variable " + std::to_string(q.variable) + ", which moves nothing");
-    for (const Orientation& o : piece.orientations)
-      if (!world.turns[static_cast<std::size_t>(o.variable)])
-        lines.fail("'orientation' of the variable " + std::to_string(o.variable) + ", which is not that of a 'rotate'");
-    for (const Ignored& i : piece.ignored) {
-      const std::vector<Partner>& list = world.partners[static_cast<std::size_t>(i.b)];
-      const auto at =
-          std::lower_bound(list.begin(), list.end(), i.a, [](const Partner& p, int b) { return p.body < b; });
-      if (at == list.end() || at->body != i.a || !(at->self ? motion.self : motion.scene))
-        lines.fail("'ignored' of bodies " + std::to_string(i.a) + " and " + std::to_string(i.b) +
-                   ", which are not checked anyway");
+  return motion;
+}
+
+const char* nameOf(Role role) {
+  return kRoles[static_cast<int>(role)];
+}
+const char* nameOf(Reason reason) {
+  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "still against each other",
+                                               "neighbours", "allowed",       "touch-link",
+                                               "scope",      "ignored"};
+  return kNames[static_cast<int>(reason)];
+}
+
+std::string inQuotes(std::string_view name) {
+  std::string text = "'";
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 32 || byte > 126 || c == '\'' || c == '\\') {
+      const char* const digits = "0123456789abcdef";
+      text += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+    } else {
+      text += c;
     }
   }
-  return motion;
+  return text + "'";
+}
+
+std::string World::describe(int body) const {
+  return std::string(nameOf(bodies[body].role)) + " " + inQuotes(bodies[body].name) + " (body " + std::to_string(body) +
+         ")";
 }
 
 std::uint8_t Bytes::peek() const {

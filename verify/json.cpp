@@ -28,11 +28,9 @@ std::string node(Bytes& bytes, int depth) {
   if (depth > kMostDepth) throw BadInput("the proof is too deep to print");
   const std::uint8_t kind = bytes.byte();
   static const char* const kFrames[] = {"world", "own", "partner"};
-  if (kind < kWall) {
+  if (kind < kSepFine + 3) {
     const int width = kind < kSepFine ? 2 : 4;
-    std::string s = std::string(kind < kTurn ? "{\"sep\": " : "{\"turn\": [") + vector(bytes, width);
-    if (kind >= kTurn) s += ", " + vector(bytes, width) + "]";
-    return s + ", \"frame\": \"" + kFrames[kind % 3] + "\"}";
+    return "{\"sep\": " + vector(bytes, width) + ", \"frame\": \"" + kFrames[kind % 3] + "\"}";
   }
   const auto both = [&]() {
     const std::string first = node(bytes, depth + 1);
@@ -138,10 +136,7 @@ std::string proofAsJson(const World& world, const Record& record) {
   try {
     const Motion motion = readMotion(record.motion, world);
     Bytes bytes(record.proof);
-    Hash hash;
-    const std::string_view raw = bytes.take(hash.size());
-    std::memcpy(hash.data(), raw.data(), hash.size());
-    s += "\"motion\": \"" + hexOf(hash) + "\", \"roots\": [";
+    s += "\"motion\": \"" + hexOf(bytes.take(motion.hash.size())) + "\", \"roots\": [";
     const char* before = "\n  ";
     Budget budget{Options().work};
     for (std::size_t piece = 0; piece < motion.pieces.size(); ++piece) {

@@ -14,7 +14,7 @@ constexpr const char* kHelp =
     R"(fcl_artic_verify [options] WORLD CERTIFICATES...
 
 Proves again what certificates claim: that along a motion no two bodies that are checked come nearer than their margin.
-Uses integers, GMP and MPFR; shares nothing with the library that wrote the certificates. doc/CERTIFICATES.md says what
+Uses integers and MPFR; shares nothing with the library that wrote the certificates. doc/CERTIFICATES.md says what
 is claimed, and how it is proven.
 
   WORLD            the world's text
@@ -41,10 +41,11 @@ is claimed, and how it is proven.
   --work N         limit of work per record, in steps of roughly 20 ns (default 2000000000)
   --help, --version
 
-Prints what the world says beside its numbers, and for each record VERIFIED, with the number of pairs that were checked
-and of those that were not, by reason, then what the motion says; or NOT VERIFIED, with what could not be proven: bodies
-and interval of time. A claim about no pair is not verified, nor one about a world or a motion that differs from a file.
-What no file is given for is named as "not compared".
+Prints what the world says beside its numbers. For each record it prints VERIFIED, and in a sentence which robot moves
+how, among which obstacles, and how many pairs of bodies were checked; files are named that these are compared with. Then
+come what is compared with no file, how many pairs were not checked, by reason, and what the motion says. Or it prints NOT
+VERIFIED, with what could not be proven: bodies and interval of time. A claim about no pair is not verified, nor one about
+a world or a motion that differs from a file.
 Exit: 0 all verified, 1 something is not or the world differs from a file, 2 bad input, or no record.
 )";
 
@@ -61,8 +62,9 @@ class Printer {
                   verify::listAsJson(c.notes).c_str(), verify::listAsJson(c.differences).c_str());
       return;
     }
-    for (const std::string& note : c.notes) line(path, note);
-    for (const std::string& what : c.differences) line(path, "DIFFERENT: " + what);
+    for (const std::string& note : c.notes) line(std::string(path) + ": ", note);
+    for (const std::string& what : c.differences)
+      std::printf("%s: DIFFERENT: %s\n", verify::shown(path).c_str(), verify::shown(what).c_str());
   }
   void world(const char* path, const verify::World& world) const {
     const std::vector<std::string> lines = verify::linesOf(world);
@@ -70,11 +72,13 @@ class Printer {
       std::printf("{\"world\": %s, \"says\": %s}\n", verify::quotedJson(path).c_str(),
                   verify::listAsJson(lines).c_str());
     if (json_ || quiet_) return;
-    for (const std::string& text : lines) line(path, text);
+    for (const std::string& text : lines) line(std::string(path) + ": ", text);
   }
+  /// @param alone  it is its file's only record.
   /// @param notes  of the comparison with plans.
-  void record(const verify::World& world, const char* path, std::size_t number, const verify::Record& record,
-              const verify::Verdict& verdict, const std::vector<std::string>& notes) const {
+  void record(const verify::World& world, const char* path, std::size_t number, bool alone,
+              const verify::Record& record, const verify::Verdict& verdict, const verify::Subject& subject,
+              const std::vector<std::string>& notes) const {
     std::vector<std::string> lines;
     if (verdict.verified) lines = verify::linesOf(world, verify::readMotion(record.motion, world), verdict);
     lines.insert(lines.end(), notes.begin(), notes.end());
@@ -90,9 +94,12 @@ class Printer {
       return;
     }
     if (quiet_ && verdict.verified && !verify::isInPart(verdict)) return;
-    std::printf("%s:%zu: %s%s\n", verify::shown(path).c_str(), number, verify::lineOf(verdict).c_str(),
-                verdict.verified ? shortly().c_str() : "");
-    for (const std::string& text : lines) std::printf("  %s\n", verify::shown(text).c_str());
+    const std::string which = alone ? "" : ", record " + std::to_string(number);
+    std::printf("%s%s: %s\n", verify::shown(path).c_str(), which.c_str(), verify::lineOf(verdict, subject).c_str());
+    if (!verdict.verified) return;
+    notCompared();
+    if (const std::string none = verify::notChecked(verdict); !none.empty()) line("  ", "not checked: " + none);
+    for (const std::string& text : lines) line("  ", text);
   }
   /// @param in_part  of those that are verified.
   void sum(std::size_t verified, std::size_t in_part, std::size_t all) const {
@@ -103,18 +110,18 @@ class Printer {
     }
     const std::string part =
         in_part > 0 ? ", " + std::to_string(in_part) + " of them not to the motion's end or not of all pairs" : "";
-    std::printf("%zu of %zu records verified%s%s\n", verified, all, part.c_str(), shortly().c_str());
+    std::printf("%zu of %zu records verified%s\n", verified, all, part.c_str());
+    notCompared();
   }
 
  private:
-  /// "; not compared: robot, motion"
-  std::string shortly() const {
+  void notCompared() const {
     std::string text;
-    for (const std::string& what : not_compared_) text += (text.empty() ? "; not compared: " : ", ") + what;
-    return verify::shown(text);
+    for (const std::string& what : not_compared_) text += (text.empty() ? "not compared with a file: " : ", ") + what;
+    if (!text.empty()) line("  ", text);
   }
-  static void line(const char* path, const std::string& text) {
-    std::printf("%s: %s\n", verify::shown(path).c_str(), verify::shown(text).c_str());
+  static void line(const std::string& begin, const std::string& text) {
+    std::fputs(verify::wrapped(begin, text).c_str(), stdout);
   }
   const bool json_, quiet_;
   const std::vector<std::string> not_compared_;
@@ -252,7 +259,7 @@ std::vector<std::string> notCompared(const Asked& asked, const verify::World& wo
   if (asked.urdf.empty()) list.push_back("robot (--urdf)");
   for (const auto& [reason, what] : {std::pair(verify::Reason::allowed, "allowed pairs (--srdf)"),
                                      std::pair(verify::Reason::neighbours, "neighbours (--srdf)")}) {
-    const auto is = [why = reason](const auto& pair) { return pair.second == why; };
+    const auto is = [why = reason](const auto& pair) { return pair.second.reason == why; };
     if (asked.srdf.empty() && std::any_of(world.unchecked.begin(), world.unchecked.end(), is)) list.push_back(what);
   }
   if (asked.scenes.empty() && !obstacles.empty()) list.push_back("obstacles " + obstacles + " (--scene)");
@@ -311,28 +318,62 @@ class Run {
     for (std::size_t number = 0; number < records.size(); ++number) {
       verify::Verdict verdict = verify::verifyRecord(world_, records[number], asked_.options);
       std::vector<std::string> notes;
+      std::string plan;
       if (verdict.verified && !same_) {  // proven of another robot
         verdict.verified = false;
         verdict.reason = "it is proven of this world, which is not what the files say (DIFFERENT, above)";
       }
-      if (verdict.verified && !plans_.empty()) findPlan(records[number], verdict, notes);
+      if (verdict.verified && !plans_.empty()) plan = findPlan(records[number], verdict, notes);
       ++all_;
       verified_ += verdict.verified;
       in_part_ += verdict.verified && verify::isInPart(verdict);
       bad_ = bad_ || verdict.bad_input;
-      printer_.record(world_, path, number, records[number], verdict, notes);
+      printer_.record(world_, path, number, records.size() == 1, records[number], verdict,
+                      verdict.verified ? subjectOf(records[number], plan) : verify::Subject(), notes);
     }
   }
 
-  void findPlan(const verify::Record& record, verify::Verdict& verdict, std::vector<std::string>& notes) {
+  /// Whom a verified record is about. @param plan  of which it is the motion; empty: none is given.
+  verify::Subject subjectOf(const verify::Record& record, const std::string& plan) const {
     const verify::Motion motion = verify::readMotion(record.motion, world_);
-    std::string why;
+    const auto files = [](const std::vector<std::string>& paths) {
+      std::string text;
+      for (const std::string& path : paths) text += (text.empty() ? "'" : ", '") + path + "'";
+      return text;
+    };
+    const auto isObstacle = [](const verify::Body& body) { return body.role == verify::Role::obstacle; };
+    const auto obstacles = std::count_if(world_.bodies.begin(), world_.bodies.end(), isObstacle);
+    verify::Subject subject;
+    if (!asked_.urdf.empty()) subject.robot = "the robot of " + files(asked_.urdf);
+    if (!plan.empty())
+      subject.motion = plan == verify::kFromTo ? "straight from --from to --to" : "as '" + plan + "' says";
+    if (!motion.scene)
+      subject.scene = "with no regard to obstacles";
+    else if (!asked_.scenes.empty())
+      subject.scene = "among the obstacles of " + files(asked_.scenes);
+    else if (obstacles > 0)
+      subject.scene = "among this world's obstacles (" + std::to_string(obstacles) + ")";
+    if (!motion.self) subject.pairs = "pairs of the robot and an obstacle";
+    const auto isMargin = [](const auto& margin) { return margin.second > 0; };
+    if (motion.margin > 0 || motion.added > 0 || std::any_of(world_.margins.begin(), world_.margins.end(), isMargin) ||
+        std::any_of(world_.pair_margins.begin(), world_.pair_margins.end(), isMargin))
+      subject.meets = "comes within its margin";
+    return subject;
+  }
+
+  /// @return the title of the plan of which it is the motion, if one is.
+  std::string findPlan(const verify::Record& record, verify::Verdict& verdict, std::vector<std::string>& notes) {
+    const verify::Motion motion = verify::readMotion(record.motion, world_);
+    std::string why, title;
     bool found = false;
     for (std::size_t p = 0; p < plans_.size(); ++p) {  // it may be that of several, which differ in their times
       const verify::Comparison c = verify::compareWithPlan(world_, motion, plans_[p]);
       if (c.differences.empty()) {
         used_[p] = true;
-        if (!found) notes = c.notes;
+        if (!found) {
+          notes = c.notes;
+          title = plans_[p].title;
+        }
         found = true;
       } else if (why.empty()) {
         why = "'" + plans_[p].title + "': " + c.differences[0];
@@ -340,6 +381,7 @@ class Run {
     }
     verdict.verified = found;
     if (!found) verdict.reason = "it is proven of a motion that is no plan's: " + why;
+    return title;
   }
 
   const Asked& asked_;

@@ -362,7 +362,7 @@ MeshComparison::Sorted MeshComparison::inOrder(std::vector<Triangle> triangles) 
       bytes.append(reinterpret_cast<const char*>(t.data()), sizeof t);
     }
   }
-  sorted.hash = sha256(bytes.data(), bytes.size());
+  sorted.hash = sha256(bytes);
   sorted.all = std::move(triangles);
   return sorted;
 }

@@ -41,7 +41,7 @@ class MeshComparison {
   struct Sorted {
     std::vector<Triangle> all;   // in order
     std::vector<Triangle> flat;  // those without area
-    Hash hash;                   // of the others
+    std::string hash;            // of the others
   };
   struct File {
     MeshFile faces;

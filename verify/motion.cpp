@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion.h"
 
-#include <algorithm>
-
 namespace verify {
 
 // t = centre + half s. The centre is rounded down, the half up: the model's range of t covers [a, b], and at most 2 ulp
 // more. Then Horner's scheme in Taylor models.
 Tm Poses::variable(int v, const Span& span) const {
-  const auto at = std::lower_bound(piece_.polynomials.begin(), piece_.polynomials.end(), v,
-                                   [](const Polynomial& p, int w) { return p.variable < w; });
-  if (at == piece_.polynomials.end() || at->variable != v) return {};
+  const auto q = piece_.polynomials.find(v);
+  if (q == piece_.polynomials.end()) return {};
   const Fix centre = span.middle();
-  const Tm t{centre, most(span.b - centre, centre - span.a), {}, {}};
+  const Tm t{centre, std::max(span.b - centre, centre - span.a), {}, {}};
   Tm value;
-  for (std::size_t k = at->coefficients.size(); k-- > 0;) value = value * t + constant(enclose(at->coefficients[k]));
+  for (std::size_t k = q->second.size(); k-- > 0;) value = value * t + exactly(q->second[k]);
   return value;
 }
 
@@ -28,12 +25,11 @@ Pose Poses::compute(int index, const Span& span) const {
       const Vec w{variable(e.variable, span), variable(e.variable + 1, span), variable(e.variable + 2, span)};
       for (Fix z = bound(dot(w, w)); z > integer(100); z = shifted(z, 2)) budget_.spend(250);
       pose.R = pose.R * rotation(w);
-      const auto at = std::lower_bound(piece_.orientations.begin(), piece_.orientations.end(), e.variable,
-                                       [](const Orientation& o, int w) { return o.variable < w; });
-      if (at != piece_.orientations.end() && at->variable == e.variable) pose.R = pose.R * statedRotation(at->numbers);
+      const auto first = piece_.orientations.find(e.variable);
+      if (first != piece_.orientations.end()) pose.R = pose.R * statedRotation(first->second.data());
       continue;
     }
-    const Tm value = constant(enclose(e.multiplier)) * variable(e.variable, span) + constant(enclose(e.offset));
+    const Tm value = exactly(e.multiplier) * variable(e.variable, span) + exactly(e.offset);
     if (e.kind == Element::slide) {
       pose.t = pose.t + pose.R * Vec{e.unit[0] * value, e.unit[1] * value, e.unit[2] * value};
     } else {
@@ -45,15 +41,10 @@ Pose Poses::compute(int index, const Span& span) const {
 
 const Pose& Poses::local(int frame, const Span& span) {
   if (world_.frames[frame].elements.empty()) return world_.frames[frame].origin;
-  if (count_ > 20000) {
-    known_.clear();
-    count_ = 0;
-  }
-  std::map<int, Pose>& at = known_[{span.a.v, span.b.v}];
-  const auto found = at.find(frame);
-  if (found != at.end()) return found->second;
-  ++count_;
-  return at.emplace(frame, compute(frame, span)).first->second;
+  if (known_.size() > 20000) known_.clear();
+  const std::tuple key(span.a.v, span.b.v, frame);
+  const auto found = known_.find(key);
+  return found != known_.end() ? found->second : known_.emplace(key, compute(frame, span)).first->second;
 }
 
 // x = R y + t: v.x + d = (R^T v).y + (d + v.t), and v.y + d = v.R^T (x - t) + d = (R v).x + (d - (R v).t).

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <map>
-#include <memory>
-#include <utility>
-#include <vector>
+#include <tuple>
 
 #include "statement.h"
 
@@ -17,24 +15,24 @@ struct Span {
   Fix middle() const { return Fix{a.v + (b.v - a.v) / 2}; }
 };
 
-/// Each frame's pose in its parent over the intervals asked for, of one piece of a motion.
+/// Each frame's pose in its parent, and each variable's value, over the intervals asked for, of one piece of a motion.
 class Poses {
  public:
   Poses(const World& world, const Piece& piece, Budget& budget) : world_(world), piece_(piece), budget_(budget) {}
 
+  Tm variable(int v, const Span& span) const;
   /// Valid until the next call.
   const Pose& local(int frame, const Span& span);
+  Budget& budget() { return budget_; }
   void spend(std::uint64_t steps) { budget_.spend(steps); }
 
  private:
-  Tm variable(int v, const Span& span) const;
   Pose compute(int frame, const Span& span) const;
 
   const World& world_;
   const Piece& piece_;
   Budget& budget_;
-  std::map<std::pair<Int, Int>, std::map<int, Pose>> known_;
-  std::size_t count_ = 0;
+  std::map<std::tuple<Int, Int, int>, Pose> known_;  // by interval and frame
 };
 
 /// An affine function of points, f(x) = v.x + d: given in one frame, it is asked for in others. Only the frames on the

@@ -16,15 +16,6 @@ inline Fix down(const Tm& a) {
 inline int sign(const Tm& a) {
   return down(a) > Fix{0} ? 1 : up(a) < Fix{0} ? -1 : 0;
 }
-inline bool atMost(const Tm& a, const Tm& b) {
-  return up(a) <= down(b);
-}
-inline Tm square(const Tm& a) {
-  return a * a;
-}
-inline Tm exactly(double x) {
-  return constant(enclose(x));
-}
 inline Vec pointOf(const double* x) {
   return {exactly(x[0]), exactly(x[1]), exactly(x[2])};
 }

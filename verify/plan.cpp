@@ -156,11 +156,10 @@ class PlanComparison {
 
   /// Coefficients of a variable in a piece, without zeros at the end but for the first.
   std::vector<double> coefficients(std::size_t piece, std::size_t v) const {
-    const std::vector<Polynomial>& all = motion_.pieces[piece].polynomials;  // by variable
-    const auto q = std::lower_bound(all.begin(), all.end(), static_cast<int>(v),
-                                    [](const Polynomial& p, int w) { return p.variable < w; });
-    if (q == all.end() || q->variable != static_cast<int>(v)) return {0};
-    std::vector<double> c = q->coefficients;
+    const auto& all = motion_.pieces[piece].polynomials;
+    const auto q = all.find(static_cast<int>(v));
+    if (q == all.end()) return {0};
+    std::vector<double> c = q->second;
     while (c.size() > 1 && c.back() == 0) c.pop_back();
     return c;
   }
@@ -194,8 +193,8 @@ class PlanComparison {
   bool obstaclesMove() const {
     std::vector<char> goes(world_.variables.size(), 0), moves(world_.frames.size(), 0);
     for (std::size_t k = 0; k < motion_.pieces.size(); ++k)
-      for (const Polynomial& q : motion_.pieces[k].polynomials) {
-        const auto v = static_cast<std::size_t>(q.variable);
+      for (const auto& q : motion_.pieces[k].polynomials) {
+        const auto v = static_cast<std::size_t>(q.first);
         goes[v] = goes[v] || coefficients(k, v).size() > 1;
       }
     for (std::size_t f = 1; f < world_.frames.size(); ++f) {  // parents first
@@ -355,7 +354,7 @@ std::vector<double> readBase(const std::string& text) {
 Plan planBetween(const World& world, const std::vector<std::string>& robot, const std::string& from,
                  const std::string& to) {
   Plan plan;
-  plan.title = "--from, --to";
+  plan.title = kFromTo;
   plan.interpolation = Interpolation::linear;
   plan.robot = robot;
   const std::vector<std::string>& order = robot.empty() ? world.variables : robot;

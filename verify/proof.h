@@ -2,11 +2,6 @@
 // Certificates and the verdict on them.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "motion.h"
 
 namespace verify {
@@ -19,7 +14,6 @@ std::vector<Record> splitRecords(std::string_view file);
 
 struct Options {
   std::uint64_t work = 2000000000;  // per record; a step is roughly 20 ns
-  int halvings = 14;                // that the verifier adds by itself to a claim of a leaf
 };
 
 struct Verdict {
@@ -34,7 +28,7 @@ struct Verdict {
   std::uint64_t checked = 0;  // pairs, of some of the claim's time at least
   std::uint64_t late = 0;     // of these, not at the beginning of some piece: ignored up to a time there
   std::uint64_t not_checked[kReasons] = {};
-  std::uint64_t leaves = 0, steps = 0;
+  std::uint64_t steps = 0;
   double jump = 0;  // the largest between a piece's end and the next one's beginning, rad or m; for people
 };
 
@@ -73,7 +67,6 @@ class Bytes {
 enum NodeKind : std::uint8_t {
   kSep = 0x00,
   kSepFine = 0x03,
-  kTurn = 0x06,
   kWall = 0x09,
   kWallOther = 0x0a,
   kTime = 0x10,
@@ -86,6 +79,7 @@ enum NodeKind : std::uint8_t {
 
 constexpr int kMostDepth = 400;  // of nodes
 constexpr int kMostTimeDepth = 60;
+constexpr int kMostHalvings = 14;  // of time, that the verifier adds by itself to a leaf's claim
 
 /// Who is checked against body A in a piece of the motion, and from which time on.
 struct Opponent {
@@ -96,8 +90,7 @@ struct Opponent {
 std::vector<Opponent> opponents(const World& world, const Motion& motion, std::size_t piece, int body);
 
 /// Whether at time t no part of either surface lies in the other body, as the points show. @throws NotProven
-void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, const std::vector<OutsidePoint>& points,
-                Budget& budget);
+void checkSolid(const World& world, Poses& poses, int a, int b, Fix t, const std::vector<OutsidePoint>& points);
 struct Meeting {
   bool near;         // nearer than the margin, and nothing more; else they have a point in common
   std::string text;  // who, and when

@@ -58,6 +58,7 @@ Plan readPlan(const std::string& path);
 /// @throws BadInput
 std::map<std::string, double> readConfiguration(const World& world, const std::vector<std::string>& order,
                                                 const std::string& text);
+constexpr const char* kFromTo = "--from, --to";  ///< the title of a plan that these options say
 /// The straight way between two configurations, of which all that neither names stands still.
 /// @param robot  variables of the robot's joints, in their order; none: all of the world's.
 Plan planBetween(const World& world, const std::vector<std::string>& robot, const std::string& from,

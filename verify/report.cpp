@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -32,16 +33,13 @@ std::string startOrGoal(const World& world, const Piece& piece, const double* un
   std::string line;
   for (std::size_t v = 0; v < world.variables.size(); ++v) {
     double value = 0;
-    for (const Polynomial& q : piece.polynomials) {
-      if (q.variable != static_cast<int>(v)) continue;
-      for (std::size_t k = until ? q.coefficients.size() : 1; k-- > 0;)
-        value = value * (until ? *until : 0) + q.coefficients[k];
-    }
+    if (const auto q = piece.polynomials.find(static_cast<int>(v)); q != piece.polynomials.end())
+      for (std::size_t k = until ? q->second.size() : 1; k-- > 0;) value = value * (until ? *until : 0) + q->second[k];
     line += (v > 0 ? ", " : " ") + inQuotes(world.variables[v]) + " " + decimal(value);
   }
-  for (const Orientation& o : piece.orientations) {
-    line += ", " + inQuotes(world.variables[static_cast<std::size_t>(o.variable)]) + " turns what is turned by";
-    for (const double x : o.numbers) line += " " + decimal(x);
+  for (const auto& [variable, numbers] : piece.orientations) {
+    line += ", " + inQuotes(world.variables[static_cast<std::size_t>(variable)]) + " turns what is turned by";
+    for (const double x : numbers) line += " " + decimal(x);
   }
   return line;
 }
@@ -71,8 +69,8 @@ std::vector<std::string> linesOf(const World& world) {
   }
   for (const Reason reason : {Reason::still, Reason::neighbours, Reason::allowed, Reason::touch_link}) {
     std::vector<std::string> pairs;
-    for (const auto& [pair, why] : world.unchecked)
-      if (why == reason)
+    for (const auto& [pair, listed] : world.unchecked)
+      if (listed.reason == reason)
         pairs.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
                         inQuotes(world.names[static_cast<std::size_t>(pair.second)]));
     addList(lines, std::string("not checked, ") + nameOf(reason), pairs);
@@ -100,14 +98,17 @@ std::vector<std::string> linesOf(const World& world, const Motion& motion, const
   lines.push_back("goal, t = " + decimal(motion.until) + ofPiece(last) + ":" +
                   startOrGoal(world, motion.pieces.back(), &motion.until));
   if (motion.duration != 0) lines.push_back("duration: " + decimal(motion.duration) + " s, which no proof uses");
-  if (last > 0)
-    lines.push_back(std::to_string(last + 1) + " pieces: each begins where the one before ends, within " +
-                    decimal(verdict.jump) + " rad or m");
+  if (last > 0) {
+    char jump[20];
+    std::snprintf(jump, sizeof jump, "%.2g", verdict.jump);
+    lines.push_back(std::to_string(last + 1) + " pieces: each begins where the one before ends, within " + jump +
+                    " rad or m");
+  }
   for (std::size_t k = 0; k <= last; ++k)
-    for (const Ignored& i : motion.pieces[k].ignored)
-      lines.push_back("ignored until t = " + decimal(i.until) + ofPiece(k) +
-                      (i.until >= (k == last ? motion.until : 1) ? ", the end of its claim: " : ": ") +
-                      world.describe(i.a) + " and " + world.describe(i.b));
+    for (const auto& [pair, until] : motion.pieces[k].ignored)
+      lines.push_back("ignored until t = " + decimal(until) + ofPiece(k) +
+                      (until >= (k == last ? motion.until : 1) ? ", the end of its claim: " : ": ") +
+                      world.describe(pair.first) + " and " + world.describe(pair.second));
   return lines;
 }
 
@@ -116,20 +117,41 @@ bool isInPart(const Verdict& v) {
          v.not_checked[static_cast<int>(Reason::ignored)] > 0;
 }
 
-std::string lineOf(const Verdict& v) {
+std::string lineOf(const Verdict& v, const Subject& s) {
   if (!v.verified) return "NOT VERIFIED: " + shown(v.reason);
-  std::string line = "VERIFIED " + std::to_string(v.checked) + " pairs";
+  std::string line = s.robot + " moves " + s.motion + " " + s.scene + ", and ";
+  if (v.until < 1) line += "until t = " + decimal(v.until) + " of piece " + std::to_string(v.pieces - 1) + " ";
+  line += "none of " + std::to_string(v.checked) + " " + s.pairs;
   if (v.late > 0) line += " (" + std::to_string(v.late) + " of them ignored up to a time)";
-  if (v.pieces > 1) line += ", " + std::to_string(v.pieces) + " pieces";
-  if (v.until < 1) line += ", until t = " + decimal(v.until);
-  const char* before = "; not checked: ";
-  for (int k = 0; k < kReasons; ++k) {
-    if (v.not_checked[k] == 0) continue;
-    line += before + std::to_string(v.not_checked[k]) + " " + nameOf(static_cast<Reason>(k));
-    before = ", ";
+  line += " " + s.meets + ".";
+  if (v.contact) line += (v.near ? " WITHIN THEIR MARGIN: " : " CONTACT of ") + v.contact_text + ".";
+  return "VERIFIED: " + shown(line);
+}
+
+std::string notChecked(const Verdict& v) {
+  std::string text;
+  for (int k = 0; k < kReasons; ++k)
+    if (v.not_checked[k] > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(v.not_checked[k]) + " " + nameOf(static_cast<Reason>(k));
+  return text;
+}
+
+std::string wrapped(const std::string& begin, std::string_view text) {
+  const std::string safe = shown(text);
+  std::string all, line = shown(begin);
+  std::size_t end = safe.find(": ");  // the list's heading stays whole
+  for (std::size_t at = 0; at < safe.size(); at = end) {
+    end = safe.find(", ", end);
+    const bool last = end == safe.npos;
+    end = last ? safe.size() : end + 2;
+    const std::string item = safe.substr(at, end - at);
+    if (at > 0 && line.size() + item.size() > (last ? 120 : 121)) {  // without the space at the end
+      all += line.substr(0, line.size() - 1) + "\n";
+      line = "    ";
+    }
+    line += item;
   }
-  if (v.contact) line += (v.near ? "; WITHIN THEIR MARGIN " : "; CONTACT of ") + shown(v.contact_text);
-  return line;
+  return all + line + "\n";
 }
 
 std::string shown(std::string_view text) {

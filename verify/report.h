@@ -18,8 +18,22 @@ std::vector<std::string> linesOf(const World& world, const Motion& motion, const
 /// Whether a verified claim leaves something out that files do not: it ends early, or a pair is not checked for all of
 /// its time, or at all, by the motion's own word.
 bool isInPart(const Verdict& verdict);
-/// "VERIFIED 3 pairs; ..." or "NOT VERIFIED: ...".
-std::string lineOf(const Verdict& verdict);
+/// Whom a claim is about, as the parts of a sentence; a file is named where it was compared with one.
+struct Subject {
+  std::string robot = "the robot of this world";
+  std::string motion = "as this record says";
+  std::string scene = "without obstacles";
+  std::string pairs = "pairs of bodies";
+  std::string meets = "touches";
+};
+/// "VERIFIED: the robot of 'arm.urdf' moves ..., and none of 3 pairs of bodies touches." or "NOT VERIFIED: ...".
+std::string lineOf(const Verdict& verdict, const Subject& subject = {});
+/// How many pairs are not checked, by reason: "1 neighbours, 2 allowed". Empty: none.
+std::string notChecked(const Verdict& verdict);
+
+/// "HEADING: ITEM, ITEM, ...", made safe to print, in lines of at most 120 columns, cut between items; all but the first,
+/// which begins with `begin`, are indented.
+std::string wrapped(const std::string& begin, std::string_view text);
 
 /// Text that may hold names, made safe to print: what is no printing character as \xNN, and no "VERIFIED" in it, so
 /// that no name looks like a verdict.

@@ -10,7 +10,7 @@ namespace {
 /// Rz(yaw) Ry(pitch) Rx(roll), each entry enclosed.
 Mat fromAngles(const std::vector<double>& rpy) {
   Tm s[3], c[3];
-  for (std::size_t k = 0; k < 3; ++k) sineCosine(constant(enclose(rpy[k])), s[k], c[k]);
+  for (std::size_t k = 0; k < 3; ++k) sineCosine(exactly(rpy[k]), s[k], c[k]);
   return {c[2] * c[1],
           c[2] * s[1] * s[0] - s[2] * c[0],
           c[2] * s[1] * c[0] + s[2] * s[0],
@@ -179,7 +179,7 @@ Place placeOf(const std::vector<double>& six) {
 }
 bool isRotation(const Mat& R, const double numbers[9]) {
   for (std::size_t k = 0; k < 9; ++k)
-    if (bound(R[k] - constant(enclose(numbers[k]))) > Fix{kOne >> 49}) return false;
+    if (bound(R[k] - exactly(numbers[k])) > Fix{kOne >> 49}) return false;
   return true;
 }
 bool isAt(const Place& place, const double numbers[12]) {

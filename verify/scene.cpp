@@ -28,7 +28,7 @@ class Chain {
   void putBefore(const Place& here) {
     Pose p;
     p.R = here.R;
-    for (std::size_t k = 0; k < 3; ++k) p.t[k] = constant(enclose(here.t[k]));
+    for (std::size_t k = 0; k < 3; ++k) p.t[k] = exactly(here.t[k]);
     pose_ = {p.R * pose_.R, p.R * pose_.t + p.t};
     lengths_.insert(lengths_.end(), here.t.begin(), here.t.end());
     const bool moves = here.t != std::vector<double>(3, 0);
@@ -157,13 +157,13 @@ class SceneComparison {
   /// entry of R, which is made of sines, and 3 u of the sum). Of four of them that is 32 u = 2^-48; a longer chain of a
   /// writer may be refused.
   bool isThere(const Obstacle& o, const double* t) const {
-    const Tm scale = constant(enclose(scale_));
+    const Tm scale = exactly(scale_);
     Fix sum;
     for (const double x : o.lengths) sum += abs(enclose(x).x) + ulps(1);
     const Fix most = shifted(mulUp(sum, enclose(scale_).x + ulps(1)), 48) + ulps(1);
     for (std::size_t k = 0; k < 3; ++k) {
       if (!o.at.empty() && t[k] != o.at[k] * scale_) return false;
-      if (o.at.empty() && bound(o.pose.t[k] * scale - constant(enclose(t[k]))) > most) return false;
+      if (o.at.empty() && bound(o.pose.t[k] * scale - exactly(t[k])) > most) return false;
     }
     return true;
   }

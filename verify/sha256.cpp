@@ -45,27 +45,24 @@ void block(std::uint32_t H[8], const std::uint8_t* bytes) {
 
 }  // namespace
 
-Hash sha256(const void* data, std::size_t size) {
+std::string sha256(std::string_view data) {
   std::uint32_t H[8] = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  const auto* bytes = static_cast<const std::uint8_t*>(data);
-  std::size_t done = 0;
-  for (; size - done >= 64; done += 64) block(H, bytes + done);
-  std::uint8_t end[128] = {};
-  const std::size_t left = size - done, length = left < 56 ? 64 : 128;
-  if (left > 0) std::memcpy(end, bytes + done, left);
-  end[left] = 0x80;
-  for (int k = 0; k < 8; ++k)
-    end[length - 1 - k] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(size) * 8 >> 8 * k);
-  for (std::size_t k = 0; k < length; k += 64) block(H, end + k);
-  Hash hash;
-  for (int k = 0; k < 32; ++k) hash[k] = static_cast<std::uint8_t>(H[k / 4] >> (24 - 8 * (k % 4)));
+  // After the data a bit, zeros, and the length in bits, 64 bits wide, at a block's end.
+  std::string padded(data);
+  padded += '\x80';
+  padded.resize((data.size() + 9 + 63) / 64 * 64);
+  for (std::size_t k = 0; k < 8; ++k)
+    padded[padded.size() - 1 - k] = static_cast<char>(static_cast<std::uint64_t>(data.size()) * 8 >> 8 * k);
+  for (std::size_t k = 0; k < padded.size(); k += 64) block(H, reinterpret_cast<const std::uint8_t*>(&padded[k]));
+  std::string hash;
+  for (std::size_t k = 0; k < 32; ++k) hash += static_cast<char>(H[k / 4] >> (24 - 8 * (k % 4)));
   return hash;
 }
 
-std::string hexOf(const Hash& hash) {
+std::string hexOf(std::string_view hash) {
   std::string text;
-  for (const std::uint8_t byte : hash) {
-    text += "0123456789abcdef"[byte >> 4];
+  for (const char byte : hash) {
+    text += "0123456789abcdef"[byte >> 4 & 15];
     text += "0123456789abcdef"[byte & 15];
   }
   return text;

@@ -2,16 +2,15 @@
 // SHA-256, FIPS 180-4.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace verify {
 
-using Hash = std::array<std::uint8_t, 32>;
-Hash sha256(const void* data, std::size_t size);
+/// 32 bytes.
+std::string sha256(std::string_view data);
 /// 64 hexadecimal digits, lower case.
-std::string hexOf(const Hash& hash);
+std::string hexOf(std::string_view hash);
 
 }  // namespace verify

@@ -44,7 +44,8 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
     }
   }
   std::size_t found = 0;
-  for (const auto& [pair, reason] : world.unchecked) {
+  for (const auto& [pair, listed] : world.unchecked) {
+    const Reason reason = listed.reason;
     if (reason == Reason::touch_link || reason == Reason::still) continue;
     const std::string &x = world.names[static_cast<std::size_t>(pair.first)],
                       &y = world.names[static_cast<std::size_t>(pair.second)];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "statement.h"
 
-#include <algorithm>
 #include <set>
 
 namespace verify {
@@ -19,68 +18,46 @@ std::vector<FrameFacts> factsOf(const World& world) {
   std::vector<FrameFacts> facts;
   for (const Frame& frame : world.frames) {  // parents first
     const bool on_still = facts.empty() || facts[static_cast<std::size_t>(frame.parent)].still;
-    int slides = 0, first = -1;
-    bool after = false;
+    std::set<int> slides;  // variables
+    bool free = false;
     for (const Element& e : frame.elements) {
-      if (e.kind == Element::slide) {
-        if (first < 0 || e.variable != first) ++slides;
-        first = e.variable;
-      }
-      after = after || (e.kind == Element::rotate && slides > 0);
+      if (e.kind == Element::slide) slides.insert(e.variable);
+      free = free || slides.size() > 1 || (e.kind == Element::rotate && !slides.empty());
     }
     const bool moves = !frame.elements.empty();
-    facts.push_back({moves, on_still && (slides > 1 || after), on_still && !moves, false});
+    facts.push_back({moves, on_still && free, on_still && !moves, false});
   }
   for (const Body& body : world.bodies)
     if (body.role == Role::link) facts[static_cast<std::size_t>(body.frame)].link = true;
   return facts;
 }
 
-/// Whether nothing on the path between the two frames moves.
-bool standStill(const World& world, const std::vector<FrameFacts>& facts, int f, int g, std::uint64_t& steps) {
-  while (f != g) {
-    int& up = f > g ? f : g;
-    ++steps;
-    if (facts[static_cast<std::size_t>(up)].moves) return false;
-    up = world.frames[static_cast<std::size_t>(up)].parent;
-  }
-  return true;
-}
-
-/// See "Pairs" in doc/CERTIFICATES.md.
-bool areNeighbours(const World& world, const std::vector<FrameFacts>& facts, const Body& a, const Body& b,
-                   std::uint64_t& steps) {
-  if (a.role != Role::link || b.role != Role::link) return false;
+/// What is wrong with a reason, as far as it is not the user's word; empty: nothing. See "Pairs" in
+/// doc/CERTIFICATES.md.
+std::string faultOf(const World& world, const std::vector<FrameFacts>& facts, Reason reason, const Body& a,
+                    const Body& b, std::uint64_t& steps) {
+  const auto isEither = [&](Role role) { return a.role == role || b.role == role; };
+  if (reason == Reason::touch_link && (isEither(Role::obstacle) || !isEither(Role::carried)))
+    return "the world calls them what a link carries and a link, and they are not: ";
+  if (reason != Reason::still && reason != Reason::neighbours) return "";
   int moving = 0, f = a.frame, g = b.frame;
+  bool free = false, between = false;  // a frame moves freely; one between the two carries a link
+  const auto isBetween = [&](int frame) {
+    return facts[static_cast<std::size_t>(frame)].link && frame != a.frame && frame != b.frame;
+  };
   while (f != g) {  // a parent's number is below the frame's own: the larger one is not the common ancestor
     int& up = f > g ? f : g;
-    const FrameFacts& at = facts[static_cast<std::size_t>(up)];
     ++steps;
-    if (at.moves && ++moving > 1) return false;
-    if (at.free) return false;
-    if (at.link && up != a.frame && up != b.frame) return false;
+    moving += facts[static_cast<std::size_t>(up)].moves;
+    free = free || facts[static_cast<std::size_t>(up)].free;
+    between = between || isBetween(up);
     up = world.frames[static_cast<std::size_t>(up)].parent;
   }
-  return !facts[static_cast<std::size_t>(f)].link || f == a.frame || f == b.frame;
-}
-
-/// Lines that say nothing: who wrote them meant something else.
-void refuseUnused(const World& world, const std::set<std::pair<int, int>>& used_pairs) {
-  std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
-  for (const Body& body : world.bodies) {
-    there[static_cast<std::size_t>(body.name_id)] = 1;
-    used[static_cast<std::size_t>(body.geometry)] = 1;
-  }
-  for (std::size_t k = 0; k < there.size(); ++k)
-    if (!there[k])
-      throw BadInput("world: 'margin' or 'unchecked' names " + inQuotes(world.names[k]) + ": no body is called so");
-  for (std::size_t k = 0; k < used.size(); ++k)
-    if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
-  for (const auto& [pair, reason] : world.unchecked)
-    if (used_pairs.count(pair) == 0)
-      throw BadInput("world: 'unchecked' of " + inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
-                     inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
-                     ": no two bodies of these names would be checked");
+  if (reason == Reason::still)
+    return moving == 0 ? "" : "the world has them stand still against each other, and they do not: ";
+  const bool links = !isEither(Role::obstacle) && !isEither(Role::carried);
+  if (links && moving <= 1 && !free && !between && !isBetween(f)) return "";
+  return "the world calls them neighbours, and they are not: ";
 }
 
 }  // namespace
@@ -91,7 +68,6 @@ void derivePairs(World& world) {
   world.partners.resize(n);
   std::vector<int> others;  // no obstacles
   std::uint64_t obstacles = 0, steps = 0;
-  std::set<std::pair<int, int>> used;  // pairs of names that are listed as unchecked
   for (std::size_t a = 0; a < n; ++a) {
     const Body& A = world.bodies[a];
     const bool obstacle = A.role == Role::obstacle;
@@ -102,21 +78,12 @@ void derivePairs(World& world) {
       if (A.frame == B.frame) {
         ++world.not_checked[static_cast<int>(Reason::same_frame)];
       } else if (listed != world.unchecked.end()) {
-        ++world.not_checked[static_cast<int>(listed->second)];
-        used.insert(listed->first);
-        const auto refuse = [&](const char* why) {
-          world.false_reason = why + world.describe(static_cast<int>(a)) + " and " + world.describe(b);
-        };
-        if (listed->second == Reason::neighbours && world.false_reason.empty() &&
-            !areNeighbours(world, facts, A, B, steps))
-          refuse("the world calls them neighbours, and they are not: ");
-        if (listed->second == Reason::still && world.false_reason.empty() &&
-            !standStill(world, facts, A.frame, B.frame, steps))
-          refuse("the world has them stand still against each other, and they do not: ");
-        if (listed->second == Reason::touch_link &&
-            (obstacle || B.role == Role::obstacle || (A.role != Role::carried && B.role != Role::carried)))
-          throw BadInput("world: 'touch-link' of " + inQuotes(A.name) + " and " + inQuotes(B.name) +
-                         ": it is for what a link carries, and a link");
+        ++world.not_checked[static_cast<int>(listed->second.reason)];
+        ++listed->second.pairs;
+        if (!world.false_reason.empty()) return;
+        const std::string fault = faultOf(world, facts, listed->second.reason, A, B, steps);
+        if (!fault.empty())
+          world.false_reason = fault + world.describe(static_cast<int>(a)) + " and " + world.describe(b);
       } else {
         world.partners[a].push_back({b, !obstacle && B.role != Role::obstacle});
       }
@@ -129,32 +96,6 @@ void derivePairs(World& world) {
       others.push_back(static_cast<int>(a));
     }
   }
-  refuseUnused(world, used);
-}
-
-const char* nameOf(Reason reason) {
-  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "still against each other",
-                                               "neighbours", "allowed",       "touch-link",
-                                               "scope",      "ignored"};
-  return kNames[static_cast<int>(reason)];
-}
-const char* nameOf(Role role) {
-  static const char* const kNames[] = {"link", "carried", "obstacle"};
-  return kNames[static_cast<int>(role)];
-}
-
-std::string inQuotes(std::string_view name) {
-  std::string text = "'";
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 32 || byte > 126 || c == '\'' || c == '\\') {
-      const char* const digits = "0123456789abcdef";
-      text += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
-    } else {
-      text += c;
-    }
-  }
-  return text + "'";
 }
 
 bool isCoordinateAxis(const double axis[3]) {
@@ -164,16 +105,13 @@ bool isCoordinateAxis(const double axis[3]) {
 Mat statedRotation(const double numbers[9]) {
   Mat R;
   for (int k = 0; k < 9; ++k) {
-    R[k] = constant(enclose(numbers[k]));
-    R[k].r += Fix{static_cast<Int>(1) << (64 - 49)};
+    R[k] = exactly(numbers[k]);
+    R[k].r += Fix{kOne >> 49};
   }
   return R;
 }
 Pose statedPose(const double numbers[12]) {
-  Pose pose;
-  pose.R = statedRotation(numbers);
-  for (int k = 0; k < 3; ++k) pose.t[k] = constant(enclose(numbers[9 + k]));
-  return pose;
+  return {statedRotation(numbers), {exactly(numbers[9]), exactly(numbers[10]), exactly(numbers[11])}};
 }
 
 double World::margin(int a, int b, double general) const {
@@ -181,14 +119,8 @@ double World::margin(int a, int b, double general) const {
   const auto pair = pair_margins.find(std::minmax(x, y));
   if (pair != pair_margins.end()) return pair->second;
   const auto p = margins.find(x), q = margins.find(y);
-  if (p == margins.end() && q == margins.end()) return general;
-  if (p == margins.end() || q == margins.end()) return p == margins.end() ? q->second : p->second;
-  return std::max(p->second, q->second);
-}
-
-std::string World::describe(int body) const {
-  return std::string(nameOf(bodies[body].role)) + " " + inQuotes(bodies[body].name) + " (body " + std::to_string(body) +
-         ")";
+  if (p == margins.end()) return q == margins.end() ? general : q->second;
+  return q == margins.end() ? p->second : std::max(p->second, q->second);
 }
 
 }  // namespace verify

@@ -51,7 +51,7 @@ struct Body {
 
 struct Unchecked {
   Reason reason;
-  int a, b;  // name ids, a <= b
+  std::uint64_t pairs = 0;  // of bodies, that are not checked for it
 };
 
 /// A pair that is checked unless the motion's scope leaves it out.
@@ -61,14 +61,14 @@ struct Partner {
 };
 
 struct World {
-  Hash hash;
+  std::string hash;  // of its text
   std::vector<std::string> variables, names;
   std::vector<Frame> frames;  // frame 0: the world
   std::vector<Geometry> geometries;
   std::vector<Body> bodies;
   std::map<int, double> margins;
   std::map<std::pair<int, int>, double> pair_margins;
-  std::map<std::pair<int, int>, Reason> unchecked;
+  std::map<std::pair<int, int>, Unchecked> unchecked;  // by names, the lower number first
   // Derived:
   std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
   std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
@@ -80,25 +80,13 @@ struct World {
   std::string describe(int body) const;
 };
 
-struct Polynomial {
-  int variable;
-  std::vector<double> coefficients;
-};
-struct Orientation {
-  int variable;
-  double numbers[9];
-};
-struct Ignored {
-  int a, b;
-  double until;
-};
 struct Piece {
-  std::vector<Polynomial> polynomials;    // by variable
-  std::vector<Orientation> orientations;  // by variable
-  std::vector<Ignored> ignored;
+  std::map<int, std::vector<double>> polynomials;     // by variable: coefficients of 1, t, t^2, ...
+  std::map<int, std::array<double, 9>> orientations;  // by variable
+  std::map<std::pair<int, int>, double> ignored;      // by bodies, the lower number first: until when
 };
 struct Motion {
-  Hash hash;
+  std::string hash;  // of its text
   std::string world;
   double margin = 0, added = 0, duration = 0, until = 1;
   bool self = false, scene = false;

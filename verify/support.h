@@ -2,7 +2,6 @@
 // Geometries as lists of pieces, and how far their points reach along a direction that changes with time.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "taylor.h"
@@ -18,19 +17,27 @@ struct Budget {
   }
 };
 
-struct Point {
-  Fix x[3];
-};
+using Point = std::array<Fix, 3>;
 struct Box {
-  Fix low[3], high[3];
-  void add(const Fix x[3]);
+  Point low, high;
   void add(const Box& other);
 };
 
-/// A convex piece with a round part: the points p + y, y in the ellipsoid around 0 with these semi-axes (0 is allowed).
+/// A convex piece with a round part: the points (0, 0, z) + y, y in the ellipsoid around 0 with these semi-axes (0 is
+/// allowed).
 struct Round {
-  double centre[3], axes[3];
-  bool ball;  // all three are equal
+  double z, axes[3];
+};
+
+/// The function w.p + the most that a remainder r adds, sum r_k |p_k|: what is farther out along w + r where p_k >= 0,
+/// along w - r where it is not.
+struct Direction {
+  Fix up[3], down[3];  // w + r, w - r
+  Fix along(std::size_t k, Fix x) const { return (x.v < 0 ? down : up)[k] * x; }
+  /// Less than 3 ulp too small.
+  Fix of(const Point& p) const { return along(0, p[0]) + along(1, p[1]) + along(2, p[2]); }
+  /// The most of a box: the function is convex in each coordinate, so an end is farthest. Less than 3 ulp too small.
+  Fix most(const Box& box) const;
 };
 
 struct Geometry {
@@ -47,9 +54,8 @@ struct Geometry {
   void prepare();
 
   // Derived:
-  std::vector<Point> points;    // within 1 ulp
-  std::vector<Round> rounds;    // of round shapes: the one piece is their hull
-  std::vector<Box> cell_boxes;  // of boxes and box, each end within 2 ulp
+  std::vector<Point> points;  // within 1 ulp
+  std::vector<Round> rounds;  // of round shapes: the one piece is their hull
 
   /// Of a mesh, after joinSurfaces(): a part that hangs together per triangle.
   std::vector<std::uint32_t> part;
@@ -58,29 +64,24 @@ struct Geometry {
   bool joinSurfaces();
 
   /// Upper bounds of f(p) over all points p of the pieces [i, j), for f(p) = v.p + d: of the three Bernstein
-  /// coefficients, remainder included, and at s = 0.
-  struct Reach {
-    Fix b[3], centre;
-    Fix slack;  // how much of each is there only because of the remainder
-  };
+  /// coefficients, remainder included.
   /// @param length  an upper bound of |v| for all s, where v is a rotated direction.
-  Reach reach(std::uint32_t i, std::uint32_t j, const Vec& v, const Tm& d, Fix length, Budget& budget) const;
+  std::array<Fix, 3> reach(std::uint32_t i, std::uint32_t j, const Vec& v, const Tm& d, Fix length,
+                           Budget& budget) const;
 
  private:
   struct Node {
-    std::uint32_t from, to;     // pieces
-    std::uint32_t right;        // the second child; the first follows its parent; 0: a leaf
-    std::uint32_t first, last;  // of a leaf of triangles: its corners in leaf_points_
+    std::uint32_t from, to;  // items: triangles of a mesh, cells, points of a hull
+    std::uint32_t right;     // the second child; the first follows its parent; 0: a leaf
     Box box;
   };
+  struct Search;
   std::uint32_t build(std::uint32_t i, std::uint32_t j);
-  Box boxOf(std::uint32_t piece) const;
-  void rangeBox(std::uint32_t i, std::uint32_t j, Box& box) const;
-  Fix farthest(std::uint32_t i, std::uint32_t j, const Fix w[3], Budget& budget) const;
+  Box boxOf(std::uint32_t item) const;
 
-  std::uint32_t pieces_ = 0, items_ = 0;
+  std::uint32_t pieces_ = 1;
+  std::vector<Box> cells_;  // of boxes, box and hull; each end within 2 ulp
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> leaf_points_;
 };
 
 }  // namespace verify

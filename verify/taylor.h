@@ -16,7 +16,9 @@ struct Tm {
 inline Tm constant(Fix x, Fix error = Fix{0}) {
   return {x, {}, {}, error};
 }
-inline Tm constant(const Enclosed& e) {
+/// A number of the statement.
+inline Tm exactly(double x) {
+  const Enclosed e = enclose(x);
   return constant(e.x, e.error);
 }
 inline Fix magnitude(const Tm& a) {
@@ -27,9 +29,6 @@ inline Fix bound(const Tm& a) {
 }  // of the functions
 inline bool isZero(const Tm& a) {
   return (a.c0.v | a.c1.v | a.c2.v | a.r.v) == 0;
-}
-inline bool isConstant(const Tm& a) {
-  return (a.c1.v | a.c2.v) == 0;
 }
 
 inline Tm operator+(const Tm& a, const Tm& b) {
@@ -42,10 +41,6 @@ inline Tm operator-(const Tm& a) {
   return {-a.c0, -a.c1, -a.c2, a.r};
 }
 
-/// Exactly 2^k times as much, 0 <= k <= 60.
-inline Tm doubled(const Tm& a, int k) {
-  return {doubled(a.c0, k), doubled(a.c1, k), doubled(a.c2, k), doubled(a.r, k)};
-}
 /// (p + [-ra, ra])(q + [-rb, rb]) lies in p q + [-R, R], R = |p| rb + |q| ra + ra rb, |p| <= |a0| + |a1| + |a2|.
 /// Of p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1,
 /// which are in [-1, 1]: s^3 = 3/4 s + T3/4, s^4 = s^2 - 1/8 + T4/8: a quarter and an eighth of the coefficient is left
@@ -53,24 +48,11 @@ inline Tm doubled(const Tm& a, int k) {
 /// ulp.
 inline Tm operator*(const Tm& a, const Tm& b) {
   if (isZero(a) || isZero(b)) return {};
-  Tm p;
-  Fix r;
-  if (isConstant(a)) {
-    p = {a.c0 * b.c0, a.c0 * b.c1, a.c0 * b.c2, {}};
-  } else if (isConstant(b)) {
-    p = {a.c0 * b.c0, a.c1 * b.c0, a.c2 * b.c0, {}};
-  } else {
-    const Fix e3 = a.c1 * b.c2 + a.c2 * b.c1, e4 = a.c2 * b.c2;
-    p.c0 = a.c0 * b.c0 - shifted(e4, 3);
-    p.c1 = a.c0 * b.c1 + a.c1 * b.c0 + e3 - shifted(e3, 2);
-    p.c2 = a.c0 * b.c2 + a.c1 * b.c1 + a.c2 * b.c0 + e4;
-    r = shifted(abs(e3), 2) + shifted(abs(e4), 3) + ulps(2);
-  }
-  // What is 0 exactly costs no product.
-  if (b.r.v != 0) r += mulUp(magnitude(a) + a.r, b.r);
-  if (a.r.v != 0) r += mulUp(magnitude(b), a.r);
-  p.r = r + ulps(12);
-  return p;
+  const Fix e3 = a.c1 * b.c2 + a.c2 * b.c1, e4 = a.c2 * b.c2;
+  const Fix left_over = shifted(abs(e3), 2) + shifted(abs(e4), 3) + ulps(2);
+  return {a.c0 * b.c0 - shifted(e4, 3), a.c0 * b.c1 + a.c1 * b.c0 + e3 - shifted(e3, 2),
+          a.c0 * b.c2 + a.c1 * b.c1 + a.c2 * b.c0 + e4,
+          left_over + mulUp(magnitude(a) + a.r, b.r) + mulUp(magnitude(b), a.r) + ulps(12)};
 }
 /// A third, a half ...: by an integer n > 0. Each of the three quotients is off by less than one ulp.
 inline Tm divided(const Tm& a, int n) {
@@ -88,9 +70,6 @@ inline Vec operator+(const Vec& a, const Vec& b) {
 }
 inline Vec operator-(const Vec& a, const Vec& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec doubled(const Vec& a, int k) {
-  return {doubled(a[0], k), doubled(a[1], k), doubled(a[2], k)};
 }
 inline Vec operator*(const Mat& R, const Vec& x) {
   Vec y;

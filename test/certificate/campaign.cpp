@@ -106,11 +106,9 @@ std::string withLine(std::string text, const std::string& key, const std::string
 
 /// A record that names its motion by the right hash, whatever the motion is.
 std::string recordOf(const std::string& motion, const std::string& nodes) {
-  const auto hash = verify::sha256(motion.data(), motion.size());
   Certificate forged;
   forged.motion = motion;
-  forged.proof.assign(hash.begin(), hash.end());
-  forged.proof += nodes;
+  forged.proof = verify::sha256(motion) + nodes;
   return forged.record();
 }
 

@@ -7,11 +7,13 @@
 #include <cmath>
 #include <string>
 
+#include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/motion/interp_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 #include <gtest/gtest.h>
 
 #include "fcl_artic/continuous_collision.h"
+#include "fcl_artic/fcl_artic.h"
 #include "geometries.h"
 #include "random.h"
 
@@ -109,6 +111,36 @@ TEST(Decided, AGapAboveTheToleranceEndsFree) {
   }
   std::printf("%d asked; %d slid, %d turned, %d came near\n", asked, slid, turned, returned);
   EXPECT_GT(asked, 2000);
+}
+
+/// A ball goes round another one at a gap of margin + tolerance_distance, without turning, so that no direction serves
+/// for long in either's frame; and the tolerance of time is so coarse that the search comes to its finest part of the
+/// motion, where it may take what is near for a contact, before it has gone round.
+TEST(Decided, AGapAboveTheToleranceEndsFreeHoweverCoarseTheToleranceOfTime) {
+  using namespace fcl_artic;
+  pairs::Random random(52);
+  for (int i = 0; i < 8; ++i) {
+    CertifiedRequest request;
+    request.tolerance_distance = std::pow(10, random.uniform(-9, -8));
+    request.tolerance_time = random.uniform(0.2, 1);
+    if (i % 2) request.margin = random.uniform(0, 0.1);
+    Isometry3d reach = Isometry3d::Identity();
+    reach.translation().x() = 0.5 + request.margin + request.tolerance_distance * (1 + 1e-6) + 4 * kPad;
+    auto tree = std::make_shared<KinematicTree>("arm");
+    for (const char* name : {"base", "arm", "ball"}) tree->addLink(name);
+    tree->addJoint(Joint::revolute("shoulder", "base", "arm", Vector3d::UnitZ()));
+    tree->addJoint(Joint::revolute("wrist", "arm", "ball", Vector3d::UnitZ(), reach));
+    ArticulatedCollisionManager manager(tree);
+    manager.bind("ball", std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(0.2)));
+    manager.registerObject(std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(0.3)));
+    manager.setup();
+    const double turn = random.uniform(1, 3);
+    CertifiedResult result;
+    manager.continuousCollide(JointMotion::linear(*tree, Eigen::Vector2d(0, 0), Eigen::Vector2d(turn, -turn)), request,
+                              result);
+    EXPECT_EQ(result.status, Status::free)
+        << "case " << i << ", tolerance " << request.tolerance_distance << ": " << result.t_lower;
+  }
 }
 
 /// Whether the body is one convex piece with an interior, or what an unbounded one borders.

@@ -62,7 +62,7 @@ TEST(VerifyFixed, WhatLeavesTheRangeIsRefused) {
   EXPECT_THROW(large * integer(2), NotProven);
   EXPECT_THROW(large * large, NotProven);
   EXPECT_THROW(large * -large, NotProven);
-  EXPECT_TRUE((large * integer(1)) == large);
+  EXPECT_TRUE((large * integer(1)).v == large.v);
   EXPECT_THROW(integer(std::int64_t{1} << 41), NotProven);
   EXPECT_THROW(enclose(1e13), BadInput);
   EXPECT_THROW(enclose(std::nan("")), BadInput);
@@ -149,15 +149,12 @@ TEST(VerifyTaylor, SumsProductsQuotientsHoldTheirFunctions) {
     const Function a = anyFunction(rng, size, true), b = anyFunction(rng, 1, true);
     const int by = 1 + static_cast<int>(rng() % 200);
     const Tm product = a.m * b.m, sum = a.m + b.m, difference = a.m - b.m, quotient = divided(a.m, by);
-    const int k = by % 12;
-    const Tm doubles = doubled(a.m, k);
     for (const double at : {-1.0, 1.0, 0.0, uniform(rng, -1, 1), uniform(rng, -1, 1)}) {
       const Big s(at);
       ASSERT_TRUE(holds(product, s, a.at(s) * b.at(s))) << n;
       ASSERT_TRUE(holds(sum, s, a.at(s) + b.at(s)));
       ASSERT_TRUE(holds(difference, s, a.at(s) - b.at(s)));
       ASSERT_TRUE(holds(quotient, s, a.at(s) / Big(static_cast<double>(by))));
-      ASSERT_TRUE(holds(doubles, s, a.at(s) * Big(std::ldexp(1, k))));
       ASSERT_TRUE((a.at(s)).abs() <= Big(bound(a.m)));
     }
   }

@@ -62,8 +62,8 @@ bool rotations(const World& world, const Motion& motion) {
   for (const Body& b : world.bodies)
     if (!proper(b.numbers)) return false;
   for (const Piece& p : motion.pieces)
-    for (const Orientation& o : p.orientations)
-      if (!proper(o.numbers)) return false;
+    for (const auto& o : p.orientations)
+      if (!proper(o.second.data())) return false;
   return true;
 }
 
@@ -131,7 +131,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const World world = readWorld(text.empty() ? kWorld : text);
         const std::string motion =
             "fcl_artic motion 1\nworld " + hexOf(world.hash) + "\n" + rest.substr(first + 1, second - first - 1);
-        const std::string proof = hashBytes(motion) + rest.substr(second + 1);
+        const std::string proof = sha256(motion) + rest.substr(second + 1);
         verifyAndJudge(world, {motion, proof});
         break;
       }

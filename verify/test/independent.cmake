@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The verifier's sources include headers of their own folder, the standard library, GMP, MPFR and tinyxml2: nothing of the
+# The verifier's sources include headers of their own folder, the standard library, MPFR and tinyxml2: nothing of the
 # library that it verifies, no Eigen, no FCL. Prints how many lines they have.
 cmake_policy(VERSION 3.22)
 set(allowed algorithm array cmath cstddef cstdint cstdio cstdlib cstring filesystem fstream functional iterator map memory
-  set stdexcept string string_view utility vector gmp.h mpfr.h tinyxml2.h)
+  set stdexcept string string_view tuple utility vector mpfr.h tinyxml2.h)
 file(GLOB sources ${SOURCE_DIR}/*.h ${SOURCE_DIR}/*.cpp)
 # Of these only xml.h includes tinyxml2, and what proves includes none of them.
 set(readers main.cpp meshes.cpp meshes.h packages.cpp packages.h plan.cpp readers.h robot.cpp robot.h scene.cpp shapes.cpp shapes.h
   srdf.cpp urdf.cpp xml.cpp xml.h)
 set(people json.cpp report.cpp report.h)
-# What reads worlds, motions and proofs, and what shows that bodies do meet: a motion is proven free by neither.
+# What reads worlds, motions and proofs and names what is in them, and what shows that bodies do meet: a motion is proven
+# free by neither.
 set(format contact.cpp format.cpp sha256.cpp sha256.h)
 set(core 0)
 set(lines 0)
@@ -54,6 +55,6 @@ endforeach()
 message("The verifier has ${lines} lines, ${code} of them neither empty nor comments; what proves has ${core} of these")
 if(wrong OR lines LESS 1000)
   message(FATAL_ERROR "the verifier includes what it must not, or its sources were not found")
-elseif(core GREATER 1725)
+elseif(core GREATER 1325)
   message(FATAL_ERROR "what proves is longer than it was: the less there is to read, the more can be trusted")
 endif()

@@ -40,8 +40,7 @@ TEST(VerifyProof, ASlideIsApartUpToTheVeryTouch) {
   expectVerified(judge(world, free.write(world), sep({-1, 0, 0}, 1)));
   expectVerified(judge(world, free.write(world), sep({-1, 0, 0}, 2)));
   expectVerified(judge(world, free.write(world), fine({-1, 0, 0})));
-  expectVerified(judge(world, free.write(world), turnNode({-1, 0, 0}, {-0.2, 0, 0})));
-  expectRefused(judge(world, free.write(world), sep({1, 0, 0})), "not apart along the direction");
+  expectRefused(judge(world, free.write(world), sep({1, 0, 0})), "not shown to be apart");
   const MotionText hits = moving({0, 1.4000001});
   expectRefused(judge(world, hits.write(world), sep({-1, 0, 0})), "apart");
   // It hits at the end only, at the beginning only, in the middle only.
@@ -92,7 +91,6 @@ TEST(VerifyProof, UntilAndIgnored) {
   EXPECT_EQ(v.late, 1u);
   EXPECT_EQ(v.not_checked[static_cast<int>(Reason::ignored)], 0u);
   expectVerified(judge(world, m.write(world), node(kTime, sep({-1, 0, 0}), sep({-1, 0, 0}))));
-  expectVerified(judge(world, m.write(world), turnNode({1, 0, 0}, {-1.1, 0, 0})));
   // At and before the time: a touch at t = 0 exactly, and one all along.
   m = moving({1.4, -1.4});
   expectRefused(judge(world, m.write(world), sep({-1, 0, 0})), "apart");
@@ -168,7 +166,7 @@ TEST(VerifyProof, HashesBindTheThreeTexts) {
   const std::string good = record(motion, sep({-1, 0, 0}));
   expectVerified(judge(world, good));
   expectRefused(judge(other, good), "another world");
-  const std::string proof = hashBytes(motion) + sep({-1, 0, 0});
+  const std::string proof = sha256(motion) + sep({-1, 0, 0});
   expectRefused(judge(world, "FAC2" + little(faster.size(), 4) + faster + little(proof.size(), 4) + proof),
                 "another motion");
 }
@@ -217,10 +215,6 @@ TEST(VerifyProof, FramesOfDirections) {
   expectVerified(judge(inside, m.write(inside), sep({1, 0, 0}, 1)));
   expectRefused(judge(inside, m.write(inside), sep({1, 0, 0}, 0)), "apart");
   expectRefused(judge(inside, m.write(inside), sep({1, 0, 0}, 2)), "apart");
-  const MotionText quarter = moving({0, 1.5});
-  expectVerified(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {0.07, 1, 0})));
-  expectRefused(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {1, 0, 0})), "apart");
-  expectRefused(judge(inside, quarter.write(inside), turnNode({1, 0, 0}, {-1, 0, 0})), "apart");
 }
 
 TEST(VerifyProof, Walls) {
@@ -439,7 +433,7 @@ TEST(VerifyProof, UncheckedPairsAreCountedAndNeighboursProven) {
   // Without a body between them they still have two moving frames on their path.
   expectRefused(verdict(chain("unchecked neighbours base lower\n", "carried"), x + x + x), "neighbours");
   expectRefused(verdict(chain("unchecked neighbours upper tool\n"), x + x + x), "neighbours");
-  EXPECT_THROW(readWorld(chain("unchecked touch-link base lower\n")), BadInput);
+  expectRefused(verdict(chain("unchecked touch-link base lower\n"), x + x + x), "what a link carries and a link");
   expectVerified(verdict(chain("unchecked touch-link tool upper\n"), x + x + x));
   m.scope = "scene";
   v = verdict(chain(""), "");
@@ -679,7 +673,7 @@ TEST(VerifyProof, HostileProofs) {
   std::string deep;
   for (int k = 0; k < 100; ++k) deep += '\x10';
   expectRefused(judge(world, motion, deep), "60 times");
-  expectRefused(judge(world, motion, "\x15" + good), "no node");
+  for (const char* kind : {"\x06", "\x08", "\x15"}) expectRefused(judge(world, motion, kind + good), "no node");
   expectRefused(judge(world, motion, cutNode(kOwn, 1, good, good)), "cut");
   expectRefused(judge(world, motion, std::string("\x11\x81\x00", 3) + good + good), "varint");
   expectRefused(judge(world, motion, std::string("\x11\xff\xff\xff\xff\xff\xff", 7)), "varint");
@@ -730,18 +724,6 @@ TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
   expectVerified(first);
   expectVerified(last);
   EXPECT_GT(last.steps, first.steps + 1000u * (kCuts - 1));
-}
-
-// A direction that grows or shrinks is as long as at its longer end, where two balls overlap here.
-TEST(VerifyProof, ADirectionIsAsLongAsAtItsLongerEnd) {
-  const World world = readWorld(kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
-                                hex(1) + " " + hex(0) + "\ngeometry sphere " + hex(0.1) + "\nbody obstacle o 0 0 " +
-                                hex(kHere) + "\nbody link l 1 0 " + hex(kHere) + "\n");
-  const std::string shrinks = turnNode({1, 0, 0}, {0.2, 0, 0}), grows = turnNode({0.2, 0, 0}, {1, 0, 0});
-  expectRefused(judge(world, moving({0.1, 0.2}).write(world), shrinks), "apart");
-  expectRefused(judge(world, moving({0.3, -0.2}).write(world), grows), "apart");
-  for (const std::string& turning : {shrinks, grows})
-    expectVerified(judge(world, moving({2, 1}).write(world), turning));
 }
 
 TEST(VerifyStatement, RotationsAreRotations) {
@@ -836,14 +818,13 @@ TEST(VerifyStatement, IsReadStrictly) {
 }
 
 TEST(VerifyStatement, Sha256) {
-  EXPECT_EQ(hexOf(sha256("", 0)), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-  EXPECT_EQ(hexOf(sha256("abc", 3)), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(hexOf(sha256("")), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(hexOf(sha256("abc")), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   const std::string million(1000000, 'a');
-  EXPECT_EQ(hexOf(sha256(million.data(), million.size())),
-            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(hexOf(sha256(million)), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
   const std::string two =
       "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";  // 56 bytes: the length needs a block more
-  EXPECT_EQ(hexOf(sha256(two.data(), two.size())), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(hexOf(sha256(two)), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 }  // namespace

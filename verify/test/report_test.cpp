@@ -70,7 +70,51 @@ TEST(VerifyReport, OfIgnoredPairsNobodyKnowsThatTheyPart) {
   v.checked = 3;
   v.late = 2;
   v.until = 1;
-  EXPECT_EQ(lineOf(v), "VERIFIED 3 pairs (2 of them ignored up to a time)");
+  EXPECT_EQ(lineOf(v),
+            "VERIFIED: the robot of this world moves as this record says without obstacles, and none of 3 pairs of "
+            "bodies (2 of them ignored up to a time) touches.");
+}
+
+TEST(VerifyReport, AVerdictIsASentenceOfItsSubject) {
+  Verdict v;
+  v.verified = true;
+  v.checked = 66;
+  v.until = 0.5;
+  v.pieces = 3;
+  v.not_checked[static_cast<int>(Reason::neighbours)] = 5;
+  v.not_checked[static_cast<int>(Reason::allowed)] = 7;
+  const Subject subject{"the robot of 'arm.urdf'", "as 'plan.csv' says", "among the obstacles of 'cell.stl'",
+                        "pairs of bodies", "comes within its margin"};
+  EXPECT_EQ(lineOf(v, subject),
+            "VERIFIED: the robot of 'arm.urdf' moves as 'plan.csv' says among the obstacles of 'cell.stl', and until t "
+            "= 0.5 of piece 2 none of 66 pairs of bodies comes within its margin.");
+  EXPECT_EQ(notChecked(v), "5 neighbours, 7 allowed");
+  EXPECT_EQ(notChecked(Verdict()), "");
+}
+
+TEST(VerifyReport, LongListsAreWrapped) {
+  std::string list = "not checked, allowed: ", words;
+  for (int k = 0; k < 200; ++k) list += "'link_" + std::to_string(k) + "' and 'b\n', ";
+  list += "VERIFIED";
+  const std::string text = wrapped("a.fac: ", list);
+  std::size_t lines = 0;
+  for (std::size_t at = 0, end; at < text.size(); at = end + 1, ++lines) {
+    end = text.find('\n', at);
+    ASSERT_NE(end, std::string::npos);
+    EXPECT_LE(end - at, 120u);
+    const std::string line = text.substr(at, end - at);
+    EXPECT_EQ(line.rfind(lines == 0 ? "a.fac: not checked, allowed: 'link_0' and" : "    'link_", 0), 0u) << line;
+    words += line.substr(lines == 0 ? 0 : 4) + (end + 1 < text.size() ? " " : "");
+  }
+  EXPECT_GT(lines, 30u);
+  EXPECT_EQ(words, "a.fac: " + shown(list));
+  EXPECT_EQ(text.find("VERIFIED"), std::string::npos);
+  EXPECT_EQ(wrapped("  ", "short"), "  short\n");
+  EXPECT_EQ(wrapped("  ", ""), "  \n");
+  EXPECT_EQ(wrapped("", "x"), "x\n");
+  const std::string x(200, 'x');  // what is no list stays whole, and so does an item
+  EXPECT_EQ(wrapped("", x + " " + x), x + " " + x + "\n");
+  EXPECT_EQ(wrapped("", "a: " + x + ", y"), "a: " + x + ",\n    y\n");
 }
 
 TEST(VerifyReport, WithinTheMarginIsNoContact) {
@@ -78,7 +122,7 @@ TEST(VerifyReport, WithinTheMarginIsNoContact) {
   v.verified = v.contact = v.near = true;
   v.contact_text = "link 'a' (body 0) and link 'b' (body 1) at t = 1";
   EXPECT_EQ(lineOf(v).find("CONTACT"), std::string::npos) << lineOf(v);
-  EXPECT_NE(lineOf(v).find("WITHIN THEIR MARGIN link 'a'"), std::string::npos) << lineOf(v);
+  EXPECT_NE(lineOf(v).find("WITHIN THEIR MARGIN: link 'a'"), std::string::npos) << lineOf(v);
   EXPECT_NE(verdictAsJson(v).find("\"within_margin\""), std::string::npos);
   EXPECT_EQ(verdictAsJson(v).find("\"contact\""), std::string::npos);
   v.near = false;

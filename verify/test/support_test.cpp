@@ -32,13 +32,13 @@ TEST(VerifySupport, NothingIsLostWhereADirectionComesToBeADiscsAxis) {
       v[k].r = encloseUp(uniform(rng, 0, 1) * size);
     }
     Budget budget{1000000000};
-    const Geometry::Reach reach = g.reach(0, 1, v, Tm{}, integer(2), budget);
+    const std::array<Fix, 3> reach = g.reach(0, 1, v, Tm{}, integer(2), budget);
     for (const double s : {-1.0, 1.0, 0.0, uniform(rng, -1, 1)}) {
       V at{x * (s - end), y * (s - end), toDouble(v[2].c0)};
       for (std::size_t k = 0; k < 2; ++k) at[k] += toDouble(v[k].c2) * s * s + part[k] * toDouble(v[k].r);
       const double most = dot(at, farthest(g, 0, 1, at));
-      const double bound = (toDouble(reach.b[0]) * (1 - s) * (1 - s) + 2 * toDouble(reach.b[1]) * (1 - s) * (1 + s) +
-                            toDouble(reach.b[2]) * (1 + s) * (1 + s)) /
+      const double bound = (toDouble(reach[0]) * (1 - s) * (1 - s) + 2 * toDouble(reach[1]) * (1 - s) * (1 + s) +
+                            toDouble(reach[2]) * (1 + s) * (1 + s)) /
                            4;
       ASSERT_LE(most, bound + 1e-15) << "case " << n << " s " << s;
       if (exact && s != 0 && s == end) most_lost = std::max(most_lost, bound - most);

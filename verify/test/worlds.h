@@ -180,24 +180,14 @@ inline std::string fine(const V& n, int where = 0) {
   for (const double x : n) s += little(static_cast<std::uint64_t>(std::llround(scale * x)), 4);
   return s;
 }
-inline std::string turnNode(const V& n0, const V& n1, int where = 0) {
-  std::string s(1, static_cast<char>(6 + where));
-  for (const V& n : {n0, n1})
-    for (const double x : n) s += little(static_cast<std::uint64_t>(std::llround(1e9 * x)), 4);
-  return s;
-}
 inline std::string node(int kind, const std::string& first, const std::string& second) {
   return std::string(1, static_cast<char>(kind)) + first + second;
 }
 inline std::string cutNode(int kind, std::uint32_t c, const std::string& first, const std::string& second) {
   return std::string(1, static_cast<char>(kind)) + varint(c) + first + second;
 }
-inline std::string hashBytes(const std::string& motion) {
-  const Hash h = sha256(motion.data(), motion.size());
-  return std::string(h.begin(), h.end());
-}
 inline std::string record(const std::string& motion, const std::string& nodes) {
-  const std::string proof = hashBytes(motion) + nodes;
+  const std::string proof = sha256(motion) + nodes;
   return "FAC2" + little(motion.size(), 4) + motion + little(proof.size(), 4) + proof;
 }
 inline Verdict judge(const World& world, const std::string& bytes, const Options& options = {}) {
@@ -213,13 +203,12 @@ class Sampler {
  public:
   Sampler(const World& world, const Motion& motion) : world(world), motion(motion) {}
   double q(std::size_t piece, int v, double t) const {
-    for (const Polynomial& p : motion.pieces[piece].polynomials) {
-      if (p.variable != v) continue;
-      double x = 0;
-      for (std::size_t k = p.coefficients.size(); k-- > 0;) x = x * t + p.coefficients[k];
-      return x;
-    }
-    return 0;
+    const auto& polynomials = motion.pieces[piece].polynomials;
+    const auto p = polynomials.find(v);
+    double x = 0;
+    if (p == polynomials.end()) return x;
+    for (std::size_t k = p->second.size(); k-- > 0;) x = x * t + p->second[k];
+    return x;
   }
   std::vector<M> frames(std::size_t piece, double t) const {
     std::vector<M> all(1);
@@ -231,12 +220,12 @@ class Sampler {
         if (e.kind == Element::rotate) {
           const V w{q(piece, e.variable, t), q(piece, e.variable + 1, t), q(piece, e.variable + 2, t)};
           m = m * rotationAbout(w, norm(w));
-          for (const Orientation& o : motion.pieces[piece].orientations)
-            if (o.variable == e.variable) {
-              M r;
-              std::copy(o.numbers, o.numbers + 9, r.R.begin());
-              m = m * r;
-            }
+          const auto& orientations = motion.pieces[piece].orientations;
+          if (const auto o = orientations.find(e.variable); o != orientations.end()) {
+            M r;
+            r.R = o->second;
+            m = m * r;
+          }
           continue;
         }
         const double x = e.multiplier * q(piece, e.variable, t) + e.offset;
