@@ -34,7 +34,8 @@ is claimed, and how it is proven.
                    "NAME=VALUE ..."
   --state Q        values of what the plans have no column for, or --from and --to do not name: "NAME=VALUE ..."; of
                    others 0
-  --interpolation KIND   of the plans: linear, cubic, quintic; else by their columns, as `fcl_artic certify` has it
+  --interpolation KIND   of the plans: linear, cubic, quintic, jtc-upsampled; else by their columns, as `fcl_artic
+                   certify` has it
   --compare-only   no certificates: only compare the world with the files
   --json           print everything as JSON, and each record's motion and proof
   --quiet          print no line for what is verified of all pairs to the motion's end, and none about the world
@@ -215,12 +216,14 @@ std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& wor
                                     const std::vector<std::string>& robot) {
   static const std::map<std::string, verify::Interpolation> kKinds{{"linear", verify::Interpolation::linear},
                                                                    {"cubic", verify::Interpolation::cubic},
-                                                                   {"quintic", verify::Interpolation::quintic}};
+                                                                   {"quintic", verify::Interpolation::quintic},
+                                                                   {"jtc-upsampled", verify::Interpolation::upsampled}};
   std::vector<verify::Plan> plans;
   for (const std::string& path : asked.plans) {
     plans.push_back(verify::readPlan(path));
     for (const std::string& kind : asked.interpolation) {
-      if (kKinds.count(kind) == 0) throw verify::BadInput("--interpolation takes linear, cubic or quintic");
+      if (kKinds.count(kind) == 0)
+        throw verify::BadInput("--interpolation takes linear, cubic, quintic or jtc-upsampled");
       plans.back().interpolation = kKinds.at(kind);
     }
   }

@@ -112,7 +112,8 @@ Columns columnsOf(const World& world, const Plan& plan) {
 
 Interpolation interpolationOf(const Plan& plan, const Columns& columns) {
   Interpolation kind = plan.interpolation;
-  if (kind == Interpolation::automatic)
+  if (kind == Interpolation::upsampled && !columns.velocities) return kind;
+  if (kind == Interpolation::automatic || kind == Interpolation::upsampled)
     kind = columns.accelerations ? Interpolation::quintic
            : columns.velocities  ? Interpolation::cubic
                                  : Interpolation::linear;
@@ -141,7 +142,12 @@ class PlanComparison {
   }
 
  private:
-  double time(std::size_t k) const { return plan_.rows[k][columns_.time]; }
+  using Long = long double;
+
+  /// Of a waypoint: its own, or its number.
+  double time(std::size_t k) const {
+    return columns_.time == Columns::kNone ? static_cast<double>(k) : plan_.rows[k][columns_.time];
+  }
   void different(const std::string& what) {
     if (result_.differences.size() < 1000) result_.differences.push_back(what);
   }
@@ -175,12 +181,16 @@ class PlanComparison {
     if (column == columns_.variables.end()) return standing(v);
     const Columns::Of& of = column->second;
     const std::size_t pieces = std::min(motion_.pieces.size(), plan_.rows.size() - 1);
+    const Rest rest = kind_ == Interpolation::upsampled ? fromRestToRest(of.position) : Rest();
     for (std::size_t k = 0; k < pieces; ++k) {
       const std::vector<double> c = coefficients(k, v);
       const double from = plan_.rows[k][of.position], to = plan_.rows[k + 1][of.position];
       if (c[0] != from) return wrong(k, "is not at waypoint " + std::to_string(k) + " at the beginning of");
-      if (kind_ != Interpolation::linear) {
-        if (!isSpline(c, of, k)) return wrong(k, "does not go as the plan's velocities say in");
+      if (kind_ == Interpolation::upsampled) {
+        if (!isSpline(c, smooth(rest, of.position, k)))
+          return wrong(k, "does not go by the smooth spline from rest to rest in");
+      } else if (kind_ != Interpolation::linear) {
+        if (!isSpline(c, byVelocities(of, k))) return wrong(k, "does not go as the plan's velocities say in");
       } else if (c.size() > 2) {
         return wrong(k, "does not go straight in");
       } else if ((c.size() > 1 ? c[1] : 0) != to - from) {
@@ -228,16 +238,25 @@ class PlanComparison {
     standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
   }
 
+  /// Coefficients of a piece, and what a writer's rounding of them is measured by.
+  struct Spline {
+    Long c[6] = {}, size = 0;
+  };
+
   // With s = (t - t_k) / h the only polynomials of these degrees that have the waypoints' values, velocities v and
   // accelerations a at both ends: q0 + h v0 s + (3 d - 2 h v0 - h v1) s^2 + (h v0 + h v1 - 2 d) s^3, d = q1 - q0, and
   // likewise of degree 5. A writer rounds their coefficients: by less than 2^-41 of the largest of |q|, h |v|, h^2 |a|
   // (doc/NUMERICS.md, section 12: 2e-13).
-  bool isSpline(const std::vector<double>& c, const Columns::Of& of, std::size_t k) const {
-    using Long = long double;
+  Spline byVelocities(const Columns::Of& of, std::size_t k) const {
     const std::vector<double>&from = plan_.rows[k], &to = plan_.rows[k + 1];
     const Long h = static_cast<Long>(time(k + 1)) - time(k), d = static_cast<Long>(to[of.position]) - from[of.position];
     const Long v0 = h * from[of.velocity], v1 = h * to[of.velocity];
-    Long a0 = 0, a1 = 0, e[6] = {from[of.position], v0, 3 * d - 2 * v0 - v1, v0 + v1 - 2 * d, 0, 0};
+    Spline out;
+    Long a0 = 0, a1 = 0, *e = out.c;
+    e[0] = from[of.position];
+    e[1] = v0;
+    e[2] = 3 * d - 2 * v0 - v1;
+    e[3] = v0 + v1 - 2 * d;
     if (kind_ == Interpolation::quintic) {
       a0 = h * h * from[of.acceleration];
       a1 = h * h * to[of.acceleration];
@@ -246,10 +265,62 @@ class PlanComparison {
       e[4] = -15 * d + 8 * v0 + 7 * v1 + (3 * a0) / 2 - a1;
       e[5] = 6 * d - 3 * (v0 + v1) - (a0 - a1) / 2;
     }
-    const Long size = std::max({std::fabs(e[0]), std::fabs(static_cast<Long>(to[of.position])), std::fabs(v0),
-                                std::fabs(v1), std::fabs(a0), std::fabs(a1)});
+    out.size = std::max({std::fabs(e[0]), std::fabs(static_cast<Long>(to[of.position])), std::fabs(v0), std::fabs(v1),
+                         std::fabs(a0), std::fabs(a1)});
+    return out;
+  }
+
+  /// Second derivatives at the waypoints of the spline of cubics through them that is at rest at its first and last
+  /// one, and the largest slope from one to the next.
+  struct Rest {
+    std::vector<Long> bend;
+    Long slope = 0;
+  };
+
+  // Between waypoints k and k + 1, h apart, with the slope s between them and the second derivatives m and n there,
+  // such a cubic leaves with the velocity s - h (2 m + n) / 6 and arrives with s + h (m + 2 n) / 6. At each waypoint it
+  // leaves as it arrives, g being the step before:
+  //   g m_{k-1} + 2 (g + h) m_k + h m_{k+1} = 6 (s_k - s_{k-1}),
+  // with g = 0 and s_{-1} = 0 at the first one, and likewise at the last. Twice as much stands on the diagonal as
+  // beside it: elimination needs no pivots, and nothing grows (long doubles have 11 bits more than the writer's).
+  Rest fromRestToRest(std::size_t column) const {
+    const std::size_t n = plan_.rows.size();
+    Rest rest;
+    rest.bend.resize(n);
+    std::vector<Long> over(n);  // what is left beside a diagonal of 1
+    Long before = 0, arrives = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool last = k + 1 == n;
+      const Long after = last ? 0 : static_cast<Long>(time(k + 1)) - time(k);
+      const Long leaves = last ? 0 : (static_cast<Long>(plan_.rows[k + 1][column]) - plan_.rows[k][column]) / after;
+      const Long pivot = 2 * (before + after) - (k > 0 ? before * over[k - 1] : 0);
+      rest.bend[k] = (6 * (leaves - arrives) - (k > 0 ? before * rest.bend[k - 1] : 0)) / pivot;
+      over[k] = after / pivot;
+      rest.slope = std::max(rest.slope, std::fabs(leaves));
+      before = after;
+      arrives = leaves;
+    }
+    for (std::size_t k = n - 1; k-- > 0;) rest.bend[k] -= over[k] * rest.bend[k + 1];
+    return rest;
+  }
+
+  // A writer rounds as above, from velocities that it finds by a like elimination: these are off by less than 2^-44 of
+  // the plan's largest slope (doc/NUMERICS.md, section 12).
+  Spline smooth(const Rest& rest, std::size_t column, std::size_t k) const {
+    const Long from = plan_.rows[k][column], to = plan_.rows[k + 1][column];
+    const Long h = static_cast<Long>(time(k + 1)) - time(k), m = h * h * rest.bend[k], n = h * h * rest.bend[k + 1];
+    Spline out;
+    out.c[0] = from;
+    out.c[1] = to - from - (2 * m + n) / 6;
+    out.c[2] = m / 2;
+    out.c[3] = (n - m) / 6;
+    out.size = std::max({std::fabs(from), std::fabs(to), h * rest.slope});
+    return out;
+  }
+
+  static bool isSpline(const std::vector<double>& c, const Spline& e) {
     for (std::size_t i = 0; i < 6; ++i)
-      if (!(std::fabs((i < c.size() ? c[i] : 0) - e[i]) <= std::ldexp(size, -41))) return false;
+      if (!(std::fabs((i < c.size() ? c[i] : 0) - e.c[i]) <= std::ldexp(e.size, -41))) return false;
     return true;
   }
 
@@ -258,9 +329,10 @@ class PlanComparison {
     std::string text = "the motion is that of '" + plan_.title + "': waypoints 0 to " + std::to_string(pieces);
     if (pieces < plan_.rows.size() - 1) text += " of " + std::to_string(plan_.rows.size() - 1);
     if (motion_.until < 1) text += ", up to the time that the claim ends";
-    text += kind_ == Interpolation::linear  ? ", straight from one to the next"
-            : kind_ == Interpolation::cubic ? ", cubic splines"
-                                            : ", splines of degree 5";
+    text += kind_ == Interpolation::linear      ? ", straight from one to the next"
+            : kind_ == Interpolation::cubic     ? ", cubic splines"
+            : kind_ == Interpolation::upsampled ? ", one smooth spline from rest to rest"
+                                                : ", splines of degree 5";
     result_.notes.push_back(text);
     if (!standing_.empty()) result_.notes.push_back("not in the plan, standing still: " + standing_);
     const double length = columns_.time == Columns::kNone ? motion_.duration : time(plan_.rows.size() - 1) - time(0);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -13,29 +14,40 @@
 
 namespace fcl_artic {
 
-/// Request of toolDeviation(). All defaults are safe: nothing has to be tuned.
+/// Request of toolDeviation(): the path that a tool is to follow, and how well it is to be known. All defaults are
+/// safe: nothing has to be tuned.
 struct ToolLineRequest {
-  /// The tool's frame in the link's: the origin is to follow the line, the axes are to keep their orientation.
+  /// The tool's frame in the link's: the origin is to follow the path, the axes are to keep their orientation against
+  /// it.
   Eigen::Isometry3d tool = Eigen::Isometry3d::Identity();
   /// Wanted widths of the brackets of the largest distance, m, and of the largest angle, rad; both above 0.
   double tolerance_distance = 1e-6, tolerance_angle = 1e-4;
-  /// Maximum number of poses that are looked at; after it the search ends with what is proven so far; 0: no limit.
+  /// Maximum number of poses that are looked at, for both brackets together; after it the search ends with what is
+  /// proven so far; 0: no limit.
   std::uint64_t work_budget = 0;
+  /// A point in the world, m: the path is the arc of a circle from the tool's origin at the motion's begin through this
+  /// point to that at the end, less or more than half a circle. None: the path is the straight line.
+  std::optional<Eigen::Vector3d> via;
 };
 
-/// How far a tool leaves the straight line between its poses at a motion's begin and end. All numbers are proven,
-/// rounding included: lower <= largest deviation over the whole motion <= upper.
+/// How far a tool leaves its path, the straight line or the arc between its poses at a motion's begin and end. All
+/// numbers are proven, rounding included: lower <= largest deviation over the whole motion <= upper.
 ///
-/// The distance is that of the tool's origin from the segment between its origins at the ends. The angle is that
-/// between the tool's orientation and the one that it should have where its origin is: the shortest rotation from the
-/// first orientation to the last one goes as far as the nearest point of the segment has gone.
-/// Of ends that are turned by more than 2.5 rad against each other nothing is said of the angle: it is from 0 to pi.
+/// The distance is that of the tool's origin from the nearest point of the path. The angle is that between the tool's
+/// orientation and the one that it should have there. The latter is measured against the path, as a torch is set
+/// against a seam: along an arc all directions turn with the tangent, about the circle's axis; seen like that, the
+/// shortest rotation from the first orientation to the last one goes as far as the nearest point of the path has gone.
+/// Along a straight line no direction turns. So a tool that turns with its arc has the angle 0, and so has one that
+/// keeps its orientation in the world along an arc of less than 2.5 rad. Of ends that are turned by more than 2.5 rad
+/// against each other, seen like that, nothing is said of the angle: it is from 0 to pi. Where the tool is as far from
+/// an arc as 0.9 times its radius, or of more than half a circle as 0.9 times half of the distance between the ends,
+/// the nearest point may jump, and the angle is not bracketed narrowly.
 struct ToolDeviation {
   double distance_lower = 0, distance_upper = 0;  ///< m
   double distance_time = 0;                       ///< when the tool is at least distance_lower away
   double angle_lower = 0, angle_upper = 0;        ///< rad; angles above 2.5 are not told from pi
   double angle_time = 0;                          ///< when the tool is turned by at least angle_lower
-  double length = 0;                              ///< of the segment, m, as computed in doubles
+  double length = 0;                              ///< of the path, m, as computed in doubles
   /// Whether both brackets are as narrow as was asked for. False if the work budget ran out.
   bool within_tolerance = false;
 
@@ -47,12 +59,14 @@ struct ToolDeviation {
   bool certainlyLeaves(double distance, double angle) const { return distance_lower > distance || angle_lower > angle; }
 };
 
-/// Finds how far a tool leaves the straight line between its poses at a motion's ends: for welding, gluing and cutting
-/// along a line while the joints go by splines. Says nothing of contacts.
+/// Finds how far a tool leaves the straight line, or an arc, between its poses at a motion's ends: for welding, gluing
+/// and cutting along it while the joints go by splines. Says nothing of contacts.
 /// @param link  that carries the tool.
 /// @throws std::out_of_range for a link that the tree lacks; std::invalid_argument for a motion of another tree, a
 ///   motion by tangents of half angles, a tool frame that is not rigid to 1e-9, values outside the ranges given in
-///   ToolLineRequest, and ends less than 1e-6 m apart.
+///   ToolLineRequest, and ends less than 1e-6 m apart; for `via` not finite, beyond 1e9 m, less than 1e-6 m from an end
+///   or nearly on a straight line with both (the circle's radius is above 1000 times their largest distance), and for
+///   points whose rounding is above a thousandth of an arc so small.
 FCL_ARTIC_EXPORT ToolDeviation toolDeviation(const KinematicTree& tree, const JointMotion& motion, const LinkRef& link,
                                              const ToolLineRequest& request = {});
 /// The same over all of a trajectory; times are the trajectory's own.

@@ -2,6 +2,9 @@
 // Whom a proof is about: the motion of the plan.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <random>
 
 #include "files.h"
 
@@ -120,6 +123,93 @@ TEST_F(VerifyPlan, SplinesAreThoseOfTheVelocities) {
   EXPECT_EQ(said(motion({q(0, {0, 0, 0, 10, -15, 6})}), rest), "same");
   EXPECT_NE(said(motion({q(0, {0, 0, 0, 10, -14, 5})}), rest), "same");
   EXPECT_NE(said(motion({q(0, {0, 0, 0, 10, -15, 6})}), "t,a,a_vel,a_acc\n0,0,0,0\n2,1,0,0.001\n"), "same");
+}
+
+// Of positions alone the one spline whose velocity and acceleration do not jump, from rest to rest.
+TEST_F(VerifyPlan, PositionsAloneMayBeUpsampled) {
+  const auto upsampled = [&](const std::vector<std::string>& pieces, const std::string& csv) {
+    return said(motion(pieces), csv, Interpolation::upsampled);
+  };
+  // There and back: both halves are from rest to rest, and bend alike in the middle.
+  const std::string there = q(0, {0, 0, 3, -2}), back = q(0, {1, 0, -3, 2}), csv = "t,a,b\n1,0,0\n2,1,0\n3,0,0\n";
+  EXPECT_EQ(upsampled({there, back}, csv), "same");
+  EXPECT_TRUE(noted("waypoints 0 to 2, one smooth spline from rest to rest"));
+  EXPECT_TRUE(noted("these very curves"));
+  EXPECT_EQ(upsampled({there, back}, "t,a\n0,0\n7,1\n14,0\n"), "same");
+  EXPECT_EQ(upsampled({there, back}, "a\n0\n1\n0\n"), "same");  // its points have equal steps
+  EXPECT_EQ(upsampled({there}, "a\n0\n1\n"), "same");
+  EXPECT_NE(upsampled({there, back}, "t,a\n0,0\n1,1\n3,0\n"), "same");
+  EXPECT_NE(said(motion({there, back}), csv), "same");
+  // The slopes of both steps are 1, so the velocity between them is 1.5.
+  const std::string uneven = "t,a\n0,0\n1,1\n3,3\n";
+  EXPECT_EQ(upsampled({q(0, {0, 0, 1.5, -0.5}), q(0, {1, 3, 0, -1})}, uneven), "same");
+  EXPECT_EQ(upsampled({q(0, {0, 1e-14, 1.5, -0.5}), q(0, {1, 3, 0, -1})}, uneven), "same");
+  // Straight; at rest in the middle, where the acceleration jumps; with another velocity there; a little off.
+  for (const auto& pieces :
+       std::vector<std::vector<std::string>>{{q(0, {0, 1}), q(0, {1, 2})},
+                                             {q(0, {0, 0, 3, -2}), q(0, {1, 0, 6, -4})},
+                                             {q(0, {0, 0, 2, -1}), q(0, {1, 2, 2, -2})},
+                                             {q(0, {0, 0, 1.5, -0.5}), q(0, {1, 3, 1e-11, -1 - 1e-11})},
+                                             {q(0, {0, 1e-11, 1.5, -0.5}), q(0, {1, 3, 0, -1})}})
+    EXPECT_NE(upsampled(pieces, uneven).find("smooth spline from rest to rest"), std::string::npos) << pieces[0];
+  // What begins and ends without bending moves there.
+  EXPECT_NE(upsampled({q(0, {0, 1.5, 0, -0.5}), q(0, {1, 0, -1.5, 0.5})}, csv), "same");
+  // A point with velocities is not upsampled.
+  const std::string with = "t,a,a/velocity\n0,0,0\n1,1,0\n3,3,0\n";
+  EXPECT_EQ(upsampled({q(0, {0, 0, 3, -2}), q(0, {1, 0, 6, -4})}, with), "same");
+  EXPECT_NE(upsampled({q(0, {0, 0, 1.5, -0.5}), q(0, {1, 3, 0, -1})}, with), "same");
+}
+
+// Random plans, against the velocities that Gaussian elimination with pivots finds; then one velocity is another.
+TEST_F(VerifyPlan, UpsampledPlansOfManyPoints) {
+  std::mt19937_64 random(51);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int round = 0; round < 20; ++round) {
+    const std::size_t n = 3 + random() % 12;
+    std::vector<double> t{uniform(random)}, x;
+    for (std::size_t k = 0; k < n; ++k) {
+      x.push_back(uniform(random));
+      t.push_back(t.back() + std::exp(3 * uniform(random)));
+    }
+    std::vector<std::vector<double>> A(n, std::vector<double>(n + 1, 0));
+    A[0][0] = A[n - 1][n - 1] = 1;
+    for (std::size_t k = 1; k + 1 < n; ++k) {
+      const double g = t[k] - t[k - 1], h = t[k + 1] - t[k];
+      A[k][k - 1] = 1 / g;
+      A[k][k] = 2 / g + 2 / h;
+      A[k][k + 1] = 1 / h;
+      A[k][n] = 3 * ((x[k] - x[k - 1]) / (g * g) + (x[k + 1] - x[k]) / (h * h));
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+      std::size_t best = c;
+      for (std::size_t r = c; r < n; ++r)
+        if (std::fabs(A[r][c]) > std::fabs(A[best][c])) best = r;
+      std::swap(A[c], A[best]);
+      for (std::size_t r = 0; r < n; ++r) {
+        const double factor = r == c ? 0 : A[r][c] / A[c][c];
+        for (std::size_t j = c; j <= n; ++j) A[r][j] -= factor * A[c][j];
+      }
+    }
+    std::vector<double> v;
+    for (std::size_t k = 0; k < n; ++k) v.push_back(A[k][n] / A[k][k]);
+    std::string csv = "time,a\n";
+    char row[80];
+    for (std::size_t k = 0; k < n; ++k) {
+      std::snprintf(row, sizeof row, "%.17g,%.17g\n", t[k], x[k]);
+      csv += row;
+    }
+    const auto spline = [&] {
+      std::vector<std::string> pieces;
+      for (std::size_t k = 0; k + 1 < n; ++k) {
+        const double h = t[k + 1] - t[k], d = x[k + 1] - x[k], v0 = h * v[k], v1 = h * v[k + 1];
+        pieces.push_back(q(0, {x[k], v0, 3 * d - 2 * v0 - v1, v0 + v1 - 2 * d}));
+      }
+      return motion(pieces);
+    };
+    EXPECT_EQ(said(spline(), csv, Interpolation::upsampled), "same") << round;
+    v[random() % n] += 1e-6;
+    EXPECT_NE(said(spline(), csv, Interpolation::upsampled), "same") << round;
+  }
 }
 
 // 2,000 obstacles on a chain of 1,000 frames, each with a variable of its own: once each looked at each for each.
