@@ -6,6 +6,8 @@
 #include <charconv>
 #include <limits>
 
+#include "text/units.h"
+
 namespace fcl_artic::meshes {
 namespace {
 
@@ -139,9 +141,7 @@ void noteComment(const Source& source, std::string_view line) {
     others_than_0 += value != 0;
     while (!word.empty() && !std::isalnum(static_cast<unsigned char>(word.back()))) word.remove_suffix(1);
     metres = metres || isOneOf(word, {"m", "meter", "meters", "metre", "metres"});
-    units = units || word.substr(0, 4) == "unit" ||
-            isOneOf(word, {"mm", "millimeter", "millimeters", "millimetre", "millimetres", "cm", "centimeter",
-                           "centimeters", "centimetre", "centimetres", "inch", "inches", "foot", "feet"});
+    units = units || word.substr(0, 4) == "unit" || text::isOtherLength(word);
     place = place || isOneOf(word, {"offset", "shift", "translation", "translate", "origin"});
   }
   if (units && !metres) source.note("says " + shown(line) + ": lengths are taken for metres, unless a scale says else");

@@ -492,6 +492,10 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
       plan.notes.push_back(fmt::format("times are a clock's: they are counted from the first, {:.6f} s", begin));
   }
   if (const std::string taken = takenText(tree, table, meanings); !taken.empty()) plan.notes.push_back(taken);
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    const bool own = meanings[i]->quantity == Quantity::none || exactMeaning(tree, table.columns[i]);
+    if (!own) keepUnits(table.columns[i], table.header_line, plan);
+  }
   return plan;
 }
 

@@ -331,6 +331,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     plan.joints = given.joints;
   }
   std::vector<std::string> notes = plan.notes;
+  for (std::string& note : unitNotes(plan, options.degrees)) notes.push_back(std::move(note));
   requireRows(plan.positions, "positions", waypoints, columns);
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);

@@ -13,6 +13,8 @@
 #include "plans/document.h"
 #include "plans/numpy.h"
 #include "plans/ompl_path.h"
+#include "text/one_line.h"
+#include "text/units.h"
 
 namespace fcl_artic::plans {
 namespace {
@@ -62,7 +64,45 @@ std::vector<Plan> parseStream(const KinematicTree& tree, std::string_view conten
   return out;
 }
 
+/// Comments of CSV and YAML: from a # at a line's begin, or after a blank or a quote, on. (Within a text it may be
+/// none.)
+void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF", kBefore = " \t\r\"";
+  if (content.substr(0, kMark.size()) == kMark) content.remove_prefix(kMark.size());
+  for (int line = 1; !content.empty(); ++line) {
+    const std::size_t end = std::min(content.find('\n'), content.size());
+    const std::string_view text = content.substr(0, end);
+    content.remove_prefix(std::min(end + 1, content.size()));
+    std::size_t begin = text.find('#');
+    while (begin != text.npos && begin > 0 && kBefore.find(text[begin - 1]) == text.npos)
+      begin = text.find('#', begin + 1);
+    if (begin == text.npos) continue;
+    for (Plan& plan : plans) keepUnits(text.substr(begin), line, plan);
+  }
+}
+
 }  // namespace
+
+void keepUnits(std::string_view text, int line, Plan& plan) {
+  const auto keep = [&](std::string& kept) {
+    constexpr std::size_t kMost = 80;
+    const std::string shown = text::oneLine(text.substr(0, text.find_last_not_of(" \t\r") + 1).substr(0, kMost));
+    if (kept.empty()) kept = fmt::format("line {} says '{}'", line, shown);
+  };
+  if (text::speaksOfOtherAngles(text)) keep(plan.other_angles);
+  if (text::speaksOfOtherLengthsOrTimes(text)) keep(plan.other_units);
+}
+
+std::vector<std::string> unitNotes(const Plan& plan, bool degrees) {
+  std::vector<std::string> notes;
+  if (!degrees && !plan.other_angles.empty()) {
+    notes.push_back(
+        plan.other_angles +
+        ": angles are taken in rad, unless a value itself ends with deg (certify --degrees takes all in degrees)");
+  }
+  if (!plan.other_units.empty()) notes.push_back(plan.other_units + ": lengths are taken in m, and times in s");
+  return notes;
+}
 
 bool hasPlanEnding(const std::string& path) {
   return endingOf(path) != nullptr;
@@ -105,6 +145,7 @@ std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content
       out = content.substr(0, 2) == "PK" ? parseArchive(content) : parseArray(content);
       break;
   }
+  if (format == Format::csv || format == Format::yaml) keepUnitsOfComments(content, out);
   // Of these a part may be whole: the last number may have lost digits.
   const bool text = format == Format::csv || format == Format::yaml || format == Format::ompl;
   if (text && !content.empty() && std::string_view("\n]}").find(content.back()) == std::string_view::npos) {

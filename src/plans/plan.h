@@ -32,8 +32,11 @@ struct Plan {
   std::map<std::string, double> state;  ///< values of other joints all the time, as a message's start state has them
   std::vector<Carried> carried;         ///< what requireCarried() holds against what is attached
   bool has_degrees = false;             ///< values of the file end with deg; they are in rad here
-  std::vector<std::string> notes;       ///< what was accepted though unusual, one line each
-  std::string error;                    ///< what is wrong with this plan; empty: nothing was found
+  /// "line 3 says '# angles in degrees'": the first text beside the values that speaks of angles, and of lengths or
+  /// times, in other units than rad, m and s. Nobody applies these; empty: there is none.
+  std::string other_angles, other_units;
+  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
+  std::string error;               ///< what is wrong with this plan; empty: nothing was found
 };
 
 enum class Format {
@@ -71,5 +74,11 @@ bool hasPlanEnding(const std::string& path);
 ///   that this build does not read (YAML without yaml-cpp, NumPy's archives without zlib).
 std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content, Format format,
                              const ColumnOptions& columns = {});
+
+/// Keeps what a text beside a plan's values says of other units (Plan::other_angles, other_units).
+void keepUnits(std::string_view text, int line, Plan& plan);
+/// Notes of that, one line each.
+/// @param degrees  whether the caller says that the plan's angles are in degrees.
+std::vector<std::string> unitNotes(const Plan& plan, bool degrees);
 
 }  // namespace fcl_artic::plans

@@ -9,6 +9,7 @@
 #include "numpy_sample.h"
 #include "plans/carried.h"
 #include "plans/write.h"
+#include "text/utf8.h"
 
 namespace fcl_artic::plans {
 namespace readers_test {
@@ -444,6 +445,66 @@ TEST(PlanReadersTest, CarriedObjectsAreThoseThatAreAttached) {
           "link 'slide' carries 'cup', and it is attached to 'hand', which moves against it");
   refused({{"plate", "hand"}}, {{"", {"plate"}, slide}}, "link 'hand' carries 'plate', and it is attached to 'slide'");
   refused({{"cup", "hnd"}}, {cup}, "robot 'arm' has no such link; did you mean 'hand'?");
+}
+
+/// Nobody applies the units that a comment or a column's name speaks of.
+TEST(PlanReadersTest, UnitsBesideTheValuesAreNoted) {
+  const KinematicTree tree = armTree();
+  const auto notesOf = [&](const std::string& content, Format format, bool degrees, const ColumnOptions& columns) {
+    MotionOptions options;
+    options.degrees = degrees;
+    std::string all;
+    for (const std::string& note : toMotion(tree, parsePlans(tree, content, format, columns).at(0), options).notes)
+      all += note + "\n";
+    return all;
+  };
+  const std::string rows = "hinge,rail\n0,0\n1,0.5\n",
+                    yaml = "{joints: [hinge, rail], waypoints: [[0, 0], [1, 0.5]]}\n";
+  const std::string in_rad = ": angles are taken in rad", in_m = ": lengths are taken in m, and times in s";
+  struct {
+    std::string text, note;
+  } const kComments[] = {{"# joint angles in degrees", in_rad},
+                         {"#deg", in_rad},
+                         {"# hinge(DEG)", in_rad},
+                         {"# in \xC2\xB0", in_rad},
+                         {"# in \xB0", in_rad},
+                         {"# rail [mm]", in_m},
+                         {"# t in ms\r", in_m},
+                         {"# in cm/s", in_m}};
+  for (const auto& [comment, note] : kComments) {
+    for (const bool above : {true, false}) {
+      const std::string csv = above ? comment + "\n" + rows : rows + comment + "\n";
+      const std::string all = notesOf(csv, Format::csv, false, {});
+      expectContains(all, "line " + std::string(above ? "1" : "4") + " says '" + comment.substr(0, comment.find('\r')));
+      expectContains(all, note);
+    }
+    if (!text::isUtf8(comment)) continue;
+    expectContains(notesOf(yaml + comment + "\n", Format::yaml, false, {}), note);
+    expectContains(notesOf("--- " + comment + "\n" + yaml, Format::yaml, false, {}), note);
+  }
+  expectContains(notesOf("\xEF\xBB\xBF# in degrees\n" + rows, Format::csv, false, {}), "line 1 says '# in degrees'");
+  expectContains(notesOf("\"# in degrees\"\n" + rows, Format::csv, false, {}), in_rad);
+  expectContains(notesOf("{joints: [hinge, rail], # deg\nwaypoints: [[0, 0], [1, 0.5]]}\n", Format::yaml, false, {}),
+                 "line 1 says '# deg'");
+  // Who says --degrees, knows; of lengths that says nothing.
+  EXPECT_EQ(notesOf("# degrees\n" + rows, Format::csv, true, {}).find(in_rad), std::string::npos);
+  expectContains(notesOf("# degrees and mm\n" + rows, Format::csv, true, {}), in_m);
+  // One note of each kind, of the first line.
+  const std::string two = notesOf("# degrees\n# still degrees\n" + rows, Format::csv, false, {});
+  expectContains(two, "line 1 says '# degrees'");
+  EXPECT_EQ(two.find("still"), std::string::npos);
+  // Names that the caller gives another meaning; a variable's own name and a column that is left out are none.
+  ColumnOptions columns;
+  columns.columns = {"hinge", "rail"};
+  expectContains(notesOf("hinge_deg,rail [mm]\n0,0\n1,0.5\n", Format::csv, false, columns),
+                 "line 1 says 'hinge_deg'" + in_rad);
+  expectContains(notesOf("hinge_deg,rail [mm]\n0,0\n1,0.5\n", Format::csv, false, columns),
+                 "line 1 says 'rail [mm]'" + in_m);
+  columns = {};
+  columns.skip = {"deg"};
+  EXPECT_EQ(notesOf("hinge,rail,deg\n0,0,7\n1,0.5,7\n", Format::csv, false, columns).find(in_rad), std::string::npos);
+  // Words that only hold such letters.
+  EXPECT_EQ(notesOf("# of degenerate programmes, radians, metres\n" + rows, Format::csv, false, {}), "");
 }
 
 TEST(PlanReadersTest, RefusesNamingWaypointAndJoint) {
