@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 from xml.etree import ElementTree
 
 from docutils import nodes
@@ -83,68 +84,28 @@ def by_header(folder):
 by_header(pathlib.Path(os.environ["FCL_ARTIC_DOXYGEN_XML"]))
 
 
-def stubs():
-    """The functions and properties of _fcl_artic.pyi by their names, the first of overloads."""
-    found = {}
+sys.path.insert(0, str(ROOT / "python"))
+from signatures import decorators, members, readable  # noqa: E402
 
-    def visit(prefix, body):
-        for node in body:
-            if isinstance(node, ast.ClassDef):
-                visit(f"{prefix}.{node.name}", node.body)
-            elif isinstance(node, ast.FunctionDef):
-                found.setdefault(f"{prefix}.{node.name}", node)
-
-    visit("fcl_artic", ast.parse((ROOT / "python" / "fcl_artic" / "_fcl_artic.pyi").read_text()).body)
-    return found
-
-
-STUBS = stubs()
-REQUEST = {argument.arg for argument in STUBS["fcl_artic.Request.__init__"].args.kwonlyargs} | {"request"}
-SHORT = {"npt.ArrayLike": "array", "_Doubles": "array of float", "_Pose": "pose", "_Path": "path",
-         "_Pair": "tuple[str, str]", "_HasTree": "KinematicTree | Robot | World", "_Shape": "Geometry | mesh",
-         "_Progress": "callable"}
-
-
-def readable(text):
-    """A type or parameters of the stubs in words: the private names of types are written out."""
-    text = re.sub(r"npt\.NDArray\[(?:np\.)?(\w+)\]", r"array of \1", text)
-    return re.sub(r"npt\.ArrayLike|\b_[A-Z]\w+", lambda name: SHORT[name[0]], text)
-
-
-def shown_parameters(stub, docstring):
-    """The stub's parameters with the values that they have if they are left out, which pybind11's signature names."""
-    values = dict(re.findall(r"(\w+): [^=,()]+ = (\([^)]*\)|\[[^\]]*\]|[^,)]+)", docstring.split("\n", 1)[0]))
-    shown, options = [], False
-    given = stub.args.args[1:] if stub.args.args[:1] and stub.args.args[0].arg == "self" else stub.args.args
-    optional = len(given) - len(stub.args.defaults)
-    is_query = "request" in {argument.arg for argument in stub.args.kwonlyargs}
-    for i, argument in enumerate(given + stub.args.kwonlyargs):
-        if i == len(given):
-            shown.append("*")
-        if is_query and argument.arg in REQUEST:  # the options of a query are the fields of Request
-            options = True
-            continue
-        text = ast.unparse(argument)
-        shown.append(f"{text} = {values.get(argument.arg, '...')}" if i >= optional else text)
-    if options:
-        shown = [text for i, text in enumerate(shown) if text != "*" or i + 1 < len(shown)] + ["**options"]
-    return readable(", ".join(shown))
+STUB = (ROOT / "python" / "fcl_artic" / "_fcl_artic.pyi").read_text()
+TYPES = {f"fcl_artic.{name}": readable(node.returns if isinstance(node, ast.FunctionDef) else node.annotation)
+         for name, node in members(STUB) if isinstance(node, ast.AnnAssign) or "property" in decorators(node)}
 
 
 def signature(app, what, name, thing, options, parameters, result):
-    """The stubs' signature in place of pybind11's, which knows no types of arrays."""
-    if what == "class":
-        stub = STUBS.get(f"{name}.__init__")
-        return (f"({shown_parameters(stub, thing.__init__.__doc__ or '')})", "") if stub else ("", "")
-    if name not in STUBS:
-        return None
-    stub = STUBS[name]
-    return f"({shown_parameters(stub, thing.__doc__ or '')})", readable(ast.unparse(stub.returns))
+    """The type of a property; of a function what its docstring begins with."""
+    if name in TYPES:
+        return "()", TYPES[name]
+    docstring = (thing.__init__ if what == "class" else thing).__doc__ or ""
+    shown = re.match(r"\w+(\(.*\))(?: -> (.*))?$", docstring.split("\n")[0])
+    if shown:
+        return shown[1], shown[2] or ""
+    return ("", "") if what == "class" else None
 
 
 def without_signature(app, what, name, thing, options, lines):
-    """Drops the signature that pybind11 puts before a text."""
-    if lines and re.match(rf"{name.rsplit('.', 1)[-1]}\(", lines[0]):
+    """Drops the signatures that a docstring begins with."""
+    while lines and lines[0].startswith(name.rsplit(".", 1)[-1] + "("):
         del lines[0]
 
 

@@ -282,7 +282,7 @@ void bindBatch(py::module_& module, py::class_<World>& world) {
                            py::cast<std::vector<std::string>>(s[10])};
           }));
   world.def(
-      "check_many", &checkMany, py::call_guard<Call>(),
+      "check_many", &checkMany,
       "Asks check() of many straight motions: from each row of q0 (N, n) to the same row of q1, on `threads`\n"
       "threads (0: all processors). C-contiguous float64 arrays are read in place; do not write to them meanwhile.",
       py::arg("q0"), py::arg("q1"), py::arg("threads") = 0);

@@ -5,6 +5,7 @@
 
 #include "docstrings.h"
 #include "fcl_artic/instruction_set.h"
+#include "functions.h"
 #include "geometry.h"
 #include "kinematics.h"
 #include "motion.h"
@@ -34,4 +35,5 @@ PYBIND11_MODULE(_fcl_artic, module) {
   bindRigid(module);
   bindWorld(module);
   documentProperties(module);
+  completeFunctions(module);
 }

@@ -212,7 +212,7 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
       py::arg("time") = "", py::arg("degrees") = false,
       py::arg("limit_tolerance") = plans::MotionOptions().limit_tolerance);
   world.def(
-      "certify", &certify, py::call_guard<Call>(),
+      "certify", &certify,
       "Finds the first contact of a plan of load_plans(), or proves that there is none. Options are those of Request.",
       py::arg("plan"));
 }

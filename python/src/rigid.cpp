@@ -360,7 +360,7 @@ Motion motionOf(py::handle value, const char* what) {
 void bindRigid(py::module_& module) {
   bindRigidMotion(module);
   module.def(
-      "continuous_collide", &collidePair, py::call_guard<Call>(),
+      "continuous_collide", &collidePair,
       "Finds the first contact of two geometries along two motions, or proves that there is none. In place of a\n"
       "motion a pose (4, 4) to stand still at is taken. Options are those of Request that are not about links.",
       py::arg("geometry_a"), py::arg("motion_a"), py::arg("geometry_b"), py::arg("motion_b"));
@@ -402,9 +402,8 @@ void bindRigid(py::module_& module) {
       .def("remove", &Bodies::remove, "Removes a body.", py::arg("name"))
       .def("set_motion", &Bodies::setMotion, "Gives a body another motion.", py::arg("name"), py::arg("motion"))
       .def_property_readonly("names", &Bodies::names)
-      .def("check", &Bodies::check, py::call_guard<Call>(),
-           "Finds the first contact of all pairs, or proves that there is none.")
-      .def("check_against", &Bodies::checkAgainst, py::call_guard<Call>(),
+      .def("check", &Bodies::check, "Finds the first contact of all pairs, or proves that there is none.")
+      .def("check_against", &Bodies::checkAgainst,
            "Finds the first contact of these bodies with other ones, or proves that there is none.", py::arg("other"))
       .def("swept_box", &Bodies::sweptBox, "Lower and upper corner of a box that is proven to hold the whole motion.",
            py::arg("name"))

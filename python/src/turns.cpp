@@ -201,13 +201,16 @@ std::thread::id last_thread;  // that ends the script
 }  // namespace
 
 Call::Call() {
-  if (ending && std::this_thread::get_id() != last_thread) {
+  int& here = Doings::here().calls;
+  if (here == 0 && shallStop()) {
     const GilReleased released;
     for (;;) ::pause();
   }
+  ++here;
   ++calls;
 }
 Call::~Call() {
+  --Doings::here().calls;
   --calls;
 }
 bool Call::shallStop() {
@@ -257,6 +260,7 @@ void watchForks() {
     fresh->asked_by_forker = here.asks;
     fresh->changed_by_forker = here.changes;
     common() = fresh;
+    calls = here.calls;
   };
   py::module_::import("os").attr("register_at_fork")(py::arg("before") = py::cpp_function(before),
                                                      py::arg("after_in_parent") = py::cpp_function(in_parent),

@@ -37,6 +37,7 @@ class Turns {
 struct Doings {
   std::vector<const Turns*> asks, changes;
   int depth = 0;  ///< of scopes in the library; 0: it is outside
+  int calls = 0;  ///< of the module's functions, this thread's and those of the one that it works for
 
   static Doings& here();
 };
@@ -81,10 +82,10 @@ class Turn {
   std::vector<const Turns*> of_;  ///< that this thread has no turn at yet
 };
 
-/// A call of a function that asks, for py::call_guard. When a script ends, Python takes daemon threads away wherever
-/// they want the GIL, by unwinding their frames, and an object of Python's that is let go of without the GIL there ends
-/// the process with an error. So the end waits for such calls, which it tells to stop, and whoever begins another one
-/// then sleeps until the process is gone. With the GIL.
+/// A call of a function of the module; functions.cpp makes one of each. When a script ends, Python takes daemon threads
+/// away wherever they want the GIL, by unwinding their frames, and an object of Python's that is let go of without the
+/// GIL there ends the process with an error. So the end waits for calls, which it tells to stop, and whoever begins
+/// another one then, but for one within a call, sleeps until the process is gone. With the GIL.
 class Call {
  public:
   Call();

@@ -514,24 +514,24 @@ void bindChanges(py::class_<World>& world) {
 
 void bindQueries(py::class_<World>& world) {
   world
-      .def("check", &check, py::call_guard<Call>(),
+      .def("check", &check,
            "Finds the first contact on the straight way from q0 to q1 in joint space, or proves that there is none.\n"
            "In place of q0 and q1 a JointMotion or JointTrajectory is taken. Options are those of Request.",
            py::arg("q0"), py::arg("q1") = py::none())
-      .def("check_trajectory", &checkTrajectory, py::call_guard<Call>(),
+      .def("check_trajectory", &checkTrajectory,
            "Finds the first contact on the way through waypoints (N, n), in the unit of `times`; without times, in\n"
            "numbers of waypoints. Straight from point to point, cubic with velocities, quintic with accelerations too.",
            py::arg("waypoints"), py::arg("times") = py::none(), py::kw_only(), py::arg("velocities") = py::none(),
            py::arg("accelerations") = py::none(), py::arg("blend") = py::none(), py::arg("unwrap") = false)
-      .def("is_free", &isFree, py::call_guard<Call>(),
+      .def("is_free", &isFree,
            "Whether the way is proven free: the fastest question. False also where that is not decided. What a free\n"
            "result does not speak of (Result.never_apart_pairs, Result.unproven_allowed_pairs) it does not say.",
            py::arg("q0"), py::arg("q1") = py::none())
-      .def("collide", &collide, py::call_guard<Call>(),
+      .def("collide", &collide,
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))
       .def(
-          "clearance", &clearance, py::call_guard<Call>(),
+          "clearance", &clearance,
           "The smallest distance of any checked pair on the whole way, proven from below and from above. With\n"
           "ignore_initial_contact=True, pairs that touch at its begin, or are within their margin (ignored_margin, or\n"
           "their own), are left out.",

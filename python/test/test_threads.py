@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Threads, forks and lifetimes. What could wait for ever runs in a Python of its own, which is ended if it does."""
 import gc
+import re
 import signal
 import subprocess
 import sys
@@ -46,9 +47,9 @@ def ask_for_ever(world=world, stop=None):
 """
 
 
-def run(script, status=0):
+def run(script, status=0, begin=BEGIN):
     """Runs a script; it must end by itself, with this status. Returns what it says."""
-    done = subprocess.run([sys.executable, "-c", BEGIN + textwrap.dedent(script)], stdout=subprocess.PIPE,
+    done = subprocess.run([sys.executable, "-c", begin + textwrap.dedent(script)], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, timeout=PATIENCE)
     assert done.returncode == status, (done.returncode, done.stdout, done.stderr)
     return done.stdout
@@ -239,6 +240,56 @@ def test_a_daemon_thread_that_asks_while_the_script_ends_does_no_harm():
         keep = AtTheEnd()
         sys.keep = keep
     """)
+
+
+def test_a_daemon_thread_in_any_long_call_while_the_script_ends_does_no_harm():
+    for call in ("world.robot.classify_link_pairs(progress=lambda part: time.sleep(0.01))",
+                 "world.classify_link_pairs(progress=lambda part: time.sleep(0.01))",
+                 "fcl_artic.World(arm()).setup()",
+                 "world.report([0], [1], progress=lambda part: time.sleep(0.01))"):
+        run(f"""
+            def call():
+                while True: {call}
+            for _ in range(3): threading.Thread(target=call, daemon=True).start()
+            time.sleep(0.1)
+        """)
+
+
+def test_a_thread_that_calls_any_function_once_the_script_has_ended_sleeps():
+    said = run("""
+        import atexit, os, threading, time
+        ended, begun, returned = threading.Event(), [], []
+        def at_the_end():  # after the module's own
+            ended.set()
+            while len(begun) < len(calls): time.sleep(0.01)
+            time.sleep(0.1)
+            print(len(begun), "called, returned:", *returned, flush=True)
+            os._exit(0)
+        atexit.register(at_the_end)
+        import fcl_artic
+        from fcl_artic import _fcl_artic
+
+        def functions(owner, prefix):
+            for name, value in vars(owner).items():
+                if isinstance(value, type): yield from functions(value, name + ".")
+                elif isinstance(value, property):
+                    for kind in ("fget", "fset"):
+                        if getattr(value, kind): yield prefix + name + " " + kind, getattr(value, kind)
+                elif prefix + name != "__spec__" and callable(getattr(owner, name)):
+                    function = getattr(owner, name)
+                    if type(function).__name__ in ("builtin_function_or_method", "instancemethod"): yield prefix + name, function
+        def call(name, function):
+            ended.wait()
+            begun.append(name)
+            try: function()
+            except BaseException: pass
+            returned.append(name)
+        threading.stack_size(1 << 18)
+        calls = [threading.Thread(target=call, args=one, daemon=True) for one in functions(_fcl_artic, "")]
+        for one in calls: one.start()
+    """, begin="")
+    count, returned = re.fullmatch(r"(\d+) called, returned:(.*)\n", said).groups()
+    assert int(count) > 400 and returned == "", said
 
 
 def test_a_full_disk_leaves_both_files_of_a_certificate_as_they_were(tmp_path):
