@@ -31,8 +31,8 @@ std::string lineOf(const Verdict& verdict, const Subject& subject = {});
 /// How many pairs are not checked, by reason: "1 neighbours, 2 allowed". Empty: none.
 std::string notChecked(const Verdict& verdict);
 
-/// "HEADING: ITEM, ITEM, ...", made safe to print, in lines of at most 120 columns, cut between items; all but the first,
-/// which begins with `begin`, are indented.
+/// "HEADING: ITEM, ITEM, ...", made safe to print, in lines of at most 120 columns, cut between items; all but the
+/// first, which begins with `begin`, are indented.
 std::string wrapped(const std::string& begin, std::string_view text);
 
 /// Text that may hold names, made safe to print: what is no printing character as \xNN, and no "VERIFIED" in it, so
