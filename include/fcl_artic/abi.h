@@ -19,10 +19,13 @@ inline constexpr bool kDebugContainers = true;
 inline constexpr bool kDebugContainers = false;
 #endif
 
-/// Names all that a program and the library must agree on: the alignment of Eigen's matrices (`-mavx`, `-march=native`
-/// and EIGEN_DONT_ALIGN change it), who frees them (`-fsanitize=address` changes it unless EIGEN_MALLOC_ALREADY_ALIGNED
-/// is defined as 1), the type of Eigen's indices (EIGEN_DEFAULT_DENSE_INDEX_TYPE), and _GLIBCXX_DEBUG. The library
-/// defines the member for its own flags alone. With others the linker ends with its name.
+/// Names all that a program and the library must agree on:
+/// - the alignment of Eigen's matrices (`-mavx`, `-march=native` and EIGEN_DONT_ALIGN change it),
+/// - who frees them (`-fsanitize=address` changes it unless EIGEN_MALLOC_ALREADY_ALIGNED is defined as 1),
+/// - the type of Eigen's indices (EIGEN_DEFAULT_DENSE_INDEX_TYPE),
+/// - _GLIBCXX_DEBUG.
+///
+/// The library defines the member for its own flags alone. With others the linker ends with its name.
 template <int EigenMaxAlignBytes, int EigenMallocAlreadyAligned, class EigenIndex, bool GlibcxxDebug>
 struct Abi {
   // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): what the linker shows

@@ -47,8 +47,8 @@ class FCL_ARTIC_EXPORT BoundedMotion {
   /// enough; tighter ones for short intervals make answers faster.
   virtual Bounds bounds(double begin, double end) const = 0;
   /// Whether derivatives are known. If false, only poses and the bounds on speed and angular speed are used; the rest
-  /// of state() is not looked at, and the other bounds stay 0. The proof then takes shorter steps: a near miss costs in
-  /// proportion to way / gap (two meshes that pass at 1 um, half a second), and contacts may remain undecided at fine
+  /// of state() is not looked at, and the other bounds stay 0. The proof then takes shorter steps. A near miss costs
+  /// in proportion to way / gap (two meshes that pass at 1 um, half a second). Contacts may remain undecided at fine
   /// tolerances.
   virtual bool hasDerivatives() const { return true; }
 };

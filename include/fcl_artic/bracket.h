@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is proven of when bodies touch. Plain data: the engine, which is compiled for several instruction sets, has it
-// too.
+// When bodies touch, as far as it is proven. Plain data: the engine, which is compiled for several instruction sets,
+// has it too.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ enum class Status : std::int32_t {
 
 /// The verdict of a query, and the bracket [t_lower, t_upper] of the time of first contact. Base of all results.
 ///
-/// Time is the motion's, t in [0, 1]; for a trajectory it is the trajectory's own time. What is proven, and what the
-/// proof rests on: doc/PROMISE.md.
+/// Time is the motion's, t in [0, 1]; for a trajectory it is the trajectory's own time. doc/PROMISE.md says what is
+/// proven, and what the proof rests on.
 struct Bracket {
   /// The verdict. `undecided` until a query has answered, and after a query that throws.
   Status status = Status::undecided;
@@ -29,8 +29,8 @@ struct Bracket {
   double t_upper = 1;
   /// True if contact is proven and, except with ContactMode::any, t_upper - t_lower <= tolerance_time. (In a
   /// trajectory's time, rounding adds a few ulp to the width.) False if the status is not `contact`, and for touches
-  /// that stay grazes: bodies that rest on each other, or two equal cubes as meshes that are pushed flush face to face,
-  /// whose edges lie in each other's faces at every time.
+  /// that stay grazes. One example is bodies that rest on each other. Another is two equal cubes as meshes that are
+  /// pushed flush face to face: their edges lie in each other's faces at every time.
   bool certain = false;
 
   /// Whether the motion is proven free of contact. False for a contact that is not certain and for `undecided`.

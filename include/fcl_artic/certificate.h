@@ -15,8 +15,8 @@ namespace fcl_artic {
 /// time is the motion's end if it is free; otherwise it is CertifiedPairRequest::tolerance_time before the result's
 /// t_lower, for at t_lower itself the gap may be 0.
 struct FCL_ARTIC_EXPORT Certificate {
-  /// What stands and moves, and what is checked, as text; null if there is no proof. The answers of one manager share
-  /// it until the next setup().
+  /// The world as text: what stands and moves, and what is checked. Null if there is no proof. The answers of one
+  /// manager share it until the next setup().
   std::shared_ptr<const std::string> world;
   std::string motion;   ///< The motion and what is claimed of it, as text; it names its world by hash.
   std::string proof;    ///< Hints for the verifier, in bytes; empty if none were found.

@@ -25,8 +25,9 @@ struct ClearanceRequest : Scope {
   /// Called now and then, from the querying thread, with what is proven so far (Clearance). May be empty. If it returns
   /// false, the search ends with that, and Clearance::within_tolerance is false.
   std::function<bool(double lower, double upper)> progress;
-  /// Whether pairs that touch at the motion's begin (strictly: that are not proven apart then), or are within their
-  /// margin, are left out, over the whole motion: those that CertifiedRequest::ignore_initial_contact ignores.
+  /// Whether pairs that touch at the motion's begin, or are within their margin then, are left out, over the whole
+  /// motion. (Strictly, a pair that is not proven apart then counts as touching.) These are the pairs that
+  /// CertifiedRequest::ignore_initial_contact ignores.
   bool ignore_initial_contact = false;
   /// Margin of pairs that have none of their own, by which ignore_initial_contact goes; m, finite, at least 0.
   double ignored_margin = 0;
@@ -35,9 +36,9 @@ struct ClearanceRequest : Scope {
 /// The smallest distance of any checked pair over a whole motion: lower <= distance <= upper, both proven. It is found
 /// by queries with margins (CertifiedRequest::margin).
 struct Clearance {
-  /// No checked pair comes nearer than this, in m, at any time, but neighbours that are checked for touching only
-  /// (ArticulatedCollisionManager::setAllowedCollisions()): of these, that they do not touch. 0 if something touches,
-  /// and if nothing larger is proven.
+  /// No checked pair comes nearer than this, in m, at any time. Neighbours that are checked for touching only
+  /// (ArticulatedCollisionManager::setAllowedCollisions()) are an exception: of these it says only that they do not
+  /// touch. It is 0 if something touches, and if nothing larger is proven.
   double lower = 0;
   /// At `time`, body1 and body2 are proven to be no farther apart than this, in m. Infinite if nothing is proven to
   /// come within ClearanceRequest::most.

@@ -18,7 +18,7 @@ namespace fcl_artic {
 
 // --- FCL's own signatures, for S = double and float (compiled once, in the library).
 //
-// What all of them promise:
+// All of them promise:
 // - Time runs from 0 to 1. The returned time is a lower bound of the first contact: contact before it is proven to be
 //   impossible. It is at most toc_err earlier than a proven contact, except if two objects graze each other within
 //   1e-6 m and contact can't be decided: that counts as contact too. Without contact it is 1, and result.is_collide is
@@ -26,23 +26,28 @@ namespace fcl_artic {
 // - The result is written in full. contact_tf1 and contact_tf2 are the poses at time_of_contact, or those at t = 1
 //   without contact. At time_of_contact fcl::collide mostly finds nothing yet; CertifiedPairResult has poses where it
 //   does.
-// - Any geometry that FCL has except models of points, in any pairing: Box, Sphere, Ellipsoid, Capsule, Cone, Cylinder,
-//   Convex, Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its occupancy
-//   threshold); and, of doubles, a PointCloud. Shapes and cells are solids; meshes, TriangleP and Plane are surfaces, a
-//   SolidMesh is a solid. Of an OcTree that stands still only the cells near the other object's path are read, so that
-//   a large map costs little; of one that moves, and against what is unbounded, all.
-// - Of the request, toc_err is the wanted tolerance of time (1e-12 if it is less, such as 0), and ccd_motion_type the
-//   way between two transforms. A toc_err of 1 or more asks whether there is contact, not when (ContactMode::any): the
-//   cheapest question; the returned time is then often 0, and free is as certain as ever. num_max_iterations,
-//   gjk_solver_type and ccd_solver_type have no effect: there is one answer.
+// - Any geometry that FCL has except models of points, in any pairing: Box, Sphere, Ellipsoid, Capsule, Cone,
+//   Cylinder, Convex, Halfspace, Plane, TriangleP, BVHModel with any bounding volume, OcTree (cells at or above its
+//   occupancy threshold); and, of doubles, a PointCloud. Shapes and cells are solids; meshes, TriangleP and Plane are
+//   surfaces, a SolidMesh is a solid. If an OcTree stands still, only its cells near the other object's path are read,
+//   so that a large map costs little. If it moves, or the other object is unbounded, all its cells are read.
+// - The request's toc_err is the wanted tolerance of time (1e-12 if it is less, such as 0), its ccd_motion_type the
+//   way between two transforms. A toc_err of 1 or more asks whether there is contact, not when (ContactMode::any).
+//   That is the cheapest question. The returned time is then often 0, and free is as certain as ever.
+//   num_max_iterations, gjk_solver_type and ccd_solver_type have no effect: there is one answer.
 // - Geometries, motions and objects are only read: many threads may share them. Neither the state that a motion's
 //   integrate() left nor an object's AABB matters.
 // - Nothing is printed.
 //
-// What all of them throw: std::invalid_argument that names the object, for null pointers, a mesh without triangles (an
-// FCL model of points is one: use PointCloud), a geometry that is not finite, a motion whose bounds are unknown (see
-// BoundedMotion), a transform that is not rigid, and a toc_err that is negative or not finite. The result then says
-// what is proven, nothing: contact at t = 0, poses the identity.
+// All of them throw std::invalid_argument that names the object, for
+// - null pointers,
+// - a mesh without triangles (an FCL model of points is one: use PointCloud),
+// - a geometry that is not finite,
+// - a motion whose bounds are unknown (see BoundedMotion),
+// - a transform that is not rigid,
+// - a toc_err that is negative or not finite.
+//
+// The result then says what is proven, nothing: contact at t = 0, poses the identity.
 
 /// Finds the first contact of two geometries along two motions, with FCL's signature and a proven answer.
 /// @param o1, o2  any geometries; must outlive the call only.
@@ -53,8 +58,8 @@ namespace fcl_artic {
 /// @param[out] result  written in full, with the poses at the returned time; contact at t = 0 if this throws.
 /// @return a time in [0, 1] before which contact is proven to be impossible; 1 also without contact
 ///   (result.is_collide).
-/// @throws std::invalid_argument, naming the object, for what it can't take: null, a mesh without triangles, values
-///   that are not finite, a motion with unknown bounds, a toc_err that is negative or not finite.
+/// @throws std::invalid_argument, naming the object, for null, a mesh without triangles, values that are not finite, a
+///   motion with unknown bounds, a toc_err that is negative or not finite.
 template <typename S>
 FCL_ARTIC_EXPORT S continuousCollide(const fcl::CollisionGeometry<S>* o1, const fcl::MotionBase<S>* motion1,
                                      const fcl::CollisionGeometry<S>* o2, const fcl::MotionBase<S>* motion2,
@@ -143,8 +148,8 @@ bool DefaultContinuousCollisionFunction(fcl::ContinuousCollisionObject<S>* o1, f
 ///   is a BoundedMotion too; pose of the geometry in the world, m.
 /// @param[out] result  written in full; reset (undecided on [0, 1]) if this throws.
 /// @return result.status.
-/// @throws std::invalid_argument, naming the object, for what it can't take: null, a mesh without triangles, values
-///   that are not finite, a motion with unknown bounds; and for a request with values out of range (Tolerances).
+/// @throws std::invalid_argument, naming the object, for null, a mesh without triangles, values that are not finite,
+///   and a motion with unknown bounds. Also for a request with values out of range (Tolerances).
 FCL_ARTIC_EXPORT Status continuousCollide(const fcl::CollisionGeometryd* o1, const fcl::MotionBased* motion1,
                                           const fcl::CollisionGeometryd* o2, const fcl::MotionBased* motion2,
                                           const CertifiedPairRequest& request, CertifiedPairResult& result);

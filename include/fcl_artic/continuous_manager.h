@@ -37,7 +37,8 @@ struct MovingPair {
 struct CertifiedPairsResult : Bracket {
   /// Pairs that are not proven free, in the order of their t_lower, and of registration if that is the same. With
   /// ContactMode::firstOfEveryPair these are all (if the work budget runs out, up to the first pair that it leaves
-  /// undecided), with ContactMode::first only the first, with ContactMode::any one whose contact is proven, if any is.
+  /// undecided). With ContactMode::first it is only the first. With ContactMode::any it is one whose contact is
+  /// proven, if any is.
   std::vector<MovingPair> pairs;
   /// Pairs that touch at t = 0 and were ignored (CertifiedPairRequest::ignore_initial_contact).
   std::vector<std::pair<fcl::ContinuousCollisionObjectd*, fcl::ContinuousCollisionObjectd*>> ignored_initial_contacts;
@@ -47,7 +48,7 @@ struct CertifiedPairsResult : Bracket {
   QueryStatistics statistics;
 };
 
-/// What a free motion's answer says nothing of, as exceptionsOf(const CertifiedResult&) words it.
+/// Returns what a free motion's answer does not cover, in the words of exceptionsOf(const CertifiedResult&).
 FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedPairsResult& result);
 /// Prints verdict and bracket on one line, without a line end, and what `free` does not speak of.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedPairsResult& result);
@@ -135,9 +136,9 @@ class FCL_ARTIC_EXPORT ContinuousCollisionManager {
   /// @throws std::invalid_argument: callback null, margin negative or not finite, what registerObject() refuses of an
   ///   object.
   void collide(Object* object, void* cdata, Callback callback, double margin = 0) const;
-  /// Hands every pair of an object of this manager and one of another manager whose swept boxes come within `margin` of
-  /// each other to the callback, once, until it returns true. The object of this manager comes first. An object is not
-  /// paired with itself; two objects that are in both managers are paired once.
+  /// Hands pairs of an object of this manager and one of another manager to the callback, until it returns true. These
+  /// are all pairs whose swept boxes come within `margin` of each other, each once. The object of this manager comes
+  /// first. An object is not paired with itself; two objects that are in both managers are paired once.
   /// @param other   not null; may be this manager.
   /// @param cdata   passed to the callback.
   /// @param margin  m, finite, at least 0.

@@ -12,11 +12,12 @@ namespace fcl_artic {
 
 struct BodyMotion;
 
-/// Motion of a geometry that is fixed to one link, as FCL's motion type: it lets FCL's own conservative advancement and
-/// naive stepping run on exactly the motion of a certified query. This library's queries take it too.
+/// Motion of a geometry that is fixed to one link, as FCL's motion type. It lets FCL's own conservative advancement
+/// and naive stepping run on exactly the motion of a certified query. This library's queries take it too.
 ///
-/// Of FCL's advancement, trust the oriented routine for meshes only, `fcl::detail::conservativeAdvancementMeshOriented`
-/// on RSS or OBBRSS; the public entry loses most mesh contacts whatever the motion. Two habits of FCL to know:
+/// Trust only one routine of FCL's advancement, the oriented one for meshes:
+/// `fcl::detail::conservativeAdvancementMeshOriented` on RSS or OBBRSS. The public entry loses most mesh contacts
+/// whatever the motion. Two habits of FCL to know:
 /// - advancement starts from the state that integrate() left, so call integrate(0) before each query;
 /// - integrate() is const but writes that state: give each thread its own copy. pose(), speedBound() and
 ///   accelerationBound() touch no state.

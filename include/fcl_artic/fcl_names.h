@@ -5,7 +5,7 @@
 // `collide` and DefaultContinuousCollisionFunction, in <fcl_artic/continuous_collision.h>, are this library's own.
 //
 // Named one by one and not by `using namespace fcl`: that would make ::time and fcl::time ambiguous for whoever writes
-// `using namespace fcl_artic`. What is in fcl::detail and fcl::time keeps its own name.
+// `using namespace fcl_artic`. The contents of fcl::detail and fcl::time keep their own names.
 #pragma once
 
 #include <fcl/broadphase/broadphase_SSaP.h>

@@ -25,9 +25,11 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// shortest rotation at constant speed (slerp, as OMPL's SO3 and SE3 spaces); a quaternion and its negative, which
   /// are one orientation, make no difference.
   /// @param q0, q1  tree.dof() joint values each, rad or m.
-  /// @throws std::invalid_argument for a wrong size, values that are not finite or beyond 1e5 rad or m, mimic joints
-  ///   whose multiple and offset sum to more than that, whatever their signs, and quaternions whose lengths are not 1
-  ///   within 1e-3.
+  /// @throws std::invalid_argument for
+  ///   - a wrong size,
+  ///   - values that are not finite or beyond 1e5 rad or m,
+  ///   - mimic joints whose multiple and offset sum to more than that, whatever their signs,
+  ///   - quaternions whose lengths are not 1 within 1e-3.
   static JointMotion linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1);
   /// Moves as linear(), except that continuous joints and the angles of planar joints take the shorter way round: their
   /// Δq is wrapped to [-π, π].
@@ -43,8 +45,11 @@ class FCL_ARTIC_EXPORT JointMotion {
   /// @param coefficients  tree.dof() rows, 1 to 6 columns. Column 0 is the configuration at t = 0, rad or m; column k
   ///   belongs to t^k. For a quaternion the rows x, y, z hold the rotation vector w from column 1 on, and the row w is
   ///   0.
-  /// @throws std::invalid_argument for wrong sizes, values that are not finite, a column 0 that is no configuration, or
-  ///   if the absolute coefficients of a joint, mimic joints too, sum to more than 1e5 rad or m.
+  /// @throws std::invalid_argument for
+  ///   - wrong sizes,
+  ///   - values that are not finite,
+  ///   - a column 0 that is no configuration,
+  ///   - absolute coefficients of a joint, mimic joints too, that sum to more than 1e5 rad or m.
   static JointMotion polynomial(const KinematicTree& tree, const Eigen::MatrixXd& coefficients);
   /// Moves every angle (of revolute, continuous and planar joints) so that the tangent of its half goes straight:
   /// q(t) = q* + 2 atan(s(t)), s(t) = s0 + t (s1 - s0), s = tan((q - q*) / 2), the way through q*'s side. All poses are

@@ -25,8 +25,8 @@ enum class JointType {
   revolute,    ///< One angle about the axis, rad.
   continuous,  ///< One angle about the axis, rad, without limits: JointMotion::shortest() takes the shorter way round.
   prismatic,   ///< One length along the axis, m.
-  /// x, y (m), theta (rad), as in MoveIt: a translation in the plane across the axis, then a rotation about the axis. x
-  /// and y are those of the joint's frame, turned the shortest way so that z becomes the axis.
+  /// Variables x, y (m), theta (rad), as in MoveIt: a translation in the plane across the axis, then a rotation about
+  /// the axis. The x and y are those of the joint's frame, turned the shortest way so that z becomes the axis.
   planar,
   /// A quaternion x, y, z, w that rotates the child in the joint's frame. Its length must be 1 within 1e-3; it is
   /// normalised.
@@ -34,9 +34,9 @@ enum class JointType {
   floating  ///< A position x, y, z (m) in the joint's frame, then a quaternion x, y, z, w as for `spherical`.
 };
 
-/// How a joint follows another one: q_this = multiplier * q_master + offset, as in URDF; both have one variable. If the
-/// master is a mimic joint itself, KinematicTree::addJoint() stores the joint at the end of the chain instead, with the
-/// product of the multipliers and the resulting offset, as rounded.
+/// How a joint follows another one: q_this = multiplier * q_master + offset, as in URDF; both have one variable. If
+/// the master is a mimic joint itself, KinematicTree::addJoint() stores the joint at the end of the chain instead. Its
+/// multiplier is then the product of the multipliers, its offset the resulting one, as rounded.
 struct Mimic {
   std::string master;     ///< Name of the joint that is followed.
   double multiplier = 1;  ///< Factor; finite.
@@ -157,11 +157,13 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// Adds a joint between two links that were added before; the master of a mimic joint must have been added too. The
   /// rotation of its origin is made orthonormal and its axis normalised. The tree is unchanged if this throws.
   /// @return its index: joints are numbered 0, 1, ...
-  /// @throws std::invalid_argument, naming joint and reason: empty or repeated name, unknown link, a child that has a
-  ///   parent already, a loop, an origin whose rotation is not orthonormal to 1e-9 or that is farther than 1e9 m away,
-  ///   a zero or non-finite axis, a limit that is not a number, a mimic joint that is fixed or has more than one
-  ///   variable, a master that is unknown, fixed or has more than one variable, a multiplier or offset that is not
-  ///   finite.
+  /// @throws std::invalid_argument, naming joint and reason, for
+  ///   - an empty or repeated name, an unknown link, a child that has a parent already, a loop,
+  ///   - an origin whose rotation is not orthonormal to 1e-9 or that is farther than 1e9 m away,
+  ///   - a zero or non-finite axis, a limit that is not a number,
+  ///   - a mimic joint that is fixed or has more than one variable,
+  ///   - a master that is unknown, fixed or has more than one variable,
+  ///   - a multiplier or offset that is not finite.
   JointId addJoint(const Joint& joint);
 
   /// The robot's name.
@@ -220,7 +222,8 @@ class FCL_ARTIC_EXPORT KinematicTree {
 
   /// Fingerprint of what a motion in joint space depends on: the name and type of every joint that moves, and which
   /// joint it mimics how, in the order of addJoint(). Trees with the same one have the same joint variables and accept
-  /// the same motions: a copy, the same robot loaded twice, at another base, with other links, limits or dimensions.
+  /// the same motions. Examples are a copy, and the same robot loaded twice, at another base, with other links, limits
+  /// or dimensions.
   const Fingerprint& jointSpace() const { return joint_space_; }
   /// Fingerprint of all links and joints with all of their names and numbers, except the name of the tree.
   const Fingerprint& content() const { return content_; }

@@ -18,7 +18,7 @@
 namespace fcl_artic {
 
 /// Pairs of names (of links, obstacles, attached objects) that may touch and are therefore not checked; and what is
-/// said of neighbours, of which a manager decides by a rule where nothing is said of them
+/// said of neighbours. If nothing is said of neighbours, a manager decides by a rule
 /// (ArticulatedCollisionManager::setAllowedCollisions()). The order of two names does not matter. Names are taken as
 /// they are; ArticulatedCollisionManager::setAllowedCollisions() checks them.
 class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
@@ -62,7 +62,8 @@ class FCL_ARTIC_EXPORT AllowedCollisionMatrix {
   bool complete_ = false;
 };
 
-/// What two links do over all values of their joints, as ArticulatedCollisionManager::classifyLinkPairs() finds it.
+/// The behaviour of two links over all values of their joints, as ArticulatedCollisionManager::classifyLinkPairs()
+/// finds it.
 enum class LinkPairKind {
   never,      ///< Proven apart for all values within the joints' limits.
   always,     ///< In contact in every configuration that was tried.
@@ -70,11 +71,11 @@ enum class LinkPairKind {
   unproven    ///< In contact in no configuration that was tried, and yet not proven apart.
 };
 
-/// What was found of one pair of links.
+/// The finding of one pair of links.
 struct LinkPairFinding {
   /// Names of the two links.
   std::string link1, link2;
-  /// What the two do.
+  /// The behaviour of the two links.
   LinkPairKind kind = LinkPairKind::unproven;
   /// Whether the two are neighbours: ArticulatedCollisionManager::setAllowedCollisions() says which links these are.
   bool neighbours = false;
@@ -128,11 +129,11 @@ struct LinkPairOptions {
 /// (ArticulatedCollisionManager::setLinkPairProofs()).
 class LinkPairProofs;
 
-/// What classifyLinkPairs() found of all pairs of links with geometry. It depends on the robot and the options alone:
-/// no random number is in it.
+/// The findings of classifyLinkPairs() of all pairs of links with geometry. It depends on the robot and the options
+/// alone: no random number is in it.
 struct FCL_ARTIC_EXPORT LinkPairReport {
   std::vector<LinkPairFinding> pairs;            ///< By the links' order in the tree.
-  std::shared_ptr<const LinkPairProofs> proofs;  ///< Of the pairs that never touch.
+  std::shared_ptr<const LinkPairProofs> proofs;  ///< Proofs of the pairs that never touch.
 
   /// The pairs that always touch, which must be allowed for any motion to be free. Neighbours are not among them, of
   /// which a manager finds that out by itself (ArticulatedCollisionManager::setAllowedCollisions()).

@@ -21,13 +21,13 @@ namespace fcl_artic {
 /// idiom: register obstacles, bind geometry to links, call setup(), ask.
 ///
 /// Lengths are in m, angles in rad; the time of a motion is t in [0, 1]. Roots of the tree stand at the world's origin
-/// (KinematicTree). What is wrong throws and leaves the manager as it was: std::invalid_argument names the value,
-/// std::logic_error asks for the setup() that is missing. What a query finds never throws: it is a Status.
+/// (KinematicTree). A wrong call throws and leaves the manager as it was: std::invalid_argument names the value,
+/// std::logic_error asks for the setup() that is missing. A query never throws for what it finds: that is a Status.
 ///
-/// Objects and geometries stay the caller's and are never written to; they must stay alive while they are registered or
-/// bound (a shared_ptr sees to that: ObjectRef). Geometry is read by registerObject() and bind(), and again by
-/// setup() and update() if it has changed, also in place: a shape's sizes, a mesh's vertices, an OcTree's cells or
-/// threshold. Queries use what was read last.
+/// Objects and geometries stay the caller's and are never written to; they must stay alive while they are registered
+/// or bound (a shared_ptr sees to that: ObjectRef). registerObject() and bind() read geometry. If it has changed, also
+/// in place, setup() and update() read it again: a shape's sizes, a mesh's vertices, an OcTree's cells or threshold.
+/// Queries use what was read last.
 ///
 /// After setup() all const members may be called from many threads at once. Members that are not const must not run
 /// beside any other. A manager that was moved from may only be destroyed or assigned to.
@@ -51,9 +51,12 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Adds an obstacle that stands still at the object's own transform, in the world. Needs setup().
   /// @param object  a pointer, or a shared_ptr that keeps it alive until it is unregistered.
   /// @param name    unique among links and obstacles; empty: "obstacle<N>", N counting from 0.
-  /// @throws std::invalid_argument: null, registered or bound already, a name that another obstacle or a link has,
-  ///   geometry of a type that is not known, without a triangle (an FCL model of points: use PointCloud) or vertex, or
-  ///   not finite, a transform that is not rigid to 1e-6 or farther than 1e9 m away.
+  /// @throws std::invalid_argument for
+  ///   - an object that is null, registered or bound already,
+  ///   - a name that another obstacle or a link has,
+  ///   - geometry of a type that is not known, without a triangle (an FCL model of points: use PointCloud) or vertex,
+  ///     or not finite,
+  ///   - a transform that is not rigid to 1e-6 or farther than 1e9 m away.
   void registerObject(const ObjectRef<fcl::CollisionObjectd>& object, const std::string& name = {});
   /// Adds obstacles that stand still, named "obstacle<N>": all of them or, if this throws, none. Needs setup().
   /// @throws std::invalid_argument as registerObject().
@@ -64,11 +67,11 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void unregisterObject(const ObjectRef<fcl::CollisionObjectd>& object);
 
   /// Swaps the scene: takes these obstacles that stand still in place of all that there are, and makes that effective
-  /// without setup(): all or, if this throws, nothing. What was made of the robot stays as it is, and is not looked at
-  /// again: geometry of links that was changed in place is setup()'s to find. Obstacles that move and attached objects
-  /// stay. Allowed pairs and margins are here meant for names: those of a name in `names` count for the object that has
-  /// it now; those of obstacles whose names are not given again go. (Changes that wait for setup() are made effective
-  /// too.)
+  /// without setup(): all or, if this throws, nothing. All that was made of the robot stays as it is, and is not
+  /// looked at again: it is setup() that finds geometry of links that was changed in place. Obstacles that move and
+  /// attached objects stay. Allowed pairs and margins are here meant for names. If a name in `names` has some, they
+  /// count for the object that has the name now. If an obstacle's name is not given again, its allowed pairs and
+  /// margins go. (Changes that wait for setup() are made effective too.)
   /// @param objects  kept alive as long as they are registered; one that was there before, the same in all that
   ///   setup() compares, is not read again.
   /// @param names  one for each object, unique among links and obstacles; none: "obstacle<N>", N counting from 0.
@@ -76,8 +79,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void replaceObstacles(const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects,
                         const std::vector<std::string>& names = {});
   /// Returns a manager of the same robot: geometry bound to links, attached objects, allowed pairs of these, margins
-  /// and proofs of pairs, without any obstacle that stands still or moves. What setup() has made of the robot, trees of
-  /// its meshes and tables of pairs of links, is shared by both, for good: changes of one are not seen by the other. So
+  /// and proofs of pairs, without any obstacle that stands still or moves. Both share, for good, what setup() has made
+  /// of the robot: trees of its meshes and tables of pairs of links. Changes of one are not seen by the other. So
   /// scenes or threads have a manager each at the cost of their obstacles. Stage 2 is at its defaults
   /// (setVisibility()). The objects must outlive both managers where only their pointers were given.
   /// @throws std::logic_error if setup() has not been called since the last change.
@@ -128,20 +131,21 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Replaces the pairs that may touch, given by names of links, obstacles and attached objects. Needs setup(). A pair
   /// goes with its obstacle or attached object (unregisterObject()); one of two links stays.
   ///
-  /// Two bodies that no joint moves against each other, links that fixed joints connect, what they carry, and an
-  /// obstacle that stands still beside a link that does, are not checked, unless disallow() has asked for the pair:
-  /// notes() names those that touch.
+  /// Two bodies that no joint moves against each other are not checked, unless disallow() has asked for the pair. Such
+  /// bodies are links that fixed joints connect, what they carry, and an obstacle that stands still beside a link that
+  /// does. notes() names the pairs that touch.
   ///
-  /// Neighbours are links with one moving joint between them and no other link with geometry. (But a link that a planar
-  /// or floating joint moves freely in the world is no neighbour of what stands still.) Of neighbours
-  /// that the matrix neither allows nor has checked (AllowedCollisionMatrix::mustBeChecked()), setup() finds out what
-  /// they do over all values of the joint between them, as classifyLinkPairs() does of all pairs, once and with less
-  /// work:
-  /// - Geometries of theirs that touch, or are too near to tell, at all values of it that are tried, as housings that
-  ///   overlap in it, are not checked; notes() names the links. Their other geometries are checked.
-  /// - All others that touch nowhere, proven, or somewhere are checked, for touching: a request's margin and those of
-  ///   the two bodies do not count, but only the pair's own (setMargin()) and what a request adds (added_margin).
-  /// - Those of which it can't be decided are not checked, and counted in each answer
+  /// Neighbours are links with one moving joint between them and no other link with geometry. (But a link that a
+  /// planar or floating joint moves freely in the world is no neighbour of what stands still.) If the matrix neither
+  /// allows neighbours nor has them checked (AllowedCollisionMatrix::mustBeChecked()), setup() decides. It finds out
+  /// what they do over all values of the joint between them, as classifyLinkPairs() does of all pairs, once and with
+  /// less work:
+  /// - If geometries of theirs touch, or are too near to tell, at all tried values of the joint, as housings that
+  ///   overlap in it, they are not checked. notes() names the links. Their other geometries are checked.
+  /// - All others that touch nowhere, proven, or somewhere are checked, for touching. A request's margin and those of
+  ///   the two bodies do not count for them, but only the pair's own (setMargin()) and what a request adds
+  ///   (added_margin).
+  /// - Neighbours of which it can't be decided are not checked, and are counted in each answer
   ///   (CertifiedResult::unproven_neighbours).
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object; nothing is changed then.
   void setAllowedCollisions(AllowedCollisionMatrix matrix);
@@ -154,13 +158,16 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); what the rule for neighbours
   /// leaves out is not listed.
   const AllowedCollisionMatrix& allowedCollisions() const;
-  /// What setup() found of neighbours that the matrix neither allows nor has checked (setAllowedCollisions()), by the
-  /// links' order in the tree.
+  /// Returns the findings of setup() of neighbours that the matrix neither allows nor has checked
+  /// (setAllowedCollisions()), by the links' order in the tree.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<LinkPairFinding> neighbours() const;
-  /// What is unusual about the world as it was set up, one line each: pairs that touch, or can't be told apart, and
-  /// stand still against each other; neighbours that are not checked because they touch whatever the joint between them
-  /// does, and those of which that can't be decided. The former are looked at when this is called.
+  /// Returns what is unusual about the world as it was set up, one line each:
+  /// - pairs that touch, or can't be told apart, and stand still against each other;
+  /// - neighbours that are not checked because they touch whatever the joint between them does;
+  /// - neighbours of which that can't be decided.
+  ///
+  /// The pairs that stand still against each other are looked at when this is called.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<std::string> notes() const;
 
@@ -172,8 +179,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument for a margin that is negative or not finite, no samples, or a negative number of
   ///   threads; what `progress` throws.
   [[nodiscard]] LinkPairReport classifyLinkPairs(const LinkPairOptions& options = {}) const;
-  /// Uses proofs of pairs that never touch: queries leave such a pair out where the motion keeps within the joints'
-  /// limits and the margin is no larger than the proof's, and check it otherwise. A proof counts only for the very
+  /// Uses proofs of pairs that never touch. If the motion keeps within the joints' limits and the margin is no larger
+  /// than the proof's, queries leave such a pair out. Otherwise they check it. A proof counts only for the very
   /// geometry, offsets and tree that it was made for; others do no harm. Needs setup().
   /// @param proofs  of classifyLinkPairs(), of this manager or another one; null: none.
   void setLinkPairProofs(std::shared_ptr<const LinkPairProofs> proofs);
@@ -195,20 +202,20 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void resetMargins();
 
   /// Selects the culler of stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, which
-  /// is the default. Effective at once. What VisibilityMode::automatic has measured is forgotten.
+  /// is the default. Effective at once. The manager forgets what VisibilityMode::automatic has measured.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
   /// Makes all changes effective. Needed before the first query, after every member that says so, and after the tree
   /// has grown; queries throw std::logic_error otherwise.
   ///
-  /// It also looks for what callers have changed in place, which queries do not notice by themselves: geometry of links
-  /// and obstacles, transforms and motions of obstacles. What is the same, byte for byte, is kept with all that was
-  /// computed from it. To find that out takes as long as comparing all vertices and triangles and walking through
-  /// OcTrees: 17 µs for 9 meshes of 1,800 triangles, 2 ms for one of 500,000. With large maps in the scene
-  /// update(object) is cheaper. The first time, what is computed of each link's geometry and of each pair of links is
-  /// computed on all cores.
-  /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. What was
-  ///   read before is kept then, and what was set up stays in use.
+  /// It also looks for what callers have changed in place, which queries do not notice by themselves: geometry of
+  /// links and obstacles, transforms and motions of obstacles. Each of these that is the same, byte for byte, is kept
+  /// with all that was computed from it. To find that out takes as long as comparing all vertices and triangles and
+  /// walking through OcTrees: 17 µs for 9 meshes of 1,800 triangles, 2 ms for one of 500,000. With large maps in the
+  /// scene update(object) is cheaper. The first time, what is computed of each link's geometry and of each pair of
+  /// links is computed on all cores.
+  /// @throws std::invalid_argument as registerObject() and bind(), for what an object or the tree has become. The
+  ///   manager then keeps what was read before, and what was set up stays in use.
   void setup();
   /// Has setup(), this time and from now on, compute beforehand what the first query by this method would: for
   /// Method::redon2004 each geometry's tree of oriented boxes. Needs setup().
@@ -236,9 +243,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void getObjects(std::vector<const fcl::ContinuousCollisionObjectd*>& objects) const;
   /// Returns all objects that links carry, bound or attached, each with its link.
   std::vector<std::pair<LinkId, const fcl::CollisionObjectd*>> boundObjects() const;
-  /// Returns the pairs of what links carry that queries check against each other (CertifiedRequest::check_self): names
-  /// of two links, of a link and an attached object or of two attached objects, each pair once. All others are
-  /// allowed, neighbours that touch (setAllowedCollisions()), or stand still against each other.
+  /// Returns the pairs of what links carry that queries check against each other (CertifiedRequest::check_self). Each
+  /// pair is there once, as names of two links, of a link and an attached object or of two attached objects. All
+  /// others are allowed, neighbours that touch (setAllowedCollisions()), or stand still against each other.
   /// @throws std::logic_error if setup() or update() was not called after the last change.
   std::vector<std::pair<std::string, std::string>> checkedLinkPairs() const;
   /// Returns the pose of a bound or attached geometry's frame in its link's frame.
@@ -288,7 +295,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
 
   /// Finds the first contacts of many motions on several threads. Result i is what motion i gets by itself, bit for
-  /// bit, except for measured times, the work of stage 2 and what VisibilityMode::automatic chose; with
+  /// bit, except for measured times, the work of stage 2 and what VisibilityMode::automatic chose. With
   /// VisibilityMode::atOnce it is so with the executor cpu, and the others keep the promise.
   ///
   /// Where stage 2 takes part, with Method::standard, it draws hundreds of these motions in one pass.
@@ -307,7 +314,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// of the times and 8 ulp of a piece's duration (1e-6 s at 1.7e9 s, where doubles are 2.4e-7 s apart). Obstacles that
   /// move take as long as the trajectory.
   ///
-  /// With ignore_initial_contact, pairs that touch at the trajectory's begin may separate; each is watched from the
+  /// With ignore_initial_contact, pairs that touch at the trajectory's begin may separate. Each is watched from the
   /// moment it has (found in steps of 1/512 of a piece at most) and is not ignored again. A pair that separates for a
   /// shorter time may be taken as never apart. With ContactMode::firstOfEveryPair, a budget that ends after a contact
   /// leaves the answer undecided, with the contacts found so far.
@@ -341,8 +348,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///   out of range (ClearanceRequest).
   /// @throws std::logic_error as continuousCollide().
   [[nodiscard]] Clearance clearance(const JointMotion& motion, const ClearanceRequest& request = {}) const;
-  /// Finds the smallest distance of any checked pair over a whole trajectory, proven from below and from above, with
-  /// the pair and the time, the trajectory's own, at which it is nearly reached. Margins that are set do not count.
+  /// Finds the smallest distance of any checked pair over a whole trajectory, proven from below and from above. It
+  /// comes with the pair and the time, the trajectory's own, at which it is nearly reached. Margins that are set do
+  /// not count.
   /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
 

@@ -39,7 +39,7 @@ struct CertifiedPairResult : Bracket {
   const CertifiedContact* first() const&& = delete;
 };
 
-/// What a free motion's answer says nothing of, as exceptionsOf(const CertifiedResult&) words it.
+/// Returns what a free motion's answer does not cover, in the words of exceptionsOf(const CertifiedResult&).
 FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedPairResult& result);
 /// Prints verdict and bracket on one line, without a line end, and what `free` does not speak of.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const CertifiedPairResult& result);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What members of ArticulatedCollisionManager take for an object and for a link.
+// Arguments of ArticulatedCollisionManager's members for an object and for a link.
 #pragma once
 
 #include <memory>

@@ -26,7 +26,7 @@ enum class VisibilityMode {
   on,         ///< Always. A query that does not end as plainly free is solved again without the stage.
   automatic,  ///< As `on` when that saves time, as measured on the manager's own queries; else as `off`.
   /// Always, and a query is solved once, with what the stage has proven free left out. The answer keeps the whole
-  /// promise, but a contact's bracket, its point and which of several contacts is reported may be others than with
+  /// promise. But a contact's bracket, its point and which of several contacts is reported may be others than with
   /// `off`, and may depend on the executor. A work budget counts what the solver does; it does not turn the stage off.
   atOnce,
 };
@@ -52,22 +52,25 @@ struct Tolerances {
   /// it, also where they are smaller (ArticulatedCollisionManager::setMargin).
   double margin = 0;
   /// Added to the margin of every pair, in m: to `margin` and to margins that pairs and bodies have of their own.
-  /// Finite, at least 0. What counts is the sum as rounded.
+  /// Finite, at least 0. The sum as rounded counts.
   double added_margin = 0;
 };
 
 /// How a query is solved, and how much work it may take.
 struct Effort {
-  /// The method. Method::redon2004 solves pairs of meshes and boxes without a margin; it leaves other pairs, those that
-  /// have a margin of their own (also 0, as neighbours that are checked for touching), and those that touch at t = 0,
-  /// to Method::standard, pair by pair (RedonStatistics::pairs_by_standard), and answers ContactMode::any with the
-  /// first contact.
+  /// The method. Method::redon2004 solves pairs of meshes and boxes without a margin. It leaves the following to
+  /// Method::standard, pair by pair (RedonStatistics::pairs_by_standard):
+  /// - other pairs,
+  /// - pairs that have a margin of their own (also 0, as neighbours that are checked for touching),
+  /// - pairs that touch at t = 0.
+  ///
+  /// It answers ContactMode::any with the first contact.
   Method method = Method::standard;
   /// Options of Method::redon2004; not used by Method::standard.
   RedonOptions redon;
   /// Maximum amount of work; 0: no limit. (Method::redon2004 leaves a query that takes it more than 2^17 tests to
-  /// Method::standard then.) It is counted in node and leaf tests, for Method::redon2004 also in box
-  /// tests, leaf pairs, equations and evaluations, so that the answer does not depend on the machine's speed.
+  /// Method::standard then.) It is counted in node and leaf tests, for Method::redon2004 also in box tests, leaf
+  /// pairs, equations and evaluations. So the answer does not depend on the machine's speed.
   ///
   /// When it is exceeded, the answer is `undecided`, and what it has proven holds: the motion is free up to t_lower.
   /// (With `firstOfEveryPair` t_lower is the motion's begin then, and with ignore_initial_contact it may be.) The
@@ -93,16 +96,16 @@ struct CertifiedPairRequest : Tolerances, Effort {
   /// contact at most.
   std::size_t max_contacts = 1;
   /// Whether pairs that touch at t = 0 (strictly: that are not proven apart then) may separate first. Such a pair is
-  /// not checked until it is proven apart over a whole time interval of 1/8, 1/64 or 1/512 of the motion; from the
+  /// not checked until it is proven apart over a whole time interval of 1/8, 1/64 or 1/512 of the motion. From the
   /// start of the first such interval on it is checked as any other. Shorter separations are not looked for. A pair
-  /// that is only within its margin at t = 0 is left out likewise, even if it touches before it has kept the margin: to
-  /// exclude that, ask without the margin too. All parts of one body count as one: a link that touches one point of a
-  /// cloud is not checked against the others.
+  /// that is only within its margin at t = 0 is left out likewise, even if it touches before it has kept the margin.
+  /// To exclude that, ask without the margin too. All parts of one body count as one: a link that touches one point of
+  /// a cloud is not checked against the others.
   bool ignore_initial_contact = false;
-  /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far (with
-  /// `firstOfEveryPair` the motion's or piece's begin, after the first contact its t_lower). May be empty. If it
-  /// returns false, the query ends with `undecided`: for a planner's clock, or a stop button. Queries of many motions,
-  /// and those of a ContinuousCollisionManager, do not call it.
+  /// Called now and then, from the querying thread, with the time up to which the motion is proven free so far. (With
+  /// `firstOfEveryPair` this is the motion's or piece's begin, after the first contact its t_lower.) May be empty. If
+  /// it returns false, the query ends with `undecided`: for a planner's clock, or a stop button. Queries of many
+  /// motions, and those of a ContinuousCollisionManager, do not call it.
   std::function<bool(double t_lower)> progress;
   /// Whether the result carries its proof (Certificate). It takes about a millisecond for an arm in a small scene;
   /// queries that don't ask take no longer. A ContinuousCollisionManager has none to give and refuses.

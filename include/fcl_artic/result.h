@@ -31,8 +31,11 @@ enum class FeatureKind {
   edgeFace,      ///< An edge of body 1 and a face of body 2.
   faceEdge,      ///< A face of body 1 and an edge of body 2.
   faceFace,      ///< A face of each body.
-  /// No features are known: a body is not a triangle there, one body lies within the other, the pair has a margin above
-  /// 0 and its triangles are not seen to cross, or the triangles' equations have no root there.
+  /// No features are known, for one of these reasons:
+  /// - a body is not a triangle there;
+  /// - one body lies within the other;
+  /// - the pair has a margin above 0 and its triangles are not seen to cross;
+  /// - the triangles' equations have no root there.
   volume
 };
 
@@ -46,7 +49,7 @@ struct BodyRef {
   const fcl::ContinuousCollisionObjectd* moving = nullptr;  ///< As registered, for a moving obstacle; else null.
 };
 
-/// One contact. As in FCL, `normal` points from body 1 to body 2. Of a link and an obstacle, the link is body 1.
+/// One contact. As in FCL, `normal` points from body 1 to body 2. If a link and an obstacle touch, the link is body 1.
 struct CertifiedContact {
   /// The bodies that touch.
   BodyRef body1, body2;
@@ -55,18 +58,19 @@ struct CertifiedContact {
   /// Geometry of body 2; the caller's.
   const fcl::CollisionGeometryd* o2 = nullptr;
   /// The pieces of the bodies that touch: index of a mesh's triangle, id of an OcTree's cell
-  /// (OcTree::getNodeByQueryCellId), number of a PointCloud's point, fcl::Contactd::NONE (-1) for a shape. -1 for a
-  /// mesh too if no triangle is known: with ContactMode::any where contact is proven by what closed meshes enclose
-  /// (`point` lies within both bodies then), and where one body lies within the other, a SolidMesh, at t = 0 (`normal`
-  /// is roughly the shortest way out then).
+  /// (OcTree::getNodeByQueryCellId), number of a PointCloud's point, fcl::Contactd::NONE (-1) for a shape. If no
+  /// triangle is known, it is -1 for a mesh too:
+  /// - with ContactMode::any where contact is proven by what closed meshes enclose (`point` lies within both bodies
+  ///   then);
+  /// - where one body lies within the other, a SolidMesh, at t = 0 (`normal` is roughly the shortest way out then).
   std::intptr_t b1 = -1, b2 = -1;
   /// The kinds of features that meet, body 1's first.
   FeatureKind feature = FeatureKind::volume;
   /// Point of contact in the world, m: at this contact's t_upper if it is certain, else at its t_lower. As the pieces
   /// touch at some time of the bracket, it may be off them by about as much as they move in it.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  /// Unit normal in the world, from body 1 to body 2, at the same time as `point`. Of pieces that are in each other
-  /// from the motion's begin it is the direction along which they part by the least translation, or the normal of the
+  /// Unit normal in the world, from body 1 to body 2, at the same time as `point`. Pieces may be in each other from
+  /// the motion's begin. It is then the direction along which they part by the least translation, or the normal of the
   /// features that meet (not with ContactMode::any).
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
   /// Witness points in the world, m: the points of the two pieces (b1 of body 1, b2 of body 2) that are nearest to each
@@ -74,7 +78,7 @@ struct CertifiedContact {
   /// the start do, and with ContactMode::any. Not proven.
   Eigen::Vector3d nearest1 = Eigen::Vector3d::Zero(), nearest2 = Eigen::Vector3d::Zero();
   /// Speed at which the bodies approach each other at `point` along the normal, in m per unit of the motion's time t
-  /// (for a trajectory, of its own time): above 0 when they come together, below 0 when they part; 0 with
+  /// (for a trajectory, of its own time). It is above 0 when they come together, below 0 when they part; 0 with
   /// ContactMode::any. Not proven.
   double approach_speed = 0;
   /// The bracket of these two pieces, b1 and b2. They do not touch before t_lower, counted from when their pair is
@@ -119,21 +123,21 @@ struct CertifiedResult : Bracket {
   /// the result is `certain`, the first one is that which is proven first. Empty if the motion is free.
   /// `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran out.
   std::vector<CertifiedContact> contacts;
-  /// Pose of every link at t_lower, link to world, in the order of the links; empty if the motion is free, and if
+  /// Pose of every link at t_lower, link to world, in the order of the links. Empty if the motion is free, and if
   /// CertifiedPairRequest::max_contacts is 0: then the verdict is all that is wanted.
   std::vector<Eigen::Isometry3d> M_0_at_lower;
   /// Pairs that touch at t = 0, or are within their margin, and were ignored
-  /// (CertifiedPairRequest::ignore_initial_contact). Each geometry of a link is a body of its own, so that a link's
-  /// name may stand in several pairs with one obstacle, while other geometries of it are checked.
+  /// (CertifiedPairRequest::ignore_initial_contact). Each geometry of a link is a body of its own. So a link's name
+  /// may stand in several pairs with one obstacle, while other geometries of it are checked.
   std::vector<std::pair<BodyRef, BodyRef>> ignored_initial_contacts;
   /// Number of these that are proven apart, by their margin, nowhere on the motion: `free` says nothing of them.
   std::size_t never_apart_pairs = 0;
-  /// Number of pairs that were not checked because they are allowed (setAllowedCollisions(), attach()'s touch_links),
-  /// or neighbours of which it can't be decided whether they touch (unproven_neighbours), and that nothing proves apart
-  /// for this motion and margin, of those the request asks about. `free` says nothing of them;
-  /// ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours that touch whatever the joint
-  /// between them does, as housings that overlap in it, do not count: ArticulatedCollisionManager::notes() names those
-  /// that nobody allowed.
+  /// Number of pairs, of those the request asks about, that were not checked and that nothing proves apart for this
+  /// motion and margin. They were not checked because they are allowed (setAllowedCollisions(), attach()'s
+  /// touch_links), or neighbours of which it can't be decided whether they touch (unproven_neighbours). `free` says
+  /// nothing of them; ArticulatedCollisionManager::setLinkPairProofs() makes them fewer. Neighbours that touch
+  /// whatever the joint between them does, as housings that overlap in it, do not count:
+  /// ArticulatedCollisionManager::notes() names those that nobody allowed.
   std::size_t unproven_allowed_pairs = 0;
   /// Names of the links of those of these pairs that are neighbours which nobody allowed; null: none. (Shared by all
   /// answers of one set-up.)
@@ -158,9 +162,9 @@ struct CertifiedResult : Bracket {
 FCL_ARTIC_EXPORT const char* toString(Status status);
 /// Returns the features with a hyphen, body 1's first, such as "vertex-face"; or "volume".
 FCL_ARTIC_EXPORT const char* toString(FeatureKind kind);
-/// What a free motion's answer says nothing of: allowed pairs and neighbours without a proof, pairs that touched at the
-/// start and were ignored. Such as "but for 2 allowed pairs not proven apart, and for 1 pair of neighbours not proven
-/// apart: base, arm"; empty if the motion is not free, or there is nothing.
+/// Returns what a free motion's answer does not cover: allowed pairs and neighbours without a proof, pairs that
+/// touched at the start and were ignored. For example "but for 2 allowed pairs not proven apart, and for 1 pair of
+/// neighbours not proven apart: base, arm"; empty if the motion is not free, or there is nothing.
 FCL_ARTIC_EXPORT std::string exceptionsOf(const CertifiedResult& result);
 /// Prints the body's name, or "body" if it has none.
 FCL_ARTIC_EXPORT std::ostream& operator<<(std::ostream& out, const BodyRef& body);

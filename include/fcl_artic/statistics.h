@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Work of queries. Each struct lists its numbers once, in forEachField(): whatever adds, prints or writes them goes by
-// that list, so that a new number is a member here and its line in the list.
+// Work of queries. Each struct lists its numbers once, in forEachField(). All code that adds, prints or writes them
+// goes by that list, so that a new number is a member here and its line in the list.
 #pragma once
 
 #include <cstdint>

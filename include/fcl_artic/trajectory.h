@@ -12,9 +12,9 @@ namespace fcl_artic {
 /// degree, or angles by a tangent half-angle law. Times are in any unit, mostly seconds; they are finite and increase,
 /// and the whole duration is finite.
 ///
-/// What is checked is what the pieces say, in doubles: piece k begins exactly at its own first configuration. The end
-/// of one piece and the beginning of the next may differ by rounding: by 1e-9 rad or m plus 1e-12 of the values. More
-/// is refused as a jump.
+/// The pieces are checked as they are in doubles: piece k begins exactly at its own first configuration. The end of
+/// one piece and the beginning of the next may differ by rounding: by 1e-9 rad or m plus 1e-12 of the values. More is
+/// refused as a jump.
 ///
 /// It belongs to the joint variables of the tree that it was made for, as a JointMotion does, and keeps no reference to
 /// the tree. A trajectory that was moved from has no pieces: requireOf() throws std::invalid_argument then, and the
@@ -39,9 +39,10 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   /// (JointMotion::linear()).
   /// @param times      one for each waypoint.
   /// @param waypoints  at least two, of tree.dof() joint values each, rad or m.
-  /// @throws std::invalid_argument, naming waypoint or piece: as JointMotion::linear(), fewer than two waypoints, a
-  ///   wrong number of times, times that do not increase; with Unwrap::yes also for a mimic joint that would not come
-  ///   to its waypoint, as JointMotion::shortest().
+  /// @throws std::invalid_argument, naming waypoint or piece,
+  ///   - as JointMotion::linear(),
+  ///   - for fewer than two waypoints, a wrong number of times, times that do not increase,
+  ///   - with Unwrap::yes also for a mimic joint that would not come to its waypoint, as JointMotion::shortest().
   static JointTrajectory linear(const KinematicTree& tree, const std::vector<double>& times,
                                 const std::vector<Eigen::VectorXd>& waypoints, Unwrap unwrap = Unwrap::no);
 
@@ -93,9 +94,12 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   /// @param degree  1 to 5.
   /// @param knots   n + degree + 1 times, not decreasing; inner ones repeated at most `degree` times.
   /// @param control_points  at least degree + 1, of tree.dof() joint values each, rad or m.
-  /// @throws std::invalid_argument, naming the knot or control point: for values outside these ranges, control points
-  ///   that are no configuration, no time between the inner knots, pieces that JointMotion::polynomial() refuses, and a
-  ///   joint with a quaternion.
+  /// @throws std::invalid_argument, naming the knot or control point, for
+  ///   - values outside these ranges,
+  ///   - control points that are no configuration,
+  ///   - no time between the inner knots,
+  ///   - pieces that JointMotion::polynomial() refuses,
+  ///   - a joint with a quaternion.
   static JointTrajectory bspline(const KinematicTree& tree, int degree, const std::vector<double>& knots,
                                  const std::vector<Eigen::VectorXd>& control_points);
 

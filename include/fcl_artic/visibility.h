@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2: culling by visibility (doc/VISIBILITY.md). What it removes is proven free. Answers do not depend on it, by
-// construction: it shortens proofs that a motion is free, and any other answer is found without it.
+// Stage 2: culling by visibility (doc/VISIBILITY.md). Everything that it removes is proven free. Answers do not depend
+// on it, by construction: it shortens proofs that a motion is free, and any other answer is found without it.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ struct VisibilityOptions {
   VisibilityRule rule = VisibilityRule::intervals;  ///< The rule by which obstacles are proven free.
   int resolution = 32;                              ///< Pixels along a side of each view, 4 to 128.
   /// Looks at every pair of two links that their bounds leave. Default: only at those of which one link comes into the
-  /// box around the other's geometry, as an arm in a cabin does. Of the others the exact tests cost less than a look.
+  /// box around the other's geometry, as an arm in a cabin does. For the others the exact tests cost less than a look.
   bool every_link_pair = false;
 };
 

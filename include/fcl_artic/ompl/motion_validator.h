@@ -51,10 +51,12 @@ class FCL_ARTIC_EXPORT JointMapping {
   ///   order.
   /// @param others  dof() joint variables, rad or m, at which joints that are not named stay; empty: the neutral
   ///   configuration.
-  /// @throws std::invalid_argument naming space or joint: tree null, space not supported, wrong number of joints, a
-  ///   joint that is unknown, fixed, a mimic, named twice or of the wrong kind for its part, a number for a part of a
-  ///   quaternion, SO2 for a joint with limits or with a mimic joint that is elsewhere after a whole turn, others that
-  ///   are no configuration.
+  /// @throws std::invalid_argument naming space or joint, for
+  ///   - a tree that is null, a space that is not supported, a wrong number of joints,
+  ///   - a joint that is unknown, fixed, a mimic, named twice or of the wrong kind for its part,
+  ///   - a number for a part of a quaternion,
+  ///   - SO2 for a joint with limits or with a mimic joint that is elsewhere after a whole turn,
+  ///   - `others` that are no configuration.
   JointMapping(const ::ompl::base::StateSpace& space, std::shared_ptr<const KinematicTree> tree,
                const std::vector<std::string>& joints = {}, const Eigen::VectorXd& others = {});
 
@@ -78,7 +80,7 @@ class FCL_ARTIC_EXPORT JointMapping {
     bool turns;    ///< takes the shorter way round
     int variable;  ///< of the tree; in a Part: counted from its first
   };
-  /// What takes one name.
+  /// A part of the space that takes one name.
   struct Part {
     JointType joint;   ///< that it drives as a whole; `fixed`: it drives one variable
     std::string what;  ///< says so
@@ -105,10 +107,10 @@ class FCL_ARTIC_EXPORT JointMapping {
 /// motion that starts in contact is invalid.
 ///
 /// With CertifiedRequest::ignore_initial_contact, pairs that touch at s1 may separate, whichever way. At s2 all pairs
-/// must be farther than their margin and tolerance_distance from each other, and from such a state on nothing is
-/// ignored: a plan may start in contact, but not come back into it. So along any sequence of states whose motions are
-/// valid one by one, nothing touches after the first motion, and in that one only what touched at its start, until it
-/// has separated.
+/// must be farther than their margin and tolerance_distance from each other. From such a state on nothing is ignored:
+/// a plan may start in contact, but not come back into it. So along any sequence of states whose motions are valid one
+/// by one, nothing touches after the first motion. In the first motion only pairs that touched at its start touch,
+/// until they have separated.
 ///
 /// Margins are the pairs' own if they have any (ArticulatedCollisionManager::setMargin()), else the request's;
 /// CertifiedRequest::added_margin is added to either, and so is the room that states are given.
@@ -142,11 +144,11 @@ class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionVa
   /// Returns whether the motion from s1 to s2 is proven free, and if not, how far it is.
   ///
   /// If false, the motion is proven free from s1 up to lastValid.second, within the request's tolerance_time of its
-  /// first contact, and lastValid.first, unless null, is set to the state there; it may be s1 or s2. The motion from s1
-  /// to that state is valid. The time is asked for with twice the request's tolerance_distance added to every margin,
-  /// and at the state itself all pairs are proven farther apart than their margin and tolerance_distance: so the state
-  /// is valid by itself and can be left again. If there is no such room at s1, or what touched there has not separated
-  /// by then, the time is 0 and the state s1. If true, lastValid is not touched.
+  /// first contact. Unless lastValid.first is null, it is set to the state there; it may be s1 or s2. The motion from
+  /// s1 to that state is valid. The time is asked for with twice the request's tolerance_distance added to every
+  /// margin. At the state itself all pairs are proven farther apart than their margin and tolerance_distance: so the
+  /// state is valid by itself and can be left again. If there is no such room at s1, or what touched there has not
+  /// separated by then, the time is 0 and the state s1. If true, lastValid is not touched.
   /// @param[out] lastValid  state and fraction of the motion, in [0, 1].
   /// @throws as checkMotion(s1, s2); the time is 0 and the state s1 then, too.
   bool checkMotion(const ::ompl::base::State* s1, const ::ompl::base::State* s2,

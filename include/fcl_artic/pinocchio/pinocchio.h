@@ -136,9 +136,9 @@ class PinocchioRobot {
 struct PinocchioOptions {
   /// Takes bodies that coal sweeps with a ball, other than spheres and capsules, whose radius has it: with a margin of
   /// the radius. It replaces CertifiedRequest::margin for all pairs of such a body, so that more room than the radius
-  /// is CertifiedRequest::added_margin; a larger margin of another body's, one of a pair and resetMargins() replace it
-  /// in turn, and clearance() is that of the bodies without it. False: such a body is refused, so that nobody's margin
-  /// is replaced without notice.
+  /// is CertifiedRequest::added_margin. A larger margin of another body's, one of a pair and resetMargins() replace it
+  /// in turn. clearance() is that of the bodies without it. False: such a body is refused, so that nobody's margin is
+  /// replaced without notice.
   bool swept_radius_as_margin = false;
 };
 
@@ -444,16 +444,18 @@ class PinocchioReader {
 /// @endcond
 
 /// Makes a manager of a pinocchio model and its collision geometry: joints, geometries (fromCoal()) and collision
-/// pairs. Of geometries, pairs that are listed are checked, neighbours too, and all others allowed; pairs of a geometry
-/// whose `disableCollision` is set are allowed as well. Two geometries on one joint never move against each other, so
-/// no motion has them touch: ArticulatedCollisionManager::notes() names those that do, but of two on the universe,
-/// which are obstacles. Both models are copied.
+/// pairs. Pairs of geometries that are listed are checked, neighbours too, and all others allowed. Pairs of a geometry
+/// whose `disableCollision` is set are allowed as well. Two geometries on one joint never move against each other, so no
+/// motion has them touch: ArticulatedCollisionManager::notes() names those that do. (Two on the universe are obstacles:
+/// of these it says nothing.) Both models are copied.
 ///
 /// Objects that are registered or attached afterwards are checked against all geometries. A body that coal sweeps with
 /// a ball is refused where a margin would have to stand for that (PinocchioOptions::swept_radius_as_margin takes it).
-/// @throws std::invalid_argument, naming the joint, for a kind that this library has not (helical ones), for an axis
-///   that is not of length 1 within 1e-9, and for mimic joints of more than one variable; naming the geometry, for one
-///   that fromCoal() or the manager refuses, such as a Halfspace or Plane that a joint moves.
+/// @throws std::invalid_argument
+///   - naming the joint, for a kind that this library has not (helical ones), an axis that is not of length 1 within
+///     1e-9, and mimic joints of more than one variable;
+///   - naming the geometry, for one that fromCoal() or the manager refuses, such as a Halfspace or Plane that a joint
+///     moves.
 inline PinocchioRobot fromPinocchio(const pinocchio::Model& model, const pinocchio::GeometryModel& geometries,
                                     const PinocchioOptions& options = {}) {
   return detail::PinocchioReader(model, geometries, options).read();

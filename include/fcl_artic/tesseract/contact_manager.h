@@ -30,16 +30,20 @@ struct TesseractOptions {
 /// tesseract's ContinuousContactManager with certified answers: contactTest() finds no contact only if it is proven
 /// that no checked pair comes within its margin at any time between the two poses.
 ///
-/// Between pose1 and pose2 of a moving object, the origin of its frame goes straight at constant velocity, and it turns
-/// about a fixed axis at constant speed, the shortest way; all objects move at the same time, t in [0, 1]. (Objects
-/// with one pose stand still.) tesseract's own managers take another body: for each object the convex hull of its shape
-/// at pose1 and at pose2. That hull is more than what is swept where both objects move, as the two need not be there at
-/// the same time, and less where the object turns.
+/// Between pose1 and pose2 of a moving object, the origin of its frame goes straight at constant velocity. The object
+/// turns about a fixed axis at constant speed, the shortest way. All objects move at the same time, t in [0, 1].
+/// (Objects with one pose stand still.) tesseract's own managers take another body: for each object the convex hull of
+/// its shape at pose1 and at pose2. That hull is more than what is swept where both objects move, as the two need not
+/// be there at the same time, and less where the object turns.
 ///
-/// One contact is reported for each pair of links, and of a link that stands still for each of its shapes
-/// (ContactTestType::ALL, LIMITED), for each pair of links (CLOSEST), or at all (FIRST): the first in time. Its cc_time
-/// is the time of first contact, its distance the distance then, 0 to the margin: nothing is penetrated at first
-/// contact, so that there is no depth for optimizers to go down. Nearest points and normal are those at that time.
+/// A contact that is reported is the first in time. ContactTestType says how many there are:
+/// - ALL, LIMITED: one for each pair of links; if one of them stands still, one for each of its shapes;
+/// - CLOSEST: one for each pair of links;
+/// - FIRST: one at all.
+///
+/// Its cc_time is the time of first contact, its distance the distance then, 0 to the margin. Nothing is penetrated at
+/// first contact, so that there is no depth for optimizers to go down. Nearest points and normal are those at that
+/// time.
 ///
 /// Margins below 0 count as 0. Shapes are those of tesseract's FCL manager: box, sphere, cylinder, cone, capsule, plane
 /// (as a surface), mesh (as a surface), convex mesh, compound mesh, and octree with boxes.

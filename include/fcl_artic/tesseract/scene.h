@@ -32,9 +32,12 @@ struct TesseractScene {
   /// The times are those of the states where they increase strictly, else the states' numbers 0, 1, 2 ...
   /// @param others  dof() joint values, rad or m, at which joints that no state names stay, floating and planar ones
   ///   among them, which no state can name; empty: all joints are named.
-  /// @throws std::invalid_argument, naming the state: fewer than two states, a joint that is unknown, fixed, a mimic,
-  ///   of more than one variable or named twice, or is named by some states only; another number of positions than
-  ///   names, a value that is not finite; a joint that no state names, where `others` is empty.
+  /// @throws std::invalid_argument, naming the state, for
+  ///   - fewer than two states,
+  ///   - a joint that is unknown, fixed, a mimic, of more than one variable or named twice, or is named by some states
+  ///     only,
+  ///   - another number of positions than names, a value that is not finite,
+  ///   - a joint that no state names, where `others` is empty.
   FCL_ARTIC_EXPORT JointTrajectory trajectory(const ::tesseract::common::JointTrajectory& trajectory,
                                               const Eigen::VectorXd& others = {}) const;
 

@@ -34,7 +34,7 @@ struct Robot {
   AllowedCollisionMatrix allowed;
   /// Proofs of pairs that never touch, from generateAllowedCollisions(); null: none.
   std::shared_ptr<const LinkPairProofs> proofs;
-  std::vector<std::string> notes;  ///< What was accepted though unusual, one line each.
+  std::vector<std::string> notes;  ///< Notes of what was accepted though unusual, one line each.
 
   /// Binds every geometry to its link and replaces the manager's allowed collisions and proofs. Needs setup()
   /// afterwards. The manager keeps the geometries alive; the Robot may go.
@@ -62,9 +62,12 @@ FCL_ARTIC_EXPORT std::optional<VirtualJoint> loadVirtualJoint(const std::string&
 /// Options of loadUrdf().
 struct UrdfOptions {
   /// Folders that stand for "package://NAME/" (or "package:///NAME/"): from name to folder. A package that isn't named
-  /// here is looked for in the URDF's folder and its parents, by folder name and by the `name` in a package.xml; then,
-  /// as ROS does, in and below the folders of the environment's ROS_PACKAGE_PATH; then at share/NAME in those of
-  /// AMENT_PREFIX_PATH. The first folder that has the file is taken.
+  /// here is looked for in this order:
+  /// - in the URDF's folder and its parents, by folder name and by the `name` in a package.xml;
+  /// - as ROS does, in and below the folders of the environment's ROS_PACKAGE_PATH;
+  /// - at share/NAME in the folders of AMENT_PREFIX_PATH.
+  ///
+  /// The first folder that has the file is taken.
   std::map<std::string, std::string> packages;
   /// Whether meshes are solids (SolidMesh), so that what lies within one touches it. A mesh that is not closed and
   /// consistently oriented is an error then. (For some meshes only: apply makeSolid() to the geometries of Robot.)
@@ -73,8 +76,8 @@ struct UrdfOptions {
   /// nothing; of glTF y) becomes z. If not, as in RViz and MoveIt, coordinates are taken as they stand, and a file in
   /// which x or y is up is noted.
   bool collada_up_axis = false;
-  /// Pose of the robot's root link in the world. If it is not the identity, the tree has one more link, "world" (or, if
-  /// the robot has a link of that name, "world_"), its last, and one more joint, "base_mount", its first.
+  /// Pose of the robot's root link in the world. If it is not the identity, the tree has one more link, its last, and
+  /// one more joint, "base_mount", its first. The link is "world", or, if the robot has a link of that name, "world_".
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
   /// Whether the robot's root link moves freely in the world: the tree has one more link, as for `base`, and a floating
   /// joint "floating_base", whose origin is `base`. Its 7 variables come before the robot's own.
@@ -88,10 +91,12 @@ struct UrdfOptions {
 
 /// Reads a robot from a URDF file. Meshes are read as by loadMesh(), with their scale, and are found by absolute path,
 /// path relative to the URDF's folder, `file:` or `package:` URL. Xacro files must be expanded before.
-/// @throws std::runtime_error naming file and reason: unreadable, not a URDF, joint loop, unsupported joint, missing or
-///   empty mesh, with all places that were searched, mesh without a triangle of positive area, mesh that is to be a
-///   solid and can't be one, a base that is not rigid to 1e-9, a joint of the name that the base's needs, a
-///   virtual joint beside floating_base, or whose child is not the root link.
+/// @throws std::runtime_error naming file and reason:
+///   - unreadable, not a URDF, joint loop, unsupported joint;
+///   - missing or empty mesh, with all places that were searched;
+///   - mesh without a triangle of positive area, mesh that is to be a solid and can't be one;
+///   - a base that is not rigid to 1e-9, a joint of the name that the base's needs;
+///   - a virtual joint beside floating_base, or whose child is not the root link.
 FCL_ARTIC_EXPORT Robot loadUrdf(const std::string& path, const UrdfOptions& options = {});
 
 /// One part of combineRobots().
@@ -102,20 +107,20 @@ struct PlacedRobot {
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
 };
 
-/// Combines several robots into one forest, each on a link of its own, prefix + "mount"; of a part that was combined
-/// before, each of its roots on prefix + "mount_of_" + the root's name. Their variables follow each other in the order
-/// of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none; every link of
-/// one robot is checked against every link of the others, but for what stands still against each other
+/// Combines several robots into one forest, each on a link of its own, prefix + "mount". If a part was combined
+/// before, each of its roots is on prefix + "mount_of_" + the root's name. Their variables follow each other in the
+/// order of the parts. Allowed pairs, and what is said of neighbours, are those of the parts, proofs are none. Every
+/// link of one robot is checked against every link of the others, but for what stands still against each other
 /// (ArticulatedCollisionManager::setAllowedCollisions()). Geometries are shared with the parts.
 /// @throws std::invalid_argument: null, a name that comes twice (give other prefixes), a base that is not rigid to
 ///   1e-9.
 FCL_ARTIC_EXPORT Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name = "robots");
 
-/// An upper bound on how far from the robot's root a point of its geometry gets in any configuration, m, as rounded:
-/// the lengths of the links in a row, each with what it carries. (Compared with a mesh's extent, it shows a file that
-/// is in other units.) Where the robot stands does not count: of a root without geometry that one fixed, planar or
-/// floating joint leaves, such as "world", the child is the root here. Joints that slide count by their limits; without
-/// limits they count as standing still at 0, as planar and floating ones do, and the bound holds for such
+/// An upper bound on how far from the robot's root a point of its geometry gets in any configuration, m, as rounded.
+/// It is the lengths of the links in a row, each with what it carries. (Compared with a mesh's extent, it shows a file
+/// that is in other units.) Where the robot stands does not count. If one fixed, planar or floating joint leaves a
+/// root without geometry, such as "world", its child is the root here. Joints that slide count by their limits;
+/// without limits they count as standing still at 0, as planar and floating ones do, and the bound holds for such
 /// configurations only.
 /// @param geometry  what the links carry; none: the bound is on the frames of joints and links.
 FCL_ARTIC_EXPORT double reachUpper(const KinematicTree& tree, const std::vector<LinkGeometry>& geometry = {});
@@ -124,7 +129,7 @@ FCL_ARTIC_EXPORT double reachUpper(const KinematicTree& tree, const std::vector<
 struct SrdfPair {
   /// Names of the two links.
   std::string link1, link2;
-  std::string reason;  ///< What the file gives, such as "Adjacent", "Always", "Default" or "Never".
+  std::string reason;  ///< The reason that the file gives, such as "Adjacent", "Always", "Default" or "Never".
 };
 
 /// Reads the pairs of links that need no check from an SRDF file, as MoveIt does: `disable_collisions`, and
@@ -134,9 +139,12 @@ struct SrdfPair {
 /// Entries with a link that the robot lacks are passed over, which leaves no pair unchecked: the SRDFs of many makers
 /// name links that not all of their URDFs have.
 /// @param notes  what was passed over is appended, one line; may be null.
-/// @throws std::runtime_error naming file and reason: unreadable; not an SRDF; none of its links is one of the robot's;
-///   an `enable_collisions` with a link that the robot lacks, whose other link is disabled by default: were it a slip,
-///   the pair that was meant would go unchecked.
+/// @throws std::runtime_error naming file and reason:
+///   - unreadable;
+///   - not an SRDF;
+///   - none of its links is one of the robot's;
+///   - an `enable_collisions` with a link that the robot lacks, whose other link is disabled by default: were it a
+///     slip, the pair that was meant would go unchecked.
 FCL_ARTIC_EXPORT AllowedCollisionMatrix loadSrdf(const std::string& path, const KinematicTree& tree,
                                                  std::vector<std::string>* notes = nullptr);
 
@@ -153,10 +161,12 @@ FCL_ARTIC_EXPORT std::vector<SrdfPair> readSrdf(const std::string& path, const K
 /// @throws std::invalid_argument for a robot without a tree, and as ArticulatedCollisionManager::bind() and
 ///   classifyLinkPairs().
 FCL_ARTIC_EXPORT LinkPairReport generateAllowedCollisions(const Robot& robot, const LinkPairOptions& options = {});
-/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`): pairs that
-/// never touch, proven ("Never"), that always do ("Always"), and neighbours that a manager leaves out by itself
-/// ("Adjacent"). The file is written as a
-/// whole or, if this throws, not at all.
+/// Writes an SRDF file with the pairs that need no check within the joints' limits (`disable_collisions`):
+/// - pairs that never touch, proven ("Never"),
+/// - pairs that always do ("Always"),
+/// - neighbours that a manager leaves out by itself ("Adjacent").
+///
+/// The file is written as a whole or, if this throws, not at all.
 /// @throws std::runtime_error naming file and reason.
 FCL_ARTIC_EXPORT void writeSrdf(const std::string& path, const std::string& robot_name, const LinkPairReport& report);
 /// Writes the same file with pairs that the caller allows, each with its own reason.
@@ -171,11 +181,12 @@ struct Scene {
   struct Obstacle {
     std::string name;                               ///< Unique in the scene.
     std::shared_ptr<fcl::CollisionObjectd> object;  ///< Geometry, at its pose in the world.
-    /// Of a shape of an object that has several: the name of the object, which is that of its first shape; else empty.
+    /// If it is a shape of an object that has several: the name of the object, which is that of its first shape; else
+    /// empty.
     std::string shape_of = {};
   };
   std::vector<Obstacle> obstacles;  ///< The obstacles, in the order of the file.
-  std::vector<std::string> notes;   ///< What was accepted though unusual, one line each.
+  std::vector<std::string> notes;   ///< Notes of what was accepted though unusual, one line each.
   /// Names of all obstacles that a name stands for: of a whole object, its shapes. (Margins, allowed pairs and attach()
   /// go by the names of single obstacles: one call for each.)
   FCL_ARTIC_EXPORT std::vector<std::string> namesOf(const std::string& object) const;
@@ -211,17 +222,22 @@ FCL_ARTIC_EXPORT Scene loadScene(const std::string& path, const SceneOptions& op
 /// so, with a note. (Allowed pairs and margins are given by name.) Objects are shared with the scenes.
 FCL_ARTIC_EXPORT Scene combineScenes(const std::vector<Scene>& scenes, const KinematicTree& tree);
 
-/// Compares the extents of a scene with the reach of a robot, and reports what suggests that one of them is in other
-/// units than metres: no obstacle can be reached, or one is a hundred times as large as the reach. The reach is that of
-/// any point of the robot's geometry from its root, whatever the joint values within their limits; nothing is reported
-/// of a robot that slides or floats without limits, nor of unbounded obstacles.
+/// Compares the extents of a scene with the reach of a robot. It reports what suggests that one of them is in other
+/// units than metres: no obstacle can be reached, or one is a hundred times as large as the reach. The reach is that
+/// of any point of the robot's geometry from its root, whatever the joint values within their limits. Nothing is
+/// reported of a robot that slides or floats without limits, nor of unbounded obstacles.
 /// @return one line each, naming obstacle, both lengths in m and the cure; none if all is as usual.
 FCL_ARTIC_EXPORT std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene);
 
-/// Reads a point cloud: PCD (.pcd: ascii, binary, binary_compressed), PLY (.ply, its vertices), lines that begin with
-/// three numbers (.xyz; one separator, a blank, a comma or a semicolon, and one number of columns a file). Points that
-/// are not finite, as of rays without an echo, are left out, with a note. A PCD file's VIEWPOINT is not applied; a note
-/// says so where it is not the identity. Counts that do not agree, and what follows the last point, are refused.
+/// Reads a point cloud:
+/// - PCD (.pcd: ascii, binary, binary_compressed);
+/// - PLY (.ply, its vertices);
+/// - lines that begin with three numbers (.xyz; one separator, a blank, a comma or a semicolon, and one number of
+///   columns a file).
+///
+/// Points that are not finite, as of rays without an echo, are left out, with a note. A PCD file's VIEWPOINT is not
+/// applied; a note says so where it is not the identity. Counts that do not agree, and what follows the last point,
+/// are refused.
 /// @param radius  of all points, in m.
 /// @param notes   what was accepted though unusual is appended, one line each; may be null.
 /// @throws std::invalid_argument for a radius that is not above 0 and finite; std::runtime_error naming file and
@@ -230,11 +246,11 @@ FCL_ARTIC_EXPORT std::shared_ptr<PointCloud> loadPointCloud(const std::string& p
                                                             std::vector<std::string>* notes = nullptr);
 
 /// Reads a triangle mesh, all parts of the file in one BVHModel<OBBRSSd>: STL (.stl), OBJ (.obj), PLY (.ply), OFF
-/// (.off), COLLADA (.dae), glTF 2.0 (.gltf, .glb). Decimals become the nearest doubles; places of nodes (COLLADA, glTF)
-/// are computed in doubles. What may be geometry, or its place, and is not understood is refused by name; points, lines
-/// and vertices without a triangle are left out, with a note. Triangles without area stay, as the segments that they
-/// are, but for those with two equal corners along an edge of another triangle. The manual's page "What is read" has
-/// the list.
+/// (.off), COLLADA (.dae), glTF 2.0 (.gltf, .glb). Decimals become the nearest doubles; places of nodes (COLLADA,
+/// glTF) are computed in doubles. Content that may be geometry, or its place, and is not understood is refused by
+/// name. Points, lines and vertices without a triangle are left out, with a note. Triangles without area stay, as the
+/// segments that they are, but for those with two equal corners along an edge of another triangle. The manual's page
+/// "What is read" has the list.
 /// @param scale  factor for each axis, finite, not 0.
 /// @param notes  what was accepted though unusual is appended, one line each; may be null.
 /// @param solid  whether to return a SolidMesh<OBBRSSd>, triangles without area included. A mesh that is not closed and
