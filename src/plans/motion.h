@@ -15,7 +15,7 @@
 
 namespace fcl_artic::plans {
 
-/// What lies between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
+/// The way between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
 ///
 /// - linear: q0 + s d; a quaternion turns the shorter way at constant speed. Velocities do not count.
 /// - cubic (Hermite), with velocities v: q0 + c1 s + c2 s² + c3 s³,
@@ -30,9 +30,9 @@ namespace fcl_artic::plans {
 ///
 /// - tangentHalfAngle: JointTrajectory::tangentHalfAngle().
 ///
-/// Cubic and quintic are the only polynomials of these degrees with these values at both ends, and so those of
-/// ros_control's and ros2_control's joint_trajectory_controller, which takes the highest degree that both points have
-/// values for, as `automatic` and `jtc` do. Of joints that turn forever it takes the values as they are. Rounding of
+/// Cubic and quintic are the only polynomials of these degrees with these values at both ends. So they are those of
+/// ros_control's and ros2_control's joint_trajectory_controller. It takes the highest degree that both points have
+/// values for, as `automatic` and `jtc` do. If joints turn forever, it takes their values as they are. Rounding of
 /// their coefficients moves them by no more than 2e-13 of the largest of |q|, h |v| and h² |a| of the two waypoints
 /// (doc/NUMERICS.md, section 12); what is certified is the polynomial with these coefficients.
 enum class Interpolation {
@@ -47,8 +47,9 @@ enum class Interpolation {
   tangentHalfAngle,  ///< the tangent of half of each angle goes straight
 };
 
-/// Of an option's value: "auto", "linear", "cubic", "quintic", "blends", "jtc", "jtc-upsampled", "jtc-none" or
-/// "tangent-half-angle". @throws std::invalid_argument, which says of "totg" what to do.
+/// The interpolation that an option's value names: "auto", "linear", "cubic", "quintic", "blends", "jtc",
+/// "jtc-upsampled", "jtc-none" or "tangent-half-angle". @throws std::invalid_argument, which says of "totg" what to
+/// do.
 Interpolation interpolationNamed(const std::string& name);
 const char* toString(Interpolation interpolation);
 
@@ -73,7 +74,7 @@ class LimitJudge {
   explicit LimitJudge(const KinematicTree& tree, double tolerance = kLimitTolerance, bool ignore = false);
   /// @return why a value of variable v is refused, as an end of a sentence; empty: it is not.
   std::string refusal(int v, double value);
-  /// What was accepted though beyond, a note for each joint.
+  /// Notes of what was accepted though beyond, one for each joint.
   std::vector<std::string> notes() const;
 
  private:
@@ -119,11 +120,15 @@ Plan inRadians(const KinematicTree& tree, const Plan& plan);
 /// give.
 std::vector<std::string> unnamedColumns(const KinematicTree& tree, const MotionOptions& options);
 
-/// @throws std::invalid_argument naming waypoint and joint: the plan's own error; fewer than two waypoints, rows of
-///   another length than joints; a joint that is unknown, named twice, or without a value; values that are not finite,
-///   or beyond the joint's limits by more than the tolerance; times that do not increase; an interpolation for which
-///   velocities or accelerations are missing, or that has no times; a turn that has to be asked for; a quaternion that
-///   turns by half a turn from one waypoint to the next, which says not which way round.
+/// @throws std::invalid_argument naming waypoint and joint:
+///   - the plan's own error;
+///   - fewer than two waypoints, rows of another length than joints;
+///   - a joint that is unknown, named twice, or without a value;
+///   - values that are not finite, or beyond the joint's limits by more than the tolerance;
+///   - times that do not increase;
+///   - an interpolation for which velocities or accelerations are missing, or that has no times;
+///   - a turn that has to be asked for;
+///   - a quaternion that turns by half a turn from one waypoint to the next, which says not which way round.
 PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options);
 
 }  // namespace fcl_artic::plans
