@@ -12,7 +12,7 @@ namespace fcl_artic {
 /// degree, or angles by a tangent half-angle law. Times are in any unit, mostly seconds; they are finite and increase,
 /// and the whole duration is finite.
 ///
-/// The pieces are checked as they are in doubles: piece k begins exactly at its own first configuration. The end of
+/// The pieces are checked as they are, in doubles: piece k begins exactly at its own first configuration. The end of
 /// one piece and the beginning of the next may differ by rounding: by 1e-9 rad or m plus 1e-12 of the values. More is
 /// refused as a jump.
 ///

@@ -17,8 +17,8 @@
 
 namespace fcl_artic::certificate {
 
-/// What is claimed: motions one after the other, each over [0, 1], the last one up to its own `until`. What they share
-/// is the first one's.
+/// The claim: motions one after the other, each over [0, 1], the last one up to its own `until`. Everything that they
+/// share is the first one's.
 struct Claim {
   std::vector<Motion> pieces;
   double duration = 1;             ///< of all of them, for people

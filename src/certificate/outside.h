@@ -18,7 +18,7 @@ struct OutsidePoint {
 };
 
 /// For each part of A's surface that hangs together, or each piece of another geometry, one of its points that is
-/// outside of B if B is a solid; then the same of B's points.
+/// outside of B if B is a solid. Then the same of B's points.
 /// @param t  time.
 /// @return none where a part has no point that is surely outside.
 std::optional<std::vector<OutsidePoint>> findOutside(MovingWorld& moving, int a, int b, double t);

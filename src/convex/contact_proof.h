@@ -32,8 +32,8 @@ inline bool tetrahedronHoldsOrigin(const DifferencePoint* v, double eps) {
   return true;
 }
 
-/// A segment certainly meets a triangle: the differences of their points are a prism, and one of the three tetrahedra
-/// that it is cut into certainly holds the origin (doc/NUMERICS.md, Lemma 5).
+/// A segment certainly meets a triangle. The differences of their points are a prism, which is cut into three
+/// tetrahedra: one of them certainly holds the origin (doc/NUMERICS.md, Lemma 5).
 /// @param a, b  the segment's ends and the triangle's corners in one frame; their differences are off by eps at most.
 /// @param weights  of the corners, about where they meet, and `part` of the segment: they choose the tetrahedron.
 inline bool certainlyPierces(const Vec3* a, const Vec3* b, double eps, const Vec3& weights, double part) {
@@ -45,9 +45,9 @@ inline bool certainlyPierces(const Vec3* a, const Vec3* b, double eps, const Vec
   return tetrahedronHoldsOrigin(w, eps);
 }
 
-/// Weights (>= 0, sum 1) that bring a tetrahedron's combination near the origin: barycentric ones, or those of a face
-/// where they come nearer, as in a flat tetrahedron, whose volumes are mostly rounding. False when there is nothing to
-/// weigh by.
+/// Weights (>= 0, sum 1) that bring a tetrahedron's combination near the origin. They are barycentric ones, or those
+/// of a face where these come nearer, as in a flat tetrahedron, whose volumes are mostly rounding. False when there is
+/// nothing to weigh by.
 inline bool originWeights(Simplex& s) {
   if (s.n != 4) return true;
   double best = 1e300, weights[4] = {0, 0, 0, 0};
@@ -172,9 +172,9 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
     witness(s);
     return true;
   }
-  // Lemma 2, for aligned and symmetric poses where the origin lies on a face of every tetrahedron of extreme points:
-  // the corners p_k of a tiny regular tetrahedron (circumradius rho) are each a convex combination of difference
-  // points, up to a residual r_k; when eps + |r_k| < rho / 3, its inradius, no plane separates the origin from the
+  // Lemma 2, for aligned and symmetric poses where the origin lies on a face of every tetrahedron of extreme points.
+  // The corners p_k of a tiny regular tetrahedron (circumradius rho) are each a convex combination of difference
+  // points, up to a residual r_k. When eps + |r_k| < rho / 3, its inradius, no plane separates the origin from the
   // difference.
   const double rho = 24 * eps, q = rho / sqrt(3.0);
   const Vec3 corners[4] = {{q, q, q}, {q, -q, -q}, {-q, q, -q}, {-q, -q, q}};
@@ -190,8 +190,8 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
       sum += h.simplex.weight[i];
       size = max(size, norm(h.simplex.v[i].w));
     }
-    // Sum of weights off by 1e-15 moves the combination by that part of its size, which eps (a multiple of the sizes
-    // of both bodies) exceeds; the rounding of the sum itself stays below 1e-15 size as well.
+    // A sum of weights that is off by 1e-15 moves the combination by that part of its size. That is less than eps, a
+    // multiple of the sizes of both bodies. The rounding of the sum itself stays below 1e-15 size as well.
     if (!(abs(sum - 1) <= 1e-15 && eps + norm(combined(h.simplex)) + 2e-15 * size < rho / 3)) return false;
     witness(h.simplex);  // its combination is the one near the origin, whatever a flat simplex above claimed
   }

@@ -204,8 +204,8 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
 }
 
 /// The search itself, in any bounded convex body with a function for its support points.
-/// @tparam kKeepNearest  the simplex is that of the distance, also where the last step made none that is nearer (of a
-///   flat simplex rounding can make one that is far off): for reports, at the expense of a copy each step.
+/// @tparam kKeepNearest  the simplex is that of the distance, also where the last step made none that is nearer.
+///   (Rounding can make of a flat simplex one that is far off.) For reports, at the expense of a copy each step.
 /// @param enough  a direction along which the gap is larger ends the search.
 /// The other parameters are gjk()'s.
 template <bool kKeepNearest = false, class ConvexBody>

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // All that queries know of a kind of convex piece: one struct a kind, with one answer to each question. Every geometry
-// is made of pieces, and no pair of kinds has code of its own, so that this file and the reader of FCL's geometries
-// (fcl/fcl_geometry.cpp) are all that queries of a new kind need. Certificates need three things more: its text in
-// certificate/world.cpp, its inside in certificate/witness.cpp, and in verify/, which shares no code with the library,
-// a Geometry::Kind (support.h) with its own reader (statement.cpp), support bound (support.cpp) and inside
-// (contact.cpp). doc/ARCHITECTURE.md, "Where to extend", also lists what pictures, Python and adapters need.
+// is made of pieces, and no pair of kinds has code of its own. So this file and the reader of FCL's geometries
+// (fcl/fcl_geometry.cpp) are all that queries of a new kind need. Certificates need three things more:
+// - its text in certificate/world.cpp,
+// - its inside in certificate/witness.cpp,
+// - in verify/, which shares no code with the library, a Geometry::Kind (support.h) with its own reader
+//   (statement.cpp), support bound (support.cpp) and inside (contact.cpp).
+//
+// doc/ARCHITECTURE.md, "Where to extend", also lists what pictures, Python and adapters need.
 //
 // A new kind: its value in PieceKind (model/piece.h), a struct here, a case in withKind(). A case or an answer that is
 // missing does not compile; where a kind has no simple answer `Unknown` has one that is always right.
@@ -38,7 +41,7 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// Of a lambda that a switch calls: it is a part of the switch.
+/// For a lambda that a switch calls: it is a part of the switch.
 #define FCL_ARTIC_INLINE_CALL __attribute__((always_inline))
 
 constexpr double kInfinite = __builtin_huge_val();
@@ -282,7 +285,7 @@ struct BoxKind : Centred {
   }
 };
 
-/// What a cylinder and a cone share: an axis, z, and a circle about it.
+/// The common part of a cylinder and a cone: an axis, z, and a circle about it.
 struct Round : Centred {
   /// Corners of a regular octagon around the unit circle, (1, tan 22.5 degrees) and so on, a little outside.
   static constexpr double kLong = 1.0000000000001, kShort = 0.41421356237313;

@@ -20,9 +20,10 @@
 
 namespace fcl_artic {
 
-/// Reads a geometry: BVHModel of any bounding volume (its triangles; a surface), TriangleP, and the solids Box, Sphere,
-/// Capsule, Cylinder, Cone, Ellipsoid, Convex (the hull of its vertices, whatever its faces), Halfspace {n.x <= d},
-/// Plane {n.x = d}, OcTree (its occupied cells, see readOcTree) and PointCloud (a ball for each point).
+/// Reads a geometry:
+/// - BVHModel of any bounding volume (its triangles; a surface), TriangleP, Plane {n.x = d};
+/// - the solids Box, Sphere, Capsule, Cylinder, Cone, Ellipsoid, Convex (the hull of its vertices, whatever its
+///   faces), Halfspace {n.x <= d}, OcTree (its occupied cells, see readOcTree) and PointCloud (a ball for each point).
 ///
 /// FCL's cost_density and the thresholds beside it are not asked: a geometry is there.
 /// @throws std::invalid_argument naming the type and what is wrong with it.
@@ -35,9 +36,14 @@ template <class S>
 std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<S>& geometry);
 constexpr std::size_t kMeshCacheBytes = std::size_t{256} << 20;
 
-/// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place: its type, the
-/// numbers of a shape, a mesh's vertices and triangles and whether it is a solid, an OcTree's occupied cells, a cloud's
-/// points and radii. Equal contents give equal trees.
+/// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place:
+/// - its type,
+/// - the numbers of a shape,
+/// - a mesh's vertices and triangles and whether it is a solid,
+/// - an OcTree's occupied cells,
+/// - a cloud's points and radii.
+///
+/// Equal contents give equal trees.
 class GeometryContent {
  public:
   /// The geometry must have been read, that is, not refused.

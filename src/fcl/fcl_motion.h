@@ -29,9 +29,12 @@ namespace fcl_artic {
 ///   the mistake be seen. Use the constructor (R1, T1, R2, T2, O).
 /// For the motion that is meant between two poses see motionBetween().
 ///
-/// @throws std::invalid_argument naming the type: for one that is not known; for values that are not finite, beyond
-///   1e9 m, or not rigid; for objects whose constructor left out what the motion is made of (InterpMotion(tf1, tf2, O)
-///   and SplineMotion(tf1, tf2)), as far as that shows; for a BoundedMotion that contradicts itself.
+/// @throws std::invalid_argument naming the type, for
+///   - one that is not known;
+///   - values that are not finite, beyond 1e9 m, or not rigid;
+///   - objects whose constructor left out what the motion is made of (InterpMotion(tf1, tf2, O) and SplineMotion(tf1,
+///     tf2)), as far as that shows;
+///   - a BoundedMotion that contradicts itself.
 template <class S>
 BodyMotion readMotion(const fcl::MotionBase<S>& motion);
 extern template BodyMotion readMotion(const fcl::MotionBase<float>& motion);

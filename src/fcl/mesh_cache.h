@@ -24,8 +24,8 @@ struct MeshBytes {
   bool solid = false;            ///< SolidMesh
 };
 
-/// A tree is found when vertices and triangles are, byte for byte, those that it was built from: what a query answers
-/// then never depends on what was asked before, whether a mesh was changed in place or its address given to another
+/// A tree is found when vertices and triangles are, byte for byte, those that it was built from. So the answer of a
+/// query never depends on what was asked before, whether a mesh was changed in place or its address given to another
 /// one. For threads: all may use one cache at once.
 class MeshCache {
  public:

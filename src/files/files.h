@@ -10,18 +10,18 @@
 
 namespace fcl_artic::files {
 
-/// All bytes of a regular file; an empty file is empty. Of all else only what a shell passes on as /dev/fd/N or
-/// /dev/stdin is read: a device may be endless or do something when it is opened, a pipe of the file system may have
-/// nobody at its other end.
+/// All bytes of a regular file; an empty file is empty. Beside regular files, only what a shell passes on as /dev/fd/N
+/// or /dev/stdin is read. A device may be endless or do something when it is opened, a pipe of the file system may
+/// have nobody at its other end.
 /// @throws std::runtime_error naming the file and the system's reason, also for an error after the first bytes.
 std::string read(const std::string& path);
 
 /// The file that a path leads to through symbolic links, also where it is not there yet.
 std::filesystem::path targetOf(const std::filesystem::path& path);
 
-/// Writes a file, all or nothing: a new one beside it is filled, written down to the disk, and takes its place (its
-/// permissions stay; of a symbolic link, the file it points to is replaced or made). After a power cut it is there as a
-/// whole, or what was there before. What is no regular file, a device or a pipe, is written to.
+/// Writes a file, all or nothing. A new one beside it is filled, written down to the disk, and takes its place. (Its
+/// permissions stay; if it is a symbolic link, the file it points to is replaced or made.) After a power cut it is
+/// there as a whole, or what was there before. A path that is no regular file, but a device or a pipe, is written to.
 /// @throws std::runtime_error naming the file and the system's reason; a file that was there is as before.
 void write(const std::string& path, std::string_view content);
 

@@ -10,8 +10,8 @@
 
 namespace fcl_artic {
 
-/// Boxes that share a point. Sides are compared as they are: whoever computed them saw to rounding. What is not a
-/// number compares false, hence meets everything.
+/// Boxes that share a point. Sides are compared as they are: whoever computed them saw to rounding. A side that is not
+/// a number compares false, hence meets everything.
 inline bool meet(const BoxBounds& a, const BoxBounds& b) {
   for (int k = 0; k < 3; ++k) {
     if (a.hi[k] < b.lo[k] || b.hi[k] < a.lo[k]) return false;

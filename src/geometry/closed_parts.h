@@ -27,9 +27,10 @@ struct ConnectedParts {
 /// @param mesh  of triangles only.
 ConnectedParts findConnectedParts(const engine::TreeView& mesh);
 
-/// Why a mesh bounds no solid; empty when it does: it is closed and consistently oriented when its triangles pass every
-/// edge, corners at the very same place being one, as often in the one direction as in the other. (Of a manifold: once
-/// each. Which side is the outer one does not matter, nor do triangles without area, as long as their edges count.)
+/// Why a mesh bounds no solid; empty when it does. It does when it is closed and consistently oriented: its triangles
+/// then pass every edge as often in the one direction as in the other. Corners at the very same place are one. (In a
+/// manifold: once each. Which side is the outer one does not matter, nor do triangles without area, as long as their
+/// edges count.)
 /// @param mesh  of triangles only.
 std::string whyNoSolid(const engine::TreeView& mesh);
 

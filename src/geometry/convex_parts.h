@@ -9,10 +9,10 @@
 
 namespace fcl_artic {
 
-/// A surface of triangles cut into convex parts, coarse ones and finer ones within them: for each of the upper nodes of
-/// its tree a hull, grown by a ball, that holds all triangles below. Where the hull of a concave or bent body meets
-/// another body's, those of its parts mostly do not, and one step separates a pair of hulls whose triangles would take
-/// hundreds.
+/// A surface of triangles cut into convex parts, coarse ones and finer ones within them. Each of the upper nodes of
+/// its tree has a hull, grown by a ball, that holds all triangles below. Where the hull of a concave or bent body
+/// meets another body's, the hulls of its parts mostly do not. One step then separates a pair of hulls whose triangles
+/// would take hundreds.
 class ConvexParts {
  public:
   /// @param whole  outlives this. Without an outer hull it gets no parts.

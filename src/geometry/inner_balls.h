@@ -13,7 +13,7 @@
 
 namespace fcl_artic {
 
-/// What the closed parts of a mesh enclose, as far as it is certain (doc/NUMERICS.md, "Inner balls").
+/// The space that the closed parts of a mesh enclose, as far as it is certain (doc/NUMERICS.md, "Inner balls").
 class EnclosedSpace {
  public:
   /// @param mesh  of triangles only; outlives this.

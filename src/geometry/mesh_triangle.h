@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is asked of a mesh's triangles: the nearest point, a distance that is certain, whether a line crosses it
+// Questions about a mesh's triangles: the nearest point, a distance that is certain, whether a line crosses it
 // (doc/NUMERICS.md, "Inner balls").
 #pragma once
 

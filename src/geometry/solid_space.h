@@ -46,7 +46,7 @@ class SurfacePoints {
   explicit SurfacePoints(const engine::TreeView& tree);
 
   static constexpr std::size_t kPerPart = 4;
-  /// Those of one part.
+  /// The points of one part.
   struct Part {
     Eigen::Vector3d points[kPerPart];
   };

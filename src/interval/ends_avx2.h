@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ends of four intervals in an AVX2 register, rounded as RoundUpward sets it. What each function does is listed in
-// interval/interval_lanes.h.
+// Ends of four intervals in an AVX2 register, rounded as RoundUpward sets it. The file interval/interval_lanes.h lists
+// what each function does.
 #pragma once
 
 #include <immintrin.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ends of eight intervals in an AVX-512 register. What each function does is listed in interval/interval_lanes.h; each
-// instruction names the direction of rounding itself.
+// Ends of eight intervals in an AVX-512 register. The file interval/interval_lanes.h lists what each function does;
+// each instruction names the direction of rounding itself.
 #pragma once
 
 #include <immintrin.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ends of two intervals in a Pair, rounded as RoundUpward sets it: for SSE2, NEON, and any other processor. What each
-// function does is listed in interval/interval_lanes.h.
+// Ends of two intervals in a Pair, rounded as RoundUpward sets it: for SSE2, NEON, and any other processor. The file
+// interval/interval_lanes.h lists what each function does.
 #pragma once
 
 #include "interval/rounding.h"

@@ -48,8 +48,8 @@ FCL_ARTIC_INLINE Intervals eachNumber(double x) {
   return Intervals(x);
 }
 
-/// What overflows is infinite in some modes and the largest number in others: ends beyond 2^1022, and NaN, are no
-/// bounds.
+/// A number that overflows is infinite in some modes and the largest number in others: ends beyond 2^1022, and NaN,
+/// are no bounds.
 FCL_ARTIC_INLINE Intervals inflated(double lower, double upper) {
   constexpr double part = 0x1.8p-51, least = Intervals::kVanishing, large = 0x1p1022, infinity = __builtin_inf();
   return {__builtin_fabs(lower) <= large ? lower - (__builtin_fabs(lower) * part + least) : -infinity,

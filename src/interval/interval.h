@@ -3,9 +3,9 @@
 // Intervals of real numbers, rounded outward. Every operation and function of this file must run under RoundUpward
 // (rounding.h); then its result holds all real results for arguments in the operands: a proof, in floating point.
 //
-// The pair (-lo, hi) is kept instead of (lo, hi): both are bounds from above, so that one direction of rounding serves
-// both, and a sum of intervals is one instruction. Ends lie in [-2^1024, 2^1024) as (-lo, hi) see it: an overflow gives
-// an infinite end, which is true, and no operation makes NaN (doc/REDON2004.md).
+// The pair (-lo, hi) is kept instead of (lo, hi). Both are bounds from above, so that one direction of rounding serves
+// both, and a sum of intervals is one instruction. Ends lie in [-2^1024, 2^1024) as (-lo, hi) see it: an overflow
+// gives an infinite end, which is true, and no operation makes NaN (doc/REDON2004.md).
 #pragma once
 
 #include "interval/rounding.h"
@@ -89,9 +89,9 @@ FCL_ARTIC_INLINE Interval operator-(Interval a) {
   return Interval::raw(a.swapped());
 }
 
-/// The ends of a product or quotient are among the four of ends. pairMax() gives its second operand where the first one
-/// is NaN: 0 * inf and inf / inf, which stand for some number that others cover, are dropped; the innermost makes an
-/// infinite end.
+/// The ends of a product or quotient are among the four of ends. pairMax() gives its second operand where the first
+/// one is NaN. So 0 * inf and inf / inf, which stand for some number that others cover, are dropped; the innermost
+/// makes an infinite end.
 FCL_ARTIC_INLINE Interval Interval::ofCorners(Pair p, Pair q, Pair r, Pair s) {
   return raw(known(pairMax(p, pairMax(q, pairMax(r, s)))));
 }
@@ -123,7 +123,7 @@ FCL_ARTIC_INLINE Interval square(Interval a) {
   return Interval::raw(directed::mul(h, pairNegateLow(h)));
 }
 
-/// Of the part of a that is not negative.
+/// The square root of the part of a that is not negative.
 FCL_ARTIC_INLINE Interval sqrt(Interval a) {
   const Pair x = pairMax(pairOf(a.lower(), a.upper()), pairOf(0));
   const Pair root = directed::sqrt(x);
@@ -159,7 +159,7 @@ FCL_ARTIC_INLINE Interval plusMinus(double radius) {
 FCL_ARTIC_INLINE Interval hull(Interval a, Interval b) {
   return Interval::raw(pairMax(a.raw(), b.raw()));
 }
-/// What both hold; may be empty. No operation takes an empty interval.
+/// The numbers that both hold; may be empty. No operation takes an empty interval.
 FCL_ARTIC_INLINE Interval intersection(Interval a, Interval b) {
   return Interval::raw(pairMin(a.raw(), b.raw()));
 }

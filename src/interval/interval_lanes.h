@@ -34,7 +34,7 @@ FCL_ARTIC_INLINE Ends known(Ends a) {
   return least(a, spread(__builtin_inf()));
 }
 
-/// What batches need set while they compute: AVX-512 only that subnormals are kept.
+/// The settings that batches need while they compute: AVX-512 needs only that subnormals are kept.
 using Scope = RoundUpward;
 
 /// As many intervals as a register has lanes: negative lower ends n, upper ends h.

@@ -113,7 +113,7 @@ template <typename T>
 FCL_ARTIC_INLINE Vec3<T> operator*(const Rigid<T>& a, const double* x) {
   return a.R * x + a.t;
 }
-/// Of the rigid transforms in a: R^T, -R^T t.
+/// The inverses of the rigid transforms in a: R^T, -R^T t.
 template <typename T>
 FCL_ARTIC_INLINE Rigid<T> inverse(const Rigid<T>& a) {
   const Mat3<T> R = transpose(a.R);

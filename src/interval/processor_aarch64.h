@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Directed rounding on 64-bit ARM: the control register FPCR, the status register FPSR, and operations of NEON that
-// read the former. What each does is listed in interval/rounding.h.
+// read the former. The file interval/rounding.h lists what each does.
 #pragma once
 
 #include <cstdint>

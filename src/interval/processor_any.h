@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Directed rounding by the C library, for processors without a file of their own. What each function does is listed in
-// interval/rounding.h. An operation here is the compiler's, between two empty instructions that the compiler doesn't
-// look into: one before it hides the operands, one after it the result, and both read `rounding_mode`. So it comes
-// after the change of mode before it, ends before the next one, and is neither folded nor fused.
+// Directed rounding by the C library, for processors without a file of their own. The file interval/rounding.h lists
+// what each function does. An operation here is the compiler's, between two empty instructions that the compiler
+// doesn't look into. One before it hides the operands, one after it the result, and both read `rounding_mode`. So it
+// comes after the change of mode before it, ends before the next one, and is neither folded nor fused.
 #pragma once
 
 #include <cfenv>

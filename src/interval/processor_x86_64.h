@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Directed rounding on x86-64: the control register MXCSR, and operations of SSE2 that read it. What each does is
-// listed in interval/rounding.h.
+// Directed rounding on x86-64: the control register MXCSR, and operations of SSE2 that read it. The file
+// interval/rounding.h lists what each does.
 #pragma once
 
 #include <xmmintrin.h>

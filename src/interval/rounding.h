@@ -2,9 +2,9 @@
 //
 // Directed rounding that a compiler can't undo. C++ knows no rounding mode: compilers fold, share and move
 // floating-point operations across a change of mode, -frounding-math or not (doc/REDON2004.md, "Compiler hazards"). So
-// every operation that relies on the mode is an instruction of its own here, which the compiler doesn't look into, and
-// which reads `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of changes
-// and operations.
+// every operation that relies on the mode is an instruction of its own here, which the compiler doesn't look into. The
+// instruction reads `rounding_mode`; a change of mode writes it. The order of writes and reads is then the order of
+// changes and operations.
 //
 // All that depends on the processor is in interval/processor_*.h. Such a file defines:
 //

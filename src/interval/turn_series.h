@@ -12,7 +12,7 @@ namespace fcl_artic {
 struct TurnSeries {
   Interval a, b, c, b1, c1;
 };
-/// At one g, by the series for small ones. What ten terms leave is less than the first one left out, as signs
+/// At one g, by the series for small ones. The rest after ten terms is less than the first one left out, as signs
 /// alternate.
 inline TurnSeries turnSeriesAt(double point) {
   const Interval g(point);
@@ -50,9 +50,9 @@ inline TurnSeries turnSeriesAt(double point) {
   f.c1 += left_out;
   return f;
 }
-/// Over an interval: as a is the integral of cos(x s) over s in [0, 1], b that of (1 - s) cos(x s), c that of
-/// (1 - s)^2/2 cos(x s), and the first two derivatives of cos(x s) by g are at most s^2/2 and s^4/12, the functions
-/// change by at most 1/6, 1/24, 1/120, 1/360, 1/2520 of what g does.
+/// Over an interval. Here a is the integral of cos(x s) over s in [0, 1], b that of (1 - s) cos(x s), c that of (1 -
+/// s)^2/2 cos(x s). The first two derivatives of cos(x s) by g are at most s^2/2 and s^4/12. So the functions change
+/// by at most 1/6, 1/24, 1/120, 1/360, 1/2520 of what g does.
 inline TurnSeries turnSeries(Interval g) {
   const double middle = g.middle() > 0 ? g.middle() : 0;
   TurnSeries f = turnSeriesAt(middle);

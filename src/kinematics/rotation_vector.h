@@ -19,7 +19,7 @@ inline Eigen::Quaterniond quaternionOf(const Eigen::Vector3d& w) {
   return q;
 }
 
-/// The shortest w with exp([w]) = q, |w| <= π. Of two at exactly π, the one of q as it is given.
+/// The shortest w with exp([w]) = q, |w| <= π. If there are two, at exactly π, it is the one of q as it is given.
 inline Eigen::Vector3d rotationVectorOf(Eigen::Quaterniond q) {
   if (q.w() < 0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();

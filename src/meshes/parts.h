@@ -24,10 +24,10 @@ struct Part {
 };
 
 /// Counts what is made of a file: numbers, vertices and corners that are read or placed, nodes that are gone through.
-/// Places refer to meshes, to other places and to the same bytes again, so that a small file could fill all memory. One
-/// that says each thing once makes at most 8 of its bytes: a number takes one at least, and is a corner of a strip, so
-/// three corners of a triangle, which are read and placed, as the vertices are. kMostCopies are for what it says
-/// repeatedly: about a million triangles, for which FCL's tree takes half a gigabyte.
+/// Places refer to meshes, to other places and to the same bytes again, so that a small file could fill all memory. A
+/// file that says each thing once makes at most 8 things of each of its bytes. A number takes one byte at least, and
+/// is a corner of a strip, so three corners of a triangle. These are read and placed, as the vertices are. kMostCopies
+/// are for what it says repeatedly: about a million triangles, for which FCL's tree takes half a gigabyte.
 class Yield {
  public:
   explicit Yield(const Source& source) : source_(source), bytes_(source.content.size()) {}

@@ -15,8 +15,8 @@ namespace fcl_artic::meshes {
 /// to the cube.
 constexpr std::size_t kMostCompared = 100000000;
 
-/// Cuts a polygon into n - 2 triangles between its corners, all of its own turning sense, so that each of its edges is
-/// an edge of one triangle: closed meshes stay closed, also where a polygon is broken.
+/// Cuts a polygon into n - 2 triangles between its corners, all of its own turning sense. Each of its edges is an edge
+/// of one triangle, so that closed meshes stay closed, also where a polygon is broken.
 ///
 /// A convex polygon is cut into a fan from its first corner; another one corner by corner, where the triangle holds no
 /// other corner. The surface of a polygon that is not flat is not defined by its corners: it is taken to be these

@@ -86,7 +86,7 @@ class Lines {
   void end();
   /// Whether the line went on in the next one.
   bool joined() const { return is_joined_; }
-  /// What is left of the line.
+  /// The rest of the line.
   std::string_view rest() const { return line_; }
   /// @throws std::runtime_error naming file and line.
   [[noreturn]] void refuse(const std::string& reason) const;

@@ -11,7 +11,7 @@
 
 namespace fcl_artic::meshes {
 
-/// What a mesh file holds.
+/// The content of a mesh file.
 struct TriangleSoup {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<fcl::Triangle> triangles;

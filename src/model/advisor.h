@@ -16,8 +16,8 @@ struct Placement;
 struct Problem;
 
 /// A link's line swept sphere over one of the eight parts [k/8, (k+1)/8] of the motion: within the hull of these
-/// points, grown by a ball. Seen from where the other body of the pair stands still: in the world of an obstacle, in
-/// the other one's tree frame of a link or an obstacle that moves.
+/// points, grown by a ball. It is seen from where the other body of the pair stands still. For an obstacle that is the
+/// world, for a link or an obstacle that moves the other one's tree frame.
 struct SweptLink {
   double points[6][3];
   double radius;

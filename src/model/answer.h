@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the engine answers. Plain data.
+// The engine's answer. Plain data.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct LeafContact {
   double normal[3];           ///< in A's tree frame, from A to B
   double point[3];            ///< in A's tree frame at time `t`
   double t;                   ///< t_upper when certain, else t_lower
-  std::int32_t feature = -1;  ///< FeatureKind; -1: not known. What the solver knows is reported as it is
+  std::int32_t feature = -1;  ///< FeatureKind; -1: not known. The solver's is reported as it is
   /// Points of both pieces that are nearest to each other at t_nearest, both in A's tree frame at that time: t_lower;
   /// where the pieces overlap then, and with Query::any, `point` at `t`.
   double nearest_a[3], nearest_b[3];

@@ -26,7 +26,7 @@ static inline void joinUpper(FirstContact& first, double t_upper) {
   if (t_upper < first.t_upper) first.t_upper = t_upper;
 }
 
-/// What `certain` promises: contact is proven, and, unless any contact was asked for, within the tolerance of time.
+/// The promise of `certain`: contact is proven, and, unless any contact was asked for, within the tolerance of time.
 static inline bool isCertain(const FirstContact& first, double tolerance_time, bool any) {
   return first.t_upper <= 1 && (any || first.t_upper - first.t_lower <= tolerance_time);
 }

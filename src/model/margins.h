@@ -33,7 +33,7 @@ class Margins {
     if (link_) link_ += n;
   }
 
-  /// Of a pair by its number in the problem.
+  /// The margin of a pair by its number in the problem.
   [[gnu::always_inline]] double of(PairId pair) const {
     const double* own = pairs_.in(scene_, link_, pair);
     return ofOwn(own ? *own : -1);
@@ -43,7 +43,7 @@ class Margins {
     const double* own = pairs_.in(scene_, link_, pair);
     return own && *own >= 0;
   }
-  /// Of a pair that the problem leaves out, by its own; below 0: none.
+  /// The margin of a pair that the problem leaves out, by its own; below 0: none.
   [[gnu::always_inline]] double ofOwn(double own) const { return own >= 0 ? own + added_ : requested_; }
   /// No pair of the problem has a larger one.
   [[gnu::always_inline]] double largest() const { return largest_; }

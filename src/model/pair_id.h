@@ -10,7 +10,7 @@
 namespace fcl_artic {
 namespace engine {
 
-/// Scene pairs come first, by mover and obstacle, then the link pairs. What one stands for: Problem::parts.
+/// Scene pairs come first, by mover and obstacle, then the link pairs. Problem::parts says what one stands for.
 enum class PairId : std::int32_t {};
 
 constexpr PairId kNoPair{-1};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What stays the same from query to query: bodies, pairs, margins. Plain data; its owner is Setup.
+// All that stays the same from query to query: bodies, pairs, margins. Plain data; its owner is Setup.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct Body {
   double lo[3] = {}, hi[3] = {};
 };
 
-/// What stage 1 asks of an obstacle that stands still, in three cache lines: in a large scene most of its time went
-/// into fetching these numbers one after the other.
+/// The numbers that stage 1 asks of an obstacle that stands still, in three cache lines. In a large scene most of its
+/// time went into fetching these numbers one after the other.
 struct alignas(64) StillBounds {
   Placement inverse;  ///< Body::inverse
   CoreBox box;
@@ -71,14 +71,14 @@ struct Containment {
   double normal[3];  ///< in A's tree frame, from A to B: the shortest way out, about
 };
 
-/// What the number of a pair stands for: bodies and placements. B is carried by a step of the sweep, A stands in its
-/// base frame.
+/// The meaning of a pair's number: bodies and placements. B is carried by a step of the sweep, A stands in its base
+/// frame.
 struct PairParts {
   std::int32_t a, b, sweep, step_b;
   const Placement *inverse_a, *placement_b;
 };
 
-/// Everything that stays the same from query to query. (Of the pairs' numbers: PairNumbering.)
+/// Everything that stays the same from query to query. (PairNumbering is for the pairs' numbers.)
 struct Problem : PairNumbering {
   const Body* bodies = nullptr;
   std::int32_t num_bodies = 0;

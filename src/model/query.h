@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What one query asks: the motion, tolerances, and the solver's advisors. Plain data.
+// The question of one query: the motion, tolerances, and the solver's advisors. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace fcl_artic {
 namespace engine {
 
 /// Which variables are angles that go by the tangent of their half: with s the variable's polynomial, the angle is
-/// reference + 2 atan(s). Of a motion with such a variable the degree is at least 2, as its bounds differ from time to
+/// reference + 2 atan(s). If a motion has such a variable, its degree is at least 2, as its bounds differ from time to
 /// time.
 struct HalfAngles {
   const std::uint8_t* is = nullptr;   ///< per variable, the first `count` of them; the others are their polynomials

@@ -17,7 +17,7 @@ struct Placement {
   bool identity = true;
 };
 
-/// What moves between a step's frame and the one before it.
+/// The kind of motion between a step's frame and the one before it.
 enum class StepKind : std::int32_t {
   revolute,   ///< a turn about z by q
   prismatic,  ///< a slide along z by q

@@ -44,7 +44,7 @@ struct BodyMotion {
   RigidTransform poseWithError(double t) const;
 };
 
-/// What is known of all points of a body over [0, 1].
+/// The known bounds of all points of a body over [0, 1].
 struct PathBounds {
   double speed = 0, acceleration = 0;  ///< D1, D2
   double angular_speed = 0;            ///< of the body, rad per unit of t

@@ -27,7 +27,7 @@ struct VariableBounds {
   double m[4];      ///< of |q| and its first three derivatives (Euclidean norms of three rows)
   double size;      ///< of the numbers that q is computed from, summed
   double terms[2];  ///< of those that its first two derivatives are computed from
-  /// What rounding of q's derivatives scales with.
+  /// The number that rounding of q's derivatives scales with.
   double roundingRate() const { return terms[1] > 0 ? terms[0] + sqrt(terms[1]) : terms[0]; }
 };
 
@@ -137,7 +137,7 @@ inline void boundVariables(const SweepStep& step, const engine::Query& query, do
     }
   }
   if (rows == 1 && query.degree == 1) {
-    // Of the numbers that q comes from, not of q: multiple and offset of a mimic joint may cancel.
+    // Bounds of the numbers that q comes from, not of q: multiple and offset of a mimic joint may cancel.
     bounds.m[1] = bounds.terms[0] = abs(q[0][1]);
     bounds.m[0] = bounds.size = abs(q[0][0]) + abs(step.offset) + bounds.m[1];
     bounds.m[2] = bounds.m[3] = bounds.terms[1] = 0;

@@ -10,7 +10,7 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// What a factor adds to the bounds of the chain before it.
+/// The terms that a factor adds to the bounds of the chain before it.
 struct FactorBounds {
   double turn[3] = {};   ///< of the first three derivatives of its angles
   double slide[4] = {};  ///< of the slide's length and its first three derivatives

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Moving bodies as seen from one base frame: the moving factors on the way to every body of interest, constant
-// transforms multiplied in, each joint's axis turned to z. World motion is the sweep from the world; relative motion of
-// two links is a sweep along the path between them, so that joints which do not move them apart drop out exactly;
-// relative motion of two free bodies goes up the one's motion and down the other's.
+// transforms multiplied in, each joint's axis turned to z. World motion is the sweep from the world. Relative motion
+// of two links is a sweep along the path between them, so that joints which do not move them apart drop out exactly.
+// Relative motion of two free bodies goes up the one's motion and down the other's.
 #pragma once
 
 #include <memory>

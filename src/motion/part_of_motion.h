@@ -2,8 +2,8 @@
 //
 // A part [begin, end] of a motion's time as a motion over [0, 1] of its own: t stands for begin + t (end - begin).
 //
-// The numbers of a part are rounded. What that moves a body by is known beforehand, for every part, and paid for in the
-// sweep that the body is carried by (FrameSweep::allowError; doc/NUMERICS.md, "Parts of a motion").
+// The numbers of a part are rounded. The way by which that moves a body is known beforehand, for every part. It is
+// paid for in the sweep that the body is carried by (FrameSweep::allowError; doc/NUMERICS.md, "Parts of a motion").
 #pragma once
 
 #include <vector>

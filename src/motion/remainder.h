@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a motion's quadratic over eight time intervals leaves out, and what rounding can do: a-priori bounds.
+// A-priori bounds on what a motion's quadratic over eight time intervals leaves out, and on what rounding can do.
 //
 // Symbols: interval of lane i: [tm_i - d, tm_i + d], the same d in all lanes; tau = (t - tm) / d in [-1, 1].
 //   X(t) = X0 + tau X1 + tau^2 X2 + e,   |e| <= D3 d^3 / 6   (X a rotation or a position; X1 = d X', X2 = d^2/2 X'')
@@ -12,10 +12,12 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Roundings of one step of a chain; of certificate and swept boxes on top of a chain, twice what they come to; of a
-/// difference point at a pose (doc/NUMERICS.md, "Pads").
+/// Roundings (doc/NUMERICS.md, "Pads"), in this order:
+/// - of one step of a chain;
+/// - of certificate and swept boxes on top of a chain, twice what they come to;
+/// - of a difference point at a pose.
 constexpr double kStepUlps = 24, kCertificateUlps = 160, kPoseUlps = 40;
-/// Of a rotation by a vector.
+/// Roundings of a rotation by a vector.
 constexpr double kTurnUlps = 512;
 /// No claim is made about lengths below this, in m. It stands far above whatever underflow, gradual or flushed, can do.
 constexpr double kLeastLength = 1e-40;
@@ -45,8 +47,8 @@ inline double roundingPart(double ulps, double x) {
   return kUlp * (2 * ulps + kCertificateUlps) * ((1 + 2.5 * x) * (1 + 2.5 * x));
 }
 
-/// What the quadratic leaves out of a motion with these bounds: |error| of a point p is at most c + R |p|. Where no
-/// derivative is known (first_order) the quadratic is a constant.
+/// The part of a motion with these bounds that the quadratic leaves out: |error| of a point p is at most c + R |p|.
+/// Where no derivative is known (first_order) the quadratic is a constant.
 struct Remainder {
   double R, c;
 };

@@ -95,7 +95,7 @@ struct PairPads {
   double pose;  ///< of a difference point at tm
 };
 
-/// B seen from A: quadratic, remainders and pads. Of the way back, A seen from B, the remainder only: invert() makes
+/// B seen from A: quadratic, remainders and pads. For the way back, A seen from B, the remainder only: invert() makes
 /// the rest.
 /// @param frame  of the step that carries B, seen from the base frame; null where B stands still in it.
 /// @param b  of that step; all zero where B stands still.

@@ -39,8 +39,8 @@ FCL_ARTIC_INLINE void movingRange(const Side& side, const Piece& moving, const V
   }
 }
 
-/// What a gap between the cores has to be larger than along a unit direction, for the pieces to be more than the margin
-/// apart: radii, what the quadratic leaves out, rounding.
+/// The pieces are more than the margin apart if the gap between their cores along a unit direction is larger than
+/// this. It covers radii, what the quadratic leaves out, rounding.
 FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piece& moving) {
   return side.margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + side.pad;
 }
@@ -61,8 +61,9 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
 }
 
 /// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first
-/// root, as far as rounding lets that be proven. z is only a guess until de Casteljau's subdivision at z has shown that
-/// the coefficients over [0, z], and over [z, 1] where all of [0, 1] is claimed, are not negative.
+/// root, as far as rounding lets that be proven. Its end z is only a guess until de Casteljau's subdivision at z has
+/// shown that the coefficients are not negative. These are the coefficients over [0, z], and over [z, 1] where all of
+/// [0, 1] is claimed.
 inline double positivePrefix(const double* G) {
   // The subdivision errs by at most 11 kUlp of the largest coefficient.
   const double reserve = 16 * kUlp * max(max(abs(G[0]), abs(G[1])), abs(G[2]));
@@ -105,11 +106,11 @@ struct TurningDirection {
 };
 
 /// The same along a direction that turns, as the gap's own does between edges and curved surfaces, in neither body's
-/// frame. The product of a linear n and a quadratic motion is a cubic: Bernstein points (R_0 n_0, (R_0 n_1 + 2 R_1 n_0)
-/// / 3, (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line between
-/// its values at both ends; |n| does too, and all that is taken off is multiplied by the larger of both. The quadratic
-/// with the points (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to degree 3 none
-/// of its points is higher.
+/// frame. The product of a linear n and a quadratic motion is a cubic: Bernstein points (R_0 n_0, (R_0 n_1 + 2 R_1
+/// n_0) / 3, (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line
+/// between its values at both ends. So does |n|, and all that is taken off is multiplied by the larger of both. The
+/// quadratic with the points (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to
+/// degree 3 none of its points is higher.
 /// @param side  B seen from A: the pad is derived for the direct motion (doc/NUMERICS.md, "Pads").
 FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const TurningDirection& n,
                                Lanes* G) {

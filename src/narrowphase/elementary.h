@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The elementary vertex/face and edge/edge equations of two triangles under a rigid relative motion (Redon et al. 2004,
-// equations 14 and 13), with interval Newton (18): the first contact to the rounding floor, and the features that meet.
-// It refines what the solver has found and names it; no verdict comes from here.
+// The elementary vertex/face and edge/edge equations of two triangles under a rigid relative motion (Redon et al.
+// 2004, equations 14 and 13), with interval Newton (18). They give the first contact to the rounding floor, and the
+// features that meet. It refines what the solver has found and names it; no verdict comes from here.
 #pragma once
 
 #include <functional>
@@ -38,10 +38,10 @@ struct ContactWindow {
 
 /// Refines the first contact of triangles a (A's frame) and b (B's frame), in its window.
 ///
-/// Degenerate contacts (a vertex on an edge, parallel edges, coplanar faces, grazing) get the features within the
-/// rounding floor of each other at the refined t_lower, a raised t_lower, the t_upper given and certain = false.
-/// @return false, with the window as given and no feature, when it is proven that no equation has a root in the window:
-///   the triangles are free there, or they cross each other in all of it.
+/// Degenerate contacts are a vertex on an edge, parallel edges, coplanar faces, grazing. They get the features within
+/// the rounding floor of each other at the refined t_lower, a raised t_lower, the t_upper given and certain = false.
+/// @return false, with the window as given and no feature, when it is proven that no equation has a root in the
+///   window. The triangles are free there, or they cross each other in all of it.
 bool refineTriangleContact(const Eigen::Vector3d a[3], const Eigen::Vector3d b[3], const MotionAt& motion,
                            const ContactWindow& window, RefinedContact& out);
 

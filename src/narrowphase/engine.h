@@ -23,7 +23,7 @@ struct Engine {
 /// The widest engine that this processor runs; FCL_ARTIC_ISA in the environment asks for another by its name.
 const Engine& engine();
 
-/// Of these a build has those that numerics/instruction_sets.h lists.
+/// A build has those of them that numerics/instruction_sets.h lists.
 extern const Engine kEnginePortable, kEngineSse2, kEngineAvx2, kEngineAvx512, kEngineNeon;
 
 }  // namespace engine

@@ -30,7 +30,7 @@ class LeastDepth {
 
  private:
   using Vector3d = Eigen::Vector3d;
-  // Of curved bodies a polytope of so many corners errs in its normals by about 1 / kMostCorners rad.
+  // For curved bodies a polytope of so many corners errs in its normals by about 1 / kMostCorners rad.
   static constexpr int kMostCorners = 96, kMostFaces = 4 * kMostCorners;
   static constexpr double kFlat = 1e-12;   // of W's size: what it is thinner than is rounding
   static constexpr double kFound = 1e-10;  // the same: no corner lies beyond a face by more

@@ -10,9 +10,9 @@ inline double gapAlong(const Eigen::Vector3d& n, const Eigen::Matrix3d& a, const
   return (n.transpose() * b).minCoeff() - (n.transpose() * a).maxCoeff();
 }
 
-/// A direction, from a to b, along which two triangles hardly overlap: the one given, unit, where that does; else the
-/// normal of a face, or the common one of two edges or of a face and an edge, along which they overlap least. (Some
-/// such direction parts triangles that do not cross each other.)
+/// A direction, from a to b, along which two triangles hardly overlap. It is the one given, unit, where they hardly
+/// overlap along that. Else it is the normal of a face, or the common one of two edges or of a face and an edge, along
+/// which they overlap least. (Some such direction parts triangles that do not cross each other.)
 inline Eigen::Vector3d partingDirection(const Eigen::Vector3d corners_a[3], const Eigen::Vector3d corners_b[3],
                                         const Eigen::Vector3d& given) {
   using Eigen::Vector3d;

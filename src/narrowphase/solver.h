@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The solver: the first contact over all pairs, eight time intervals ("lanes") at once. What is discarded is discarded
-// by the certificate (certificate.h), or by a swept box or line swept sphere, which are the same certificate with the
-// directions of an axis or of the nearest points. All else is order and effort.
+// The solver: the first contact over all pairs, eight time intervals ("lanes") at once. Only the certificate
+// (certificate.h) discards anything. A swept box or line swept sphere is the same certificate, with the directions of
+// an axis or of the nearest points. All else is order and effort.
 //
 // Its parts: solver/parts.h.
 #pragma once
@@ -56,8 +56,8 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
 
 inline void Solver::answerWithWhatIsFound(Answer& answer) {
   const Query& query = *task.query;
-  // A pose proven in contact before the time up to which all is proven free would be a contradiction: a fault of ours,
-  // and then contact is the answer that harms nobody.
+  // A pose proven in contact before the time up to which all is proven free would be a contradiction: a fault of ours.
+  // Contact is then the answer that harms nobody.
   FCL_ARTIC_ASSERT(task.ended() || horizon.first().t_lower <= horizon.first().t_upper);
   if (horizon.first().t_upper < horizon.first().t_lower) horizon.joinLower(0);
   const bool found = horizon.first().t_lower < kNever;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Our own mistakes. What a caller gets wrong is an exception; what this library takes for granted of itself is an
-// assertion: it ends the program, with the place, in builds with FCL_ARTIC_ASSERTIONS (the presets dev, asan-ubsan,
-// tsan, fuzz), and is no code in others.
+// Our own mistakes. A caller's mistake is an exception. An assertion is about what this library takes for granted of
+// itself. It ends the program, with the place, in builds with FCL_ARTIC_ASSERTIONS (the presets dev, asan-ubsan, tsan,
+// fuzz), and is no code in others.
 #pragma once
 
 namespace fcl_artic {

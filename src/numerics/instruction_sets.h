@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The instruction sets for which this build has batches and an engine, and the choice among them at run time. One more
-// takes: a line here, numerics/register_*.h and where it has directed rounding interval/processor_*.h, a file of
-// its own for what is compiled for it (narrowphase/engine_*.cpp, redon/box_batch_*.cpp), and a name in
-// cmake/InstructionSets.cmake, which lists the compiler's flags.
+// takes:
+// - a line here,
+// - numerics/register_*.h and where it has directed rounding interval/processor_*.h,
+// - a file of its own for what is compiled for it (narrowphase/engine_*.cpp, redon/box_batch_*.cpp),
+// - a name in cmake/InstructionSets.cmake, which lists the compiler's flags.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +36,7 @@ namespace fcl_artic {
 bool processorRuns(const char* name);
 
 bool sameName(const char* a, const char* b);
-/// What FCL_ARTIC_ISA in the environment names; null where it is not set.
+/// The name that FCL_ARTIC_ISA in the environment gives; null where it is not set.
 const char* instructionSetAsked();
 
 /// The one of that name; null where there is none, or `runs` refuses it.
@@ -46,7 +48,7 @@ const T* findNamed(const T* const (&all)[n], const char* name, bool (*runs)(cons
   return nullptr;
 }
 
-/// What the environment asks for, where it runs; else the first that does.
+/// The one that the environment asks for, where it runs; else the first that does.
 template <class T, std::size_t n>
 const T& chooseWidest(const T* const (&all)[n], bool (*runs)(const T&)) {
   if (const char* asked = instructionSetAsked()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Two doubles in a vector of the compiler's, for processors without a file of their own: GCC and clang make of it what
-// the processor has, NEON on ARM, one double after the other elsewhere. What each function does is listed in
-// numerics/pair.h.
+// the processor has, NEON on ARM, one double after the other elsewhere. The file numerics/pair.h lists what each
+// function does.
 #pragma once
 
 #include <cstdint>

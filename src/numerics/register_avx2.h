@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Four doubles in an AVX2 register, with FMA. What each function does is listed in numerics/lanes.h.
+// Four doubles in an AVX2 register, with FMA. The file numerics/lanes.h lists what each function does.
 #pragma once
 
 #include <immintrin.h>

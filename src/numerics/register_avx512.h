@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Eight doubles in an AVX-512 register. What each function does is listed in numerics/lanes.h.
+// Eight doubles in an AVX-512 register. The file numerics/lanes.h lists what each function does.
 #pragma once
 
 #include <immintrin.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two doubles in a NEON register, which every 64-bit ARM processor has, with FMA. What each function does is listed in
-// numerics/lanes.h. (NEON's own minimum and maximum treat NaN and zeros otherwise.)
+// Two doubles in a NEON register, which every 64-bit ARM processor has, with FMA. The file numerics/lanes.h lists what
+// each function does. (NEON's own minimum and maximum treat NaN and zeros otherwise.)
 #pragma once
 
 #include <arm_neon.h>

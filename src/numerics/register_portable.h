@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Two doubles in a vector of the compiler's, for processors without a file of their own: GCC and clang make of it what
-// the processor has, NEON on ARM, one double after the other elsewhere. What each function does is listed in
-// numerics/lanes.h. Comparisons and signs do not depend on the rounding mode; of the functions here, only regSqrt,
+// the processor has, NEON on ARM, one double after the other elsewhere. The file numerics/lanes.h lists what each
+// function does. Comparisons and signs do not depend on the rounding mode; of the functions here, only regSqrt,
 // regMulAdd and regNarrow round, each by one operation of the processor for each rounding.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two doubles in an SSE2 register, which every x86-64 processor has. What each function does is listed in
-// numerics/lanes.h.
+// Two doubles in an SSE2 register, which every x86-64 processor has. The file numerics/lanes.h lists what each
+// function does.
 #pragma once
 
 #include <emmintrin.h>

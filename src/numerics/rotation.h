@@ -98,7 +98,7 @@ class RigidTransform {
     if (!R) return std::nullopt;
     return RigidTransform(*R, M.translation());
   }
-  /// What somebody has multiplied himself.
+  /// A product that somebody has multiplied himself.
   /// @param ulps, length  as ulps() and length() return them: M must be no farther from a rigid transform, nor reach
   ///   farther.
   static RigidTransform product(const Eigen::Isometry3d& M, double ulps, double length) {
@@ -170,7 +170,7 @@ class RigidTransform {
 /// more than 1e9 m away" and so on.
 std::string whyNotRigid(const Eigen::Isometry3d& M, double most);
 
-/// What RigidTransform::within12Ulps() makes of M.
+/// The transform that RigidTransform::within12Ulps() makes of M.
 /// @param nameOf  what M belongs to, for the message: called where there is one, as spelling takes longer than reading.
 /// @throws std::invalid_argument beginning with that name where it makes nothing.
 template <class NameOf>

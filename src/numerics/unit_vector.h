@@ -22,9 +22,9 @@ class UnitVector {
   /// @return none where v is zero or not finite.
   ///
   /// v is brought near 1 by a power of two first, so that no square vanishes that counts and none overflows. Then the
-  /// square's sum is off by 3u, its root by 2.5u, and each quotient by u more: the errors of one rounding mode go in
-  /// opposite directions, so that the norm is off by 2.5u, to nearest by 1.75u. Taken as it is, v has a computed square
-  /// within 2.9u of 1, which is off by 3u: the norm is off by 2.95u.
+  /// square's sum is off by 3u, its root by 2.5u, and each quotient by u more. The errors of one rounding mode go in
+  /// opposite directions, so that the norm is off by 2.5u, to nearest by 1.75u. Taken as it is, v has a computed
+  /// square within 2.9u of 1, which is off by 3u: the norm is off by 2.95u.
   static std::optional<UnitVector> within3Ulps(Eigen::Vector3d v) {
     const double largest = v.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!(largest > 0 && largest < INFINITY)) return std::nullopt;

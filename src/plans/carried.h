@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a plan's message says the robot carries, against what the caller has attached.
+// Compares what a plan's message says the robot carries with what the caller has attached.
 #pragma once
 
 #include <string>
@@ -19,9 +19,9 @@ struct Attached {
 };
 
 /// Every object that the plan's message says is carried must be attached, to its link or one that stands still against
-/// it. An object stands for one carried object of its name; what came from one file together stands for one of the
-/// file's name; for a carried object without a name stands a file's. Nothing stands for two. More may be attached than
-/// the message names.
+/// it. An object stands for one carried object of its name. Objects that came from one file together stand for one of
+/// the file's name. For a carried object without a name stands a file's. Nothing stands for two. More may be attached
+/// than the message names.
 /// @param how  ends the message: how one attaches.
 /// @throws std::invalid_argument naming what is missing, or the two links.
 void requireCarried(const KinematicTree& tree, const Plan& plan, const std::vector<Attached>& attached,

@@ -33,10 +33,13 @@ Table parseTable(std::string_view content, const std::string& file);
 /// A plan: columns `time` (`t`, `time_from_start`), JOINT, and JOINT with an ending /velocity, .velocity, _velocity or
 /// _vel, and the same of acceleration, _acc. Velocities of some joints only are refused, as are accelerations.
 ///
-/// Other layouts that are usual are taken too, and a note says what was taken for what: `Time`, `timestamp`, `__time`;
-/// /joint_states/JOINT/position, as PlotJuggler has it; numbered columns, from 0 or 1 on, `q1`, `j0`, `joint_1`,
-/// `actual_q_0` and, of velocities, `qd1`, `actual_qd_0`, as many as there are joints, in their order; names in a
-/// comment before the first row; no names, and as many columns as joints, or a column of times before them.
+/// Other layouts that are usual are taken too, and a note says what was taken for what:
+/// - `Time`, `timestamp`, `__time`;
+/// - /joint_states/JOINT/position, as PlotJuggler has it;
+/// - numbered columns, from 0 or 1 on, `q1`, `j0`, `joint_1`, `actual_q_0` and, of velocities, `qd1`, `actual_qd_0`,
+///   as many as there are joints, in their order;
+/// - names in a comment before the first row;
+/// - no names, and as many columns as joints, or a column of times before them.
 /// @param options  where all of this is not so.
 Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnOptions& options = {});
 

@@ -36,7 +36,7 @@ class LimitJudge {
   explicit LimitJudge(const KinematicTree& tree, double tolerance = kLimitTolerance, bool ignore = false);
   /// @return why a value of variable v is refused, as an end of a sentence; empty: it is not.
   std::string refusal(int v, double value);
-  /// What was accepted though beyond, a note for each joint.
+  /// Notes of what was accepted though beyond, one for each joint.
   std::vector<std::string> notes() const;
 
  private:
@@ -82,11 +82,15 @@ Plan inRadians(const KinematicTree& tree, const Plan& plan);
 /// give.
 std::vector<std::string> unnamedColumns(const KinematicTree& tree, const MotionOptions& options);
 
-/// @throws std::invalid_argument naming waypoint and joint: the plan's own error; fewer than two waypoints, rows of
-///   another length than joints; a joint that is unknown, named twice, or without a value; values that are not finite,
-///   or beyond the joint's limits by more than the tolerance; times that do not increase; an interpolation for which
-///   velocities or accelerations are missing, or that has no times; a turn that has to be asked for; a quaternion that
-///   turns by half a turn from one waypoint to the next, which says not which way round.
+/// @throws std::invalid_argument naming waypoint and joint:
+///   - the plan's own error;
+///   - fewer than two waypoints, rows of another length than joints;
+///   - a joint that is unknown, named twice, or without a value;
+///   - values that are not finite, or beyond the joint's limits by more than the tolerance;
+///   - times that do not increase;
+///   - an interpolation for which velocities or accelerations are missing, or that has no times;
+///   - a turn that has to be asked for;
+///   - a quaternion that turns by half a turn from one waypoint to the next, which says not which way round.
 PlanMotion toMotion(const KinematicTree& tree, const Plan& plan, const MotionOptions& options);
 
 }  // namespace fcl_artic::plans

@@ -48,10 +48,10 @@ enum class Format {
   numpy   ///< .npy, .npz
 };
 
-/// What the columns of a CSV file are, where its first line does not say it in the robot's own names.
+/// The meaning of a CSV file's columns, where its first line does not say it in the robot's own names.
 struct ColumnOptions {
-  /// Of each column, in their order: a variable, VARIABLE/velocity or /acceleration, `time`, or - for one that is left
-  /// out. Empty: the file's first line, or what is usual, says it.
+  /// For each column, in their order: a variable, VARIABLE/velocity or /acceleration, `time`, or - for one that is
+  /// left out. Empty: the file's first line, or what is usual, says it.
   std::vector<std::string> columns;
   std::vector<std::string> skip;    ///< columns that are left out, by the names of the first line
   std::string time;                 ///< the column of times, by the first line; empty: what is usual
@@ -60,7 +60,8 @@ struct ColumnOptions {
 
 /// The format that a file's ending names. @throws std::invalid_argument naming the file and the endings that are known.
 Format formatOf(const std::string& path);
-/// Of an option's value: "csv", "json", "jsonl", "yaml", "ompl" or "numpy". @throws std::invalid_argument.
+/// The format that an option's value names: "csv", "json", "jsonl", "yaml", "ompl" or "numpy". @throws
+/// std::invalid_argument.
 Format formatNamed(const std::string& name);
 /// Whether the file's ending names a format.
 bool hasPlanEnding(const std::string& path);

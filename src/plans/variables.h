@@ -28,7 +28,7 @@ int variableOf(const KinematicTree& tree, const std::string& name, const std::st
 /// @throws std::invalid_argument always.
 [[noreturn]] void refuseUnnamed(const std::vector<std::string>& joints, const std::string& what);
 
-/// What is given of a joint that the motion names too has to be the same.
+/// If the motion names a joint too, the value given of it has to be the same.
 /// @param where  that has the value, as "waypoint 1".
 /// @throws std::invalid_argument naming the joint and both values.
 void requireGiven(const std::string& joint, double given, double value, const std::string& where);

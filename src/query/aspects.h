@@ -24,7 +24,7 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
   return {at(piece), at(piece + 1)};
 }
 
-/// What queries of other kinds ask of one motion, beyond the request.
+/// All that queries of other kinds ask of one motion, beyond the request.
 struct ArticulatedCollisionManager::Aspects {
   TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
   bool own_margins = true;  ///< pairs may have margins of their own; false: none has, but neighbours (clearance())
@@ -33,7 +33,7 @@ struct ArticulatedCollisionManager::Aspects {
   /// Pairs of the problem as the request's scope leaves it that are not checked, as if they were allowed; null: none.
   const std::vector<engine::PairId>* left_out = nullptr;
   std::vector<engine::PairId>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
-  /// What a certificate says beyond the public answer.
+  /// All that a certificate says beyond the public answer.
   struct Details {
     std::vector<engine::Ignored> ignored;        ///< all ignored pairs
     std::optional<engine::LeafContact> contact;  ///< proven, the first one

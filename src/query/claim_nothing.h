@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a query leaves in the caller's hands when it can't answer: nothing that was true of another question. Every
-// public query that writes to a result goes through one of these functions.
+// The result that a query leaves in the caller's hands when it can't answer: nothing that was true of another
+// question. Every public query that writes to a result goes through one of these functions.
 #pragma once
 
 #include "fcl_artic/result.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all queries share on their way to the engine and back: memory, request, statistics, contacts of triangles.
+// The things that all queries share on their way to the engine and back: memory, request, statistics, contacts of
+// triangles.
 #pragma once
 
 #include <algorithm>
@@ -67,7 +68,7 @@ engine::Query makeQuery(const CertifiedPairRequest& request);
 QueryStatistics statisticsOf(const engine::Statistics& statistics);
 /// Adds one query's work to a sum: all but the counts of pairs and the total time, which the asker knows better.
 void addWork(const QueryStatistics& s, QueryStatistics& sum);
-/// What a work budget counts of a query's work.
+/// The part of a query's work that a work budget counts.
 std::uint64_t countedWork(const QueryStatistics& s);
 
 /// Puts a manager's contacts in the order of their t_lower and leaves the first one of every two bodies: a link may

@@ -32,9 +32,9 @@ struct Stage2 {
   visibility::Choice standard, redon, together;  ///< together: batches, by Method::standard
 };
 
-/// Finds out what neighbours do over all values of the joint between them (setup/neighbour_findings.h): of those that
-/// the matrix neither allows nor has checked, for the rule; and of those that it allows, for what answers say of them.
-/// What was found before of the same geometry stays.
+/// Finds out what neighbours do over all values of the joint between them (setup/neighbour_findings.h). It looks at
+/// neighbours that the matrix neither allows nor has checked, for the rule; and at those that it allows, for what
+/// answers say of them. Earlier findings of the same geometry stay.
 std::shared_ptr<const NeighbourFindings> lookAtNeighbours(const Registry& registry);
 
 struct ArticulatedCollisionManager::Impl {
@@ -50,7 +50,7 @@ struct ArticulatedCollisionManager::Impl {
     world_.reset();
   }
 
-  /// What certificates are about; made when first asked for. Safe from several threads.
+  /// The world that certificates are about; made when first asked for. Safe from several threads.
   std::shared_ptr<const certificate::World> world() const {
     const std::lock_guard<std::mutex> lock(world_mutex_);
     if (!world_) world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry));
@@ -61,7 +61,7 @@ struct ArticulatedCollisionManager::Impl {
   void add(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request, const Bracket& answer,
            const Aspects::Details& details, certificate::Claim& claim) const;
 
-  /// What an answer has beyond the solver's: its certificate, allowed pairs, no more contacts than asked for.
+  /// Adds what an answer has beyond the solver's: its certificate, allowed pairs, no more contacts than asked for.
   /// @param details  of the answer; read where the request asks for a certificate.
   void complete(const JointMotion& motion, const CertifiedRequest& request, const Aspects::Details& details,
                 CertifiedResult& result) const;

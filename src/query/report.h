@@ -11,7 +11,7 @@
 
 namespace fcl_artic {
 
-/// What a contact says of one of its bodies.
+/// A contact's data of one of its bodies.
 struct ReportedBody {
   BodyRef reference;
   const fcl::CollisionGeometryd* geometry;  ///< that `shape` was read from

@@ -27,7 +27,7 @@ const BoxBatch& boxBatch();
 /// The one of that name (numerics/instruction_sets.h); null where the build has none or the processor does not run it.
 const BoxBatch* boxBatchNamed(const char* name);
 
-/// Of these a build has those that numerics/instruction_sets.h lists.
+/// A build has those of them that numerics/instruction_sets.h lists.
 extern const BoxBatch kBoxBatchPortable, kBoxBatchSse2, kBoxBatchAvx2, kBoxBatchAvx512, kBoxBatchNeon;
 
 }  // namespace redon

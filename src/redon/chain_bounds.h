@@ -23,7 +23,7 @@ struct FrameBounds {
   IntervalTransform pose, rate, second;  ///< rate.R, rate.t: R'(t), o'(t); second: R''(t), o''(t)
 };
 
-/// What of FrameBounds is asked for; each includes the ones before it.
+/// The part of FrameBounds that is asked for; each includes the ones before it.
 enum class Derivatives { none, first, second };
 
 /// Bounds of one sweep under one motion. Keeps its memory from query to query; for one thread at a time.
@@ -39,7 +39,8 @@ class ChainBounds {
   void reset(const engine::SweepView& sweep, const engine::Query& query);
 
   /// Bounds over [begin, end], a part of [0, 1], begin <= end.
-  /// @param[out] out  one per step of the sweep: the step's frame in the base frame. What isn't asked for is not set.
+  /// @param[out] out  one per step of the sweep: the step's frame in the base frame. The part that isn't asked for is
+  ///   not set.
   void enclose(double begin, double end, Enclosure enclosure, Derivatives derivatives, FrameBounds* out);
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What may touch in a window of time: links by their swept line swept spheres (Redon 2004, Section 4), then triangles
-// by their trees of oriented boxes (Section 5.1), both over the sub-intervals that each link's refinement level asks
-// for.
+// Finds what may touch in a window of time. First it finds links by their swept line swept spheres (Redon 2004,
+// Section 4), then triangles by their trees of oriented boxes (Section 5.1). It goes over the sub-intervals that each
+// link's refinement level asks for, both times.
 #pragma once
 
 #include <functional>

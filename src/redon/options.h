@@ -10,7 +10,7 @@ namespace redon {
 using Options = RedonOptions;
 using Counts = RedonStatistics;
 
-/// What a work budget counts.
+/// The work that a work budget counts.
 inline std::uint64_t workOf(const Counts& counts) {
   return counts.box_tests + counts.leaf_pairs + counts.equations + counts.evaluations;
 }

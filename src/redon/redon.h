@@ -29,9 +29,13 @@ class Workspace {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Answers as engine::Engine::solve does. What the paper has no method for, its pairs with curved or unbounded pieces,
-/// with a margin or one of their own, or with a motion known by bounds only, and whatever touches at t = 0, is left to
-/// the engine. Stage 2 (engine::Advisor::clear) is asked once for the paper's pairs, and by the engine for its own.
+/// Answers as engine::Engine::solve does. Pairs that the paper has no method for are left to the engine:
+/// - pairs with curved or unbounded pieces,
+/// - pairs with a margin or one of their own,
+/// - pairs with a motion known by bounds only,
+/// - whatever touches at t = 0.
+///
+/// Stage 2 (engine::Advisor::clear) is asked once for the paper's pairs, and by the engine for its own.
 /// @param engine  its workspace. Contacts that it finds have no `feature`.
 /// @param treeOf  a body's tree of oriented boxes, null where it has none.
 /// @param[out] counts  work; the answer's own statistics count what the engine did.

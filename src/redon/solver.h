@@ -13,14 +13,14 @@
 namespace fcl_artic {
 namespace redon {
 
-/// What a search has proven: nothing, until it says so.
+/// The proof of a search: nothing, until it says so.
 struct Found {
   bool contact = false, out_of_budget = false;
   double free_until = 0;            ///< no contact before; what was not looked at is not free
   double t_upper = engine::kNever;  ///< contact is proven to be no later; kNever: none is
 };
 
-/// What begins later than this is not the first contact, where this one is found.
+/// A contact that begins later than this is not the first one, where this one is found.
 inline double latestBegin(const Found& found, double tolerance_time) {
   return found.t_upper < engine::kNever ? found.t_upper : found.free_until + tolerance_time;
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What links sweep, for stage 2 (Redon 2004, Section 4: dynamic culling of swept volumes), which the query brings. Runs
-// under RoundUpward.
+// The volumes that links sweep, for stage 2 (Redon 2004, Section 4: dynamic culling of swept volumes), which the query
+// brings. Runs under RoundUpward.
 //
 // An end p of a link's line swept sphere moves twice differentiably. Over [a, b] it stays within (b - a)^2 / 8 sup
 // |p''| of the chord from p(a) to p(b): the error e = p - chord vanishes at both ends, and along e's direction where
-// |e| is largest this is the bound on linear interpolation. So over an eighth of the time, halved, both ends' places at
-// its begin, middle and end span a solid that, grown by this bound over half of it and by the sphere's radius, holds
+// |e| is largest this is the bound on linear interpolation. So over an eighth of the time, halved, both ends' places
+// at its begin, middle and end span a solid. Grown by this bound over half of it and by the sphere's radius, it holds
 // the link.
 #pragma once
 

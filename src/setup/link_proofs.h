@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is proven of pairs of links over the whole ranges of their joints (tables/range_proof.h), with what it was
-// proven for; and what a query may take from that.
+// Proofs of pairs of links over the whole ranges of their joints (tables/range_proof.h), with what they were proven
+// for; and what a query may take from them.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class ProvenPairs {
   /// @param num_self_pairs  number of the problem's link pairs, from the first on, that are two links.
   void buildSelf(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
                  std::size_t num_self_pairs);
-  /// What depends on the obstacles.
+  /// Builds what depends on the obstacles.
   void buildScene(const Registry& registry);
 
   bool empty() const { return checked_.empty(); }

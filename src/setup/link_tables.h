@@ -21,9 +21,9 @@ namespace fcl_artic {
 
 class LinkTables {
  public:
-  /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.) Of robots
-  /// that could have many thousands only about the first kMost pairs get one, those of the largest links: what tables
-  /// save is lost again where they don't fit in a cache.
+  /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.) If a
+  /// robot could have many thousands, only about the first kMost pairs get one, those of the largest links. The time
+  /// that tables save is lost again where they don't fit in a cache.
   /// @param num_self_pairs  number of the problem's link pairs, from the first on, that are two links.
   /// @param proven  pairs that need no table.
   void build(const Registry& registry, const engine::Problem& problem, const PairMargins& margins,
@@ -31,8 +31,8 @@ class LinkTables {
 
   bool empty() const { return num_tables_ == 0; }
 
-  /// What its table proves apart of a motion, if it was built for at least the margin that the pair has here: bit k for
-  /// the part [k/8, (k+1)/8].
+  /// The parts of a motion that the pair's table proves apart, if it was built for at least the margin that the pair
+  /// has here: bit k for the part [k/8, (k+1)/8].
   unsigned freeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
                      std::int32_t link_pair) const;
 
@@ -50,7 +50,7 @@ class LinkTables {
     std::shared_ptr<const ContactGrid> grid;  ///< null: none
   };
 
-  /// Of a link pair. (All in one piece of memory: every query comes by.)
+  /// The grid of a link pair. (All in one piece of memory: every query comes by.)
   struct Grid {
     std::int32_t link_pair;
     ContactGrid::Axes axes;

@@ -37,8 +37,8 @@ struct ManagedBody {
   BodyMotion motion;                               ///< of an obstacle that moves
   Eigen::Vector3d path_lower, path_upper;          ///< its box in the world over all of the motion
 
-  /// Whether what the caller has is what was read: the geometry by its content, of an obstacle its transform too. (Of a
-  /// motion nobody knows.)
+  /// Whether what the caller has is what was read: the geometry by its content, of an obstacle its transform too. (For
+  /// a motion nobody knows.)
   bool isAsRead() const;
   /// Reads it again: the geometry, where its content is another one, and an obstacle's transform or motion.
   /// @throws std::invalid_argument naming it; it is not to be used then.

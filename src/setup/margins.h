@@ -29,7 +29,7 @@ class NamedMargins {
 
   bool empty() const { return of_body_.empty() && of_pair_.empty(); }
   double ofBody(const std::string& name) const;  ///< -1: none of its own
-  /// Of two bodies: their pair's own, else the larger one of theirs; -1: none.
+  /// The margin of two bodies: their pair's own, else the larger one of theirs; -1: none.
   double of(const std::string& a, const std::string& b) const;
   /// By names, the lesser one first.
   const std::map<std::pair<std::string, std::string>, double>& ofPairs() const { return of_pair_; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What neighbours do over all values of the joint between them, as it was found before set-up (query/link_pairs.cpp),
-// with what it was found for.
+// The behaviour of neighbours over all values of the joint between them, as it was found before set-up
+// (query/link_pairs.cpp), with what it was found for.
 #pragma once
 
 #include <algorithm>

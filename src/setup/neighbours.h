@@ -9,8 +9,8 @@
 
 namespace fcl_artic {
 
-/// The link that moves this one: the nearest at or above it with a joint that is not fixed; -1: the world, where roots
-/// and what is fixed to them stand, and obstacles (link -1).
+/// The link that moves this one: the nearest at or above it with a joint that is not fixed. It is -1 for the world,
+/// where roots and what is fixed to them stand, and obstacles (link -1).
 LinkId carrierOf(const KinematicTree& tree, LinkId link);
 
 /// Joined by one moving joint at most, which leaves none of them free, over links without geometry only.

@@ -11,8 +11,8 @@
 
 namespace fcl_artic {
 
-/// All that the distance of two links' geometries depends on, but for the joint values. What was made from it serves as
-/// long as it is the same.
+/// All that the distance of two links' geometries depends on, but for the joint values. A thing that was made from it
+/// serves as long as it is the same.
 struct PairMaking {
   std::shared_ptr<const ShapeTree> shape_a, shape_b;
   std::shared_ptr<const GeometryContent> content_a, content_b;
@@ -27,7 +27,7 @@ struct PairMaking {
   }
   /// Trees are the same as numbers, geometries by their content, whoever holds them.
   bool sameAs(const PairMaking& other) const;
-  /// Of links and offsets: equal for those that are the same.
+  /// The hash of links and offsets: equal for those that are the same.
   std::size_t hash() const;
 };
 

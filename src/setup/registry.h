@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What callers gave the manager: the robot, geometry bound to its links, obstacles, allowed pairs and margins. Every
-// change is checked here, and one that throws changes nothing. What is made of it for queries is the Setup's.
+// All that callers gave the manager: the robot, geometry bound to its links, obstacles, allowed pairs and margins.
+// Every change is checked here, and one that throws changes nothing. The Setup has what is made of it for queries.
 #pragma once
 
 #include <cstdint>
@@ -61,13 +61,13 @@ class Registry {
   /// Whether no joint lies between the two, links or what they carry, or one of these and an obstacle that stands
   /// still; and nobody has asked for the pair (disallow()).
   bool standStill(const ManagedBody& a, const ManagedBody& b) const;
-  /// Of two bodies that two links carry, neither of them empty.
+  /// The excuse of two bodies that two links carry, neither of them empty.
   Excuse excuseOf(const ManagedBody& a, const ManagedBody& b) const;
-  /// Of two links: neighbours by the tree and the links that have geometry, with a joint between them, of which nobody
-  /// says that they are to be checked.
+  /// Whether two links are neighbours by the tree and the links that have geometry, with a joint between them, of
+  /// which nobody says that they are to be checked.
   /// @param with_geometry  linksWithGeometry()
   bool areOpenNeighbours(const std::set<LinkId>& with_geometry, LinkId a, LinkId b) const;
-  /// What was found of neighbours for the links as they are now; null: nobody looked.
+  /// The findings of neighbours for the links as they are now; null: nobody looked.
   const NeighbourFindings* neighbours() const { return neighbours_.get(); }
   void setNeighbours(std::shared_ptr<const NeighbourFindings> findings) { neighbours_ = std::move(findings); }
 
@@ -94,7 +94,7 @@ class Registry {
   void detach(const fcl::CollisionObjectd* object);
   void clear();
 
-  /// What reading again has changed.
+  /// The things that reading again has changed.
   struct Changes {
     bool links = false, obstacles = false;
   };
@@ -108,7 +108,7 @@ class Registry {
   void setMargin(const std::string& body, double margin);
   void setMargin(const std::string& a, const std::string& b, double margin);
   void resetMargins() { margins_.clear(); }
-  /// Those that were set, and those of neighbours that the rule has checked for touching.
+  /// The margins that were set, and those of neighbours that the rule has checked for touching.
   NamedMargins margins() const;
   /// The latter alone.
   NamedMargins marginsOfNeighbours() const;
@@ -136,8 +136,8 @@ class Registry {
   ManagedBody newBody(const fcl::CollisionObjectd* object, const std::string& what) const;
   void addObstacle(Bodies& bodies, ManagedBody body);
   void forget(Bodies& bodies, Bodies::iterator body);
-  /// Forgets margins and allowed pairs of other names. (Those of an obstacle go with it: the next one of its name is
-  /// another object.)
+  /// Forgets margins and allowed pairs of other names. (An obstacle's margins and allowed pairs go with it: the next
+  /// one of its name is another object.)
   void keepNames(const std::function<bool(const std::string& body)>& isKept);
   Changes readAgain(const std::vector<ManagedBody*>& bodies);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What queries read: the engine's problem, made from the registry by build(), constant and shared by threads until the
-// next one. What depends on the robot alone stays when only obstacles change.
+// All that queries read: the engine's problem, made from the registry by build(), constant and shared by threads until
+// the next one. The part that depends on the robot alone stays when only obstacles change.
 #pragma once
 
 #include <cstdint>
@@ -45,11 +45,11 @@ class Setup {
   /// Whether what depends on the robot alone is up to date.
   bool robotReady(const KinematicTree& tree) const { return robot_ready_ && isOf(tree); }
 
-  /// What the engine sees of it.
+  /// The problem as the engine sees it.
   engine::Problem problem() const;
-  /// Of all of the problem's pairs.
+  /// Margins of all of the problem's pairs.
   const PairMargins& margins() const { return margins_; }
-  /// Of neighbours that the rule has checked for touching; of no other pairs.
+  /// Margins of neighbours that the rule has checked for touching; of no other pairs.
   const PairMargins& marginsOfNeighbours() const { return margins_of_neighbours_; }
   /// Number of the problem's link pairs, from the first on, that are two links; the others are moving obstacles and
   /// links.

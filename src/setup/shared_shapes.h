@@ -17,10 +17,10 @@ struct SharedShape {
   std::shared_ptr<const GeometryContent> content;
 };
 
-/// Reads a geometry (readGeometry()). A mesh whose vertices and triangles are, byte for byte, those of one that
-/// somebody still holds gets that one's tree: a robot's two arms share theirs, and so do two managers of one robot.
-/// Equal contents give equal trees, so that no answer depends on it; nothing is kept that nobody holds. Safe from
-/// several threads.
+/// Reads a geometry (readGeometry()). If a mesh's vertices and triangles are, byte for byte, those of one that
+/// somebody still holds, it gets that one's tree. A robot's two arms share theirs, and so do two managers of one
+/// robot. Equal contents give equal trees, so that no answer depends on it; nothing is kept that nobody holds. Safe
+/// from several threads.
 /// @throws std::invalid_argument as readGeometry().
 SharedShape readShared(const fcl::CollisionGeometryd& geometry);
 

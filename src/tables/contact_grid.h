@@ -34,11 +34,13 @@ class ContactGrid {
  public:
   static constexpr std::size_t kMostVariables = 3;
 
-  /// Of two links whose relative pose depends on three joint variables at most: whether balls inside both meet in the
+  /// For two links whose relative pose depends on three joint variables at most: whether balls inside both meet in the
   /// middle of each cell of the variables' ranges.
   /// @param sweep  that the pair refers to.
-  /// @return null where there is nothing to look up: more variables, joints of other kinds than turns about and slides
-  ///   along an axis, a slide without limits, a link without balls, or no cell in which they meet.
+  /// @return null where there is nothing to look up:
+  ///   - more variables,
+  ///   - joints of other kinds than turns about and slides along an axis, a slide without limits,
+  ///   - a link without balls, or no cell in which they meet.
   static std::shared_ptr<const ContactGrid> build(const KinematicTree& tree, const engine::SweepView& sweep,
                                                   const engine::LinkPair& pair, const engine::Body* bodies);
 

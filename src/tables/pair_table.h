@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links whose relative pose depends on two joint variables at most, or on a third one of little effect: where among
-// these the links are apart, proven once per robot. A query whose motion stays there need not look at the pair.
+// Two links whose relative pose depends on two joint variables at most, or on a third one of little effect. The table
+// says where among these the links are apart, proven once per robot. A query whose motion stays there need not look at
+// the pair.
 //
-// The variables' range is cut into cells; a cell counts as proven when the engine has proven the links more than the
+// The variables' range is cut into cells. A cell counts as proven when the engine has proven the links more than the
 // margin apart for all values in it (doc/NUMERICS.md, section 10). A summed-area table answers for any box of cells by
 // four look-ups.
 #pragma once
@@ -40,8 +41,10 @@ class PairTable {
 
   /// @param sweep  that the pair refers to.
   /// @param margin  that the links are proven to keep.
-  /// @return null where there is nothing to look up: more variables, joints of other kinds than turns about and slides
-  ///   along an axis, a slide without limits, or no cell that could be proven.
+  /// @return null where there is nothing to look up:
+  ///   - more variables,
+  ///   - joints of other kinds than turns about and slides along an axis, a slide without limits,
+  ///   - no cell that could be proven.
   static std::shared_ptr<const PairTable> build(const KinematicTree& tree, const engine::SweepView& sweep,
                                                 const engine::Body* bodies, const engine::LinkPair& pair,
                                                 double margin);

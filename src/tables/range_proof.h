@@ -15,9 +15,9 @@
 
 namespace fcl_artic {
 
-/// What a variable can be, as far as proofs for its whole range go: its limits and a little more, as joints may stand
-/// at them; all values, where an angle has no limits. Nothing (lower > upper) for what has no bounds: a slide without
-/// limits, the variables of planar and floating joints.
+/// The values of a variable, as far as proofs for its whole range go. These are its limits and a little more, as
+/// joints may stand at them; all values, where an angle has no limits. Nothing (lower > upper) for a variable without
+/// bounds: a slide without limits, the variables of planar and floating joints.
 ValueRange wholeRange(const KinematicTree& tree, int variable);
 
 /// Two links and the joint variables between them.
@@ -33,7 +33,7 @@ class RangeProof {
   /// @param problem, pair  must stay as they are as long as this lives.
   /// @param margin  m, that the links are proven to keep.
   /// @param workspace  of this thread.
-  /// @param cut  one of cuts(): all below is of the balls then. What is proven apart is so of the links as well.
+  /// @param cut  one of cuts(): all below is of the balls then. If the balls are proven apart, so are the links.
   RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair, double margin,
              engine::EngineWorkspace& workspace, const Cut& cut = {0, 0});
   RangeProof(const RangeProof&) = delete;
@@ -47,7 +47,7 @@ class RangeProof {
   /// Cuts that leave less to prove, the fewest variables first; none where a mesh is a solid.
   std::vector<Cut> cuts() const;
 
-  /// What is certain of the links where the variables have given values.
+  /// The certain state of the links where the variables have given values.
   enum class Contact : std::uint8_t {
     none,     ///< more than the margin apart
     touch,    ///< in contact, or nearer than the margin
@@ -76,15 +76,15 @@ class RangeProof {
   static constexpr std::uint64_t kQueryWork = 40;
 
  private:
-  /// Points about a body and, of the last two, a radius: the body lies in the hull of the first eight, and in the hull
+  /// Points about a body and, of the last two, a radius. The body lies in the hull of the first eight, and in the hull
   /// of the last two grown by the radius.
   struct Outline {
     Eigen::Matrix<double, 3, 10> points;
     double radius;
   };
-  /// Ranges of all variables between the links. What is proven of a box is proven for all values in it.
+  /// Ranges of all variables between the links. A proof of a box is one for all values in it.
   using Box = std::vector<ValueRange>;
-  /// What became of a box.
+  /// The outcome of trying a box.
   struct Tried {
     bool apart = false, give_up = false, out_of_work = false;
     std::size_t split = 0;      ///< else: the variable to halve
@@ -117,7 +117,7 @@ class RangeProof {
   void measureWays(const Box& box);
   Tried tryBox(const Box& box, std::uint64_t work);
   void solve();
-  /// Of a variable in the motion asked last.
+  /// The value of a variable in the motion asked last.
   double valueAt(std::size_t variable, double t) const {
     return coefficients_[variable] + t * coefficients_[variables_.size() + variable];
   }
@@ -141,8 +141,8 @@ class RangeProof {
   double balls_ = 0;           ///< radii of both balls that stand for links; the bodies are their middles
   Outline of_a_, of_b_;        ///< in the base frame, and in the last step's
   std::vector<Joint> middle_;  ///< per step, of the box measured last: where it stands in the middle
-  /// Per step, of the box measured last: how far a point goes at most when the step leaves the middle of its range,
-  /// one of A as seen from B, one of B as seen from A.
+  /// Per step, of the box measured last: how far a point goes at most when the step leaves the middle of its range.
+  /// One is of A as seen from B, one of B as seen from A.
   std::vector<double> way_of_a_, way_of_b_;
   std::vector<double> coefficients_;
   std::uint64_t work_ = 0;

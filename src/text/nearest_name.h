@@ -30,8 +30,9 @@ inline std::size_t editDistance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-/// The name that `typed` most likely stands for: one that differs in no more than a letter of each four, else the only
-/// one that holds all of `typed`, of three letters or more ("elbow" for "elbow_joint"). Empty where there is none.
+/// The name that `typed` most likely stands for: one that differs in no more than a letter of each four. Else it is
+/// the only one that holds all of `typed`, of three letters or more ("elbow" for "elbow_joint"). Empty where there is
+/// none.
 inline std::string nearestName(std::string_view typed, const std::vector<std::string>& names) {
   constexpr std::size_t kLettersPerSlip = 4, kShortestPart = 3;
   std::string nearest, around;

@@ -9,8 +9,8 @@
 
 namespace fcl_artic::text {
 
-/// Parses a text of one element, beside which there is nothing but comments. (Of several ones tinyxml2 gives the first;
-/// at a byte 0 it stops; entities that a document type makes it leaves as they are.)
+/// Parses a text of one element, beside which there is nothing but comments. (If there are several, tinyxml2 gives the
+/// first; at a byte 0 it stops; entities that a document type makes it leaves as they are.)
 /// @param root  the element's name. @param kind  of file, for the message, such as "a URDF".
 /// @return what is wrong; empty: nothing.
 inline std::string parseXml(std::string_view content, const char* root, const std::string& kind,

@@ -27,8 +27,8 @@ inline std::size_t threadsFor(int most_threads) {
   return std::max<std::size_t>(1, std::thread::hardware_concurrency());
 }
 
-/// Calls f(i) for i in [0, n), over `most_threads` threads at most (0: as many as the machine runs at once). What a
-/// call throws is thrown again once all have ended.
+/// Calls f(i) for i in [0, n), over `most_threads` threads at most (0: as many as the machine runs at once). If a call
+/// throws, its exception is thrown again once all have ended.
 template <class F>
 void parallelFor(std::size_t n, int most_threads, const F& f) {
   const auto threads = static_cast<int>(threadsFor(most_threads));

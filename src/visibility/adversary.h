@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs that touch by construction, made so that a rule that loses anything loses one of them: slivers to an aspect of
-// 1e-7, sizes from a thousandth of a pixel to twenty windows, triangles edge-on to a view, grazing to 1e-12, windows
-// off the grid and cut close, swept volumes inside solids.
+// Pairs that touch by construction, made so that a rule that loses anything loses one of them:
+// - slivers to an aspect of 1e-7,
+// - sizes from a thousandth of a pixel to twenty windows,
+// - triangles edge-on to a view,
+// - grazing to 1e-12,
+// - windows off the grid and cut close,
+// - swept volumes inside solids.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a visibility executor is given and what it answers (doc/VISIBILITY.md): plain data, the same for all of them.
+// The task and the answer of a visibility executor (doc/VISIBILITY.md): plain data, the same for all of them.
 #pragma once
 
 #include <cstdint>

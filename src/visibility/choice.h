@@ -27,7 +27,7 @@ struct Leave {
   bool given() const { return way != Way::without; }
 };
 
-/// What a query cost both ways, µs; or several queries together.
+/// The cost of a query both ways, µs; or of several queries together.
 struct Trial {
   double with_us, without_us;  ///< with: the second solve included, where it takes one; making an executor is not
   double stage_us;             ///< of with_us, what the stage itself took
@@ -49,8 +49,8 @@ class Choice {
   /// Adds the time of queries that were measured, of a trial that of the way chosen.
   /// @param stand_for  how many times as many they stand for.
   void addQueries(double us, double queries = 1, double stand_for = kMeasured);
-  /// Leave for a trial: trials take at most kShare of the time of all queries, the one at hand included, and less where
-  /// they have shown that the stage is far from paying.
+  /// Leave for a trial. Trials take at most kShare of the time of all queries, the one at hand included. They take
+  /// less where they have shown that the stage is far from paying.
   /// @param own_is_made  an executor of the culler's own is ready. Before, it is tried only where the trials of cpu
   /// show that enough would be saved if drawing took no time.
   Leave mayTry(bool own_is_made, double queries = 1);
@@ -61,7 +61,7 @@ class Choice {
   static constexpr double kShare = 0.02;
 
  private:
-  /// Of one way.
+  /// The costs of one way, as far as they are known.
   struct Known {
     double cost_us;                                     ///< that a query's trial is expected to take
     double spent_us = 0;                                ///< by trials

@@ -16,7 +16,7 @@ class FCL_ARTIC_EXPORT CpuExecutor : public Executor {
   void run(const Batch& batch, std::vector<std::uint8_t>& may) override;
 
  private:
-  /// What an object's fragments say: some is not in front of the swept volumes, some not behind, some neither.
+  /// The findings of an object's fragments: some is not in front of the swept volumes, some not behind, some neither.
   struct Seen {
     bool not_in_front = false, not_behind = false, between = false;
     bool all() const { return not_in_front && not_behind && between; }

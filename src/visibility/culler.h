@@ -37,7 +37,8 @@ class ExecutorLoan {
   void giveUp(const std::string& reason);
   /// Whether the executor was made for this loan.
   bool made() const { return made_; }
-  /// What making the culler's own executor may take, us; below 0: it has none but cpu, from the beginning or by now.
+  /// The time that making the culler's own executor may take, us; below 0: it has none but cpu, from the beginning or
+  /// by now.
   static double makingCost(const VisibilityCuller& culler);
   /// Whether an executor of the culler's own is ready to be lent.
   static bool isMade(const VisibilityCuller& culler);

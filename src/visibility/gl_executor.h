@@ -49,7 +49,7 @@ class GlExecutor : public Executor {
          depth_target_ = 0;
   int width_ = 0, height_ = 0, columns_ = 1;
   std::vector<GLuint> queries_;
-  // Of the present run.
+  // State of the present run.
   Projector projector_;
   Footprint footprint_;
   std::vector<Vertex> swept_, objects_;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What one query adds to a batch, its links' swept volumes and the other bodies' pieces that they may touch, and what
-// the batch's answer says of its pairs (doc/VISIBILITY.md). A batch may hold several queries: they share nothing in it.
+// The part of one query in a batch: its links' swept volumes and the other bodies' pieces that they may touch. Also
+// what the batch's answer says of its pairs (doc/VISIBILITY.md). A batch may hold several queries: they share nothing
+// in it.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +19,7 @@ namespace visibility {
 class QueryVolumes {
  public:
   /// Adds one window per swept volume, its parts, and per pair those pieces of the other body whose bounds meet a
-  /// part's, in groups by cluster.
-  /// Of pairs of two links only those that seem to be worth it.
+  /// part's, in groups by cluster. Pairs of two links are left out unless they seem to be worth it.
   /// @param links, candidates  as engine::Advisor::clear is given them; not needed any more afterwards.
   /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
   /// contact.
@@ -38,7 +38,7 @@ class QueryVolumes {
   const VisibilityStatistics& work() const { return work_; }
 
  private:
-  /// Of the other body; none: the pair is not looked at.
+  /// The kind of the other body; none: the pair is not looked at.
   enum class Kind : std::uint8_t { none, obstacle, link, moving };
   static constexpr std::size_t kNone = ~std::size_t{0};
   std::int32_t first_group_ = 0;

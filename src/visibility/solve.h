@@ -15,7 +15,7 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// What stage 2 did in a query.
+/// The work of stage 2 in a query.
 struct Report : VisibilityStatistics {
   double making_us = 0;  ///< making an executor; not in `us`
   std::string executor;
@@ -35,8 +35,8 @@ bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine
 
 /// The solver's answer; with all modes but `atOnce` bit for bit the one without stage 2. There the stage only shortens
 /// proofs that a motion is free: where it has taken something out and the answer is another one, the query is solved
-/// again without. What a work budget is enough for would depend on it, so that a query with one is solved without. With
-/// `atOnce` the answer is the first one.
+/// again without. With the stage a work budget would be enough for something else, so that a query with one is solved
+/// without the stage. With `atOnce` the answer is the first one.
 /// @param choice  of this solver: what stage 2 is worth depends on it.
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,

@@ -34,7 +34,7 @@ class Stage {
     return advisor;
   }
 
-  // What it did.
+  // Its work.
   VisibilityStatistics work;  ///< its time is without the making
   double making_us = 0;       ///< of an executor
   std::string executor;       ///< empty: nothing was asked of one

@@ -45,7 +45,7 @@ class Together {
   bool allFree(std::size_t i) const { return queries_[i].free(); }
   /// Advises query i with what is proven.
   engine::Advisor advise(std::size_t i);
-  /// What query i had in the pass; null: nothing was looked at.
+  /// The volumes of query i in the pass; null: nothing was looked at.
   const QueryVolumes* volumes(std::size_t i) const {
     const One& one = queries_[i];
     return one.asked && one.volumes.work().pairs > 0 ? &one.volumes : nullptr;

@@ -29,10 +29,10 @@ struct Bounds {
   static Bounds none();
   void join(const Bounds& other);
 };
-/// Of the hull of points, grown by a ball; rounded outward.
+/// Bounds of the hull of points, grown by a ball; rounded outward.
 Bounds boundsOf(const double* points, int count, double radius);
 
-/// What a link sweeps over one of the motion's parts.
+/// Bounds of what a link sweeps over one of the motion's parts.
 Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
@@ -41,7 +41,7 @@ struct Cluster {
   std::int32_t pair, node;
 };
 
-/// What is collected from the obstacles of a query.
+/// The collection from the obstacles of a query.
 struct Collection {
   Batch& batch;
   std::int32_t first_group;        ///< the query's, in the batch
@@ -57,8 +57,9 @@ class BodyPieces {
   /// @param at      where the tree stands in that frame.
   /// @param margin  that all of it is grown by, m.
   BodyPieces(const engine::TreeView& tree, const engine::Placement& at, double margin);
-  /// Adds those whose bounds meet one of the parts: triangles and other convex pieces; a node smaller than `least` (m)
-  /// as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make groups.
+  /// Adds the pieces whose bounds meet one of the parts: triangles and other convex pieces. A node smaller than
+  /// `least` (m) is added as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make
+  /// groups.
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param[in,out] reach  joined with the bounds of what is added.

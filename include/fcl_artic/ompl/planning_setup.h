@@ -37,8 +37,8 @@ struct PlanningSetup {
   /// The space information, set up, with continuous motion validator and state validity checker.
   ::ompl::base::SpaceInformationPtr si;
   /// The state space: a RealVectorStateSpace within the joints' limits. Turning joints without limits are
-  /// SO2StateSpaces, planar joints SE2, spherical SO3 and floating ones SE3. The space is then a compound of these
-  /// parts in the order of `joints`, with weights 1.
+  /// SO2StateSpaces, planar joints SE2, spherical SO3 and floating ones SE3. If there are such joints, the space is a
+  /// compound of these parts in the order of `joints`, with weights 1.
   ::ompl::base::StateSpacePtr space;
   std::vector<std::string> joints;  ///< Names of the joints that are planned for, in the order of a state's values.
   std::shared_ptr<const ArticulatedCollisionManager> manager;  ///< Robot and scene, set up; must not be changed.
@@ -79,8 +79,8 @@ FCL_ARTIC_EXPORT PlanningSetup setUpPlanning(std::shared_ptr<const ArticulatedCo
 
 /// Sets up planning for a rigid body that moves freely among obstacles: the manager's tree is one joint, "body", from
 /// the root "world" to the link "body". A state's pose is that of the geometry's own frame in the world. The way that
-/// StateSpace::interpolate() takes is proven free: the frame's origin goes straight while it turns the shorter way at
-/// constant speed (FCL's CCDM_LINEAR about the origin, not CCDM_SCREW).
+/// StateSpace::interpolate() takes is proven free: the frame's origin goes straight while the body turns the shorter
+/// way at constant speed (FCL's CCDM_LINEAR about the origin, not CCDM_SCREW).
 /// @param body       any geometry that a manager takes; shared from here on.
 /// @param obstacles  what stands still, as from loadScene(); an obstacle named "world" or "body" gets another name.
 /// @param options    position_lower and position_upper are needed; `fixed` and `urdf` are not used.

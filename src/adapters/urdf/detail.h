@@ -36,7 +36,7 @@ GeometryPtr makeCone(double radius, double length, const std::string& where);
 /// triangle covers them, with a note; vertices without a triangle are noted.
 /// @param solid  a SolidMesh of all triangles: those without area may be what closes it.
 /// @throws std::runtime_error naming `where` for an index out of range, a vertex that is not finite or no triangle
-/// with an area; for a mesh that is to be a solid and can't be one.
+///   with an area. Also for a mesh that is to be a solid and can't be one.
 GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid = false);
 
@@ -50,9 +50,9 @@ meshes::TriangleSoup importMesh(const meshes::Source& source, const std::string&
 /// The ending of a file's name, in lower case, such as ".stl".
 std::string endingOf(const std::string& path);
 
-/// The farthest that the joint carries its child's frame from where its own frame stands, in m, within its limits (a
-/// mimic joint: within those of the joint that it follows): 0 of joints that only turn, infinite of a slide without
-/// limits and of planar and floating joints.
+/// The farthest that the joint carries its child's frame from where its own frame stands, in m, within its limits. (A
+/// mimic joint: within those of the joint that it follows.) It is 0 for joints that only turn, infinite for a slide
+/// without limits and for planar and floating joints.
 double slideUpper(const KinematicTree& tree, JointId j);
 
 }  // namespace fcl_artic::detail
