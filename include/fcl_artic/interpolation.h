@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What lies between two waypoints, by the names that the program, the Python module and the MoveIt adapter share.
+// The way between two waypoints. The program, the Python module and the MoveIt adapter share these names.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@
 
 namespace fcl_artic {
 
-/// What lies between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
+/// The way between two waypoints that are h apart, s = (t - t_k) / h in [0, 1], d = q1 - q0.
 ///
 /// - linear: q0 + s d; a quaternion turns the shorter way at constant speed. Velocities do not count.
 /// - cubic (Hermite), with velocities v: q0 + c1 s + c2 s² + c3 s³,
@@ -28,9 +28,9 @@ namespace fcl_artic {
 ///   `blend` after it (JointTrajectory::parabolicBlends()).
 /// - tangentHalfAngle: JointTrajectory::tangentHalfAngle().
 ///
-/// Cubic and quintic are the only polynomials of these degrees with these values at both ends, and so those of
-/// ros_control's and ros2_control's joint_trajectory_controller, which takes the highest degree that both points have
-/// values for, as `automatic` and `jtc` do. Of joints that turn forever it takes the values as they are. Rounding of
+/// Cubic and quintic are the only polynomials of these degrees with these values at both ends. So they are those of
+/// ros_control's and ros2_control's joint_trajectory_controller. It takes the highest degree that both points have
+/// values for, as `automatic` and `jtc` do. If joints turn forever, it takes their values as they are. Rounding of
 /// their coefficients moves them by no more than 2e-13 of the largest of |q|, h |v| and h² |a| of the two waypoints
 /// (doc/NUMERICS.md, section 12); what is certified is the polynomial with these coefficients.
 enum class Interpolation {
@@ -53,12 +53,12 @@ enum class Turns {
   shortest  ///< the shorter way round (JointTrajectory::Unwrap::yes)
 };
 
-/// Of a name: "auto", "linear", "cubic", "quintic", "blends", "jtc", "jtc-upsampled", "jtc-none" or
-/// "tangent-half-angle". @throws std::invalid_argument naming these, and of "totg" saying what to do.
+/// Returns the interpolation of a name: "auto", "linear", "cubic", "quintic", "blends", "jtc", "jtc-upsampled",
+/// "jtc-none" or "tangent-half-angle". @throws std::invalid_argument which names these, and says of "totg" what to do.
 FCL_ARTIC_EXPORT Interpolation interpolationNamed(const std::string& name);
 /// The name of an interpolation.
 FCL_ARTIC_EXPORT const char* toString(Interpolation interpolation);
-/// Of a name: "ask", "given" or "shortest". @throws std::invalid_argument naming these.
+/// Returns the turns of a name: "ask", "given" or "shortest". @throws std::invalid_argument naming these.
 FCL_ARTIC_EXPORT Turns turnsNamed(const std::string& name);
 
 /// Whether an interpolation is named for joint_trajectory_controller: jtc, jtcUpsampled or jtcNone.
@@ -68,7 +68,7 @@ FCL_ARTIC_EXPORT bool isController(Interpolation interpolation);
 /// @throws std::invalid_argument for Turns::shortest beside an interpolation that says itself which way round.
 FCL_ARTIC_EXPORT Turns turnsOf(Interpolation interpolation, Turns asked);
 
-/// What waypoints have beside their positions.
+/// The values that waypoints have beside their positions.
 struct WaypointValues {
   bool times, velocities, accelerations;
 };

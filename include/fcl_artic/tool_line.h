@@ -25,8 +25,9 @@ struct ToolLineRequest {
   /// Maximum number of poses that are looked at, for both brackets together; after it the search ends with what is
   /// proven so far; 0: no limit.
   std::uint64_t work_budget = 0;
-  /// A point in the world, m: the path is the arc of a circle from the tool's origin at the motion's begin through this
-  /// point to that at the end, less or more than half a circle. None: the path is the straight line.
+  /// A point in the world, m. With it the path is an arc of a circle: from the tool's origin at the motion's begin
+  /// through this point to the origin at the end. It may be more than half a circle. Without it the path is the
+  /// straight line.
   std::optional<Eigen::Vector3d> via;
 };
 
@@ -35,13 +36,13 @@ struct ToolLineRequest {
 ///
 /// The distance is that of the tool's origin from the nearest point of the path. The angle is that between the tool's
 /// orientation and the one that it should have there. The latter is measured against the path, as a torch is set
-/// against a seam: along an arc all directions turn with the tangent, about the circle's axis; seen like that, the
-/// shortest rotation from the first orientation to the last one goes as far as the nearest point of the path has gone.
-/// Along a straight line no direction turns. So a tool that turns with its arc has the angle 0, and so has one that
-/// keeps its orientation in the world along an arc of less than 2.5 rad. Of ends that are turned by more than 2.5 rad
-/// against each other, seen like that, nothing is said of the angle: it is from 0 to pi. Where the tool is as far from
-/// an arc as 0.9 times its radius, or of more than half a circle as 0.9 times half of the distance between the ends,
-/// the nearest point may jump, and the angle is not bracketed narrowly.
+/// against a seam. Along an arc all directions turn with the tangent, about the circle's axis. Seen so, the tool should
+/// go from its first orientation to its last one by the shortest rotation, as far as the nearest point of the path has
+/// gone. Along a straight line no direction turns. So a tool that turns with its arc has the angle 0, and so has one
+/// that keeps its orientation in the world along an arc of less than 2.5 rad. If the ends are turned by more than 2.5
+/// rad against each other, seen so, the angle is left open: it is from 0 to pi. Far from an arc the nearest point may
+/// jump, and the angle is not bracketed narrowly. Far is 0.9 times the arc's radius, or, if the arc is more than half a
+/// circle, 0.9 times half of the distance between its ends.
 struct ToolDeviation {
   double distance_lower = 0, distance_upper = 0;  ///< m
   double distance_time = 0;                       ///< when the tool is at least distance_lower away
@@ -59,14 +60,18 @@ struct ToolDeviation {
   bool certainlyLeaves(double distance, double angle) const { return distance_lower > distance || angle_lower > angle; }
 };
 
-/// Finds how far a tool leaves the straight line, or an arc, between its poses at a motion's ends: for welding, gluing
-/// and cutting along it while the joints go by splines. Says nothing of contacts.
+/// Finds how far a tool leaves the straight line, or an arc, between its poses at a motion's ends. Use it for welding,
+/// gluing and cutting along that path while the joints go by splines. Says nothing of contacts.
 /// @param link  that carries the tool.
-/// @throws std::out_of_range for a link that the tree lacks; std::invalid_argument for a motion of another tree, a
-///   motion by tangents of half angles, a tool frame that is not rigid to 1e-9, values outside the ranges given in
-///   ToolLineRequest, and ends less than 1e-6 m apart; for `via` not finite, beyond 1e9 m, less than 1e-6 m from an end
-///   or nearly on a straight line with both (the circle's radius is above 1000 times their largest distance), and for
-///   points whose rounding is above a thousandth of an arc so small.
+/// @throws std::out_of_range for a link that the tree lacks.
+/// @throws std::invalid_argument
+///   - for a motion of another tree, and one by tangents of half angles;
+///   - for a tool frame that is not rigid to 1e-9, and values outside the ranges given in ToolLineRequest;
+///   - for ends less than 1e-6 m apart;
+///   - for `via` not finite, beyond 1e9 m, or less than 1e-6 m from an end;
+///   - for `via` nearly on a straight line with both ends: the circle's radius is above 1000 times their largest
+///     distance;
+///   - for points whose rounding is above a thousandth of an arc so small.
 FCL_ARTIC_EXPORT ToolDeviation toolDeviation(const KinematicTree& tree, const JointMotion& motion, const LinkRef& link,
                                              const ToolLineRequest& request = {});
 /// The same over all of a trajectory; times are the trajectory's own.

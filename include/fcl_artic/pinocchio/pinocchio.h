@@ -445,9 +445,9 @@ class PinocchioReader {
 
 /// Makes a manager of a pinocchio model and its collision geometry: joints, geometries (fromCoal()) and collision
 /// pairs. Pairs of geometries that are listed are checked, neighbours too, and all others allowed. Pairs of a geometry
-/// whose `disableCollision` is set are allowed as well. Two geometries on one joint never move against each other, so no
-/// motion has them touch: ArticulatedCollisionManager::notes() names those that do. (Two on the universe are obstacles:
-/// of these it says nothing.) Both models are copied.
+/// whose `disableCollision` is set are allowed as well. Two geometries on one joint never move against each other.
+/// So no motion has them touch: ArticulatedCollisionManager::notes() names those that do. (Two on the universe are
+/// obstacles: of these it says nothing.) Both models are copied.
 ///
 /// Objects that are registered or attached afterwards are checked against all geometries. A body that coal sweeps with
 /// a ball is refused where a margin would have to stand for that (PinocchioOptions::swept_radius_as_margin takes it).

@@ -9,10 +9,10 @@
 //    chord of the solid through a triangle.
 // 3. In stage 1, considerLinks(): a ball inside a link in a ball inside another, in the pose in which their line
 //    swept spheres are deepest in each other.
-// 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()):
-//    their hulls; if these are open, tryLinks() has such balls at all other poses in which they may meet. Of links
-//    deep in each other it tests boxes by the six axes, in one pose, down to an edge of one triangle that certainly
-//    pierces another.
+// 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()). If
+//    the hulls are not proven apart, tryLinks() tries such balls at all other poses in which they may meet. If links
+//    are deep in each other, it tests their boxes by the six axes, in one pose, down to an edge of one triangle that
+//    certainly pierces another.
 // 5. tryOverlaps(): leaves at the middle of a part in which hulls overlap, unless the pair rests from the start on.
 // 6. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
 //    expected.
@@ -121,8 +121,9 @@ inline bool AnyContact::tryLeafPair(PairId pair, int lane) {
   return proofs_.leaves(motions_.of(pair, whole()), 0, 0, lane);
 }
 
-/// For a link whose line swept sphere is deep in a solid: tries a ball inside the link, a vertex in the solid, and a
-/// chord of the solid; the chord first where the solid is thin. Of a link of one piece, a common point.
+/// For a link whose line swept sphere is deep in a solid. Tries a ball inside the link, a vertex in the solid, and a
+/// chord of the solid; if the solid is thin, the chord before the vertex. If both are of one piece, tries a common
+/// point.
 /// @param near  the point, in the solid's tree frame, where the link's segment is nearest to it.
 inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, bool thin) {
   if (isLeafPair(pair)) return tryLeafPair(pair, lane);
@@ -133,9 +134,9 @@ inline bool AnyContact::tryObstacle(PairId pair, int lane, const Vec3& near, boo
   return !thin && proofs_.chordPierces(seen, lane, near);
 }
 
-/// For two links whose line swept spheres meet: tries balls inside them at the pose at which the spheres are deepest in
-/// each other; of links of one piece each, a common point. Stores that pose, and the others at which balls may meet, as
-/// guesses.
+/// For two links whose line swept spheres meet. Tries balls inside them at the pose at which the spheres are deepest in
+/// each other. If both are of one piece, tries a common point. Stores that pose, and the others at which balls may
+/// meet, as guesses.
 /// @param square  of their segments' distance in the middle of each lane.
 inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   const double least = minLane(square), distance = sqrt(least) / radii;
@@ -154,8 +155,8 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   pose_guesses_.push({pair, lane, distance, near});
 }
 
-/// The order in which pairs are to be looked at, as indices into `open`: links deep in each other first, the deepest of
-/// all before the others; what is left as it stands. Empty: all as they stand.
+/// Returns the order in which pairs are to be looked at, as indices into `open`. Links deep in each other come first,
+/// the deepest before the others. All other pairs follow as they stand. Empty: all as they stand.
 inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>& open) {
   order_.clear();
   deepest_first_.clear();
@@ -175,8 +176,8 @@ inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>&
   return order_;
 }
 
-/// Of links whose line swept spheres meet, and whose hulls are not proven apart: tries balls inside them at all other
-/// poses at which the balls may meet; and if the spheres are deep in each other, triangles at the pose at which they
+/// For links whose line swept spheres meet, and whose hulls are not proven apart. Tries balls inside them at all other
+/// poses at which the balls may meet. If the spheres are deep in each other, tries triangles at the pose at which they
 /// are deepest.
 /// @param e  only its lanes are tried.
 inline bool AnyContact::tryLinks(const Entry& e) {

@@ -68,7 +68,7 @@ inline bool certainlyReachesOut(const ClosedPart& part, const PlacedLink& link, 
   return certainlyOutside(other_part, other.seenFromLink(x), error);
 }
 
-/// Proofs at the middle of a lane of the present batch. What is proven is recorded, and true is returned.
+/// Proofs at the middle of a lane of the present batch. A proven contact is recorded, and true is returned.
 class BallProofs : PartOfSolver {
  public:
   explicit BallProofs(SearchState& state)

@@ -83,8 +83,8 @@ class ContactList : PartOfSolver {
   const Ignored* ignored() const { return ignored_.data(); }
   int numIgnored() const { return ignored_.size(); }
 
-  /// Of the contacts from `begin` on that start until t, keeps the first of each pair, in their order, as many as are
-  /// asked for. The one kept starts with the earliest of its pair: before that none of the pair's pieces touch.
+  /// Looks at the contacts from `begin` on that start until t. Keeps the first of each pair, in their order, as many as
+  /// are asked for. The one kept starts with the earliest of its pair: before that none of the pair's pieces touch.
   void order(int begin, double t) {
     int kept = begin;
     for (int i = begin; i < contacts_.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is reported of a contact that the search has found: point and normal. No time is decided here.
+// Point and normal of a contact that the search has found. No time is decided here.
 #pragma once
 
 #include "narrowphase/solver/follower.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes that are solids. All else proves of a mesh that its surface is apart from the other body; as long as it is,
-// neither can come to lie within the other, so that one pose shows whether one does (doc/NUMERICS.md, "Solid meshes").
+// Meshes that are solids. All other parts prove that the mesh's surface is apart from the other body. As long as it is,
+// neither body can come to lie within the other. So one pose shows whether one does (doc/NUMERICS.md, "Solid meshes").
 #pragma once
 
 #include "narrowphase/solver/stage_one.h"
@@ -28,7 +28,7 @@ class Containment : PartOfSolver {
   bool isContainedAtStart(PairId pair) const;
   int size() const { return contained_.size(); }
   PairId pair(int i) const { return contained_[i].pair; }
-  /// What lies within another body at t = 0 is in contact there, but for the initial contacts that are ignored.
+  /// A body that lies within another one at t = 0 is in contact there, but for the initial contacts that are ignored.
   void report(Buffer<Entry>& open);
 
  private:
@@ -80,8 +80,8 @@ inline void Containment::testAtStart(PairId pair) {
   }
 }
 
-/// What holds a body's surface in a box holds the body: pairs whose boxes are apart in the first lane are left out, and
-/// no others, whatever stage 1, tables or stage 2 prove of surfaces.
+/// A box that holds a body's surface holds the body. So pairs whose boxes are apart in the first lane are left out. No
+/// others are, whatever stage 1, tables or stage 2 prove of surfaces.
 [[gnu::noinline, gnu::cold]] inline void Containment::findAtStart() {
   contained_.clear();
   if (query().check_scene && problem().obstacle_tree) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // How deep bodies seem to be in each other decides what is tried first. Nothing rests on these numbers, from nearest to
-// deepest. The first two are depths of hulls, as parts of the smaller body's radius; the others distances from a line
-// swept sphere's segment, as parts of the sphere's radius: the deeper, the less.
+// deepest. The first two are depths of hulls, as parts of the smaller body's radius. The others are distances from a
+// line swept sphere's segment, as parts of the sphere's radius: a deeper body has a smaller one.
 #pragma once
 
 namespace fcl_artic {

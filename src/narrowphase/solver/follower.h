@@ -17,8 +17,8 @@ constexpr double kFollowingAccuracy = 0.02;
 /// Nothing is known of how near they are.
 constexpr double kFarApart = 1e300;
 
-/// What is left of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts of
-/// their trees.
+/// The open rest of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts
+/// of their trees.
 struct Candidate {
   enum class Target { leafPair, hulls, subtrees };
 
@@ -43,8 +43,9 @@ struct Candidate {
   bool isLeafPair() const { return target == Target::leafPair; }
 };
 
-/// The piece of a body that holds most, by their weights, of the points of its hull that are nearest to the other body,
-/// the heaviest of them among these; -1: there is none, as where the hull's vertices are not the body's own.
+/// Returns the piece of a body at GJK's witness. The witness is a weighted mean of vertices of the hull. The piece is
+/// the one whose vertices among these have the largest sum of weights; its box holds the heaviest of them. None: -1,
+/// for instance if the hull's vertices are not the body's own.
 inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
   if (tree.num_pieces == 1) return 0;
   if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
@@ -85,7 +86,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_
   return best;
 }
 
-/// Those of a candidate.
+/// The pieces of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
   if (f.isHulls()) return {*seen->a().outer, *seen->b().outer};
   return {seen->a().pieces[f.piece_a], seen->b().pieces[f.piece_b]};
@@ -186,10 +187,10 @@ inline GapBounds Follower::boundGap(const Candidate& f, Seen seen, const Turning
   return bounds;
 }
 
-/// Follows a leaf pair from its t_lower towards `stop`: certificates over eight lanes with one direction, up to the
-/// first root of the gap's bound; there a new direction, and lanes as wide as the gap will last at the speed seen so
-/// far. Two directions say how they turn: from then on the certificate's turns likewise, and the steps are those
-/// of a secant method.
+/// Follows a leaf pair from its t_lower towards `stop`. A certificate with one direction holds over eight lanes, up to
+/// the first root of the gap's bound. There GJK finds a new direction, and the next lanes are as wide as the gap will
+/// last at the speed seen so far. Two directions say how they turn: from then on the certificate's turns likewise, and
+/// the steps are those of a secant method.
 /// @param patient  goes on until no step gets farther, for 48 rounds at most; else the search ends where contact is to
 /// be expected within the tolerance.
 /// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.

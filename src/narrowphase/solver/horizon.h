@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is known of the time of the first contact, and so which lanes are worth work. Nothing else writes these times.
+// The known bounds of the time of the first contact. They say which lanes are worth work. Nothing else writes these
+// times.
 #pragma once
 
 #include "model/bracket.h"
@@ -48,7 +49,7 @@ class Horizon : PartOfSolver {
   /// The lane that holds this contact: it is split whatever else is found in it.
   unsigned contactLane() const { return contact_lane_; }
 
-  /// What is later than this can't change the answer.
+  /// The search ends here: a later contact can't change the answer.
   double end() const { return end_; }
   /// Nothing is left to search: any contact will do and one is found, or the query has ended.
   bool isOver() const { return task_.ended() || isFound(); }

@@ -109,7 +109,7 @@ class PairSearch : PartOfSolver {
 
  private:
   enum class Step { free, done, split };
-  /// Of leaf pairs at one time: none is known to touch, or one may, or one is recorded as a contact.
+  /// The state of leaf pairs at one time: none is known to touch, or one may, or one is recorded as a contact.
   enum class Touching { no, maybe, recorded };
 
   void watch(const TimeBatch& batch) {
@@ -135,7 +135,7 @@ class PairSearch : PartOfSolver {
   bool isNear(double apart, double pad) const { return apart <= max(0.5 * query().tolerance_distance, pad); }
   bool isNear(const Candidate& f) const { return isNear(f.apart, f.pad); }
 
-  /// Of a window in which nothing is divided on.
+  /// The width of a window that is not divided on.
   double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
   /// The end of one that begins at t: the motion may end before.
   double finestEnd(double t) const { return min(1.0, t + finestWidth()); }
@@ -177,7 +177,7 @@ class PairSearch : PartOfSolver {
   int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before recordAtStart() is asked
 };
 
-/// What an entry stands for, to be followed from `start`.
+/// Makes a candidate of an entry, to be followed from `start`.
 inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
   const PairParts pair = problem().parts(e.pair);
   Candidate f = {};
@@ -204,9 +204,9 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 }
 
 /// A pair whose hulls touch at t, before which all is free, may rest there, like a cup on a table. Pieces around the
-/// hulls' witness are examined by themselves: where contact of two of them at t is proven, or no proof separates them,
-/// no contact is earlier, and it is recorded. (Without it thousands of pairs of coplanar triangles are divided down to
-/// the finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
+/// hulls' witness are examined by themselves. If contact of two of them at t is proven, or no proof separates them, it
+/// is recorded: no contact is earlier. (Without it thousands of pairs of coplanar triangles are divided down to the
+/// finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
 /// @return false where others may touch earlier.
 inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
   if (contacts_.watchFrom(pair) > t) return false;
@@ -237,9 +237,10 @@ inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
 }
 
 /// For bodies that overlap at t = 0: triangles that cross there are the contact, or the first leaves that touch; it
-/// does not matter how many others do. (Without it all of them are divided down to the finest lanes.) Where no contact
-/// of them is proven, triangles may cross within the tolerance after it: a body that begins as its own copy shares
-/// faces and edges with it at first, and soon crosses it along a line, which is looked for all over.
+/// does not matter how many others do. (Without it all of them are divided down to the finest lanes.) If no contact of
+/// them is proven, triangles may cross within the tolerance after the start. A body that begins as a copy of the other
+/// one shares faces and edges with it at first, and soon crosses it along a line. This line is looked for all over the
+/// bodies.
 /// @param of  what is left of one pair.
 /// @return false where others may touch earlier.
 inline bool PairSearch::recordAtStart(const Selection& of) {
@@ -358,7 +359,8 @@ inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
   }
 }
 
-/// Traverses the trees from open[begin, end) on, over the first batch. What stays undecided is left in `pieces_`.
+/// Traverses the trees from open[begin, end) on, over the first batch. Entries that stay undecided are left in
+/// `pieces_`.
 inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, int end) {
   for (int i = begin; i < end && !horizon_.isOver(); ++i) {
     const Entry e = open[i];
@@ -422,8 +424,8 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
     }
     horizon_.dropSuspicion();
     // If another pair is taken to touch at t = 0, the search ends within the finest window. Nothing is put off in lanes
-    // that narrow, so that every leaf of bodies deep in each other would be examined (14 ms for a link in a table; 0.1
-    // at the start).
+    // that narrow. So every leaf of bodies deep in each other would be examined: 14 ms for a link in a table, 0.1 ms at
+    // the start.
     const bool ends_at_start = f.t_lower == 0 && horizon_.end() <= finestWidth();
     if (ends_at_start && recordAtStart({stack_, f.first, f.first + f.count, of.lane})) continue;
     splits_at_start_ = suspected ? 0 : 1;
@@ -433,9 +435,9 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
   if (!horizon_.isOver()) horizon_.provenFree(stop);
 }
 
-/// Makes one candidate per pair, of all its entries, in `candidates_` and `earliest_first_`: one leaf pair, which is
-/// followed at once; whole bodies, of which the hulls are followed; or parts of them that the first batch has come to
-/// already. Those that are free in the window are left out.
+/// Makes one candidate per pair, of all its entries, in `candidates_` and `earliest_first_`. It is one leaf pair, which
+/// is followed at once; or whole bodies, whose hulls are followed; or parts of them that the first batch has come to
+/// already. Candidates that are free in the window are left out.
 inline void PairSearch::followHulls(const Selection& of, const Window& window, unsigned first_lanes) {
   using Target = Candidate::Target;
   candidates_.clear();
@@ -564,8 +566,8 @@ inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Wind
   return contacts_.size() > before ? Step::done : Step::free;
 }
 
-/// Follows the leaf pairs of `leaves_`. Of many that can be neither proven apart nor in contact, some are enough: what
-/// is not looked at counts as touching from the lane's begin on.
+/// Follows the leaf pairs of `leaves_`. If many can be proven neither apart nor in contact, some are enough: leaf pairs
+/// that are not looked at count as touching from the lane's begin on.
 inline void PairSearch::followEach(const Window& window) {
   // They are taken from all over the list, for neighbours in it are alike.
   const int stride = leaves_.size() / kEnoughUncertain;

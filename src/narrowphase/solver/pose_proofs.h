@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Proofs of contact at one pose, where any contact will do. Of a solid that is one piece and the mesh of the other
-// body: a vertex of the mesh lies within the solid, or a chord of the solid pierces a triangle. Of two meshes: an edge
-// of one triangle pierces the other. Of any two leaves: GJK's common point.
+// Proofs of contact at one pose, where any contact will do. One body may be a solid of one piece, the other a mesh.
+// Then a vertex of the mesh lies within the solid, or a chord of the solid pierces a triangle. Two meshes: an edge of
+// one triangle pierces another triangle. Any two leaves: GJK's common point.
 #pragma once
 
 #include "convex/chord.h"

@@ -41,9 +41,9 @@ inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a,
   return found;
 }
 
-/// The largest gap, mostly a negative one, of two hulls along directions in which bodies mostly rest on each other: the
-/// axes of their frames, the triangles at a witness, and the faces of a simplex that holds the origin, which lies on
-/// one of them where they touch.
+/// Returns the largest gap, mostly a negative one, of two hulls along directions in which bodies mostly rest on each
+/// other. These are the axes of their frames, the normals of triangles at a witness, and those of the faces of a
+/// simplex that holds the origin. (If the hulls touch, the origin lies on one of these faces.)
 inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
   double gap = -kFarApart;
   const auto look = [&](const Vec3& n) {

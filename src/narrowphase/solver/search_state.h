@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What all parts of the solver share: the query at hand, motions, and what is known of the first contact.
+// All parts of the solver share this: the query at hand, motions, and the known bounds of the first contact.
 #pragma once
 
 #include "narrowphase/solver/contact_list.h"

@@ -75,8 +75,8 @@ class StageOne : PartOfSolver {
   Buffer<Vec3Lanes> directions_;  ///< of pairs of links and still obstacles (Entry::direction)
 };
 
-/// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). Of a moving
-/// obstacle only the box of its whole path is known.
+/// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). For a moving obstacle
+/// only the box of its whole path is known.
 inline void StageOne::sweepMover(int mover) {
   const Body& carried = body(problem().movers[mover]);
   const double margin = query().margins.largest();  // whatever the partner
@@ -103,8 +103,8 @@ inline void StageOne::sweepMover(int mover) {
   setWholeBox(mover);
 }
 
-/// The box that holds those of the parts. (The least of a part that overflowed, NaN, and others does not hide it: the
-/// radius is made of bounds for all parts, and is infinite then, so that the others reach to infinity.)
+/// The box that holds those of the parts. (A part may have overflowed to NaN. The least of it and others does not hide
+/// that: the radius is made of bounds for all parts, and is infinite then. So the others reach to infinity.)
 inline void StageOne::setWholeBox(int mover) {
   FloatLanes parts[6];
   __builtin_memcpy(parts, &mover_box_[mover], sizeof parts);
@@ -123,9 +123,9 @@ inline unsigned StageOne::boxesApart(int mover_a, int mover_b) const {
   return apart(mover_box_[mover_a], mover_box_[mover_b]);
 }
 
-/// Obstacles whose boxes meet that of a mover, and when. Of each node the eight children's boxes are compared with the
-/// mover's over [0, 1] at once, then those left with its boxes in each part. The tree is traversed level by level, so
-/// that the next nodes are fetched meanwhile.
+/// Obstacles whose boxes meet that of a mover, and when. At each node the eight children's boxes are compared at once
+/// with the mover's box over [0, 1]. The children that are left are compared with its boxes in each part. The tree is
+/// traversed level by level, so that the next nodes are fetched meanwhile.
 inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
   const SweptBox &parts = mover_box_[mover], whole = wholeBox(mover);
   const engine::WideNode* nodes = problem().obstacle_tree;
@@ -169,8 +169,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   return mask;
 }
 
-/// Contact is expected where a line swept sphere is deep in a solid. Lanes after it are put off; or, where any contact
-/// will do, it is looked for at once, and the pose is kept as a guess if the link's axis is very near.
+/// Contact is expected where a line swept sphere is deep in a solid. Lanes after it are put off. If any contact will
+/// do, it is looked for at once instead, and the pose is kept as a guess if the link's axis is very near.
 inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle,
                                     unsigned mask, Lanes square, const Vec3Lanes& nearest) {
   const auto nearer = [&](double part) {
@@ -220,7 +220,7 @@ inline void StageOne::meetLinks() {
   }
 }
 
-/// Pairs of movers, also of those that are obstacles. What advisors have proven free is left out.
+/// Pairs of movers, also of those that are obstacles. Pairs that advisors have proven free are left out.
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
   const bool any = looksForAny();
   const std::uint8_t* free[Query::kMostAdvisors];

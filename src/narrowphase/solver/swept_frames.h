@@ -35,7 +35,7 @@ class SweptFrames : PartOfSolver {
     now_ = &kept_[0];
   }
 
-  /// Frames are those of this batch from now on. Those of whole() are kept meanwhile.
+  /// Frames are those of this batch from now on. The frames of whole() are kept meanwhile.
   void set(const TimeBatch& batch) {
     if (now_->number && batch == now_->batch) return;
     now_ = &kept_[batch == whole() ? 0 : 1];
@@ -60,7 +60,7 @@ class SweptFrames : PartOfSolver {
   }
 
  private:
-  /// What is known of one batch. Stamps are numbers of batches: older ones say that nothing is there.
+  /// The frames and bounds of one batch. Stamps are numbers of batches: older ones say that nothing is there.
   struct OfBatch {
     TimeBatch batch;
     std::int32_t number = 0;          ///< 0: no batch yet

@@ -119,8 +119,8 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
   return known & greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, square);
 }
 
-/// Lanes in which two links' line swept spheres are certainly more than `margin` apart: the same along the direction
-/// between the segments' nearest points, with the four differences of their ends.
+/// Lanes in which two links' line swept spheres are certainly more than `margin` apart. It is the same proof along the
+/// direction between the segments' nearest points, with the four differences of their ends.
 /// @param[out] square  about the square of the segments' distance in the middle of each lane.
 inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double margin, Lanes& square) {
   // Nearest points of the segments in the middle of each lane: of the lines, then each clamped.

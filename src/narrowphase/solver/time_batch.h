@@ -63,7 +63,8 @@ struct TimeBatch {
     return d == other.d && !(greater(tm, other.tm) | greater(other.tm, tm));
   }
 
-  /// What holds all intervals, as far as something is claimed of them: that lies in [0, 1]. kUlp: rounding of the ends.
+  /// The ends of an interval that holds all lanes, as far as something is claimed of them: claims are about [0, 1].
+  /// kUlp: rounding of the ends.
   double begin() const { return max(0.0, minLane(tm) - d - kUlp); }
   double finish() const { return min(1.0, maxLane(tm) + d + kUlp); }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One pair over one batch: hulls, node pairs by their swept boxes, leaf pairs by certificates. What stays undecided is
-// handed back.
+// One pair over one batch: hulls, node pairs by their swept boxes, leaf pairs by certificates. Entries that stay
+// undecided are handed back.
 #pragma once
 
 #include "narrowphase/solver/depths.h"
@@ -42,7 +42,8 @@ FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
   return __builtin_ctz(lanes);
 }
 
-/// Of a node's box: its longest axis, and the squares of half its diagonal and of what of that is across this axis.
+/// The proportions of a node's box: its longest axis, and the squares of half its diagonal and of the part of that
+/// across this axis.
 struct Proportions {
   int longest;
   double square, across;
@@ -98,7 +99,7 @@ class Worth {
   int credit_ = kFirst;
 };
 
-/// What a traversal is for.
+/// The purpose of a traversal.
 enum class Aim {
   split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
   leaves,  ///< the same, down to the leaves: lanes are as narrow as they get
@@ -153,7 +154,7 @@ class Traversal : PartOfSolver {
   };
   HullLook hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search);
 
-  /// Goes down from a pair of nodes in the lanes of `mask`. What stays undecided is appended to `open`.
+  /// Goes down from a pair of nodes in the lanes of `mask`. Entries that stay undecided are appended to `open`.
   void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
   /// Lanes of `mask` in which the pair's bodies are not certainly apart.
   unsigned blockedLanes(Seen seen, unsigned mask);
@@ -195,7 +196,7 @@ class Traversal : PartOfSolver {
 inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask) {
   ++statistics().node_tests;
   const Node &A = seen->a().nodes[a], &B = seen->b().nodes[b];
-  // Of two nodes one has mostly been met before: its swept box is there.
+  // One of two nodes has mostly been met before: its swept box is there.
   const int known = seen->isSwept(0, b) ? 0 : 1;
   const auto box = [&](int s) { return apart(seen->sweptNode(s, s ? a : b), s ? B : A); };
   mask &= ~box(known);
@@ -213,9 +214,9 @@ inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask)
   return mask;
 }
 
-/// Lanes in which two rods are apart along what is across both: rods that pass each other askew meet in each other's
-/// frame until they are as near as they are long. (Of two tubes of slivers, forty times as long as wide, half a million
-/// pairs of triangles were looked at, all but 2,000 of them apart in this way.)
+/// Lanes in which two rods are apart along the direction across both. Rods that pass each other askew have boxes that
+/// meet in each other's frame until they are as near as they are long. (Two tubes had slivers forty times as long as
+/// wide: half a million pairs of triangles were looked at, all but 2,000 of them apart in this way.)
 inline unsigned Traversal::apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask) {
   const int axis_a = axisOfRod(a), axis_b = axis_a < 0 ? -1 : axisOfRod(b);
   if (axis_b < 0) return 0;
@@ -321,7 +322,7 @@ inline bool Traversal::isWithin(Seen seen) {
   return false;
 }
 
-/// What most pairs of neighbours need, before any of their triangles is looked at.
+/// Tests the hulls of two bodies. Most pairs of neighbours need no more, before any of their triangles is looked at.
 /// @param suspect  overlapping hulls count as suspected contact.
 inline Traversal::HullLook Traversal::hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search) {
   const TreeView &A = seen->a(), &B = seen->b();
