@@ -27,7 +27,7 @@ endforeach()
 list(APPEND folders ${SYSTEM_INCLUDES})
 list(REMOVE_DUPLICATES folders)
 list(REMOVE_ITEM folders /usr/include)
-set(flags -std=c++17 -fsyntax-only -Wall -Wextra -Werror -DPLUGINS="" -x c++
+set(flags -std=c++17 -fsyntax-only -Wall -Wextra -Werror -DPLUGINS="" -DFCL_ARTIC_MOVEIT_OMPL -x c++
     -I${package}/include -I${SOURCE_DIR}/include -I${SOURCE_DIR}/data)
 foreach(folder IN LISTS folders)
   list(APPEND flags -isystem ${folder})

@@ -87,7 +87,7 @@ Cell::Cell(moveit::core::RobotModelConstPtr model) : model_(std::move(model)) {
 
 void Cell::readRobot() {
   robot_ = toTree(*model_, mounts_, standing_);
-  manager_ = std::make_unique<fcl_artic::ArticulatedCollisionManager>(robot_.tree);
+  manager_ = std::make_shared<fcl_artic::ArticulatedCollisionManager>(robot_.tree);
   registered_.clear();
   body_margins_.clear();
   ++robots_read_;

@@ -92,6 +92,14 @@ void tell(std::ostream& out, const Verdict& verdict, const Verdict::Contact& con
   out << ')';
 }
 
+/// As plain numbers; what is below any accuracy is 0.
+std::string shown(const Eigen::Vector3d& v) {
+  constexpr double kNothing = 1e-12;  // m, or of a unit vector: what rounding makes of 1 km
+  std::ostringstream out;
+  for (int i = 0; i < 3; ++i) out << (i ? " " : "") << (std::abs(v[i]) < kNothing ? 0 : v[i]);
+  return out.str();
+}
+
 std::string messageOf(const Verdict& verdict, const std::string& frame) {
   std::ostringstream out;
   out.precision(6);
@@ -107,7 +115,7 @@ std::string messageOf(const Verdict& verdict, const std::string& frame) {
       tell(out, verdict, contact);
       out << " at t = " << verdict.t_lower << unit << ", after waypoint " << verdict.waypoint << " of "
           << verdict.waypoints << " (counted from 0; " << toString(verdict.interpolation) << " between them), at "
-          << contact.point.transpose() << " in '" << frame << "', normal " << contact.normal.transpose() << ", with";
+          << shown(contact.point) << " in '" << frame << "', normal " << shown(contact.normal) << ", with";
       for (const auto& [name, value] : verdict.joints) out << ' ' << name << " = " << value;
       out << ". The motion is proven free before.";
       for (std::size_t i = 1; i < verdict.contacts.size(); ++i) {
@@ -198,6 +206,7 @@ Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajec
   verdict.waypoints = trajectory.getWayPointCount();
   verdict.pairs = result.statistics.pairs;
   verdict.notes = motion.notes;
+  for (std::string& note : cell.manager().notes()) verdict.notes.push_back(std::move(note));
   verdict.margin = options.margin;
   if (const fcl_artic::CertifiedContact* first = result.first()) {
     verdict.waypoint = motion.waypointBefore(result.t_lower);

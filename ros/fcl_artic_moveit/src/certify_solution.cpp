@@ -29,6 +29,8 @@ constexpr double kMostBudget = 9007199254740992;  // 2^53: all whole numbers up 
 struct Settings {
   CertifierOptions certifier;
   bool refuse_undecided = true;
+  bool repair = false;
+  RepairOptions how;  ///< clearance
 };
 
 /// The adapter's parameters on a node, below a prefix. All but the topic may be set while the node runs, and are read
@@ -53,6 +55,9 @@ class Parameters {
     declare("time_limit", rclcpp::ParameterValue(0.0),
             "s after which a plan is undecided; 0: the request's allowed_planning_time", 0);
     declare("on_undecided", rclcpp::ParameterValue("refuse"), "refuse, or warn and let the plan pass");
+    declare("repair", rclcpp::ParameterValue(false),
+            "whether a plan that touches is replaced by a way around, timed anew and certified");
+    declare("repair_clearance", rclcpp::ParameterValue(0.005), "m that such a way keeps beyond margin and padding", 0);
     declare("display_contacts_topic", rclcpp::ParameterValue("display_contacts"),
             "topic of the visualization_msgs/MarkerArray; empty: none", -1, true);
     (void)settings();
@@ -62,6 +67,12 @@ class Parameters {
       const auto own = [this](const rclcpp::Parameter& one) { return one.get_name().rfind(prefix_, 0) == 0; };
       if (std::none_of(changed.begin(), changed.end(), own)) return result;
       try {
+        for (const rclcpp::Parameter& one : changed) {
+          // Whoever has declared it before may not have made it read-only.
+          if (one.get_name() == prefix_ + "display_contacts_topic" && !(one == node_.get_parameter(one.get_name()))) {
+            throw std::invalid_argument(one.get_name() + " counts when the pipeline starts, and not after");
+          }
+        }
         (void)settings(changed);
       } catch (const std::exception& error) {
         result.successful = false;
@@ -93,6 +104,15 @@ class Parameters {
         throw std::invalid_argument("'" + on_undecided + "' is no value of on_undecided: refuse, warn are");
       }
       out.refuse_undecided = on_undecided == "refuse";
+      const rclcpp::Parameter repair = parameter("repair", changed);
+      if (repair.get_type() != rclcpp::ParameterType::PARAMETER_BOOL) {
+        throw std::invalid_argument("repair is " + repair.value_to_string() + ", not true or false");
+      }
+      out.repair = repair.as_bool();
+      if (out.repair && !Certifier::canRepair()) {
+        throw std::invalid_argument("repair: this package was built without fcl_artic's component ompl");
+      }
+      out.how.clearance = number("repair_clearance", changed);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("parameters " + prefix_ + "*: " + error.what());
     }
@@ -236,8 +256,11 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
         settings.certifier.time_limit = std::max(0.0, request.allowed_planning_time);
       // As planners begin: the scene's state, and what the request says of it.
       const moveit::core::RobotStatePtr start = scene->getCurrentStateUpdated(request.start_state);
-      const Verdict verdict = certifier_.certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
-                                                 *response.trajectory, start.get(), settings.certifier);
+      Verdict verdict = certifier_.certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
+                                           *response.trajectory, start.get(), settings.certifier);
+      if (verdict.status == fcl_artic::Status::contact && settings.repair) {
+        repair(*scene, request, settings, response, verdict);
+      }
       for (const std::string& note : verdict.notes) RCLCPP_WARN(logger_, "%s", note.c_str());
       contacts = verdict.contacts;
       if (verdict.isFree()) {
@@ -256,6 +279,23 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
   }
 
  private:
+  /// Puts a way around in the trajectory's and the verdict's place; where there is none, the message says why.
+  void repair(const planning_scene::PlanningScene& scene, const planning_interface::MotionPlanRequest& request,
+              Settings& settings, planning_interface::MotionPlanResponse& response, Verdict& verdict) const {
+    settings.how.velocity_scaling = request.max_velocity_scaling_factor;
+    settings.how.acceleration_scaling = request.max_acceleration_scaling_factor;
+    if (settings.certifier.time_limit > 0) settings.how.seconds = settings.certifier.time_limit;
+    try {
+      Repair mended = certifier_.repair(*scene.getCollisionEnv(), scene.getAllowedCollisionMatrix(),
+                                        *response.trajectory, settings.certifier, settings.how);
+      RCLCPP_WARN(logger_, "repaired by %zu detour(s), timed anew: %s", mended.detours, verdict.message.c_str());
+      response.trajectory = std::move(mended.trajectory);
+      verdict = std::move(mended.verdict);
+    } catch (const std::runtime_error& error) {
+      verdict.message += std::string(" It was not repaired: ") + error.what() + '.';
+    }
+  }
+
   void refuse(planning_interface::MotionPlanResponse& response, const std::string& why) const {
     RCLCPP_ERROR(logger_, "%s", why.c_str());
     response.error_code.val = moveit_msgs::msg::MoveItErrorCodes::INVALID_MOTION_PLAN;

@@ -215,7 +215,13 @@ Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const
   for (std::size_t k = 0; k < n; ++k) times.push_back(t += trajectory.getWayPointDurationFromPrevious(k));
   if (n == 1) {
     notes.emplace_back("the trajectory has one waypoint: it stands still");
-    return {Interpolation::linear, false, {0, 1}, JointTrajectory::linear(*robot.tree, {0, 1}, {q[0], q[0]}), notes};
+    const fcl_artic::Waypoints still{{0, 1}, {q[0], q[0]}, {}, {}};
+    return {Interpolation::linear,
+            false,
+            still.times,
+            still,
+            JointTrajectory::linear(*robot.tree, still.times, still.positions),
+            notes};
   }
   bool timed = false;
   for (std::size_t k = 1; k < n; ++k) timed = timed || trajectory.getWayPointDurationFromPrevious(k) != 0;
@@ -254,7 +260,7 @@ Motion toMotion(const RobotTree& robot, const RobotTrajectory& trajectory, const
     through.accelerations = ratesOf(robot, trajectory, in_group, "acceleration", &RobotState::getVariableAccelerations);
   }
   JointTrajectory motion = fcl_artic::makeTrajectory(*robot.tree, kind, through, options.blend, unwrap);
-  return {kind, timed, std::move(times), std::move(motion), std::move(notes)};
+  return {kind, timed, std::move(times), std::move(through), std::move(motion), std::move(notes)};
 }
 
 }  // namespace fcl_artic_moveit

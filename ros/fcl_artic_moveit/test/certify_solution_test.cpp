@@ -115,6 +115,37 @@ TEST_F(CertifySolution, ParametersCount) {
   expectContains(one.error_code.message, "quintic needs velocities");
 }
 
+/// A pole of 2 cm, which the arm can go around before it comes to the end of the rail's way.
+TEST_F(CertifySolution, RepairReplacesThePlan) {
+  scene->getWorldNonConst()->addToObject("pole", std::make_shared<shapes::Cylinder>(0.01, 1),
+                                         Eigen::Isometry3d(Eigen::Translation3d(1.6, 0, 0)));
+  const auto plan = [&] {
+    MotionPlanResponse out = response();
+    out.trajectory->clear();
+    for (const double turn : {-1.0, 1.0}) {
+      moveit::core::RobotState state(scene->getCurrentState());
+      state.setVariablePosition("rail", 0.5);
+      state.setVariablePosition("turn", turn);
+      state.update();
+      out.trajectory->addSuffixWayPoint(state, turn + 1);
+    }
+    planning_interface::MotionPlanRequest request;
+    request.max_velocity_scaling_factor = request.max_acceleration_scaling_factor = 1;
+    adapter->adapt(scene, request, out);
+    return out;
+  };
+  adapter->initialize(node, "ompl");
+  EXPECT_EQ(plan().error_code.val, kInvalid);
+  const auto set = node->set_parameter({"ompl.certify_solution.repair", true});
+  if (!set.successful) {
+    expectContains(set.reason, "component ompl");
+    GTEST_SKIP() << set.reason;
+  }
+  const MotionPlanResponse mended = plan();
+  EXPECT_EQ(mended.error_code.val, kSuccess) << mended.error_code.message;
+  EXPECT_GT(mended.trajectory->getWayPointCount(), 2U);
+}
+
 TEST_F(CertifySolution, WrongParametersAreNamed) {
   node->declare_parameter<std::string>("a.certify_solution.interpolation", "straight");
   expectContains(refusal([&] { adapter->initialize(node, "a"); }), "'straight' is no value of interpolation");

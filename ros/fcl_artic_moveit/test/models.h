@@ -28,7 +28,17 @@ inline moveit::core::RobotModelConstPtr modelOf(const std::string& urdf, const s
   if (!tree) throw std::runtime_error("the URDF is none");
   auto semantics = std::make_shared<srdf::Model>();
   if (!semantics->initString(*tree, srdf)) throw std::runtime_error("the SRDF is none");
-  return std::make_shared<moveit::core::RobotModel>(tree, semantics);
+  auto model = std::make_shared<moveit::core::RobotModel>(tree, semantics);
+  for (moveit::core::JointModel* joint : model->getJointModels()) {  // as joint_limits.yaml has them
+    for (const std::string& variable : joint->getVariableNames()) {
+      moveit::core::VariableBounds bounds = joint->getVariableBounds(variable);
+      bounds.acceleration_bounded_ = bounds.velocity_bounded_;
+      bounds.max_acceleration_ = 2;
+      bounds.min_acceleration_ = -2;
+      joint->setVariableBounds(variable, bounds);
+    }
+  }
+  return model;
 }
 
 /// A link with one box at its origin.

@@ -349,6 +349,37 @@ TEST(Certifier, BudgetThatRunsOutIsUndecided) {
   expectContains(why(options), "says which way round");
 }
 
+/// Swings through the pole between two valid waypoints: a way around is found, timed within the joints' limits, and
+/// certified as any other; untimed ways stay untimed. What begins in contact has none.
+TEST(Certifier, RepairGoesAround) {
+  if (!Certifier::canRepair()) GTEST_SKIP() << "built without fcl_artic's component ompl";
+  Surroundings all(slider());
+  all.add("pole", std::make_shared<shapes::Cylinder>(0.005, 1), {1.6, 0, 0});
+  const Certifier certifier;
+  for (const double step : {1.0, 0.0}) {
+    const auto swing = all.trajectory("all", {{0.5, -1, 0}, {0.5, 1, 0}}, step);
+    ASSERT_EQ(certifier.certify(*all.env, all.acm, swing).status, Status::contact);
+    const Repair mended = certifier.repair(*all.env, all.acm, swing, {}, {});
+    EXPECT_GE(mended.detours, 1U);
+    EXPECT_TRUE(certifier.certify(*all.env, all.acm, *mended.trajectory).isFree());
+    EXPECT_EQ(mended.verdict.timed, step > 0);
+    const moveit::core::RobotState &first = mended.trajectory->getFirstWayPoint(),
+                                   &last = mended.trajectory->getLastWayPoint();
+    EXPECT_NEAR(first.getVariablePosition("turn"), -1, 1e-9);
+    EXPECT_NEAR(last.getVariablePosition("turn"), 1, 1e-9);
+    for (std::size_t k = 0; step > 0 && k < mended.trajectory->getWayPointCount(); ++k) {
+      EXPECT_LE(std::abs(mended.trajectory->getWayPoint(k).getVariableVelocity("turn")), 1 + 1e-6);
+    }
+  }
+  const auto from = all.trajectory("all", {{0.5, 0, 0}, {0.5, 1, 0}});
+  try {
+    (void)certifier.repair(*all.env, all.acm, from, {}, {});
+    ADD_FAILURE() << "it begins in contact";
+  } catch (const std::runtime_error& error) {
+    expectContains(error.what(), "its start touches something");
+  }
+}
+
 /// A jaw that mimics the finger, beside it at y from 0.475 to 0.525. The post's face is at y = 0.5255.
 struct Jaw : Surroundings {
   Jaw()

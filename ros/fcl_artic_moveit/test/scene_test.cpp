@@ -87,18 +87,20 @@ TEST(Scene, PlaneIsItsEquation) {
   EXPECT_FALSE(collides(cell, all, "all"));
   at(-0.04);
   EXPECT_TRUE(collides(cell, all, "all"));
-  at(0.9);  // z = -0.9: between the base, at most at -0.95, and the rest
-  EXPECT_FALSE(collides(cell, all));
-  at(1);  // z = -1: the base
-  EXPECT_TRUE(collides(cell, all));
+  at(0.2);  // z = -0.2
+  EXPECT_FALSE(collides(cell, all, "all"));
+  at(0.04);
+  EXPECT_TRUE(collides(cell, all, "all"));
 }
 
 TEST(Scene, BaseAndGroupAsInMoveIt) {
   Surroundings all(slider());
   all.add("floor", std::make_shared<shapes::Box>(1, 1, 0.2), {0, 0, -1.1});  // the base stands in it
   Cell cell(all.model);
-  EXPECT_TRUE(collides(cell, all)) << "no group: all links are looked at";
+  EXPECT_FALSE(collides(cell, all)) << "no joint moves the base against the floor, also without a group";
   EXPECT_TRUE(all.moveitCollides(all.state));
+  ASSERT_EQ(cell.manager().notes().size(), 1U) << "which says so";
+  expectContains(cell.manager().notes()[0], "floor");
   EXPECT_FALSE(collides(cell, all, "all")) << "the base moves with no joint of the group";
   EXPECT_FALSE(all.moveitCollides(all.state, "all"));
   all.add("block", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), {0.5, 0, 0});  // the arm is in it
@@ -228,7 +230,9 @@ TEST(Scene, AttachedBodies) {
   all.state.clearAttachedBodies();
   all.attach("tool", "finger", box, {0.1, 0.08, 0}, {});
   EXPECT_TRUE(all.moveitCollides(all.state, "all"));
-  EXPECT_TRUE(collides(cell, all, "all")) << "the link that carries it is no touch link";
+  EXPECT_FALSE(collides(cell, all, "all")) << "no touch link, but no joint moves the two against each other";
+  ASSERT_EQ(cell.manager().notes().size(), 1U) << "which says so";
+  expectContains(cell.manager().notes()[0], "tool");
   EXPECT_EQ(cell.robotsRead(), read + 1);
   // Apart from the finger and without touch links.
   all.state.clearAttachedBodies();

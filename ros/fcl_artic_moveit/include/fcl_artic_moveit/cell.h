@@ -58,6 +58,8 @@ class Cell {
   const RobotTree& robot() const { return robot_; }
   /// The manager, set up by update().
   const fcl_artic::ArticulatedCollisionManager& manager() const { return *manager_; }
+  /// The same, to be kept until the next update().
+  std::shared_ptr<const fcl_artic::ArticulatedCollisionManager> sharedManager() const { return manager_; }
   const moveit::core::RobotModelConstPtr& model() const { return model_; }
   /// Who a body of an answer is in MoveIt.
   const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
@@ -106,7 +108,7 @@ class Cell {
   std::set<std::string> mounts_;    ///< links that may not touch what they carry
   std::set<std::string> standing_;  ///< mimic joints that the group does not move
   RobotTree robot_;
-  std::unique_ptr<fcl_artic::ArticulatedCollisionManager> manager_;
+  std::shared_ptr<fcl_artic::ArticulatedCollisionManager> manager_;
   int robots_read_ = 0;
   std::map<std::string, std::pair<BodyName, double>> names_;  ///< and the padding
   std::set<std::string> used_;                                ///< names in the manager

@@ -63,6 +63,20 @@ struct Verdict : fcl_artic::Bracket {
   std::string message;             ///< verdict, contact and cure, for a log
 };
 
+struct RepairOptions {
+  double clearance = 0.005;     ///< m, that detours keep beyond margin and padding; less only where no way does
+  double seconds = 5;           ///< that it may take, about
+  double velocity_scaling = 1;  ///< of the time parameterization, above 0, up to 1
+  double acceleration_scaling = 1;
+};
+
+/// A way around what a trajectory touches, certified free.
+struct Repair {
+  robot_trajectory::RobotTrajectoryPtr trajectory;
+  Verdict verdict;
+  std::size_t detours = 0;  ///< stretches that were replaced
+};
+
 /// Certifies trajectories of MoveIt: whether the motion that a controller makes of one touches, and when first. It
 /// keeps what was made of a robot from call to call. Its const members may be called from many threads at once.
 class Certifier {
@@ -88,6 +102,19 @@ class Certifier {
   Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
                   const robot_trajectory::RobotTrajectory& trajectory, const moveit::core::RobotState* start = nullptr,
                   const CertifierOptions& options = {}) const;
+
+  /// Whether this package was built with what repair() needs: fcl_artic's component ompl.
+  static bool canRepair();
+
+  /// Finds a way around what a trajectory touches (fcl_artic::planning::mend()), times it anew where the trajectory had
+  /// times, by MoveIt's time optimal parameterization and the model's limits, and certifies it as any other.
+  /// @param trajectory  that certify() answers for without throwing.
+  /// @throws std::invalid_argument as certify().
+  /// @throws std::runtime_error: no such way was found, or it could not be timed so that it is free; that this package
+  ///   was built without the component.
+  Repair repair(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
+                const robot_trajectory::RobotTrajectory& trajectory, const CertifierOptions& options,
+                const RepairOptions& how) const;
 
  private:
   std::unique_ptr<Cell> idleCell(const moveit::core::RobotModelConstPtr& model) const;

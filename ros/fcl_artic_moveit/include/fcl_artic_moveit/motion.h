@@ -28,9 +28,10 @@ struct MotionOptions {
 
 /// A MoveIt trajectory as the motion that is asked about.
 struct Motion {
-  Interpolation interpolation;  ///< that was used; never automatic or jtc
-  bool timed;                   ///< whether the trajectory has times; if not, they are the waypoints' numbers
-  std::vector<double> times;    ///< of the waypoints, s, from the trajectory's start, as in its message
+  Interpolation interpolation;     ///< that was used; never automatic or jtc
+  bool timed;                      ///< whether the trajectory has times; if not, they are the waypoints' numbers
+  std::vector<double> times;       ///< of the waypoints, s, from the trajectory's start, as in its message
+  fcl_artic::Waypoints waypoints;  ///< these times, and all variables of the tree, with the rates that count
   fcl_artic::JointTrajectory trajectory;
   std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
 
