@@ -38,7 +38,8 @@ struct CertifyVerb {
   PlanVariables variables;
   PlanColumnOptions columns;
   std::vector<std::string> plans;
-  std::string format, csv, out, certificate, line;
+  std::string format, csv, out, certificate;
+  ToolLineOptions tool_line;
   ViewOptions views;
   InterpolationOptions interpolation;
   CertifyOptions certify;
@@ -261,7 +262,7 @@ int runCertify(CertifyVerb& o) {
   o.certify.motion.degrees = o.columns.degrees;
   o.columns.columns.joints = plans::unnamedColumns(tree, o.certify.motion);
   if (o.clearance) o.certify.clearance = o.clearance_request;
-  if (!o.line.empty()) o.certify.line = parseToolLine(tree, o.line);
+  if (!o.tool_line.line.empty()) o.certify.line = parseToolLine(tree, o.tool_line);
   std::optional<plans::Format> format;
   if (!o.format.empty()) format = plans::formatNamed(o.format);
   std::vector<std::string> plan_notes;
@@ -337,7 +338,7 @@ void addCertify(CLI::App& program, int& exit_status) {
 
   addQueryOptions(*certify, o.certify.request);
   addClearanceOptions(*certify, o.clearance, o.clearance_request);
-  addToolLine(*certify, o.line, "Query");
+  addToolLine(*certify, o.tool_line, "Query");
   certify->add_option("--threads", o.certify.threads, "Threads at most; 0: as many as the machine runs at once")
       ->check(CLI::NonNegativeNumber)
       ->group("Query")

@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "angles.h"
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
 #include "robot_options.h"
@@ -24,8 +25,6 @@ namespace fcl_artic::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
 const char* nameOf(JointType type) {
   switch (type) {
@@ -190,7 +189,7 @@ std::string limitsText(const Joint& joint) {
   if (!hasLimits(joint)) return "no limits";
   if (joint.type == JointType::prismatic) return fmt::format("{:g} to {:g} m", joint.lower, joint.upper);
   return fmt::format("{:.4g} to {:.4g} rad ({:.0f} to {:.0f} deg)", joint.lower, joint.upper,
-                     joint.lower * kDegreesPerRadian, joint.upper * kDegreesPerRadian);
+                     joint.lower / kRadiansPerDegree, joint.upper / kRadiansPerDegree);
 }
 
 bool hasAxis(JointType type) {

@@ -21,6 +21,7 @@
 #include "progress.h"
 #include "render/picture.h"
 #include "robot_options.h"
+#include "setup/neighbours.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -286,13 +287,7 @@ std::string summaryOf(const LinkPairReport& report) {
 }
 
 std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairReport& disabled, double margin) {
-  const auto carrier = [&](const std::string& name) {  // the link that moves it; -1: nothing does
-    LinkId link = tree.linkId(name);
-    while (link >= 0 && tree.parentJoint(link) >= 0 && tree.joint(tree.parentJoint(link)).type == JointType::fixed) {
-      link = tree.parentLink(link);
-    }
-    return tree.parentJoint(link) < 0 ? -1 : link;
-  };
+  const auto carrier = [&](const std::string& name) { return carrierOf(tree, tree.linkId(name)); };
   std::vector<std::string> lines;
   const std::string touch = margin > 0 ? fmt::format("come within the margin of {:g} m", margin) : "touch";
   const std::string apart = margin > 0 ? fmt::format(" by the margin of {:g} m", margin) : "";

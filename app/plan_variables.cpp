@@ -90,7 +90,8 @@ void addState(CLI::App& verb, std::vector<std::string>& state, const std::string
 std::string verifierInterpolation(plans::Interpolation kind, const std::string& arguments) {
   using plans::Interpolation;
   if (kind == Interpolation::automatic || kind == Interpolation::jtc) return arguments;
-  const bool known = kind == Interpolation::linear || kind == Interpolation::cubic || kind == Interpolation::quintic;
+  const bool known = kind == Interpolation::linear || kind == Interpolation::cubic || kind == Interpolation::quintic ||
+                     kind == Interpolation::jtcUpsampled;
   return known ? arguments + " --interpolation " + plans::toString(kind) : "";
 }
 

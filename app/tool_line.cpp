@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tool_line.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,21 +36,36 @@ std::optional<double> quantity(std::string_view text, const Units& units) {
 
 }  // namespace
 
-void addToolLine(CLI::App& verb, std::string& text, const std::string& group) {
-  verb.add_option(
-          "--line", text,
-          "The tool's origin is to keep that near to the straight line between its ends, and its orientation that "
-          "near to the turn between them: proven, or the plan counts as one in contact")
+void addToolLine(CLI::App& verb, ToolLineOptions& options, const std::string& group) {
+  CLI::Option* line =
+      verb.add_option(
+              "--line", options.line,
+              "The tool's origin is to keep that near to the straight line between its ends, and its orientation that "
+              "near to the turn between them: proven, or the plan counts as one in contact")
+          ->allow_extra_args(false)
+          ->group(group)
+          ->type_name("LINK=1mm[,0.5deg][@POSE]");
+  verb.add_option("--via", options.via,
+                  "Instead of the straight line, the arc of a circle through this point of the world (m), along which "
+                  "the orientation turns, too")
+      ->needs(line)
       ->allow_extra_args(false)
       ->group(group)
-      ->type_name("LINK=1mm[,0.5deg][@POSE]");
+      ->type_name("X,Y,Z");
 }
 
-ToolLine parseToolLine(const KinematicTree& tree, const std::string& text) {
+ToolLine parseToolLine(const KinematicTree& tree, const ToolLineOptions& options) {
+  const std::string& text = options.line;
   const auto refuse = [&](const std::string& reason) {
     throw std::invalid_argument(fmt::format("--line {}: {}", text, reason));
   };
   ToolLine line;
+  if (!options.via.empty()) {
+    if (std::count(options.via.begin(), options.via.end(), ',') != 2) {
+      throw std::invalid_argument(fmt::format("--via {}: is no point x,y,z in m", options.via));
+    }
+    line.via = parsePose(options.via, "--via").translation();
+  }
   const std::size_t equals = text.find('='), at = text.find('@');
   if (equals == std::string::npos || equals == 0) refuse("is not LINK=DISTANCE[,ANGLE][@POSE], as tool0=1mm,0.5deg");
   line.link = text.substr(0, equals);
@@ -81,19 +98,23 @@ const char* ToolLineAnswer::verdict() const {
 std::string ToolLineAnswer::text() const {
   const auto limit = [](const std::string& most, bool any) { return any ? std::string() : " (allowed: " + most + ")"; };
   return fmt::format(
-      "'{}' {} its line of {:.4g} m: at most {:.6g} mm off{}, proven, at t = {:.6g}; turned by at most {:.4g} deg{}",
+      "'{}' {} its {} of {:.4g} m: at most {:.6g} mm off{}, proven, at t = {:.6g}; turned by at most {:.4g} deg{}",
       asked.link,
       kept()   ? "keeps to"
       : left() ? "LEAVES"
                : "may leave",
-      found.length, 1e3 * found.distance_upper, limit(fmt::format("{:g} mm", 1e3 * asked.distance), false),
-      found.distance_time, found.angle_upper / kRadiansPerDegree,
+      asked.via ? "arc" : "line", found.length, 1e3 * found.distance_upper,
+      limit(fmt::format("{:g} mm", 1e3 * asked.distance), false), found.distance_time,
+      found.angle_upper / kRadiansPerDegree,
       limit(fmt::format("{:g} deg", asked.angle / kRadiansPerDegree), asked.anyAngle()));
 }
 
 nlohmann::ordered_json ToolLineAnswer::json() const {
+  nlohmann::ordered_json via;
+  if (asked.via) via = std::vector<double>(asked.via->begin(), asked.via->end());
   return {{"status", verdict()},
           {"link", asked.link},
+          {"via", via},
           {"length", found.length},
           {"distance_allowed", asked.distance},
           {"distance_lower", found.distance_lower},
@@ -113,6 +134,7 @@ ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& mot
   ToolLineRequest request;
   request.work_budget = kMostPoses;
   request.tool = line.tool;
+  request.via = line.via;
   if (line.distance > 0) request.tolerance_distance = kPart * line.distance;
   if (line.angle > 0 && !line.anyAngle()) request.tolerance_angle = kPart * line.angle;
   return {line, toolDeviation(tree, motion, line.link, request)};

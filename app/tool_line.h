@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a verb says about a tool that is to follow a straight line.
+// What a verb says about a tool that is to follow a straight line or an arc.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -14,21 +15,28 @@
 
 namespace fcl_artic::app {
 
-/// A tool, and how far it may leave its line.
+/// What the command says.
+struct ToolLineOptions {
+  std::string line, via;
+};
+
+/// A tool, its path, and how far it may leave that.
 struct ToolLine {
   std::string link;
   Eigen::Isometry3d tool = Eigen::Isometry3d::Identity();
+  std::optional<Eigen::Vector3d> via;                      ///< of an arc; m, in the world
   double distance = 0;                                     ///< m
   double angle = std::numeric_limits<double>::infinity();  ///< rad; infinite: any
 
   bool anyAngle() const { return std::isinf(angle); }
 };
 
-/// Adds --line to the group.
-void addToolLine(CLI::App& verb, std::string& text, const std::string& group);
-/// Reads "LINK=1mm", "LINK=1mm,0.5deg" or, with the tool's frame in the link's, "LINK=1mm,0.5deg@POSE".
-/// @throws std::invalid_argument beginning with --line, also for a link that the robot does not have.
-ToolLine parseToolLine(const KinematicTree& tree, const std::string& text);
+/// Adds --line and --via to the group.
+void addToolLine(CLI::App& verb, ToolLineOptions& options, const std::string& group);
+/// Reads "LINK=1mm", "LINK=1mm,0.5deg" or, with the tool's frame in the link's, "LINK=1mm,0.5deg@POSE", and the point
+/// "X,Y,Z".
+/// @throws std::invalid_argument beginning with the option, also for a link that the robot does not have.
+ToolLine parseToolLine(const KinematicTree& tree, const ToolLineOptions& options);
 
 /// What became of it on one motion.
 struct ToolLineAnswer {

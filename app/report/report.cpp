@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "angles.h"
 #include "request_json.h"
 #include "stage2.h"
 #include "text/one_line.h"
@@ -14,8 +15,6 @@ namespace fcl_artic::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
 std::string vectorText(const Eigen::Vector3d& v) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // + 0.0: no "-0"
@@ -47,7 +46,7 @@ std::string jointsText(const KinematicTree& tree, const Eigen::VectorXd& q) {
     text += v ? ", " : "";
     text += fmt::format("{} = {:.6g}", tree.variableName(v), q[v]);
     if (length) text += " m";
-    if (tree.isAngle(v)) text += fmt::format(" rad ({:.2f} deg)", q[v] * kDegreesPerRadian);
+    if (tree.isAngle(v)) text += fmt::format(" rad ({:.2f} deg)", q[v] / kRadiansPerDegree);
   }
   return text;
 }

@@ -493,6 +493,7 @@ def tool_deviation(
     link: str | int,
     *,
     tool: _Pose | None = ...,
+    via: npt.ArrayLike | None = ...,
     tolerance_distance: float = ...,
     tolerance_angle: float = ...,
     work_budget: int = ...,

@@ -462,12 +462,13 @@ void bindTrajectory(py::module_& module) {
            [](const py::object& self) { return py::cast<const MadeTrajectory&>(self).recipe.reduced(self); });
 }
 
-ToolDeviation toolDeviationOf(py::handle tree, py::handle motion, py::handle link, py::handle tool,
+ToolDeviation toolDeviationOf(py::handle tree, py::handle motion, py::handle link, py::handle tool, py::handle via,
                               double tolerance_distance, double tolerance_angle, std::uint64_t work_budget) {
   const auto of = treeOf(tree);
   const LinkId id = linkOf(*of, link);
   ToolLineRequest request;
   request.tool = poseOf(tool, "tool");
+  if (!via.is_none()) request.via = vector3Of(via, "via");
   request.tolerance_distance = tolerance_distance;
   request.tolerance_angle = tolerance_angle;
   request.work_budget = work_budget;
@@ -480,7 +481,7 @@ ToolDeviation toolDeviationOf(py::handle tree, py::handle motion, py::handle lin
 
 void bindToolLine(py::module_& module) {
   using D = ToolDeviation;
-  py::class_<D>(module, "ToolDeviation", "How far a tool leaves the straight line between its ends: proven brackets.")
+  py::class_<D>(module, "ToolDeviation", "How far a tool leaves its straight line or its arc: proven brackets.")
       .def_readonly("distance_lower", &D::distance_lower)
       .def_readonly("distance_upper", &D::distance_upper)
       .def_readonly("distance_time", &D::distance_time)
@@ -518,10 +519,13 @@ void bindToolLine(py::module_& module) {
   module.def(
       "tool_deviation", &toolDeviationOf,
       "How far a tool leaves the straight line between its poses at a motion's ends, proven: for welding along a\n"
-      "line while joints go by splines. `tool` is its frame in the link's. Says nothing of contacts.",
+      "line while joints go by splines. `tool` is its frame in the link's. With `via`, a point of the world in m, it "
+      "is\n"
+      "the arc of a circle through that point, and the tool's orientation is to turn along it. `work_budget`: poses\n"
+      "that are looked at, at most; 0: no limit. Says nothing of contacts.",
       py::arg("tree"), py::arg("motion"), py::arg("link"), py::kw_only(), py::arg("tool") = py::none(),
-      py::arg("tolerance_distance") = usual.tolerance_distance, py::arg("tolerance_angle") = usual.tolerance_angle,
-      py::arg("work_budget") = usual.work_budget);
+      py::arg("via") = py::none(), py::arg("tolerance_distance") = usual.tolerance_distance,
+      py::arg("tolerance_angle") = usual.tolerance_angle, py::arg("work_budget") = usual.work_budget);
 }
 
 }  // namespace

@@ -132,6 +132,13 @@ def test_a_tools_line(data):
     assert found.certainly_keeps(1, 3) and found.certainly_leaves(1e-3, 3) and "ToolDeviation" in repr(found)
     by_number = fcl_artic.tool_deviation(robot, motion, len(robot.tree.links) - 1, tool=[0, 0, 0.1])
     assert by_number.length > 0
+    # The first joint turns the tool about the vertical: on its own arc it stays, and turns with it.
+    arc = fcl_artic.tool_deviation(robot, motion, tool, via=middle)
+    assert arc.certainly_keeps(1e-6, 1e-4) and arc.length > found.length
+    with pytest.raises(ValueError, match="straight line"):
+        fcl_artic.tool_deviation(robot, motion, tool, via=(ends[0] + ends[1]) / 2)
+    with pytest.raises(ValueError, match="via"):
+        fcl_artic.tool_deviation(robot, motion, tool, via=[0, 1])
     with pytest.raises(TypeError, match="no JointMotion"):
         fcl_artic.tool_deviation(robot, [0, 1], tool)
     with pytest.raises(ValueError, match="1e-6 m"):

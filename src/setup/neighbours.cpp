@@ -21,15 +21,6 @@ std::vector<LinkId> pathToRoot(const KinematicTree& tree, LinkId link) {
 
 }  // namespace
 
-LinkId carrierOf(const KinematicTree& tree, LinkId link) {
-  while (link >= 0) {
-    const JointId joint = tree.parentJoint(link);
-    if (joint >= 0 && tree.joint(joint).type != JointType::fixed) return link;
-    link = tree.parentLink(link);
-  }
-  return link;
-}
-
 bool areNeighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry, LinkId a, LinkId b) {
   std::vector<LinkId> x = pathToRoot(tree, a), y = pathToRoot(tree, b);
   if (x.back() != y.back()) return false;

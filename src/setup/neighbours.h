@@ -11,7 +11,14 @@ namespace fcl_artic {
 
 /// The link that moves this one: the nearest at or above it with a joint that is not fixed. It is -1 for the world,
 /// where roots and what is fixed to them stand, and obstacles (link -1).
-LinkId carrierOf(const KinematicTree& tree, LinkId link);
+inline LinkId carrierOf(const KinematicTree& tree, LinkId link) {
+  while (link >= 0) {
+    const JointId joint = tree.parentJoint(link);
+    if (joint >= 0 && tree.joint(joint).type != JointType::fixed) return link;
+    link = tree.parentLink(link);
+  }
+  return link;
+}
 
 /// Joined by one moving joint at most, which leaves none of them free, over links without geometry only.
 bool areNeighbours(const KinematicTree& tree, const std::set<LinkId>& with_geometry, LinkId a, LinkId b);

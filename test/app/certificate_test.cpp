@@ -67,6 +67,8 @@ TEST_F(CertificateOptionTest, SaysWhatItWrote) {
   run = this->run("check " + world + " --trajectory '" + plan + "'");
   EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;
   run = this->run("check " + world + " --trajectory '" + plan + "' --interpolation jtc-upsampled");
+  EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "' --interpolation jtc-upsampled")) << run.err;
+  run = this->run("check " + world + " --trajectory '" + plan + "' --interpolation jtc-none");
   EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
   run = this->run("certify '" + plan + "' --robot " + world);
   EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;

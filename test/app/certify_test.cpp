@@ -521,6 +521,31 @@ TEST_F(CertifyProgramTest, AToolKeepsToItsLine) {
   EXPECT_EQ(certify(straight, "--line hand=1mm").status, 2);
   EXPECT_EQ(certify(straight, "--line tool=1").status, 2);
   EXPECT_EQ(certify("x,y\n0,0\n0,0\n", "--line tool=1mm").status, 2);
+  // From (0, 0) by (0.5, 0.25) to (1, 0): a circle of radius 0.625; straight pieces leave it.
+  EXPECT_EQ(lineOf(kept).at("via"), Json());
+  std::ostringstream circle;
+  circle.precision(17);
+  circle << "x,y\n";
+  for (int k = 0; k <= 32; ++k) {
+    const double a = (k / 16.0 - 1) * std::asin(0.8);
+    circle << 0.5 + 0.625 * std::sin(a) << ',' << 0.625 * std::cos(a) - 0.375 << '\n';
+  }
+  const std::string round = circle.str();
+  const Outcome arc = certify(round, "--line tool=1mm --via 0.5,0.25,0");
+  ASSERT_EQ(arc.status, 0) << arc.out << arc.err;
+  EXPECT_EQ(lineOf(arc).at("via"), Json({0.5, 0.25, 0.0}));
+  const double bow = 0.625 * (1 - std::cos(std::asin(0.8) / 32));
+  EXPECT_NEAR(lineOf(arc).at("distance_upper").get<double>(), bow, 2e-5);
+  EXPECT_NEAR(lineOf(arc).at("length").get<double>(), 1.25 * std::asin(0.8), 1e-9);
+  EXPECT_EQ(certify(round, "--line tool=0.1mm --via 0.5,0.25,0").status, 1);
+  EXPECT_EQ(certify(round, "--line tool=1mm").status, 1);
+  EXPECT_EQ(certify(straight, "--line tool=1mm --via 0.5,0.15,0").status, 2);
+  EXPECT_NE(certify(round, "--line tool=1mm --via 0.5,0.25").err.find("--via 0.5,0.25: is no point"),
+            std::string::npos);
+  EXPECT_EQ(certify(round, "--via 0.5,0.25,0").status, 2);
+  const Outcome on_arc =
+      this->run("certify " + write("way.csv", round) + " " + gantry(far_away) + " --line tool=1mm --via 0.5,0.25,0");
+  EXPECT_NE(on_arc.out.find("'tool' keeps to its arc of 1.159 m: at most 0."), std::string::npos) << on_arc.out;
   const Outcome text = this->run("certify " + write("way.csv", corner) + " " + gantry(far_away) + " --line tool=1mm");
   EXPECT_NE(text.out.find("'tool' LEAVES its line of 1 m: at most 300"), std::string::npos) << text.out;
 }
