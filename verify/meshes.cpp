@@ -147,7 +147,7 @@ class ObjLines {
         throw BadInput(where() + "it goes on a line that ends in a backslash, and may be one by itself");
       line += ' ' + more;
     }
-    line.resize(std::min(line.find('#'), line.size()));
+    line.resize(commentOf(line));
     for (std::size_t k = line.find_first_not_of(" \t\r"), to; k != line.npos; k = line.find_first_not_of(" \t\r", to)) {
       to = std::min(line.find_first_of(" \t\r", k), line.size());
       words.push_back(line.substr(k, to - k));
@@ -166,7 +166,13 @@ class ObjLines {
   }
   bool goesOn(const std::string& line) const {
     const std::size_t last = line.find_last_not_of(" \t\r");
-    return last != line.npos && line[last] == '\\' && at_ < text_.size() && line.find('#') == line.npos;
+    return last != line.npos && line[last] == '\\' && at_ < text_.size() && commentOf(line) == line.size();
+  }
+  /// Where a comment begins: at a # that begins the line or follows a blank; within a word it is part of that (1.#INF).
+  static std::size_t commentOf(const std::string& line) {
+    std::size_t at = line.find('#');
+    while (at != line.npos && at > 0 && line[at - 1] != ' ' && line[at - 1] != '\t') at = line.find('#', at + 1);
+    return std::min(at, line.size());
   }
   const std::string& text_;
   std::size_t at_ = 0, number_ = 0;

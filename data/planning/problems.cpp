@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 
 #include <fcl/geometry/shape/box.h>
@@ -57,9 +58,17 @@ int variable(const KinematicTree& tree, const std::string& joint) {
   return -1;
 }
 
+/// A number that the file gives a problem. (The parser's own conversion cuts off what does not fit.)
+int numberOf(const json& value) {
+  const double number = value.is_number_integer() ? value.get<double>() : -1;
+  if (!(number >= 0 && number <= std::numeric_limits<int>::max()))
+    throw std::runtime_error("the number " + value.dump() + " of a problem is none of 0, 1, 2 ...");
+  return static_cast<int>(number);
+}
+
 Edge readEdge(const json& given) {
   Edge edge;
-  given.at("problem").get_to(edge.problem);
+  edge.problem = numberOf(given.at("problem"));
   given.at("from").get_to(edge.from);
   given.at("to").get_to(edge.to);
   return edge;
@@ -95,7 +104,7 @@ Environment readEnvironment(const std::filesystem::path& path, const KinematicTr
     }
     for (const json& given : file.at("problems")) {
       Problem& problem = environment.problems.emplace_back();
-      given.at("index").get_to(problem.index);
+      problem.index = numberOf(given.at("index"));
       given.at("start").get_to(problem.start);
       given.at("goal").get_to(problem.goal);
       for (const json& obstacle : given.at("obstacles")) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "kinematics/joint_factors.h"
 #include "numerics/constants.h"
@@ -98,7 +99,8 @@ LinkId KinematicTree::addLink(const std::string& name) {
   link_names_.push_back(name);
   parent_joint_.push_back(-1);
   content_.add(name);
-  sortLinks();
+  const auto carried = [&](LinkId link) { return parent_joint_[link] >= 0; };
+  order_.insert(std::find_if(order_.begin(), order_.end(), carried), numLinks() - 1);  // the last of the roots
   return numLinks() - 1;
 }
 
@@ -248,19 +250,20 @@ LinkId KinematicTree::parentLink(LinkId link) const {
   return joint < 0 ? -1 : joint_parent_[joint];
 }
 
+/// Breadth first, from the roots on; roots and the children of a link by number. Robots of thousands of links are
+/// sorted after each of their joints: nothing is allocated for a link.
 void KinematicTree::sortLinks() {
-  std::vector<std::vector<LinkId>> children(link_names_.size());
-  order_.clear();
-  for (LinkId link = 0; link < numLinks(); ++link) {
-    if (const LinkId parent = parentLink(link); parent < 0) {
-      order_.push_back(link);
-    } else {
-      children[parent].push_back(link);
-    }
+  const std::size_t roots = link_names_.size();
+  std::vector<LinkId> first(roots + 1, -1), next(roots, -1);  // of each link's children, and among its parent's
+  for (std::size_t link = roots; link-- > 0;) {
+    const JointId joint = parent_joint_[link];
+    LinkId& list = first[joint < 0 ? roots : static_cast<std::size_t>(joint_parent_[joint])];
+    next[link] = std::exchange(list, static_cast<LinkId>(link));
   }
-  for (std::size_t i = 0; i < order_.size(); ++i) {  // grows while it runs: breadth first
-    const auto& next = children[order_[i]];
-    order_.insert(order_.end(), next.begin(), next.end());
+  std::size_t end = 0;
+  for (std::size_t i = 0; i <= end && end < roots; ++i) {
+    const std::size_t parent = i == 0 ? roots : static_cast<std::size_t>(order_[i - 1]);
+    for (LinkId link = first[parent]; link >= 0; link = next[link]) order_[end++] = link;
   }
 }
 

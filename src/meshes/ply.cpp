@@ -132,8 +132,10 @@ class Ply {
       if (e.name == "vertex") points.push_back(place(entry));
       noteCamera(e, entry);
     });
-    const std::uint64_t faces = hasFaces() ? find("face")->count : 0;
-    if (faces > 0) source_.note("its faces, " + std::to_string(faces) + ", are left out: only its vertices are points");
+    for (const PlyElement& e : elements_) {
+      if ((e.name != "face" && e.name != "edge") || e.count == 0) continue;
+      source_.note("its " + e.name + "s, " + std::to_string(e.count) + ", are left out: only its vertices are points");
+    }
     return points;
   }
 

@@ -207,7 +207,10 @@ void Lines::refuse(const std::string& reason) const {
 }
 
 std::size_t Lines::commentOf(std::string_view line) const {
-  return comment_ ? line.find(comment_) : line.npos;
+  // Within a word it begins none: some C libraries print 1.#INF and 1.#QNAN, which would become 1.
+  std::size_t at = comment_ ? line.find(comment_) : line.npos;
+  while (at != line.npos && at > 0 && !isBlank(line[at - 1])) at = line.find(comment_, at + 1);
+  return at;
 }
 
 std::string_view Lines::take() {

@@ -70,7 +70,8 @@ class Lines {
   /// Whether a line that ends in a backslash goes on in the next one. A comment never does: it may end in a folder's
   /// name.
   enum class Continued { no, yes };
-  /// @param text  of the source, or a part of it. @param comment  begins one, up to the line's end; 0: nothing does.
+  /// @param text  of the source, or a part of it. @param comment  begins one, up to the line's end, where it begins the
+  ///   line or follows a blank; 0: nothing does.
   Lines(std::string_view text, const Source& source, char comment, Continued continued = Continued::no)
       : text_(text), source_(source), comment_(comment), continued_(continued) {}
 

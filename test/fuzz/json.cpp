@@ -21,12 +21,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }();
   const std::string path =
       fuzz::Folder::instance().write("input.json", std::string(reinterpret_cast<const char*>(data + 1), size - 1));
-  if (data[0] % 3 == 1) {
-    fuzz::loads(path, [&] { planning_data::readTrace(path); });
-    return 0;
-  }
-  if (data[0] % 3 == 2) {
-    fuzz::loads(path, [&] { planning_data::readMissed(path); });
+  if (const int kind = data[0] % 3; kind > 0) {
+    std::vector<planning_data::Edge> edges;
+    fuzz::loads(path, [&] { edges = kind == 1 ? planning_data::readTrace(path) : planning_data::readMissed(path); });
+    for (const planning_data::Edge& edge : edges) {
+      if (edge.problem < 0) fuzz::fault("a problem's number that no file has");
+    }
     return 0;
   }
   planning_data::Environment environment;

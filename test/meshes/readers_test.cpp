@@ -503,6 +503,33 @@ TEST(Xyz, HasOneSeparatorAndOneNumberOfColumns) {
   expectContains(notes[0], "of each point the first 3 numbers are read, of 4");
 }
 
+/// Some C libraries print 1.#INF and -1.#IND for what is no number: not 1 and -1 with a comment.
+TEST(TextFiles, ASignOfACommentWithinAWordBeginsNone) {
+  EXPECT_EQ(read(readObj, "v 0 0 0 # here\n#v\nv 1 0 0 #\nv 0 1 1\nusemtl a#b\nf 1 2 3\t#\n").triangles.size(), 1u);
+  for (const std::string word : {"1.#INF", "-1.#IND", "1.#QNAN", "1#note"}) {
+    expectContains(errorOf(readObj, "v 0 0 0\nv 1 0 0\nv 0 1 " + word + "\nf 1 2 3\n"),
+                   "line 3: '" + word + "' is not a finite number");
+    expectContains(errorOf(readOff, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 " + word + "\n3 0 1 2\n"),
+                   "line 5: '" + word + "' is not a finite number");
+    expectContains(cloudError(readXyz, "0 0 0\n0 1 " + word + "\n"),
+                   "line 2: does not begin with three numbers between blanks: '" + word + "'");
+    expectContains(
+        cloudError(readPcd, "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n0 1 " + word + "\n"),
+        "point 0 is not as FIELDS says");
+  }
+  expectContains(errorOf(readObj, "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3#\n"), "'3#' names no vertex");
+}
+
+TEST(PlyPoints, FacesAndEdgesAreNoted) {
+  cloudOf(readPlyPoints,
+          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+          "element face 1\nproperty list uchar int vertex_indices\nelement edge 2\nproperty int vertex1\n"
+          "property int vertex2\nend_header\n0 0 0\n1 0\n0 0\n0 0\n");
+  ASSERT_EQ(notes.size(), 2u);
+  expectContains(notes[0], "its faces, 1, are left out");
+  expectContains(notes[1], "its edges, 2, are left out");
+}
+
 TEST(PlyPoints, ACameraThatIsElsewhereIsNoted) {
   const auto notesOf = [](const std::string& view) {
     cloudOf(readPlyPoints,

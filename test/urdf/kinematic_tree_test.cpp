@@ -179,6 +179,37 @@ TEST(KinematicTree, OneLinksPoseIsThatOfAll) {
   EXPECT_THROW(tree.linkPose(3, Eigen::Vector2d(kNaN, 0)), std::invalid_argument);
 }
 
+/// Breadth first, the children of a link by number, whatever order links and joints come in.
+TEST(KinematicTree, LinksAreSortedBreadthFirst) {
+  std::uint64_t random = 1;
+  const auto below = [&](int count) {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<int>((random >> 33) % static_cast<std::uint64_t>(count));
+  };
+  for (int forest = 0; forest < 50; ++forest) {
+    KinematicTree tree;
+    for (int step = 0; step < 40; ++step) {
+      if (tree.numLinks() < 2 || below(2) == 0) {
+        tree.addLink("l" + std::to_string(tree.numLinks()));
+      } else {
+        const std::string parent = tree.linkName(below(tree.numLinks())), child = tree.linkName(below(tree.numLinks()));
+        try {
+          tree.addJoint(Joint::fixed("j" + std::to_string(tree.numJoints()), parent, child));
+        } catch (const std::invalid_argument&) {  // a second parent, or a loop
+        }
+      }
+      std::vector<LinkId> expected;
+      for (std::size_t i = 0; i <= expected.size(); ++i) {
+        const LinkId parent = i == 0 ? -1 : expected[i - 1];
+        for (LinkId link = 0; link < tree.numLinks(); ++link) {
+          if (tree.parentLink(link) == parent) expected.push_back(link);
+        }
+      }
+      ASSERT_EQ(tree.topologicalOrder(), expected) << "forest " << forest << ", step " << step;
+    }
+  }
+}
+
 TEST(KinematicTree, ForestKeepsEachRootAtTheOrigin) {
   KinematicTree tree("two robots");
   for (const char* link : {"b_tip", "b_base", "a_base", "a_tip"}) tree.addLink(link);  // a child before its parent

@@ -240,13 +240,30 @@ TEST_F(VerifyReaders, Obj) {
   EXPECT_EQ(read("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").corners, (Indices{0, 1, 2}));
   EXPECT_EQ(read("v 0 0 0\rv 1 0 0\nv 0 1 0\r\nf 1 2 3\n").corners, (Indices{0, 1, 2}));
   EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\n# C:\\\nf 1 2 3 3 # \\\n").corners, (Indices{0, 1, 2, 2}));
+  EXPECT_EQ(read("v 0 0 0\t#\nv 1 0 0 #\n#v\nv 0 1 0\ng a#b\nf 1 2 3 # 3\n").corners, (Indices{0, 1, 2}));
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", f = "f 1 2 3\n";
   EXPECT_NO_THROW(read(v + f));
-  for (const std::string& text :
-       {v + "f 1 2 4\n", v + "f 1 2 -4\n", v + "f 1 2 0\n", v + "f 1 2 x\n", v + "f 1 2 3x\n", v + "f\n" + f, v,
-        v + f + "surf 0 1 0 1 1 2 3\n", v + f + "cstype bezier\n", v + f + "call other.obj\n", "v 0,5 0 0\n" + v + f,
-        "v 0 0 1e400\n" + v + f, "v 0 0\n" + v + f, "v 0 0 0 0\n" + v + f, "v 0 0 0 2\n" + v + f,
-        "v 0 0 0 v 1\n" + v + f, "v 0 0 0 0.1 0.1 0.1 1\n" + v + f, "v 0 0 0x1\n" + v + f})
+  for (const std::string& text : {v + "f 1 2 4\n",
+                                  v + "f 1 2 -4\n",
+                                  v + "f 1 2 0\n",
+                                  v + "f 1 2 x\n",
+                                  v + "f 1 2 3x\n",
+                                  v + "f\n" + f,
+                                  v,
+                                  v + f + "surf 0 1 0 1 1 2 3\n",
+                                  v + f + "cstype bezier\n",
+                                  v + f + "call other.obj\n",
+                                  "v 0,5 0 0\n" + v + f,
+                                  "v 0 0 1e400\n" + v + f,
+                                  "v 0 0\n" + v + f,
+                                  "v 0 0 0 0\n" + v + f,
+                                  "v 0 0 0 2\n" + v + f,
+                                  "v 0 0 0 v 1\n" + v + f,
+                                  "v 0 0 0 0.1 0.1 0.1 1\n" + v + f,
+                                  "v 0 0 0x1\n" + v + f,
+                                  "v 0 0 1.#INF\n" + v + f,
+                                  "v 0 0 -1.#IND\n" + v + f,
+                                  v + "f 1 2 3#\n"})
     EXPECT_THROW(read(text), BadInput) << text;
 }
 
