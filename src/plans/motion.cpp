@@ -484,7 +484,8 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
   JointTrajectory motion = trajectory();
   return {kind,
           columns.names,
-          !plan.joints.empty(),
+          !plan.joints.empty() && !plan.joints_counted,
+          plan.foreign,
           std::move(others),
           std::move(times),
           std::move(q),
