@@ -173,18 +173,20 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
 }
 
 /// The plans that have certificates as fcl_artic_verify takes them, each word after a space: CSV files, as they were
-/// given or, of what was mended, written; empty where it does not compare them.
+/// given or, of what was mended or has another layout, written; empty where it does not compare them.
 std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
-                        o.columns.columns.time.empty() && !o.columns.degrees && o.variables.turns != "shortest";
+                        o.columns.columns.time.empty() && !o.columns.degrees;
   const plans::Interpolation kind = o.interpolation.kind();
   std::string text;
   bool mended = false;
   for (const CertifiedPlan& plan : all) {
     const auto& certificate = plan.as_mended ? plan.as_mended->result.certificate : plan.result.certificate;
     if (!certificate || !*certificate) continue;
-    if (!as_named && !plan.as_mended) return "";
-    const std::string& file = plan.as_mended ? o.out : plan.file;
+    const bool as_given = as_named && !plan.as_mended && !plan.plan.foreign;
+    if (!as_given && plan.exitStatus() != kExitFree) return "";         // it is not written
+    if (!plan.as_mended && o.variables.turns == "shortest") return "";  // turns are added by other roundings
+    const std::string& file = as_given ? plan.file : o.out;
     if (!plans::hasPlanEnding(file) || plans::formatOf(file) != plans::Format::csv) return "";
     text += " --plan " + shellWord(file);
     mended = mended || plan.as_mended;

@@ -61,10 +61,9 @@ std::string verdictText(const CertifiedPlan& plan) {
   std::ostringstream out;
   out << result;
   if (const CertifiedContact* c = result.first()) {
-    out << fmt::format(
-        ", after waypoint {}: '{}' and '{}' at ({:.4g}, {:.4g}, {:.4g}), normal ({:.3g}, {:.3g}, {:.3g})",
-        plan.motion->waypointBefore(result.t_lower), c->body1.name, c->body2.name, c->point.x(), c->point.y(),
-        c->point.z(), c->normal.x(), c->normal.y(), c->normal.z());
+    out << fmt::format(", after waypoint {}: '{}' and '{}' at {}, normal {}",
+                       plan.motion->waypointBefore(result.t_lower), c->body1.name, c->body2.name,
+                       placeText(c->point, 4), directionText(c->normal, 3));
   }
   if (plan.line) out << "; " << plan.line->text();
   if (plan.clearance) out << fmt::format("; clearance at least {:.6g} m", plan.clearance->lower);
@@ -77,7 +76,7 @@ std::string columnsText(const CertifyReport& r) {
   std::size_t unnamed = 0;
   std::string names;
   for (const CertifiedPlan& plan : r.plans) {
-    if (!plan.motion || plan.motion->named) continue;
+    if (!plan.motion || plan.motion->named || plan.plan.joints_counted) continue;  // which its own note says
     if (unnamed++ > 0) continue;
     for (const std::string& name : plan.motion->joints) names += (names.empty() ? "" : ", ") + name;
   }

@@ -48,9 +48,10 @@ struct CheckVerb {
 };
 
 /// The motion as fcl_artic_verify takes it, each word after a space; empty where it does not.
-/// @param motion  of two ends.
-std::string motionArguments(const CheckVerb& options, const std::optional<JointMotion>& motion) {
-  if (options.shortest) return "";
+/// @param motion  of two ends; none: the trajectory.
+/// @param foreign  the trajectory's file is of another layout.
+std::string motionArguments(const CheckVerb& options, const std::optional<JointMotion>& motion, bool foreign) {
+  if (options.shortest || foreign) return "";
   if (motion) {
     if (options.interpolation.kind() == plans::Interpolation::tangentHalfAngle) return "";
     const auto words = [](const Eigen::VectorXd& q) {  // they find the very numbers again
@@ -83,6 +84,7 @@ int runCheck(CheckVerb& options) {
   // One of the two.
   std::optional<JointMotion> motion;
   std::optional<JointTrajectory> trajectory;
+  bool foreign = false;  // its file
   plans::MotionOptions of_motion;
   of_motion.interpolation = options.interpolation.kind();
   of_motion.blend = options.interpolation.blend;
@@ -104,6 +106,7 @@ int runCheck(CheckVerb& options) {
   } else {
     plans::PlanMotion plan = readTrajectory(tree, options.trajectory, of_motion);
     trajectory = std::move(plan.trajectory);
+    foreign = plan.foreign;
     motion_notes.push_back(
         fmt::format("the waypoints of '{}' are joined by: {}", options.trajectory, toString(plan.interpolation)));
     motion_notes.insert(motion_notes.end(), plan.notes.begin(), plan.notes.end());
@@ -161,7 +164,7 @@ int runCheck(CheckVerb& options) {
     if (!missing.empty()) notes.push_back(missing);
     world.unwritten.attempt([&] {
       const std::string written =
-          certificates.write(verifierArguments(options.world) + motionArguments(options, motion));
+          certificates.write(verifierArguments(options.world) + motionArguments(options, motion, foreign));
       if (!written.empty()) notes.push_back(written);
     });
   }

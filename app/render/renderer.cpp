@@ -187,8 +187,36 @@ Surface groundSurface(const Vector3d& center, double z, double half_width) {
   for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, -1}, {1, 1}, {-1, 1}}) {
     out.corners.push_back(Vector3d(center.x() + x * half_width, center.y() + y * half_width, z).cast<float>());
     out.normals.push_back(Vector3f::UnitZ());
+    out.box.extend(out.corners.back());
   }
   return out;
+}
+
+/// A part of a view, pixels.
+struct Part {
+  int x = 0, y = 0, width, height;
+};
+
+/// Where bodies are in a view, and `around` pixels beyond; all of the view where one reaches behind the eye.
+Part partOf(const std::vector<Body>& bodies, const Matrix4f& view_projection, int width, int height, int around) {
+  Eigen::AlignedBox2f box;
+  for (const Body& body : bodies) {
+    if (body.surface->box.isEmpty()) continue;
+    const Matrix4f projection = view_projection * body.M_0.matrix().cast<float>();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector4f p =
+          projection * body.surface->box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(corner)).homogeneous();
+      if (!(p.w() > 0)) return {0, 0, width, height};
+      box.extend(Eigen::Vector2f(p.head<2>() / p.w()));
+    }
+  }
+  const auto pixel = [&](float x, int size, int beyond) {
+    return static_cast<int>(std::clamp((x + 1) / 2 * static_cast<float>(size) + static_cast<float>(beyond), 0.0f,
+                                       static_cast<float>(size)));
+  };
+  if (box.isEmpty()) return {0, 0, 0, 0};
+  const int x = pixel(box.min().x(), width, -around), y = pixel(box.min().y(), height, -around);
+  return {x, y, pixel(box.max().x(), width, around + 1) - x, pixel(box.max().y(), height, around + 1) - y};
 }
 
 /// 1, 2 or 5 times a power of ten, at most x.
@@ -243,6 +271,7 @@ std::shared_ptr<const Surface> makeSurface(const Triangles& triangles) {
       }
       surface->corners.push_back(triangles.vertices[static_cast<std::size_t>(i)].cast<float>());
       surface->normals.push_back(size > 0 ? normal.normalized() : Vector3f::UnitZ());
+      surface->box.extend(surface->corners.back());
     }
   }
   return surface;
@@ -364,8 +393,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     throw std::runtime_error("a picture has at most " + std::to_string(limit / kSupersampling) + " pixels a side");
   }
 
-  const Matrix4f view_projection =
-      perspective(static_cast<double>(width) / height, camera.near, camera.far) * lookAt(camera.eye, camera.target);
+  const Matrix4f projection = perspective(static_cast<double>(width) / height, camera.near, camera.far),
+                 view_projection = projection * lookAt(camera.eye, camera.target);
   const Vector3d sun = sunFor(camera);
   const double shadow_radius = 1.8 * stage.radius, sun_distance = 20 * stage.radius;
   const Matrix4f shadow_matrix =
@@ -380,7 +409,8 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   const Texture color = colorTexture(w, h), layer = colorTexture(w, h);
   const Texture normal = colorTexture(w, h, GL_NEAREST);  // a mean of two surfaces' normals is none's
   const Texture depth = depthTexture(w, h, GL_NEAREST), layer_depth = depthTexture(w, h, GL_NEAREST);
-  const Texture occlusion = colorTexture(width, height), blurred = colorTexture(width, height);
+  const Texture occlusion(width, height, GL_R16F, GL_RED, GL_FLOAT, GL_LINEAR),
+      blurred(width, height, GL_R16F, GL_RED, GL_FLOAT, GL_LINEAR);
   const Texture shadow = depthTexture(kShadowSize, kShadowSize, GL_LINEAR);
   api().TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
 
@@ -425,16 +455,20 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   programs.occlusion.set("inverse_view_projection", Matrix4f(view_projection.inverse()));
   programs.occlusion.set("eye", eye);
   programs.occlusion.set("radius", static_cast<float>(0.13 * stage.radius));
+  programs.occlusion.set("depth_law", projection(2, 2), projection(2, 3));
   gl.drawScreen();
-  const Target blur_target(width, height, &blurred, nullptr);
-  blur_target.begin();
   programs.blur.use();
-  occlusion.bind(0);
-  normal.bind(1);
   programs.blur.set("source", 0);
   programs.blur.set("normal_map", 1);
-  programs.blur.set("pixel_size", 1.0f / static_cast<float>(width), 1.0f / static_cast<float>(height));
-  gl.drawScreen();
+  const Target blur_target(width, height, &blurred, nullptr);
+  const auto blur = [&](const Texture& from, const Target& to, float x, float y) {
+    to.begin();
+    from.bind(0);
+    programs.blur.set("next_pixel", x / static_cast<float>(width), y / static_cast<float>(height));
+    gl.drawScreen();
+  };
+  blur(occlusion, blur_target, 1, 0);
+  blur(blurred, occlusion_target, 0, 1);
 
   // The solid world.
   const Target main_target(w, h, &color, &depth);
@@ -444,7 +478,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
   const auto light = [&](const Program& p) {
     p.use();
     shadow.bind(0);
-    blurred.bind(1);
+    occlusion.bind(1);
     p.set("shadow_map", 0);
     p.set("occlusion_map", 1);
     p.set("view_projection", view_projection);
@@ -480,12 +514,24 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     int outline = 0;             // pixels of light rim
   };
   const auto lay = [&](const std::vector<Body>& bodies, const Lay& how) {
-    api().BindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
-    api().BindFramebuffer(GL_DRAW_FRAMEBUFFER, layer_target.id);
-    if (!how.over_all) api().BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
     layer_target.begin();
     api().ClearColor(0, 0, 0, 0);
-    api().Clear(how.over_all ? GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT : GL_COLOR_BUFFER_BIT);
+    // The rim looks beyond the part that is drawn.
+    if (how.over_all) api().Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    const Part part = partOf(bodies, view_projection, w, h, how.outline);
+    api().Enable(GL_SCISSOR_TEST);
+    api().Scissor(part.x, part.y, part.width, part.height);
+    if (!how.over_all) {
+      api().Clear(GL_COLOR_BUFFER_BIT);
+      api().BindFramebuffer(GL_READ_FRAMEBUFFER, main_target.id);
+      api().BlitFramebuffer(0, 0, w, h, 0, 0, w, h, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    }
+    // Depth first, so that what is hidden is not shaded.
+    api().ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    programs.depth.use();
+    programs.depth.set("view_projection", view_projection);
+    for (const Body& body : bodies) gl.drawBody(programs.depth, body);
+    api().ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     light(body_program);
     body_program.set("opacity", how.opacity);
     body_program.set("rim", how.rim);
@@ -503,6 +549,7 @@ Image Renderer::draw(const Stage& stage, const Camera& camera, int width, int he
     programs.layer.set("pixel_size", 1.0f / static_cast<float>(w), 1.0f / static_cast<float>(h));
     gl.drawScreen();
     api().Disable(GL_BLEND);
+    api().Disable(GL_SCISSOR_TEST);
     api().Enable(GL_DEPTH_TEST);
   };
   std::vector<Body> important;

@@ -16,6 +16,7 @@ namespace fcl_artic::render {
 struct Surface {
   std::vector<Eigen::Vector3f> corners;  ///< three per triangle, body's frame, m
   std::vector<Eigen::Vector3f> normals;  ///< one per corner, unit
+  Eigen::AlignedBox3f box;               ///< around the corners
 };
 std::shared_ptr<const Surface> makeSurface(const Triangles& triangles);
 

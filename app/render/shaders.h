@@ -62,15 +62,21 @@ in vec3 world, world_normal;
 out vec4 pixel;
 
 float sunlight(vec3 p, vec3 n) {
+  if (dot(n, sun) <= 0.0) return 0.0;
   vec4 at = shadow_matrix * vec4(p, 1.0);
   vec3 uvz = at.xyz * 0.5 + 0.5;
   if (any(lessThan(uvz, vec3(0.0))) || any(greaterThan(uvz, vec3(1.0)))) return 1.0;
   float bias = 0.0006 + 0.0022 * (1.0 - clamp(dot(n, sun), 0.0, 1.0));
   vec2 texel = 1.6 / vec2(textureSize(shadow_map, 0));
+  uvz.z -= bias;
+  // Away from a shadow's edge the corners agree, and so does what lies between.
   float lit = 0.0;
+  for (int i = -2; i <= 2; i += 4)
+    for (int j = -2; j <= 2; j += 4) lit += texture(shadow_map, vec3(uvz.xy + vec2(i, j) * texel, uvz.z));
+  if (lit <= 0.0 || lit >= 4.0) return lit / 4.0;
+  lit = 0.0;
   for (int i = -2; i <= 2; ++i)
-    for (int j = -2; j <= 2; ++j)
-      lit += texture(shadow_map, vec3(uvz.xy + vec2(i, j) * texel, uvz.z - bias));
+    for (int j = -2; j <= 2; ++j) lit += texture(shadow_map, vec3(uvz.xy + vec2(i, j) * texel, uvz.z));
   return lit / 25.0;
 }
 
@@ -85,7 +91,8 @@ uniform bool use_occlusion;
 void main() {
   vec3 v = normalize(eye - world);
   vec3 n = facing_normal(world, world_normal, v);
-  float near = exp(-pow(distance(world, highlight_center) / highlight_radius, 2.0));
+  float away = distance(world, highlight_center) / highlight_radius;
+  float near = exp(-away * away);
   vec3 base = mix(color, highlight, max(near, highlight_floor));
   float open = use_occlusion ? openness() : 1.0;
   float lit = sunlight(world, n);
@@ -96,7 +103,8 @@ void main() {
   float facing = clamp(dot(n, v), 0.0, 1.0);
   vec3 shaded = base * (ambient + key + fill);
   shaded += 0.16 * pow(max(dot(n, normalize(v + sun)), 0.0), 48.0) * lit;
-  shaded += 0.10 * pow(1.0 - facing, 4.0) * up * open;
+  float aside = (1.0 - facing) * (1.0 - facing);
+  shaded += 0.10 * aside * aside * up * open;
   shaded = mix(shaded, base, glow);
   float alpha = opacity * mix(1.0, 0.45 + 0.9 * pow(1.0 - facing, 1.6), rim);
   pixel = vec4(shaded, clamp(alpha, 0.0, 1.0));
@@ -145,6 +153,7 @@ uniform sampler2D depth_map, normal_map;
 uniform mat4 view_projection, inverse_view_projection;
 uniform vec3 eye;
 uniform float radius;
+uniform vec2 depth_law;  // m22 and m23 of the projection
 in vec2 uv;
 out vec4 pixel;
 vec3 unproject(vec2 at, float depth) {
@@ -160,41 +169,44 @@ void main() {
   vec3 other = cross(n, side);
   // interleaved gradient noise turns the sample pattern from pixel to pixel; the blur takes it out
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  const int kSamples = 24;
+  vec2 around = vec2(cos(turn), sin(turn));
+  const vec2 kGoldenTurn = vec2(-0.73736887, 0.67549029);  // cosine and sine of 2.3999632
+  const int kSamples = 12;
   float hidden = 0.0;
   for (int i = 0; i < kSamples; ++i) {
     float f = (float(i) + 0.5) / float(kSamples);
-    float a = turn + 2.3999632 * float(i);
-    float c = sqrt(1.0 - f);
-    vec3 d = (cos(a) * side + sin(a) * other) * sqrt(f) + c * n;
+    vec3 d = (around.x * side + around.y * other) * sqrt(f) + sqrt(1.0 - f) * n;
+    around = around.x * kGoldenTurn + around.y * vec2(-kGoldenTurn.y, kGoldenTurn.x);
     float reach = radius * (0.15 + 0.85 * fract(f * 7.0 + 0.37));
     vec4 q = view_projection * vec4(p + d * reach, 1.0);
     vec3 s = q.xyz / q.w * 0.5 + 0.5;
     float d_there = texture(depth_map, s.xy).r;
     if (d_there < s.z) {
-      float gap = distance(eye, p + d * reach) - distance(eye, unproject(s.xy, d_there));
+      // Both points are on one ray from the eye: their distances from it are as their depths, q.w and the other's.
+      float w_there = depth_law.y / (2.0 * d_there - 1.0 + depth_law.x);
+      float gap = distance(eye, p + d * reach) * (1.0 - w_there / q.w);
       hidden += 1.0 - smoothstep(0.8 * radius, 2.0 * radius, gap);
     }
   }
   pixel = vec4(1.0 - hidden / float(kSamples));
 })";
 
-/// Takes the noise out of the occlusion, within surfaces.
+/// Takes the noise out of the occlusion, within surfaces: along rows, and then along columns.
 constexpr const char* kBlurFragment = R"(#version 330 core
 uniform sampler2D source, normal_map;
-uniform vec2 pixel_size;
+uniform vec2 next_pixel;
 in vec2 uv;
 out vec4 pixel;
 void main() {
   vec3 n = texture(normal_map, uv).xyz;
   float sum = 0.0, weights = 0.0;
-  for (int i = -3; i <= 3; ++i)
-    for (int j = -3; j <= 3; ++j) {
-      vec2 at = uv + vec2(i, j) * pixel_size;
-      float w = pow(max(dot(n, texture(normal_map, at).xyz), 0.0), 4.0) + 1e-3;
-      sum += w * texture(source, at).r;
-      weights += w;
-    }
+  for (int i = -3; i <= 3; ++i) {
+    vec2 at = uv + float(i) * next_pixel;
+    float alike = max(dot(n, texture(normal_map, at).xyz), 0.0);
+    float w = alike * alike * alike * alike + 1e-3;
+    sum += w * texture(source, at).r;
+    weights += w;
+  }
   pixel = vec4(sum / weights);
 })";
 

@@ -16,9 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string vectorText(const Eigen::Vector3d& v) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // + 0.0: no "-0"
-}
 
 /// What a link carries has a name that is not its own; no obstacle or attached object has that of a link.
 bool isAttached(const KinematicTree& tree, const BodyRef& body) {
@@ -84,13 +81,13 @@ std::string contactText(const KinematicTree& tree, const CertifiedContact& c) {
       entry("pair", fmt::format("{} and {}", bodyText(tree, c.body1, c.b1), bodyText(tree, c.body2, c.b2)));
   text += entry("time", fmt::format("t in {}, {}", bracketText(c.t_lower, c.t_upper),
                                     c.certain ? "contact proven" : "contact not proven: nearer than can be decided"));
-  text += entry("point", fmt::format("{} m in the world, at t = {:.12g}", vectorText(c.point),
-                                     c.certain ? c.t_upper : c.t_lower));
+  text += entry(
+      "point", fmt::format("{} m in the world, at t = {:.12g}", placeText(c.point), c.certain ? c.t_upper : c.t_lower));
   if (c.approach_speed != 0) {
     text += entry("witness", fmt::format("nearest at t = {:.12g}: {} and {} m, approaching at {:.6g} m per unit of t",
-                                         c.t_lower, vectorText(c.nearest1), vectorText(c.nearest2), c.approach_speed));
+                                         c.t_lower, placeText(c.nearest1), placeText(c.nearest2), c.approach_speed));
   }
-  text += entry("normal", fmt::format("{} from '{}' to '{}', {}", vectorText(c.normal), c.body1.name, c.body2.name,
+  text += entry("normal", fmt::format("{} from '{}' to '{}', {}", directionText(c.normal), c.body1.name, c.body2.name,
                                       toString(c.feature)));
   return text;
 }
@@ -202,6 +199,18 @@ Json posesJson(const Report& r) {
 }
 
 }  // namespace
+
+std::string placeText(const Eigen::Vector3d& place, int digits) {
+  // What the rounding of sines and cosines, some 1e-16 each, leaves of a coordinate that is 0.
+  const double noise = 1e-15 * std::max(1.0, place.cwiseAbs().maxCoeff());
+  const auto text = [&](double x) { return fmt::format("{:.{}g}", std::abs(x) <= noise ? 0.0 : x, digits); };
+  return fmt::format("({}, {}, {})", text(place.x()), text(place.y()), text(place.z()));
+}
+
+std::string directionText(const Eigen::Vector3d& direction, int decimals) {
+  const double unit = std::pow(10, decimals);
+  return placeText((direction * unit).array().round() / unit, decimals);
+}
 
 std::string scopeText(const CertifiedRequest& request) {
   std::string text;

@@ -29,6 +29,11 @@ struct Report {
   bool request_known = true;
 };
 
+/// "(0.5, -0.25, 0)": a place, m, in so many digits. No coordinate is "-0", or what rounding leaves of 0.
+std::string placeText(const Eigen::Vector3d& place, int digits = 6);
+/// The same of a direction: a vector of length 1, with so many decimals.
+std::string directionText(const Eigen::Vector3d& direction, int decimals = 6);
+
 /// The verdict in one sentence.
 std::string headline(const Report& report);
 

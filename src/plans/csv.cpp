@@ -379,7 +379,6 @@ std::string Table::where(std::size_t row) const {
 
 Table parseTable(std::string_view content, const std::string& file) {
   Table out;
-  char separator = ',';
   std::size_t width = 0;
   out.open_end = !content.empty() && content.back() != '\n';
   for (int number = 1; !content.empty(); ++number) {
@@ -393,8 +392,8 @@ Table parseTable(std::string_view content, const std::string& file) {
       continue;
     }
     const std::string where = fmt::format("{}line {}", file, number);
-    if (out.header_line == 0) separator = separatorOf(line);
-    const std::vector<std::string_view> fields = splitLine(line, separator);
+    if (out.header_line == 0) out.separator = separatorOf(line);
+    const std::vector<std::string_view> fields = splitLine(line, out.separator);
     if (out.header_line == 0) {
       out.header_line = number;
       width = fields.size();
@@ -431,7 +430,8 @@ Table parseTable(std::string_view content, const std::string& file) {
 Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnOptions& options) {
   Table table = parseTable(content, "");
   if (table.header_line == 0) throw std::invalid_argument("it is empty: no line names the columns");
-  if (table.columns.empty() && options.columns.empty()) table.columns = namesInComment(tree, table);
+  const bool in_comment = table.columns.empty();
+  if (in_comment && options.columns.empty()) table.columns = namesInComment(tree, table);
   const std::vector<std::optional<Meaning>> meanings = !options.columns.empty() ? givenMeanings(tree, table, options)
                                                        : table.columns.empty()  ? meaningsByPlace(tree, table, options)
                                                                                 : meaningsByName(tree, table, options);
@@ -491,7 +491,9 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
     if (begin > 0)
       plan.notes.push_back(fmt::format("times are a clock's: they are counted from the first, {:.6f} s", begin));
   }
-  if (const std::string taken = takenText(tree, table, meanings); !taken.empty()) plan.notes.push_back(taken);
+  const std::string taken = takenText(tree, table, meanings);
+  if (!taken.empty()) plan.notes.push_back(taken);
+  plan.foreign = !taken.empty() || in_comment || table.separator != ',';
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const bool own = meanings[i]->quantity == Quantity::none || exactMeaning(tree, table.columns[i]);
     if (!own) keepUnits(table.columns[i], table.header_line, plan);

@@ -14,6 +14,7 @@ namespace fcl_artic::plans {
 /// number may end with deg: it is in degrees, and is turned into rad.
 struct Table {
   std::vector<std::string> columns;  ///< empty: they have no names
+  char separator = ',';              ///< of the columns
   std::string comment;               ///< the last one before the first line, without #
   std::vector<bool> degrees;         ///< columns with such a number
   std::vector<std::vector<double>> rows;

@@ -372,7 +372,8 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
   JointTrajectory motion = makeTrajectory(tree, kind, through, options.blend, unwrap);
   return {kind,
           columns.names,
-          !plan.joints.empty(),
+          !plan.joints.empty() && !plan.joints_counted,
+          plan.foreign,
           std::move(others),
           std::move(times),
           std::move(q),

@@ -62,6 +62,7 @@ struct PlanMotion {
   Interpolation interpolation;             ///< that was used; never automatic or jtc
   std::vector<std::string> joints;         ///< what the plan's columns are taken for, in their order
   bool named;                              ///< the plan says so itself; else by MotionOptions::joints or the robot
+  bool foreign;                            ///< of Plan
   std::map<std::string, double> rest;      ///< values of all other variables
   std::vector<double> times;               ///< of the waypoints, s; 0, 1, 2 ... where `timed` is false
   std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them

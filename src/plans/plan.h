@@ -26,6 +26,7 @@ struct Plan {
   std::string name;                 ///< within its file; empty: the only one
   std::vector<std::string> joints;  ///< names of variables (KinematicTree::variableName()); empty: all of the robot's
   bool joints_counted = false;      ///< the file numbers its columns: `joints` are those of ColumnOptions::joints
+  bool foreign = false;             ///< a CSV file of another layout than writePlans() has
   std::vector<double> times;        ///< s, one for each waypoint; empty: none are given
   Rows positions;                   ///< rad or m
   Rows velocities, accelerations;   ///< rad/s, m/s, and per s²; empty: none are given

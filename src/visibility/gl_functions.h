@@ -34,6 +34,7 @@ struct GlFunctions {
   X(GetProgramInfoLog, GETPROGRAMINFOLOG) X(GetProgramiv, GETPROGRAMIV) X(GetQueryObjectuiv, GETQUERYOBJECTUIV)   \
   X(GetShaderInfoLog, GETSHADERINFOLOG) X(GetShaderiv, GETSHADERIV) X(GetUniformLocation, GETUNIFORMLOCATION)     \
   X(LinkProgram, LINKPROGRAM) X(PixelStorei, PIXELSTOREI) X(ReadBuffer, READBUFFER) X(ReadPixels, READPIXELS)     \
+  X(Scissor, SCISSOR)                                                                                             \
   X(ShaderSource, SHADERSOURCE) X(TexImage2D, TEXIMAGE2D) X(TexParameteri, TEXPARAMETERI) X(Uniform1f, UNIFORM1F) \
   X(Uniform1i, UNIFORM1I) X(Uniform2f, UNIFORM2F) X(Uniform3fv, UNIFORM3FV) X(UniformMatrix4fv, UNIFORMMATRIX4FV) \
   X(UseProgram, USEPROGRAM) X(VertexAttribIPointer, VERTEXATTRIBIPOINTER)                                         \

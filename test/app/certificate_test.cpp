@@ -72,6 +72,16 @@ TEST_F(CertificateOptionTest, SaysWhatItWrote) {
   EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
   run = this->run("certify '" + plan + "' --robot " + world);
   EXPECT_EQ(noteOf(run, "notes"), expected(" --plan '" + plan + "'")) << run.err;
+  // The verifier reads no other layouts: there is what was written.
+  for (const char* log : {"Time,q1\n0,0\n1,1\n", "time;slide\n0;0\n1;1\n", "# time slide\n0 0\n1 1\n"}) {
+    const std::string file_of_log = write("log.csv", log), safe = path("safe") + ".csv";
+    run = this->run("certify " + file_of_log + " --robot " + world);
+    EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
+    run = this->run("check " + world + " --trajectory " + file_of_log);
+    EXPECT_EQ(noteOf(run, "notes"), expected("")) << run.err;
+    run = this->run("certify " + file_of_log + " --out " + safe + " --robot " + world);
+    EXPECT_EQ(noteOf(run, "notes"), expected(" --plan " + safe)) << run.err;
+  }
 }
 
 TEST_F(CertificateOptionTest, OfManyLinesThereIsARecordEach) {

@@ -375,6 +375,13 @@ TEST_F(CertifyProgramTest, ColumnsWithoutNamesAreSaid) {
   const Outcome unnamed = certifyFile("way.path", "0 0\n0 0.25\n", "--json --joints rail,hinge");
   EXPECT_EQ(Json::parse(unnamed.out).at("plans").at(0).at("joints"), (Json{"rail", "hinge"}));
   EXPECT_EQ(Json::parse(unnamed.out).at("plans").at(0).at("joints_named"), false);
+  const Outcome counted = certifyFile("way.csv", "q1,q2\n0,0\n0.25,0\n", "--json");
+  EXPECT_EQ(Json::parse(counted.out).at("plans").at(0).at("joints"), (Json{"hinge", "rail"}));
+  EXPECT_EQ(Json::parse(counted.out).at("plans").at(0).at("joints_named"), false);
+  const Outcome once = certifyFile("way.csv", "q1,q2\n0,0\n0.25,0\n");
+  EXPECT_NE(once.out.find("its columns are taken so: hinge = q1, rail = q2"), std::string::npos) << once.out;
+  EXPECT_EQ(once.out.find("names no joints"), std::string::npos) << once.out;
+  certifyFile("way.csv", "rail,hinge\n0,0\n0,0.25\n");
   const Outcome table = certify(path("way.path") + " " + path("way.csv"));
   EXPECT_NE(table.out.find("note: 1 of 2 plans names no joints: its columns are taken for hinge, rail\n"),
             std::string::npos)
