@@ -16,7 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-
 /// What a link carries has a name that is not its own; no obstacle or attached object has that of a link.
 bool isAttached(const KinematicTree& tree, const BodyRef& body) {
   return body.link >= 0 && body.name != tree.linkName(body.link);

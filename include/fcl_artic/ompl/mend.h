@@ -36,15 +36,15 @@ struct Mended {
 };
 
 /// Replaces the stretches of a way that are not proven free when every joint goes straight between the waypoints:
-/// - by a way that leaves the given one by a little, between a point before the stretch and one after it, each motion of
-///   it certified;
+/// - by a way that leaves the given one by a little, between a point before the stretch and one after it, each motion
+///   of it certified;
 /// - if there is none, by a way that RRTConnect finds with the certified validator, simplified by certified shortcuts
 ///   and brought back towards the given way;
 /// - if there is none, by such ways between points farther apart.
 ///
-/// Both ends of a detour and the detour itself keep the clearance. A stretch that is proven free stays as it is, however
-/// near it passes. A stretch that becomes longer takes longer in proportion: its times are no law that a controller's
-/// limits went into.
+/// Both ends of a detour and the detour itself keep the clearance. A stretch that is proven free stays as it is,
+/// however near it passes. A stretch that becomes longer takes longer in proportion: its times are no law that a
+/// controller's limits went into.
 /// @param manager    set up.
 /// @param given      times and positions.
 /// @param variables  that detours may move; the others stay where the first waypoint has them.
