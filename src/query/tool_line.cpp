@@ -53,7 +53,6 @@
 #include <string>
 #include <vector>
 
-#include "kinematics/angles.h"
 #include "motion/link_motion.h"
 #include "numerics/arc_tangent.h"
 #include "numerics/constants.h"
@@ -66,7 +65,7 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kPiUpper = 3.1415926535897936;
+constexpr double kPi = 3.1415926535897932, kPiUpper = 3.1415926535897936;
 constexpr double kToolDefect = 1e-9;    ///< as of other poses that callers give
 constexpr double kShortest = 1e-6;      ///< of a path, and of a triangle of an arc's points, m
 constexpr double kFlattestArc = 1e3;    ///< radius over the longest side of that triangle
@@ -107,8 +106,8 @@ double fullAngle(double x, double y) {
   const double size = std::sqrt(x * x + y * y);
   if (!(size > 0)) return 0;
   double angle = 2 * arcTangent(std::abs(y) / (size + std::abs(x)));
-  if (x < 0) angle = kTwoPi / 2 - angle;
-  return y < 0 ? kTwoPi - angle : angle;
+  if (x < 0) angle = kPi - angle;
+  return y < 0 ? 2 * kPi - angle : angle;
 }
 
 /// A circle through three points.
@@ -226,7 +225,7 @@ class ToolPath {
     angle_ = anglePast(end);
     curvature_ = 1 / radius;
     length_ = radius * angle_;
-    reach_ = angle_ > kTwoPi / 2 ? 0.5 * (end - begin_).norm() : radius;
+    reach_ = angle_ > kPi ? 0.5 * (end - begin_).norm() : radius;
     MotionElement& turn = wanted_.elements.emplace_back();
     turn.kind = MotionElement::Kind::revolute;
     turn.before = RigidTransform(Rotation(), center_);
@@ -269,7 +268,7 @@ class ToolPath {
     if (curvature_ == 0) return std::min(std::max((x - begin_).dot(axis_) / axis_.squaredNorm(), 0.0), 1.0);
     const double angle = anglePast(x);
     if (angle <= angle_) return angle / angle_;
-    return angle - angle_ < kTwoPi - angle ? 1 : 0;
+    return angle - angle_ < 2 * kPi - angle ? 1 : 0;
   }
 
   BodyMotion wanted_;                  ///< the pose that is wanted at the part s of the path
