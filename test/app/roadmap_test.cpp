@@ -363,6 +363,11 @@ TEST_F(RoadmapTest, GivenConfigurationsAreItsFirstVertices) {
                           "0.0009 rad"),
             std::string::npos)
       << near.err;
+  // Notes of the file are told.
+  const Outcome degrees =
+      make("degrees.h5", "--vertices 3 --with " + write("degrees.csv", "# angles in degrees\nhinge,rail\n0.5,0\n"));
+  EXPECT_EQ(degrees.status, 0);
+  EXPECT_NE(degrees.err.find("degrees.csv': "), std::string::npos) << degrees.err;
   EXPECT_NE(make("x.dot").err.find("written as .h5, .graphml or .csv"), std::string::npos);
   EXPECT_NE(certify("arm.urdf", "x.h5").err.find("can't be read as an HDF5 file"), std::string::npos);
 }
