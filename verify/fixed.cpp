@@ -6,6 +6,8 @@
 namespace verify {
 namespace {
 
+static_assert(sizeof(long) >= 8, "MPFR takes and gives the high words of numbers as long");
+
 struct Real {  // an MPFR number that frees itself
   explicit Real(mpfr_prec_t bits) { mpfr_init2(x, bits); }
   explicit Real(Fix a) : Real(128) {  // which has at most 105 bits: exact

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The formats: worlds, motions and records, read strictly. Nothing is proven here.
+// The formats: worlds, motions and records, read strictly. No motion is proven free here; but what proofs are told is
+// made here, with its bounds: axes, rotations, closed surfaces, who is ignored until when.
 #include <algorithm>
 
 #include "places.h"

@@ -294,6 +294,7 @@ class Run {
   }
 
   void compare() {
+    if (!world_.false_reason.empty()) report(asked_.files[0], {{world_.false_reason}, {}, {}, {}});
     std::vector<double> base;
     if (!asked_.scenes.empty()) base.assign(6, 0);
     for (const std::string& pose : asked_.base) base = verify::readBase(pose);

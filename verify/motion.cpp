@@ -60,6 +60,7 @@ Functional::Functional(const World& world, Poses& poses, const Span& span, int f
     : world_(world), poses_(poses), span_(span) {
   known_.emplace(frame, Value{v, d});
   for (int child = frame, up; child != 0; child = up) {
+    poses.spend(1);
     up = world.frames[child].parent;
     towards_.emplace(up, child);
   }

@@ -174,7 +174,7 @@ class Walk {
     separated(task, all, line, task.span, 0);
   }
 
-  /// A power of two scales n to about 1; which n it is has no influence on what is proven.
+  /// A power of two scales n to 1 at most; which n it is has no influence on what is proven.
   Line direction(const Task& task, std::uint8_t kind) {
     const int where = kind % 3, bytes = kind < kSepFine ? 2 : 4;
     Line line;
@@ -250,7 +250,8 @@ class Walk {
 };
 
 // A motion goes on in each piece where it was at the end of the one before. Coefficients are rounded: 2^-29 rad or m,
-// and 2^-39 of a value, are no jump. Of `rotate` the orientations are compared, each entry of their matrices.
+// and 2^-39 of a joint's value but 2^-20 at most, are no jump. (Its offset is the same on both sides.) Of `rotate` the
+// orientations are compared, each entry of their matrices.
 double largestJump(const World& world, const Motion& motion, Budget& budget) {
   Fix largest;
   for (std::size_t k = 1; k < motion.pieces.size(); ++k) {
@@ -264,14 +265,16 @@ double largestJump(const World& world, const Motion& motion, Budget& budget) {
     const Span end{Fix{kOne}, Fix{kOne}}, begin{};
     for (std::size_t f = 1; f < world.frames.size(); ++f) {
       const int frame = static_cast<int>(f);
+      budget.spend(1);
       bool rotates = false;
       for (const Element& e : world.frames[f].elements) {
         budget.spend(50);
         rotates = rotates || e.kind == Element::rotate;
         if (e.kind == Element::rotate) continue;
-        const Tm x = before.variable(e.variable, end), y = after.variable(e.variable, begin);
+        const Tm m = exactly(e.multiplier), x = m * before.variable(e.variable, end),
+                 y = m * after.variable(e.variable, begin);
         jumps("the variable " + inQuotes(world.variables[static_cast<std::size_t>(e.variable)]), bound(x - y),
-              Fix{kOne >> 29} + shifted(bound(x), 39));
+              Fix{kOne >> 29} + std::min(shifted(bound(x), 39), Fix{kOne >> 20}));
       }
       if (!rotates) continue;
       const Mat R = before.local(frame, end).R, S = after.local(frame, begin).R;

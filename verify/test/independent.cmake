@@ -9,8 +9,8 @@ file(GLOB sources ${SOURCE_DIR}/*.h ${SOURCE_DIR}/*.cpp)
 set(readers main.cpp meshes.cpp meshes.h packages.cpp packages.h plan.cpp readers.h robot.cpp robot.h scene.cpp shapes.cpp shapes.h
   srdf.cpp urdf.cpp xml.cpp xml.h)
 set(people json.cpp report.cpp report.h)
-# What reads worlds, motions and proofs and names what is in them, and what shows that bodies do meet: a motion is proven
-# free by neither.
+# These read worlds, motions and proofs and name what is in them, or show that bodies do meet. No motion is proven free
+# here. Proofs rest on what format.cpp encloses: axes, rotations, closed surfaces.
 set(format contact.cpp format.cpp sha256.cpp sha256.h)
 set(core 0)
 set(lines 0)
@@ -55,6 +55,6 @@ endforeach()
 message("The verifier has ${lines} lines, ${code} of them neither empty nor comments; what proves has ${core} of these")
 if(wrong OR lines LESS 1000)
   message(FATAL_ERROR "the verifier includes what it must not, or its sources were not found")
-elseif(core GREATER 1321)
+elseif(core GREATER 1325)
   message(FATAL_ERROR "what proves is longer than it was: the less there is to read, the more can be trusted")
 endif()

@@ -581,6 +581,19 @@ TEST(VerifyProof, PiecesJoin) {
   expectVerified(v);
   EXPECT_NEAR(v.jump, 1e-10, 1e-15);
   expectRefused(verdict({q(0, 1), q(1 + 4e-9, 0)}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps");
+  // A joint jumps, not its variable: by 2 m here, of a value that is large, or by a multiplier that is.
+  const auto joint = [&](double multiplier, double offset, double q0, double q1) {
+    const World scaled = readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) +
+                                   " 0 " + hex(multiplier) + " " + hex(offset) + "\ngeometry sphere " + hex(0.25) +
+                                   "\nbody obstacle wall 0 0 " + hex(at(9, 0, 0)) + "\nbody link cart 1 0 " +
+                                   hex(kHere) + "\n");
+    MotionText m;
+    m.pieces = {q(q0, 0), q(q1, 0)};
+    return judge(scaled, m.write(scaled), sep(V{-1, 0, 0}) + sep(V{-1, 0, 0}));
+  };
+  expectRefused(joint(0x1p30, 0, 0, 0x1p-29), "the motion jumps");
+  expectRefused(joint(1, -0x1p39, 0x1p39 - 2, 0x1p39), "the motion jumps");
+  expectVerified(joint(2, -3, 1, 1 + 1e-10));
   // Orientations: w and the orientation before it make one.
   const std::string turned = "orientation 1 0x0p+0 -0x1p+0 0x0p+0 0x1p+0 0x0p+0 0x0p+0 0x0p+0 0x0p+0 0x1p+0\n",
                     turning = "q 3 " + hex(0) + " " + hex(std::acos(0.0)) + "\n";
