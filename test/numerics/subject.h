@@ -42,7 +42,6 @@ struct CertificateOutput {
   double turning_G[8][3], turning_prefix[8];  ///< along the direction that turns
   unsigned separated;
   unsigned separated_few;  ///< the same, asked for a few lanes at a time
-  double sign;
 };
 
 /// What is found for whole lanes, each searched by itself from CertificateInput::n on.

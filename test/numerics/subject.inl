@@ -45,7 +45,11 @@ PairPads relateSides(const PairInput& in, Side* side) {
                                      in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.inverse_a,
                                      in.placement_b, in.extents, in.margin, in.d, side[0].m, side[1].m);
   invert(side[0].m, side[1].m);
-  for (int s = 0; s < kSides; ++s) side[s].m.makeBernstein();
+  for (int s = 0; s < kSides; ++s) {
+    side[s].m.makeBernstein();
+    side[s].margin = in.margin;
+    side[s].pad = pads.pad;
+  }
   return pads;
 }
 
@@ -79,16 +83,13 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
   side[0].moving = side[1].still = &in.b;
   const Side& s = side[in.side];
   const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
-  out.sign = 0;
-  out.separated = certainlySeparated(s, still, moving, Vec3(in.n), kAllLanes, in.motion.margin, pads.pad, out.sign);
+  out.separated = certainlySeparated(s, still, moving, Vec3(in.n), kAllLanes);
   out.separated_few = 0;
   for (unsigned lanes = (1u << kFewLanes) - 1; lanes & kAllLanes; lanes <<= kFewLanes) {
-    double sign = 0;
-    out.separated_few |=
-        certainlySeparated(s, still, moving, Vec3(in.n), lanes & kAllLanes, in.motion.margin, pads.pad, sign);
+    out.separated_few |= certainlySeparated(s, still, moving, Vec3(in.n), lanes & kAllLanes);
   }
   Lanes G[3];
-  gapBound(s, still, moving, Vec3(in.n), in.motion.margin, pads.pad, G);
+  gapBound(s, still, moving, Vec3(in.n), G);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int k = 0; k < 3; ++k) out.G[lane][k] = G[k][lane];
     out.prefix[lane] = positivePrefix(out.G[lane]);
@@ -99,7 +100,7 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
     turning.end[k] = Lanes(in.n[k] + in.turn[k]);
   }
   Lanes turned[3];
-  gapBound(s, still, moving, turning, in.motion.margin, pads.pad, turned);
+  gapBound(s, still, moving, turning, turned);
   for (int lane = 0; lane < kLanes; ++lane) {
     for (int k = 0; k < 3; ++k) out.turning_G[lane][k] = turned[k][lane];
     out.turning_prefix[lane] = positivePrefix(out.turning_G[lane]);
@@ -108,24 +109,23 @@ void certify(const CertificateInput& in, CertificateOutput& out, PairOutput& mot
 
 void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
   Side side[kSides];
-  const PairPads pads = relateSides(in.motion, side);
+  relateSides(in.motion, side);
   side[0].still = side[1].moving = &in.a;
   side[0].moving = side[1].still = &in.b;
   const Side& s = side[in.side];
   const Piece &still = s.still->pieces[0], &moving = s.moving->pieces[0];
-  out.slack = slackOf(s, still, moving, in.motion.margin, pads.pad);
+  out.slack = slackOf(s, still, moving);
   for (int lane = 0; lane < kLanes; ++lane) {
     const SweptDifference difference(s, still, moving, lane);
     DifferencePoint p;
     difference.support(Vec3(in.n), p);
     out.least[lane] = dot(Vec3(in.n), p.w);
-    double sign = 0;
     const unsigned bit = 1u << lane;
     GjkResult g;
     searchNearest(difference, Vec3(in.n), kWitnessAccuracy, out.slack, out.slack, 48, g);
     if (g.lower > out.slack) {
       out.told |= bit;
-      out.certified |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
+      out.certified |= bit & certainlySeparated(s, still, moving, g.n, bit);
     }
     DifferenceBody body;
     body.tree_a = s.still;
@@ -135,7 +135,7 @@ void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
     body.pose = {laneOf(s.m.R[0], lane), laneOf(s.m.c[0], lane)};
     gjk(body, Vec3(in.n), 1e-7, still.radius + moving.radius + in.motion.margin, 48, g);
     if (g.overlap) continue;
-    out.middle |= bit & certainlySeparated(s, still, moving, g.n, bit, in.motion.margin, pads.pad, sign);
+    out.middle |= bit & certainlySeparated(s, still, moving, g.n, bit);
   }
 }
 

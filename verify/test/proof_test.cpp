@@ -583,10 +583,10 @@ TEST(VerifyProof, PiecesJoin) {
   expectRefused(verdict({q(0, 1), q(1 + 4e-9, 0)}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps");
   // A joint jumps, not its variable: by 2 m here, of a value that is large, or by a multiplier that is.
   const auto joint = [&](double multiplier, double offset, double q0, double q1) {
-    const World scaled = readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) +
-                                   " 0 " + hex(multiplier) + " " + hex(offset) + "\ngeometry sphere " + hex(0.25) +
-                                   "\nbody obstacle wall 0 0 " + hex(at(9, 0, 0)) + "\nbody link cart 1 0 " +
-                                   hex(kHere) + "\n");
+    const World scaled =
+        readWorld(kHead + "variable x\nframe cart 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " +
+                  hex(multiplier) + " " + hex(offset) + "\ngeometry sphere " + hex(0.25) + "\nbody obstacle wall 0 0 " +
+                  hex(at(9, 0, 0)) + "\nbody link cart 1 0 " + hex(kHere) + "\n");
     MotionText m;
     m.pieces = {q(q0, 0), q(q1, 0)};
     return judge(scaled, m.write(scaled), sep(V{-1, 0, 0}) + sep(V{-1, 0, 0}));
