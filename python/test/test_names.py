@@ -47,6 +47,15 @@ REACHABLE = {
     "RedonStatistics": "Result.statistics",
     "VisibilityStatistics": "Result.statistics",
     "QueryStatistics": "Result.statistics",
+    # interpolation.h: a plan's options, as text
+    "Interpolation": "load_plans",
+    "interpolationNamed": "load_plans",
+    "Turns": "load_plans",
+    "turnsNamed": "load_plans",
+    "turnsOf": "load_plans",
+    "curveOf": "load_plans",
+    "Waypoints": "Plan",
+    "makeTrajectory": "Plan.trajectory",
     "ClearanceRequest": "World.clearance",  # its options
     "ToolLineRequest": "tool_deviation",  # its options
     "ToolDeviation": "ToolDeviation",
@@ -115,6 +124,9 @@ LEFT_OUT = {
     "LinkRef": "an argument of C++; links go by their names",
     "Fingerprint": "JointMotion.is_of() compares the joint spaces of trees",
     "toString": "the members of the enumerations have values as text",
+    "isController": "an interpolation is text in Python",
+    "WaypointValues": "Plan.velocities and .accelerations are None where a plan has none",
+    "restToRestVelocities": "load_plans(interpolation='jtc-upsampled') goes by them",
     "exceptionsOf": "a result's text ends with it: str(result)",
     "DefaultContinuousCollisionFunction": "a callback for FCL's own managers in C++; Bodies.check() answers",
     "OffscreenContext": "a context of OpenGL for C++ programs that draw",
