@@ -47,7 +47,9 @@ std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const
   const auto fail = [&](const std::string& why) { throw std::invalid_argument(fmt::format("'{}': {}", path, why)); };
   for (const plans::Plan& plan : plans::parsePlans(tree, files::read(path), plans::formatOf(path))) {
     if (!plan.error.empty()) fail(plan.error);
-    for (const std::string& note : plan.notes) fmt::print(stderr, "fcl_artic: note: '{}': {}\n", path, note);
+    for (const std::vector<std::string>& notes : {plan.notes, plans::unitNotes(plan, false)}) {
+      for (const std::string& note : notes) fmt::print(stderr, "fcl_artic: note: '{}': {}\n", path, note);
+    }
     const std::vector<std::string>& joints = plan.joints.empty() ? known : plan.joints;
     for (const std::string& joint : known) {
       if (std::find(joints.begin(), joints.end(), joint) == joints.end()) {
