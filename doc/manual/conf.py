@@ -84,7 +84,7 @@ def by_header(folder):
 by_header(pathlib.Path(os.environ["FCL_ARTIC_DOXYGEN_XML"]))
 
 
-sys.path.insert(0, str(ROOT / "python"))
+sys.path.append(str(ROOT / "python"))  # behind the built module
 from signatures import decorators, members, readable  # noqa: E402
 
 STUB = (ROOT / "python" / "fcl_artic" / "_fcl_artic.pyi").read_text()
