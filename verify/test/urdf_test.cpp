@@ -33,7 +33,7 @@ std::string body(const std::string& role, const std::string& name, int frame, in
          "\n";
 }
 const std::string kSphere = "geometry sphere " + hex(0.5) + "\n";
-const V X{1, 0, 0}, Z{0, 0, 1};
+const V kX{1, 0, 0}, kZ{0, 0, 1};
 
 /// Links a and b, and a joint j of that axis.
 std::string axisUrdf(const std::string& type, const std::string& axis) {
@@ -46,11 +46,11 @@ std::string axisWorld(const std::string& kind, const V& axis) {
 
 // The axis that the file means is one that the claim is about: exactly where it is a coordinate axis.
 TEST_F(VerifyUrdf, AxesOfTheFileAreThoseOfTheClaim) {
-  EXPECT_EQ(said(axisWorld("turn", Z), axisUrdf("revolute", "0 0 3")), "same");
-  EXPECT_EQ(said(axisWorld("turn", Z), axisUrdf("revolute", "0 -0.0 1e-300")), "same");
-  EXPECT_NE(said(axisWorld("turn", Z), axisUrdf("revolute", "0 0 -1")), "same");
-  EXPECT_NE(said(axisWorld("turn", Z), axisUrdf("revolute", "0 1e-17 1")), "same");
-  EXPECT_NE(said(axisWorld("slide", Z), axisUrdf("prismatic", "0 5e-16 1")), "same");
+  EXPECT_EQ(said(axisWorld("turn", kZ), axisUrdf("revolute", "0 0 3")), "same");
+  EXPECT_EQ(said(axisWorld("turn", kZ), axisUrdf("revolute", "0 -0.0 1e-300")), "same");
+  EXPECT_NE(said(axisWorld("turn", kZ), axisUrdf("revolute", "0 0 -1")), "same");
+  EXPECT_NE(said(axisWorld("turn", kZ), axisUrdf("revolute", "0 1e-17 1")), "same");
+  EXPECT_NE(said(axisWorld("slide", kZ), axisUrdf("prismatic", "0 5e-16 1")), "same");
   const double s = std::sqrt(0.5);
   EXPECT_EQ(said(axisWorld("slide", {0, s, s}), axisUrdf("prismatic", "0 1 1")), "same");
   EXPECT_EQ(said(axisWorld("slide", {0, s * (1 + 5e-16), s}), axisUrdf("prismatic", "0 1 1")), "same");
@@ -108,23 +108,23 @@ TEST_F(VerifyUrdf, ChainsOfMimics) {
                                   joint("j2", "revolute", "b", "c", mimic("j1", "multiplier='0.3' offset='0.2'")) +
                                   joint("j1", "continuous", "a", "b", axis));
   const auto world = [](const std::string& variables, const std::string& second, const std::string& third) {
-    return kHead + variables + frame("a", 0) + frame("b", 1, element("turn", Z, 0)) + frame("c", 2, second) +
+    return kHead + variables + frame("a", 0) + frame("b", 1, element("turn", kZ, 0)) + frame("c", 2, second) +
            frame("d", 3, third) + kSphere + body("link", "a", 1) + body("link", "b", 2) + body("link", "c", 3) +
            body("link", "d", 4);
   };
-  const std::string one = "variable j1\n", second = element("turn", Z, 0, 0.3, 0.2);
-  EXPECT_EQ(said(world(one, second, element("turn", Z, 0, 0.1 * 0.3, 0.1 * 0.2 + 0.7)), chain), "same");
-  EXPECT_NE(said(world(one, second, element("turn", Z, 0, 0.1, 0.7)), chain), "same");
-  EXPECT_NE(said(world(one, second, element("turn", Z, 0, 0.03, 0.73)), chain), "same");
-  EXPECT_NE(
-      said(world(one, element("turn", Z, 0, 0.3, 0.2000001), element("turn", Z, 0, 0.1 * 0.3, 0.1 * 0.2 + 0.7)), chain),
-      "same");
+  const std::string one = "variable j1\n", second = element("turn", kZ, 0, 0.3, 0.2);
+  EXPECT_EQ(said(world(one, second, element("turn", kZ, 0, 0.1 * 0.3, 0.1 * 0.2 + 0.7)), chain), "same");
+  EXPECT_NE(said(world(one, second, element("turn", kZ, 0, 0.1, 0.7)), chain), "same");
+  EXPECT_NE(said(world(one, second, element("turn", kZ, 0, 0.03, 0.73)), chain), "same");
+  EXPECT_NE(said(world(one, element("turn", kZ, 0, 0.3, 0.2000001), element("turn", kZ, 0, 0.1 * 0.3, 0.1 * 0.2 + 0.7)),
+                 chain),
+            "same");
   // A variable of the name that the file has, by which nothing else moves: once it was the same robot.
-  EXPECT_NE(said(world(one + "variable j2\n", second, element("turn", Z, 1, 0.1, 0.7)), chain), "same");
+  EXPECT_NE(said(world(one + "variable j2\n", second, element("turn", kZ, 1, 0.1, 0.7)), chain), "same");
   // Mimics of nobody, of itself, of what has several variables.
   const auto single = [&](const std::string& of, const std::string& variable) {
-    return said(kHead + "variable " + variable + "\n" + frame("a", 0) + frame("b", 1, element("turn", Z, 0)) + kSphere +
-                    body("link", "a", 1) + body("link", "b", 2),
+    return said(kHead + "variable " + variable + "\n" + frame("a", 0) + frame("b", 1, element("turn", kZ, 0)) +
+                    kSphere + body("link", "a", 1) + body("link", "b", 2),
                 robot(link("a") + link("b") + joint("j1", "revolute", "a", "b", mimic(of))));
   };
   EXPECT_NE(single("nobody", "nobody").find("is not there"), std::string::npos) << single("nobody", "nobody");
@@ -137,7 +137,7 @@ TEST_F(VerifyUrdf, ChainsOfMimics) {
                       joint("j2", "revolute", "b", "c", mimic("j1", offset))));
   };
   EXPECT_EQ(still("multiplier='3'", ""), "same");
-  EXPECT_NE(still("multiplier='3'", element("turn", Z, 0, 3)), "same");
+  EXPECT_NE(still("multiplier='3'", element("turn", kZ, 0, 3)), "same");
   EXPECT_NE(still("offset='1'", "").find("not compared"), std::string::npos) << still("offset='1'", "");
 }
 
@@ -145,18 +145,18 @@ TEST_F(VerifyUrdf, NothingElseMovesAsTheRobotDoes) {
   const std::string urdf = axisUrdf("revolute", "0 0 1");
   const auto world = [](const std::string& variables, const std::string& base, const std::string& root,
                         const std::string& more) {
-    return kHead + variables + frame("mount", 0, base) + frame("a", 1, root) + frame("b", 2, element("turn", Z, 0)) +
+    return kHead + variables + frame("mount", 0, base) + frame("a", 1, root) + frame("b", 2, element("turn", kZ, 0)) +
            frame("free", 0, more) + kSphere + body("link", "a", 2) + body("link", "b", 3);
   };
   const std::string j = "variable j\n", two = j + "variable base/x\n";
   EXPECT_EQ(said(world(j, "", "", ""), urdf), "same");
-  EXPECT_EQ(said(world(two, element("slide", X, 1), "", ""), urdf), "same");
-  EXPECT_EQ(said(world(two, "", element("slide", X, 1), ""), urdf), "same");
-  EXPECT_EQ(said(world(two, "", "", element("slide", X, 1)), urdf), "same");
-  EXPECT_NE(said(world(j, element("turn", Z, 0, -1), "", ""), urdf), "same");
-  EXPECT_NE(said(world(j, "", element("turn", Z, 0, -1), ""), urdf), "same");
-  EXPECT_NE(said(world(j, "", "", element("turn", Z, 0)), urdf), "same");
-  EXPECT_NE(said(world(j + "variable j\n", "", "", element("turn", Z, 1)), urdf), "same");
+  EXPECT_EQ(said(world(two, element("slide", kX, 1), "", ""), urdf), "same");
+  EXPECT_EQ(said(world(two, "", element("slide", kX, 1), ""), urdf), "same");
+  EXPECT_EQ(said(world(two, "", "", element("slide", kX, 1)), urdf), "same");
+  EXPECT_NE(said(world(j, element("turn", kZ, 0, -1), "", ""), urdf), "same");
+  EXPECT_NE(said(world(j, "", element("turn", kZ, 0, -1), ""), urdf), "same");
+  EXPECT_NE(said(world(j, "", "", element("turn", kZ, 0)), urdf), "same");
+  EXPECT_NE(said(world(j + "variable j\n", "", "", element("turn", kZ, 1)), urdf), "same");
   const std::string four = j + "variable p\nvariable q\nvariable r\n";
   EXPECT_EQ(said(world(four, "rotate 1\n", "", ""), urdf), "same");
   EXPECT_NE(said(world("variable j\nvariable p\nvariable q\n", "rotate 0\n", "", ""), urdf), "same");
@@ -171,15 +171,15 @@ TEST_F(VerifyUrdf, ARootWithABaseStandsStill) {
   const auto said = [&](const std::string& above, const std::string& root, const std::vector<double>& base) {
     const Comparison c = compareWithUrdf(
         readWorld(kHead + variables + frame("mount", 0, above) + frame("a", 1, root) +
-                  frame("b", 2, element("turn", Z, 0)) + kSphere + body("link", "a", 2) + body("link", "b", 3)),
+                  frame("b", 2, element("turn", kZ, 0)) + kSphere + body("link", "a", 2) + body("link", "b", 3)),
         path, {}, {}, base);
     return c.differences.empty() ? c.notes.at(0) : c.differences[0];
   };
   const std::vector<double> origin(6, 0);
-  const std::string lifted = element("slide", Z, 1, 0, 5), stands = "root link 'a' stands still in the world",
-                    freely = element("slide", X, 2) + element("slide", {0, 1, 0}, 3) + element("slide", Z, 4);
+  const std::string lifted = element("slide", kZ, 1, 0, 5), stands = "root link 'a' stands still in the world",
+                    freely = element("slide", kX, 2) + element("slide", {0, 1, 0}, 3) + element("slide", kZ, 4);
   EXPECT_EQ(said("", "", origin), stands);
-  for (const std::string& moved : {lifted, element("slide", Z, 1), element("turn", Z, 1)}) {
+  for (const std::string& moved : {lifted, element("slide", kZ, 1), element("turn", kZ, 1)}) {
     EXPECT_NE(said(moved, "", origin).find("which neither the file nor --base says"), std::string::npos);
     EXPECT_NE(said("", moved, origin).find("which neither the file nor --base says"), std::string::npos);
   }
@@ -187,10 +187,10 @@ TEST_F(VerifyUrdf, ARootWithABaseStandsStill) {
   EXPECT_NE(said("", freely + "rotate 5\n", origin).find("moves in the world, by 'floating_base/"), std::string::npos);
   EXPECT_NE(said(freely + "rotate 5\n", "", origin).find("neither"), std::string::npos);
   EXPECT_NE(said("", freely, origin).find("neither"), std::string::npos);
-  EXPECT_NE(
-      said("", element("slide", Z, 2) + element("slide", {0, 1, 0}, 3) + element("slide", Z, 4) + "rotate 5\n", origin)
-          .find("another axis"),
-      std::string::npos);
+  EXPECT_NE(said("", element("slide", kZ, 2) + element("slide", {0, 1, 0}, 3) + element("slide", kZ, 4) + "rotate 5\n",
+                 origin)
+                .find("another axis"),
+            std::string::npos);
 }
 
 // They are those of a list of values without names.
@@ -200,7 +200,7 @@ TEST_F(VerifyUrdf, VariablesAreInTheFilesOrder) {
             joint("last", "revolute", "c", "d", "<axis xyz='0 0 1'/>") + joint("none", "fixed", "a", "b") +
             joint("flat", "planar", "b", "c", "<axis xyz='0 0 1'/>") +
             joint("same", "revolute", "d", "e", "<axis xyz='0 0 1'/><mimic joint='last'/>"));
-  const std::string world = axisWorld("turn", Z);  // another robot's
+  const std::string world = axisWorld("turn", kZ);  // another robot's
   EXPECT_EQ(compare(world, urdf).variables, (std::vector<std::string>{"last", "flat/x", "flat/y", "flat/theta"}));
   EXPECT_EQ(compare(world, replaced(urdf, "planar", "floating")).variables,
             (std::vector<std::string>{"last", "flat/trans_x", "flat/trans_y", "flat/trans_z", "flat/rot_x",
@@ -208,7 +208,7 @@ TEST_F(VerifyUrdf, VariablesAreInTheFilesOrder) {
 }
 
 TEST_F(VerifyUrdf, NoBodyIsLeftOver) {
-  const std::string urdf = axisUrdf("revolute", "0 0 1"), good = axisWorld("turn", Z);
+  const std::string urdf = axisUrdf("revolute", "0 0 1"), good = axisWorld("turn", kZ);
   EXPECT_EQ(said(good + body("obstacle", "o", 0) + body("carried", "c", 2), urdf), "same");
   EXPECT_NE(said(good + body("link", "ghost", 0), urdf), "same");
   EXPECT_NE(said(good + body("link", "ghost", 2), urdf), "same");
@@ -228,12 +228,12 @@ TEST_F(VerifyUrdf, PlanarJointsHaveTheirXAndY) {
            body("link", "a", 1) + body("link", "b", 2);
   };
   const auto urdf = [](const std::string& axis) { return axisUrdf("planar", axis); };
-  EXPECT_EQ(said(world(X, {0, 1, 0}, Z), urdf("0 0 1")), "same");
-  EXPECT_EQ(said(world(X, {0, -1, 0}, {0, 0, -1}), urdf("0 0 -1")), "same");
-  EXPECT_EQ(said(world({0, 0, -1}, {0, 1, 0}, X), urdf("1 0 0")), "same");
-  EXPECT_NE(said(world({0, 1, 0}, {-1, 0, 0}, Z), urdf("0 0 1")), "same");  // turned about the axis
-  EXPECT_NE(said(world({0.6, 0.8, 0}, {-0.8, 0.6, 0}, Z), urdf("0 0 1")), "same");
-  EXPECT_NE(said(world(X, {0, -1, 0}, Z), urdf("0 0 1")), "same");
+  EXPECT_EQ(said(world(kX, {0, 1, 0}, kZ), urdf("0 0 1")), "same");
+  EXPECT_EQ(said(world(kX, {0, -1, 0}, {0, 0, -1}), urdf("0 0 -1")), "same");
+  EXPECT_EQ(said(world({0, 0, -1}, {0, 1, 0}, kX), urdf("1 0 0")), "same");
+  EXPECT_NE(said(world({0, 1, 0}, {-1, 0, 0}, kZ), urdf("0 0 1")), "same");  // turned about the axis
+  EXPECT_NE(said(world({0.6, 0.8, 0}, {-0.8, 0.6, 0}, kZ), urdf("0 0 1")), "same");
+  EXPECT_NE(said(world(kX, {0, -1, 0}, kZ), urdf("0 0 1")), "same");
   // As fcl_artic writes them.
   const V x{0x1.ebb3e119cd7a6p-1, -0x1.44c1ee632859cp-4, -0x1.11acee5602429p-2},
       y{-0x1.44c1ee632859dp-4, 0x1.aecf846735e99p-1, -0x1.11acee560242ap-1},
@@ -270,9 +270,9 @@ TEST_F(VerifyMeshes, TrianglesCountWithOrientationAndMultiplicity) {
   const std::string file = obj(two, "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n");
   using T = std::vector<std::array<int, 3>>;
   const T outer{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, inner{{4, 6, 5}, {4, 5, 7}, {4, 7, 6}, {5, 6, 7}};
-  const auto with = [&](T more, bool turned = false) {
+  const auto with = [&](const T& more, bool turned = false) {
     T all = outer;
-    for (auto t : more)
+    for (const auto& t : more)
       all.push_back(turned ? std::array<int, 3>{t[0], t[2], t[1]} : std::array<int, 3>{t[1], t[2], t[0]});
     return all;
   };
@@ -374,7 +374,7 @@ TEST_F(VerifyMeshes, ComparingTakesNoTime) {
     chain += link("l" + name, "") +
              joint("j" + name, "revolute", "l0", "l" + name,
                    "<axis xyz='0 0 1'/>" + (k > 1 ? "<mimic joint='j" + std::to_string(k - 1) + "'/>" : ""));
-    frames += frame("l" + name, 1, element("turn", Z, 0));
+    frames += frame("l" + name, 1, element("turn", kZ, 0));
   }
   EXPECT_EQ(said(frames, robot(chain)), "same");
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 8);  // 0.3 s
@@ -441,7 +441,7 @@ TEST_F(VerifyUrdf, WhatIsNotKnownIsRefused) {
             joint("j", "revolute", "a", "b",
                   "<origin/><axis xyz='0 0 1'/><limit lower='0' upper='1'/><dynamics "
                   "damping='1'/><safety_controller/><calibration/>"));
-  const std::string world = axisWorld("turn", Z);
+  const std::string world = axisWorld("turn", kZ);
   EXPECT_EQ(said(world, urdf), "same");
   for (const auto& [what, by, words] : std::vector<std::array<std::string, 3>>{
            {"rpy='0 0 0'", "quat_xyzw='0 0 1 0'", "quat_xyzw"},
@@ -492,7 +492,7 @@ TEST_F(VerifyUrdf, WhatIsNotKnownIsRefused) {
 }
 
 TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
-  const World world = readWorld(axisWorld("turn", Z) + "unchecked allowed a b\n");
+  const World world = readWorld(axisWorld("turn", kZ) + "unchecked allowed a b\n");
   const auto answer = [&](const std::string& inside) -> std::string {
     try {
       const Comparison c = compareWithSrdf(world, write("r.srdf", robot(inside)));
