@@ -52,14 +52,14 @@ class RelativeMotion : PartOfSolver {
     for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
     // The pad is for points no farther out than the bodies' own; it scales with sizes.
     const double reach = norm(p) * (1 + 8 * kUlp), sizes = max(a().extent + b().extent, kLeastLength);
-    return m.rem_c + m.rem_R * reach + pad_ * (1 + reach / sizes);
+    return m.rem_c + m.rem_R * reach + pad() * (1 + reach / sizes);
   }
   /// In side(s): the tree of the body that stands still; of the one that moves.
   const TreeView& still(int s) const { return *side_[s].still; }
   const TreeView& moving(int s) const { return *side_[s].moving; }
 
-  double margin() const { return margin_; }
-  double pad() const { return pad_; }
+  double margin() const { return side_[0].margin; }
+  double pad() const { return side_[0].pad; }
   /// Bound on the error of a pose, for proofs of contact.
   double poseError() const { return pose_error_; }
   /// About how far the body moves in half an interval: B seen from A, or A seen from an unbounded B.
@@ -93,7 +93,7 @@ class RelativeMotion : PartOfSolver {
     Cached& cached = cached_[s][node & (kCached - 1)];
     if (!isSwept(s, node)) {
       cached = {node, epoch_, pool_.size()};
-      sweepNode(side(s).m, side_[s].moving->nodes[node], pad_ + margin_, pool_.grow());
+      sweepNode(side(s).m, side_[s].moving->nodes[node], pad() + margin(), pool_.grow());
     }
     return pool_[cached.slot];
   }
@@ -117,7 +117,7 @@ class RelativeMotion : PartOfSolver {
   std::int32_t of_batch_ = -1;
   Side side_[2];
   bool side_ready_[2] = {false, false};
-  double pad_ = 0, pose_error_ = 0, amplitude_ = 0, margin_ = 0;
+  double pose_error_ = 0, amplitude_ = 0;
   Vec3 witness_;
   bool have_witness_ = false;
   PairId witness_pair_ = engine::kNoPair;
@@ -159,8 +159,8 @@ inline void RelativeMotion::set(PairId pair, const TimeBatch& batch) {
 
 /// Both ways, with remainders and pads.
 inline void RelativeMotion::relate() {
-  margin_ = query().margins.of(pair_);
-  FCL_ARTIC_ASSERT(margin_ >= 0 && margin_ <= query().margins.largest());
+  const double margin = query().margins.of(pair_);
+  FCL_ARTIC_ASSERT(margin >= 0 && margin <= query().margins.largest());
   const PairParts parts = problem().parts(pair_);
   const Body &A = body(parts.a), &B = body(parts.b);
   const FrameLanes* frame = parts.step_b >= 0 ? &frames_.of(parts.sweep, parts.step_b) : nullptr;
@@ -168,15 +168,14 @@ inline void RelativeMotion::relate() {
   const double d = batch().d;
   RigidLanes& m = side_[0].m;
   const PairPads pads = relateBodies(frame, bounds, problem().sweeps[parts.sweep].first_order, *parts.inverse_a,
-                                     *parts.placement_b, A.tree->extent + B.tree->extent, margin_, d, m, side_[1].m);
+                                     *parts.placement_b, A.tree->extent + B.tree->extent, margin, d, m, side_[1].m);
   side_ready_[0] = side_ready_[1] = false;
-  pad_ = pads.pad;
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
   for (Side& side : side_) {
-    side.margin = margin_;
-    side.pad = pad_;
+    side.margin = margin;
+    side.pad = pads.pad;
   }
 
   const bool from_a = B.tree->nodes[0].radius < engine::kUnbounded;
