@@ -184,8 +184,9 @@ Foot footOnFace(const Vector3d& p, const Vector3d v[3]) {
   return best;
 }
 
-/// The nearest of all ends to the other edge, and of the lines' crossing where that lies on both: no parameter of one
-/// edge is rounded to find the other's, so near-parallel edges lose nothing.
+/// The nearest points of two edges. The candidates are each end with its nearest point on the other edge, and the
+/// crossing of the two lines where it lies on both edges. No parameter of one edge is rounded to find the other's, so
+/// near-parallel edges lose nothing.
 Nearest nearestOfEdges(const Vector3d& p, const Vector3d& p1, const Vector3d& q, const Vector3d& q1) {
   Nearest best{p, q, {}};
   const auto offer = [&](const Vector3d& a, const Vector3d& x, const Foot& foot) {

@@ -28,7 +28,7 @@ const Piece* pieceOf(const Problem& problem, std::int32_t body, std::int32_t pie
   return piece < 0 ? nullptr : problem.bodies[body].tree->pieces + piece;
 }
 
-/// Those that are later than a proven one go, the others are put in order.
+/// Removes contacts that are later than a proven one, and puts the others in order.
 void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   const auto later = [&](const LeafContact& contact) { return contact.t_lower > t_upper; };
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), later), contacts.end());
@@ -80,8 +80,9 @@ void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, L
   Vector3d::Map(contact.normal) = LeastDepth(lowest, Vector3d(Vector3d::Map(contact.normal)), towards).direction();
 }
 
-/// The same of two bounded pieces; and where no features have given the normal, the direction along which most of this
-/// gap is seen: a better one than the solver's last, which was found for its own steps.
+/// The nearest points at t_lower of two bounded pieces. Where no features have given the normal, it becomes the
+/// direction along which the search sees most of this gap. The solver's last direction is a worse normal: it was found
+/// for the solver's own steps.
 void nearestPoints(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
   baseline::GjkResult found;
   const double radii = body.a->radius + body.b->radius;

@@ -144,7 +144,8 @@ class ArticulatedCollisionManager::Some {
     manager_.collideMotion(motions_[motion], alone_, aspects, result);
   }
 
-  /// Of motion i of the pass: the answer that was found on a condition, where that holds; else another one.
+  /// Answers motion i of the pass: with the answer that was found on a condition if the condition holds, else with
+  /// another one.
   void settle(Together& together, std::size_t i, std::size_t motion, CertifiedResult& result) {
     CertifiedResult& conditional = conditional_[i];
     const bool at_once = request_.visibility == VisibilityMode::atOnce;
@@ -180,7 +181,7 @@ class ArticulatedCollisionManager::Some {
   CertifiedRequest alone_;  ///< the same without stage 2
   Stage2& stage2_;
   double making_us_ = 0;  ///< of executors
-  // Of the motions of a pass. What is in `conditional_` is no answer before settle() has looked at it.
+  // One entry for each motion of a pass. An entry of `conditional_` is no answer before settle() has looked at it.
   std::vector<CertifiedResult> conditional_;
   std::vector<Aspects::Details> details_;
 };

@@ -88,8 +88,8 @@ bool standsStill(const BodyMotion& motion) {
                      [](const MotionElement& element) { return !element.bounded && element.degree() == 0; });
 }
 
-/// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
-/// body can come to, as most of a map is far from any one motion.
+/// Reads an OcTree's cells. If the other body is an OcTree too, it has been read. If the tree stands still, only those
+/// cells are read that the other body can come to: most of a map is far from any one motion.
 /// @param all  all cells: a certificate is about the whole map.
 template <class S>
 void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
@@ -104,7 +104,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
     RigidTransform& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
     first = tree.motion.poseWithError(0).inverse() * first;
     enclosePath(seen, other.shape->lower(), other.shape->upper(), lower, upper);
-    // What the path's own pads do not know of: these sums.
+    // The path's own pads do not include the rounding of these sums.
     const double size = (upper - lower).norm() + lower.norm();
     const double pad = margin + 0x1p-40 * (first.length() + size + margin);
     lower.array() -= pad;
@@ -136,7 +136,7 @@ float roundedDown(double t, float) {
   return static_cast<double>(rounded) > t ? std::nextafter(rounded, 0.0f) : rounded;
 }
 
-/// What FCL's result says while nothing is proven.
+/// Sets FCL's result to the values that it has while nothing is proven.
 template <class S>
 void reset(fcl::ContinuousCollisionResult<S>& result) {
   result.is_collide = true;
@@ -163,8 +163,9 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
-  // Narrower brackets than these are no dearer, wider ones are: more of the bodies is looked at in a wider interval
-  // (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked for.
+  // A bracket narrower than this takes no more time, a wider one does: in a wider interval more of the bodies is looked
+  // at (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked
+  // for.
   constexpr double kCoarsest = 1e-4;
   CertifiedPairRequest certified;
   certified.tolerance_time = std::min(std::max(tolerance, kFinest), kCoarsest);

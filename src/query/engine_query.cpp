@@ -98,8 +98,9 @@ void keepFirstOfEachPair(bool certain, std::vector<CertifiedContact>& contacts) 
     return std::make_tuple(x.t_lower, !x.certain, x.t_upper) < std::make_tuple(y.t_lower, !y.certain, y.t_upper);
   });
   if (certain) {
-    // What proves the answer comes first, though another one that is not proven, or later, may begin a little earlier:
-    // its bracket then begins with that one's. (A pair that is free before a time is so before an earlier one.)
+    // The contact that proves the answer comes first. Another contact, which is not proven or is proven later, may
+    // begin a little earlier. The bracket of the first one then begins with that one's. This stays true: a pair that is
+    // free before a time is free before any earlier time.
     const auto proof = std::min_element(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
       return std::make_tuple(!x.certain, x.t_upper) < std::make_tuple(!y.certain, y.t_upper);
     });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What pairs of links do over all values within their joints' limits. A pair is "never" by proof alone; everything else
-// here only saves that proof its work, or shows what hinders it. Neighbours are looked at so before each set-up of the
-// robot, with less work.
+// Finds how pairs of links touch over all values within their joints' limits: never, sometimes or always. A pair is
+// "never" by proof alone; everything else here only saves that proof its work, or shows what hinders it. Neighbours are
+// looked at so before each set-up of the robot, with less work.
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -34,8 +34,9 @@ constexpr std::size_t kSearches = 2, kMoreSearches = 8;
 /// TALOS: an eighth each leaves 9 of 335 pairs unproven, all of the work for each proves no more in 1.1 times as long.
 constexpr std::uint64_t kPartPerCut = 2;
 
-/// Configurations tried of neighbours, and work per pair of geometries: a millisecond or two where the links touch
-/// throughout, some ten where a proof fails (test/data/robots_test.cpp measures the set-up of public robots).
+/// Number of configurations tried for two neighbours, and work per pair of their geometries. This takes a millisecond
+/// or two if the links touch throughout, and some ten if a proof fails (test/data/robots_test.cpp measures the set-up
+/// of public robots).
 constexpr std::size_t kSamplesOfNeighbours = 32;
 constexpr std::uint64_t kWorkOfNeighbours = 50000;
 
@@ -109,8 +110,8 @@ class Classifier {
     setTouching(finding);
   }
 
-  /// Of links that touch at all configurations that runShort() tries: which of their geometries, each with each, are
-  /// apart at one of these. A housing that overlaps in the joint excuses no other part of the two links.
+  /// For links that touch at all configurations that runShort() tries: says for each pair of their geometries whether
+  /// it is apart at one of these. A housing that overlaps in the joint excuses no other part of the two links.
   /// @return empty: none, or no joint moves them.
   std::vector<bool> apartSomewhere() {
     std::vector<bool> apart(proofs_.size());
@@ -157,7 +158,7 @@ class Classifier {
     finding.kind = kind;
     finding.proven = proven;
   }
-  /// Of links that touch in some configuration, or in all that were tried.
+  /// For links that touch in some configuration, or in all that were tried.
   void setTouching(LinkPairFinding& finding) const {
     finding.nearest = options_.margin;
     const bool always = finding.apart == 0;
@@ -325,7 +326,7 @@ std::vector<Pair> pairsOf(const Registry& registry, const engine::Problem& probl
   return all;
 }
 
-/// What proofs and findings of a pair of geometries are good for.
+/// The shapes and joints for which proofs and findings of a pair of geometries hold.
 PairMaking makingOf(const Registry& registry, const engine::LinkPair& pair) {
   return PairMaking::inOrder(*registry.tree(), registry.body(pair.a), registry.body(pair.b));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the manager says of pairs that no query checks: neighbours that touch throughout, and bodies that stand still
+// The manager's notes on pairs that no query checks: neighbours that touch throughout, and bodies that stand still
 // against each other.
 #include <map>
 #include <set>

@@ -84,10 +84,10 @@ void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPai
 void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                   CertifiedPairResult& result);
 
-/// Two half-spaces or planes. They meet, unless their normals are parallel and stay so: then the distance of the one's
-/// boundary from the other is that of any of its points, and a point takes its place. Normals that stay within rounding
-/// of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md, "Unbounded
-/// pieces").
+/// Two half-spaces or planes. If their normals are parallel and stay so, the distance of one's boundary from the other
+/// is that of any point of this boundary, so a point takes its place. Else the two meet. Normals that stay within
+/// rounding of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md,
+/// "Unbounded pieces").
 void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
                     const CertifiedPairRequest& request, CertifiedPairResult& result) {
   constexpr double kParallel = 64 * 0x1p-52;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A trajectory is asked piece by piece. What has to be carried over:
+// A trajectory is asked piece by piece. Three things are carried over:
 //
-// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Of T_k + s h each of the three steps
+// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Each of the three steps of T_k + s h
 // is rounded outward, in whatever mode, but not out of the piece: t_lower stays a proof, however large |T| is. A step
 // moves by no more than 2 ulp, so an end by no more than 2 ulp of the larger |T| and 4 of h.
 //
 // Obstacles that move. Their motions' [0, 1] is the trajectory's time; piece k gets the part [s_k, s_k+1] of it, with
 // s_k = (T_k - T_0) / (T_n - T_0) as rounded: the same number ends one piece and begins the next.
 //
-// Initial contacts that may separate. Pairs that touch at the very beginning are ignored; those that did not separate
-// within a piece (by the measure of one query: free over 1/512 of the piece) may be ignored at the beginning of the
-// next one too (Query::may_ignore), all others are watched. A pair that has separated is never ignored again.
+// Initial contacts that may separate. Pairs that touch at the very beginning are ignored. A pair has separated within a
+// piece if it was free over 1/512 of the piece, the measure of one query. A pair that has not may be ignored at the
+// beginning of the next piece too (Query::may_ignore); all others are watched. A pair that has separated is never
+// ignored again.
 
 #include <algorithm>
 #include <cstdint>
@@ -30,8 +31,8 @@
 namespace fcl_artic {
 namespace {
 
-/// A piece's answer in the trajectory's time: what is free is free to the end, as far as is known; a contact that is
-/// not proven may be as late as that.
+/// A piece's answer in the trajectory's time. If the piece is free, the bracket ends at the trajectory's end. If its
+/// contact is not proven, the contact may begin as late as that.
 Bracket inTrajectoryTime(const Bracket& part, const PieceTime& clock, double end) {
   if (part.isFree()) return {Status::free, end, end, false};
   const double proven_by = engine::provenBy(part);
