@@ -31,8 +31,8 @@ enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
 constexpr int kMostTimeCuts = 40;  ///< of one root: 1e-12 of the motion
 constexpr int kMostSearchSteps = 40;
 
-/// What a node is about: A's pieces below `node`, partners [first, last) of its list, of a single one the pieces below
-/// `partner_node`, and times [begin, end].
+/// The subject of a node, with the pieces below `partner_node` if there is a single partner: A's pieces below `node`,
+/// partners [first, last) of its list, and times [begin, end].
 struct Task {
   int body;
   std::int32_t node = 0;
@@ -337,7 +337,7 @@ class Emitter {
       return;
     }
     if (isEmpty(task)) return putEmpty();
-    // (Of partners that are not mixed all are unbounded or none.)
+    // Partners that are not mixed are all unbounded, or none of them is.
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded;
     if (wall && task.size() == 1) {
       if (separateWall(task)) return;

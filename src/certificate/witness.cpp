@@ -24,8 +24,8 @@ using engine::PieceKind;
 using engine::TreeView;
 
 constexpr int kContact = 0x20, kCross = 0, kInside = 2, kNear = 4;
-/// Witnesses are so far from failing, in m: the first, if there is one. What a verifier's poses are off by grows with
-/// the chain, to some 1e-12 m after thirty joints.
+/// Least distance of a witness from failing, in m. The second one is tried if no witness has the first. The error of a
+/// verifier's poses grows with the chain, to some 1e-12 m after thirty joints.
 constexpr double kSure[] = {1e-9, 1e-11};
 
 /// One of the two pieces.
@@ -96,7 +96,7 @@ NamedPoint nameCore(const Side& side, const std::vector<std::pair<Vec3, double>>
   return named;
 }
 
-/// How far inside the piece x is, about; below 0: outside. Of pieces with an inequality.
+/// How far inside the piece x is, about; below 0: outside. Only for pieces that an inequality defines.
 double depthIn(const Piece& piece, const Vector3d& x) {
   const double* e = piece.size;
   const Vector3d d = x - Vector3d::Map(piece.center);

@@ -190,7 +190,7 @@ std::string geometryText(const Geometry& geometry) {
   };
   const double* e = piece.size;
   const bool centred = Eigen::Vector3d::Map(piece.center).isZero(0);
-  // Of all other bounded shapes FCL's lie about their frames' origins. (Of unbounded ones it is the offset.)
+  // All other bounded shapes of FCL lie about their frames' origins. (The center of an unbounded piece is its offset.)
   FCL_ARTIC_ASSERT(centred || piece.kind == PieceKind::box || piece.kind == PieceKind::vertices ||
                    baseline::unbounded(piece));
   switch (piece.kind) {

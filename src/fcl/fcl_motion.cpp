@@ -80,7 +80,7 @@ void requireLength(const Vector3d& v, const N& name, const char* what) {
                               (v.allFinite() ? " of more than 1e9 m" : " that is not finite"));
 }
 
-/// What readTransform() does.
+/// Does the work of readTransform().
 template <class S, class N>
 RigidTransform readRigid(const fcl::Transform3<S>& M, const N& name) {
   constexpr double kMost = std::is_same<S, float>::value ? 1e-4 : 1e-6;
@@ -198,7 +198,7 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
   requireLength(velocity, name, "velocity");
   BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
 
-  // What it performs must end at its end pose, but for the rounding in it; where velocities were never set, it doesn't.
+  // The motion must end at FCL's end pose, but for the rounding in it. If velocities were never set, it doesn't.
   const double close = std::is_same<S, float>::value ? 1e-3 : 1e-5;
   const Isometry3d reached = body.pose(1);
   const double size = begin.translation().norm() + end.translation().norm() + o.norm();
@@ -247,7 +247,8 @@ BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const Name& name) {
     require(rotations[i].allFinite() && rotations[i].cwiseAbs().maxCoeff() <= 1e5, name,
             "has a control point of rotation that is not finite or of more than 1e5 rad");
   }
-  // What the constructor with control points derives from them must be there, and a rotation as the present one.
+  // The values that the constructor derives from the control points must be there, and the present pose must have a
+  // rotation.
   const auto isSquareOf = [](S square, const fcl::Vector3<S>& v) {
     return std::abs(square - v.squaredNorm()) <= S(1e-5) * v.squaredNorm();
   };

@@ -109,8 +109,8 @@ std::vector<Ball> choose(const EnclosedSpace& space, std::vector<Ball>& samples)
     }
     return sum;
   };
-  // What a ball would add only ever gets less: the first in the queue, weighed anew, is the best when it stays the
-  // first.
+  // The gain of a ball only ever decreases. So if the first ball in the queue, weighed anew, stays first, it is the
+  // best.
   std::priority_queue<std::pair<double, std::size_t>> queue;
   for (std::size_t i = 0; i < samples.size(); ++i) queue.emplace(weightOf(samples[i]), i);
   std::vector<Ball> chosen;

@@ -90,8 +90,8 @@ Matrix3d principalAxes(const Points& points) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(covariance).eigenvectors();
 }
 
-/// Along the last of three axes, through the middle of the extents across it; the ends as far out as the round caps
-/// demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
+/// A segment along the last of three axes, through the middle of the extents across it. Its ends are as far out as the
+/// round caps demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
 Segment alongAxis(const Matrix3d& axes, const Points& points) {
   Vector3d lo = Vector3d::Constant(kInfinity), hi = -lo;
   for (const Vector3d& x : points) {

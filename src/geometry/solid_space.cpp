@@ -34,9 +34,9 @@ Vector3d nearestOfEdge(const Vector3d& a, const Vector3d& b, const Vector3d& x) 
   return square > 0 ? Vector3d(a + std::clamp((x - a).dot(along) / square, 0.0, 1.0) * along) : a;
 }
 
-/// Lower bound of x's distance from a triangle. The direction to the nearest point is known badly for an x that is
-/// near, and so is that point for a triangle with hardly any area: the normal, and the edges' nearest points. Any
-/// direction is as right as another.
+/// Lower bound of x's distance from a triangle. If x is near, the direction to the nearest point is known badly, so the
+/// normal is tried. If the triangle has hardly any area, the nearest point is known badly too, so the edges' nearest
+/// points are tried. Any direction gives a lower bound.
 double surelyApart(const MeshTriangle& t, const Vector3d& x, Vector3d& nearest) {
   nearest = nearestPoint(t, x);
   double most = clearanceOf(t, x, nearest);

@@ -15,7 +15,7 @@
 namespace fcl_artic::hdf5 {
 namespace {
 
-/// What HDF5 says of its last error, the innermost reason.
+/// The innermost reason of HDF5's last error.
 std::string reason() {
   std::string text;
   H5Ewalk2(

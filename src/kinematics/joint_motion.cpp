@@ -172,7 +172,7 @@ JointMotion JointMotion::tangentHalfAnglePolynomial(const KinematicTree& tree, c
   return motion;
 }
 
-/// What was checked of polynomials holds for mimic joints' angles too: these are within pi of the reference.
+/// The checks of polynomials hold for mimic joints' angles too: an angle is within pi of its reference.
 void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorXd& reference) {
   half_angles_.assign(static_cast<std::size_t>(tree.dof()), 0);
   references_.setZero(tree.dof());

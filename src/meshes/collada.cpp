@@ -122,7 +122,7 @@ class Collada {
     return count;
   }
 
-  /// What an attribute such as url="#id" names.
+  /// The element that an attribute such as url="#id" names.
   const Xml& target(const Xml& e, const char* attribute, Names kinds) const {
     const char* url = e.Attribute(attribute);
     if (!url) refuse(e, std::string("has no ") + attribute);

@@ -87,7 +87,7 @@ TriangleSoup readObj(const Source& source) {
     } else if (!isFace(key) && !isOneOf(key, kUnused)) {
       lines.refuse(shown(key) + " begins a line of no kind that OBJ files have");
     } else if (!isFace(key) && lines.joined()) {
-      // Of a name, as that of a folder: readers differ on whether the next line belongs to it.
+      // The line holds a name, such as a folder's: readers differ on whether the next line belongs to it.
       lines.refuse("a line of " + shown(key) + " ends in a backslash, which would take in the next line");
     }
     found += isFace(key);

@@ -47,7 +47,7 @@ Scalar plyType(std::string_view name) {
   return {};
 }
 
-// What surely is no geometry.
+// Elements and properties that surely are no geometry.
 constexpr std::string_view kPlainElements[] = {"camera", "material", "multi_texture_vertex", "multi_texture_face"};
 constexpr std::string_view kPlainOfVertices[] = {"nx",
                                                  "ny",

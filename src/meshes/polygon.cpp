@@ -17,8 +17,9 @@ double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vec
   return u.x() * v.y() - u.y() * v.x();
 }
 
-/// The corners as seen against the polygon's normal (Newell's: the sum of its edges' cross products), in which it turns
-/// to the left; its size is made 1, so that no product overflows. Without an area: all at 0.
+/// The corners as seen against the polygon's normal, in which it turns to the left. The normal is the sum of its edges'
+/// cross products (Newell). The polygon is scaled to size 1, so that no product overflows. If it has no area, all
+/// corners are at 0.
 Outline flattened(const std::vector<Eigen::Vector3d>& corners) {
   Eigen::Vector3d lower = corners[0], upper = corners[0];
   for (const Eigen::Vector3d& x : corners) {

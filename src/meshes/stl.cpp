@@ -9,8 +9,8 @@
 namespace fcl_artic::meshes {
 namespace {
 
-// A binary STL: 80 bytes of anything, a count, and for each triangle a normal, three corners and two bytes of anything,
-// all in floats of the little end, as this machine's are.
+// A binary STL holds 80 bytes of anything, a count, and for each triangle a normal, three corners and two bytes of
+// anything. Its numbers are little-endian, as this machine's are.
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50, kStlNormal = 12;
 
 std::uint32_t stlTriangles(std::string_view content) {

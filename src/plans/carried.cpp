@@ -11,7 +11,7 @@
 namespace fcl_artic::plans {
 namespace {
 
-/// Of each file: which of its objects stand for a carried one already.
+/// For each file: which of its objects stand for a carried one already.
 using Taken = std::vector<std::vector<bool>>;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);

@@ -25,7 +25,7 @@ std::string_view trimmed(std::string_view text) {
 
 constexpr char kBlanks = ' ';  ///< any number of blanks and tabs
 
-/// What separates the columns of a line.
+/// The character that separates the columns of a line.
 char separatorOf(std::string_view line) {
   for (const char separator : {';', ',', '\t'}) {
     if (line.find(separator) != std::string_view::npos) return separator;
@@ -131,7 +131,7 @@ const std::vector<std::string> kVelocityEndings{"/velocity", ".velocity", "_velo
 
 enum class Quantity { time, position, velocity, acceleration, none };
 
-/// What a column is taken for.
+/// The meaning that a column is taken to have.
 struct Meaning {
   Quantity quantity = Quantity::none;
   std::string joint;
@@ -278,7 +278,7 @@ std::vector<std::optional<Meaning>> givenMeanings(const KinematicTree& tree, con
   return meanings;
 }
 
-/// Of columns without names.
+/// The meanings of columns without names.
 std::vector<std::optional<Meaning>> meaningsByPlace(const KinematicTree& tree, const Table& table,
                                                     const ColumnOptions& options) {
   const std::vector<std::string> joints = jointsOf(tree, options);
@@ -341,8 +341,8 @@ std::vector<std::optional<Meaning>> meaningsByName(const KinematicTree& tree, co
   return meanings;
 }
 
-/// The names in the last comment before rows without names, as NumPy's savetxt() writes them; none unless it has as
-/// many words as there are columns, and one of them is a variable's name.
+/// The names in the last comment before rows without names, as NumPy's savetxt() writes them. There are none unless the
+/// comment has as many words as there are columns, and one of them is a variable's name.
 std::vector<std::string> namesInComment(const KinematicTree& tree, const Table& table) {
   std::vector<std::string> names;
   for (const std::string_view name : splitLine(table.comment, separatorOf(table.comment))) names.emplace_back(name);

@@ -21,7 +21,7 @@ constexpr int kDeepestMessage = 20;  // messages within messages
 constexpr double kFlat = 1e-6;       // of a planar joint's pose: m out of its plane, and part of the quaternion
 constexpr double kIdentity = 1e-9;   // a pose that nobody has to know of
 
-/// Of a message's start state.
+/// The start state in a message.
 struct Start {
   std::map<std::string, double> state;
   std::vector<Carried> carried;
@@ -150,7 +150,7 @@ double secondsOf(const Json& duration, const std::string& where) {
   return numberOf(*whole, where) + 1e-9 * nanoseconds;
 }
 
-/// Of a joint: the values of a pose, x, y, z and a quaternion x, y, z, w.
+/// A pose as the values of a joint: x, y, z and a quaternion x, y, z, w.
 std::vector<double> poseOf(const Json& transform, const std::string& where) {
   const auto part = [&](const char* key, std::initializer_list<const char*> entries, std::vector<double>& out) {
     const Json* values = transform.is_object() ? find(transform, {key}) : nullptr;

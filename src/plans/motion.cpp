@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Cosine of half the angle between two quaternions, below which no sense of rotation is sure: of two senses the
-// rounding of a file decides, 1e-6 with the six digits that OMPL and ROS print.
+// Cosine of half the angle between two quaternions, below which no sense of rotation is sure. There the rounding of a
+// file, 1e-6 with the six digits that OMPL and ROS print, decides between two senses.
 constexpr double kNearHalfTurn = 2e-6;
 
 std::string plural(std::size_t n, const std::string& what) {

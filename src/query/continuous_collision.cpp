@@ -163,9 +163,9 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
-  // A bracket narrower than this takes no more time, a wider one does: in a wider interval more of the bodies is looked
-  // at (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked
-  // for.
+  // A bracket narrower than this takes no more time. A wider one takes more, as more of the bodies is looked at in a
+  // wider interval (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within
+  // what is asked for.
   constexpr double kCoarsest = 1e-4;
   CertifiedPairRequest certified;
   certified.tolerance_time = std::min(std::max(tolerance, kFinest), kCoarsest);

@@ -150,8 +150,8 @@ IntervalVec3 vectorWithin(const double* x, double part) {
   return o;
 }
 
-/// What the author of a motion states, over T: its state at the middle and how far bounds let that go; or the inverse
-/// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
+/// The factor that a motion's author states, over T: its state at the middle, and how far the bounds let that go. Or
+/// the inverse (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
 void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
   const double middle = T.middle();
   double x[24], bound[6];
@@ -394,7 +394,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
   }
 }
 
-/// What a frame's motion means for its pose and the derivatives of that.
+/// Writes the pose of a moving frame, and as many of the pose's derivatives as are asked for.
 void write(const Frame& f, Derivatives derivatives, FrameBounds& out) {
   out.pose = {f.R, f.o};
   if (derivatives == Derivatives::none) return;

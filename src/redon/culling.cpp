@@ -108,7 +108,8 @@ const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
   return box;
 }
 
-/// Of the parts of these 2^level, divided into 2^finer: those in which the mover's box meets this one.
+/// Divides the parts of `mask`, of 2^level, into parts of 2^finer. @return the parts in which the mover's box meets
+/// this one.
 std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask, int finer, const double* lo,
                               const double* hi) {
   std::uint64_t out = 0;
@@ -299,8 +300,8 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   return out;
 }
 
-/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait
-/// for the next one.
+/// Both trees down at once, the larger box first. Boxes that are apart in a sub-interval hold only boxes that are apart
+/// in it: these wait for the next sub-interval.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
   std::vector<Entry>& stack = waiting_[slot];
   while (!stack.empty()) {

@@ -42,7 +42,7 @@ struct Nearest {
   }
 };
 
-/// Of a point and an edge. @param[out] along  whether the foot lies between the ends.
+/// The foot of a point on an edge. @param[out] along  whether the foot lies between the ends.
 Vector3d footOnEdge(const Vector3d& p, const Vector3d& from, const Vector3d& to, bool& along) {
   const Vector3d e = to - from;
   const double length2 = e.squaredNorm(), s = length2 > 0 ? e.dot(p - from) / length2 : 0;

@@ -29,8 +29,9 @@ using Clock = std::chrono::steady_clock;
 /// Their equations and elements take some 100 MB at most.
 constexpr std::size_t kMostLeaves = 1 << 15;
 
-/// Without a work budget a query by the paper's method ends here, in units of workOf(), and is the engine's: bodies
-/// that slide on each other are divided down to the narrowest intervals all along their way. A unit takes 0.1 to 1 us.
+/// Without a work budget, the paper's method gives up a query after this much work, in units of workOf(), and the
+/// engine answers it. Bodies that slide on each other are divided down to the narrowest intervals all along their way.
+/// A unit takes 0.1 to 1 us.
 constexpr std::uint64_t kMostWork = 1 << 17;
 
 /// Adds up the time of stages, where it is asked for.
@@ -132,8 +133,8 @@ bool Run::asked(PairId pair) const {
 }
 
 /// Triangles on both sides, no margin, and a motion by joints. Nor has the pair a margin of its own, as neighbours have
-/// that are checked for touching: the paper checks none, and its boxes are apart at no time where a joint holds two
-/// links together.
+/// that are checked for touching. The paper checks no neighbours: its boxes are apart at no time where a joint holds
+/// two links together.
 bool Run::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0 || query_.margins.isOwn(pair)) return false;
@@ -301,7 +302,8 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// Of the contacts from `begin` on those within the bracket, the first one of each pair, as many as are asked for.
+/// Keeps, of the contacts from `begin` on that lie within the bracket, the first one of each pair, as many as are asked
+/// for.
 void Run::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -327,7 +329,7 @@ void Run::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) return leaveAll(answer);
-  // Of the paper's pairs nothing is known while the engine looks at its own.
+  // Nothing is known of the paper's pairs while the engine looks at its own.
   Progress progress{query_.progress, query_.progress_context};
   Query& query = w_.rest_query;
   query = query_;

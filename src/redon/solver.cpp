@@ -147,7 +147,7 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
     }
     ++counts_->intervals;
     setInterval(task.begin, task.end);
-    // What stays active moves up; the task's own entries are spent by then.
+    // Equations that stay active move up; the task's own entries are spent by then.
     const bool validity = options_->early_validity;
     std::size_t kept = task.first;
     double lo = task.end, hi = task.begin;
@@ -220,7 +220,7 @@ bool Solver::certify(const Equation& q, double begin, double end, double& t_uppe
   return false;
 }
 
-/// The last interval: are the roots of the task's equations contacts? Those whose features are apart are dropped.
+/// The last interval: are the roots of the task's equations contacts? Roots whose features are apart are dropped.
 /// @return true when contact is found; else what is left is to be divided on.
 bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector<engine::LeafContact>& contacts) {
   const bool narrowest = task.end - task.begin <= kNarrowest;

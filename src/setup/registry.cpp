@@ -255,7 +255,8 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
                                 std::to_string(objects.size()) + " objects");
   }
   requireLinks();
-  // What stays. (Sets are made anew: taking thousands out of them one by one takes longer than all the rest.)
+  // Objects and names that stay. (Sets are made anew: taking thousands out of them one by one takes longer than all the
+  // rest.)
   std::unordered_set<const void*> known;
   std::unordered_set<std::string> taken;
   known.reserve(links_.size() + moving_.size() + objects.size());
@@ -266,7 +267,7 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
       if (body.isObstacle()) taken.insert(body.name);
     }
   }
-  // What is read already. (Of another scene nothing is.)
+  // Obstacles that are read already. (If the scene shares no object with the last one, there are none.)
   std::unordered_map<const void*, const ManagedBody*> before;
   const auto isKnown = [&](const auto& object) { return objects_.count(object.get()) > 0; };
   if (std::any_of(objects.begin(), objects.end(), isKnown)) {

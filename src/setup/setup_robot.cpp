@@ -40,7 +40,7 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
   sweeps_.clear();
   sweeps_.push_back(FrameSweep::fromWorld(*registry.tree()));
   bodies_.assign(links.size(), engine::Body());
-  // What shapes make of themselves when first asked is most of a set-up: made by all cores.
+  // Shapes compute some of their data when they are first asked. That is most of a set-up, so all cores do it here.
   parallelFor(links.size(), 0, [&](std::size_t i) {
     links[i].shape->viewWithParts();
     links[i].shape->innerBalls();

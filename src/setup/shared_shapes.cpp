@@ -23,7 +23,7 @@ struct AllHeld {
   std::unordered_multimap<std::uint64_t, Held> by_key;
   std::size_t swept = 16;  ///< entries that were left when those that nobody holds were thrown out last, at least
 
-  /// (What nobody holds is gone, but its entry would stay where no equal mesh is ever asked for again.)
+  /// (An entry whose mesh nobody holds would stay for ever if no equal mesh is asked for again.)
   void add(std::uint64_t key, const Held& one) {
     if (by_key.size() >= 2 * swept) {
       for (auto at = by_key.begin(); at != by_key.end();) {

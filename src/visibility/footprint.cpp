@@ -9,7 +9,7 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// Of a handful of roundings in double, in any rounding mode; and of five in float.
+/// Bounds on a handful of roundings in double, in any rounding mode, and on five in float.
 constexpr double kDouble = 0x1p-48, kFloat = 0x1p-20;
 /// Beyond this nothing is computed: products of three such numbers are still finite.
 constexpr double kLargest = 1e24;

@@ -237,7 +237,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
       place(batch, footprint_, kViews * (swept.window - begin) + view, 0, swept_);
     }
   }
-  // What has a flag: an object, or a group.
+  // The units that have a flag: objects, or groups of them.
   const bool intervals = batch.rule == VisibilityRule::intervals;
   std::vector<std::size_t> first_object;  // of each unit
   for (std::size_t i = 0; i < batch.objects.size(); ++i) {

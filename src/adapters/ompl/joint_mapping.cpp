@@ -26,8 +26,8 @@ double shorterWay(double d) {
   return d > kPi ? d - 2 * kPi : d < -kPi ? d + 2 * kPi : d;
 }
 
-/// The way over π is that of the joint only when a whole turn leaves every pose as it is, and no limit lies on it: a
-/// drive goes from 2.8 to -2.8 through 0 then.
+/// The shorter way over π is the joint's way only if a whole turn leaves every pose as it is, and no limit lies on that
+/// way. Otherwise a drive goes from 2.8 to -2.8 through 0.
 void requireWholeTurns(const KinematicTree& tree, int variable, const std::string& where) {
   const std::string& name = tree.variableName(variable);
   if (!tree.isAngle(variable)) {

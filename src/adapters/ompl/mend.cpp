@@ -31,8 +31,8 @@ constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kRoom = 1;      // m, that positions of planar and floating joints have beyond the plan's own
 constexpr double kLeast = 0.05;  // s, for a stretch
 
-// Pieces that are not free are divided, so that a detour begins and ends near what it goes around: parts of no more
-// than this, rad or m, of any joint, but no more parts than that.
+// A piece that is not free is divided into parts of at most kPart (rad or m, of any joint), but into no more than
+// kMostParts. So a detour begins and ends near the obstacle that it goes around.
 constexpr double kPart = 0.1;
 constexpr int kMostParts = 64;
 // Parts of the clearance that are tried, one after the other, and of the time that is left for each.

@@ -73,7 +73,7 @@ struct TesseractContactManager::Impl {
   std::shared_ptr<const common::ContactAllowedValidator> validator;
   CertifiedResult result;
 
-  // What the next query has to make anew.
+  // Parts of the manager that the next query has to make anew.
   bool other_objects = true, other_margins = true;
   std::set<const Object*> moved;  ///< still ones that stand elsewhere
   std::shared_ptr<KinematicTree> tree;

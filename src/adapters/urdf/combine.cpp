@@ -8,7 +8,7 @@
 namespace fcl_artic {
 namespace {
 
-/// What a part's matrix says, with the names of all robots together.
+/// Adds the pairs of a part's matrix to the matrix of all robots, under the names that the links have there.
 /// @param spelt_out  whether what a complete matrix says of neighbours has to be said pair by pair, as the matrix of
 ///   all robots is not complete.
 void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix& all) {

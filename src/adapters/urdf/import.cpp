@@ -102,7 +102,7 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
 }  // namespace
 
 meshes::TriangleSoup importMesh(const meshes::Source& source, const std::string& ending) {
-  // Of these assimp leaves out units or parts in silence.
+  // Assimp leaves out units or parts of these formats without a message.
   for (const char* lossy : {".3mf", ".amf", ".x3d", ".x3db", ".x3dv"}) {
     if (ending == lossy)
       source.refuse("is of a format (" + ending + ") whose units or parts get lost: save it as STL, OBJ or PLY");

@@ -65,8 +65,8 @@ Segment segmentOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return {std::min(p, q), std::max(p, q)};
 }
 
-/// Drops triangles that are a segment or a point, as two of their corners are in one place, where that is an edge or a
-/// corner of a triangle that stays: nothing of the surface is lost. @return how many.
+/// Drops triangles that are a segment or a point, as two of their corners are in one place. Each must be an edge or a
+/// corner of a triangle that stays. Nothing of the surface is lost. @return how many.
 std::size_t dropCovered(const std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Triangle>& triangles) {
   const auto corner = [&](const fcl::Triangle& t, int k) -> const Eigen::Vector3d& { return vertices[t[k % 3]]; };
   // The corner before the two that are in one place; 3 of other triangles.

@@ -240,7 +240,8 @@ class CellCollector {
     }
   }
 
-  /// What of an unknown cell lies within the map's box: a box each, however finely the map's edge would divide it.
+  /// Adds the part of an unknown cell that lies within the map's box. It is one box, however finely the map's edge
+  /// would divide it.
   void addUnknown(const Eigen::Vector3d& center, double half) {
     if (!unknown_) return;
     const Eigen::Vector3d lower = (center.array() - half).max(lower_), upper = (center.array() + half).min(upper_);

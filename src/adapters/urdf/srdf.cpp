@@ -56,7 +56,7 @@ class SrdfReader {
   /// Pairs that need no check, each with its reason.
   const std::map<std::pair<std::string, std::string>, std::string>& reasons() const { return reasons_; }
 
-  /// What was passed over, and what of the file is not so here.
+  /// Notes on elements that were passed over, and on statements of the file that do not hold for this robot.
   std::vector<std::string> notes() const {
     std::vector<std::string> notes = notes_;
     if (passed_over_ > 0) notes.push_back(passedOver());

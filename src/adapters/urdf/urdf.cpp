@@ -55,8 +55,9 @@ class ParserMessages : public console_bridge::OutputHandler {
   std::vector<std::string> warnings_, errors_;
 };
 
-/// What urdfdom does not report: the order of the file (it sorts by name), and what the file holds in collision
-/// geometry (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
+/// Facts about the file that urdfdom does not report. One is the order of its elements: urdfdom sorts them by name. The
+/// other is the collision geometry: urdfdom goes on without an element that it cannot read, and a robot without that
+/// geometry would pass as free.
 struct Document {
   struct Link {
     std::string name;
@@ -107,7 +108,7 @@ Document readDocument(const std::string& where, const std::string& file) {
       noteLimit(*e, document.notes);
     }
   }
-  // (Of visual elements only, and so of no concern here.)
+  // A material belongs to visual elements only, so it is dropped.
   while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
@@ -344,7 +345,7 @@ class MeshFinder {
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
       : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
-  /// What is unusual about the paths that were found, one line each.
+  /// Notes on unusual paths that were found, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
 
   std::string find(const std::string& where, const std::string& uri) {
@@ -493,8 +494,8 @@ class GeometryFactory {
   GeometryFactory(MeshFinder finder, const UrdfOptions& options, std::vector<std::string>& notes)
       : finder_(std::move(finder)), options_(options), notes_(notes) {}
 
-  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. What is wrong with one
-  /// is said when it is asked for.
+  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. If a mesh has a fault,
+  /// the exception comes when the mesh is asked for.
   void readMeshes(const urdf::ModelInterface& model) {
     for (const auto& [name, link] : model.links_) {
       for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
