@@ -15,8 +15,8 @@ constexpr std::size_t kMostLines = 200u << 20;  // numbers of lines and entries 
 
 /// Whether a proper rotation is certainly within 2^-49 of the numbers in each entry: without one, the claim would be
 /// about nothing at all. With R = U diag(s) V^T, singular values s >= 0, U V^T is the nearest orthogonal matrix Q, and
-/// entries of R - Q = U diag(s - 1) V^T are at most max |s - 1|. Of the symmetric R R^T - I the eigenvalues are s^2 -
-/// 1, none of which is beyond its Frobenius norm e: |s - 1| = |s^2 - 1| / (s + 1) <= e / (2 - e). So e^2 < 2^-96 is
+/// entries of R - Q = U diag(s - 1) V^T are at most max |s - 1|. The symmetric R R^T - I has the eigenvalues s^2 - 1,
+/// none of which is beyond its Frobenius norm e: |s - 1| = |s^2 - 1| / (s + 1) <= e / (2 - e). So e^2 < 2^-96 is
 /// enough: in whole ulps of 2^-64 it is then at most 2^32 - 1, so e < 2^-48 (1 - 2^-34), and e / (2 - e) < 2^-49. det Q
 /// is the sign of det R. Errors of the products are in the bounds.
 bool isNearRotation(const double numbers[9]) {

@@ -25,8 +25,8 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
   for (const Partner& partner : world.partners[body]) {
     if (!inScope(motion, partner)) continue;
     const double own = world.margin(body, partner.body, motion.margin);
-    // An ignored pair is left out at and before its time, of which the lower end is taken; whether that is to the end
-    // of the piece is decided in doubles.
+    // An ignored pair is left out at and before its time, whose lower end is taken. Doubles decide whether it is left
+    // out to the end of the piece.
     const auto pair = ignored.find({partner.body, body});
     const Fix from = pair == ignored.end()                  ? Fix{-kOne}
                      : pair->second >= endOf(motion, piece) ? integer(2)
@@ -83,7 +83,7 @@ class Walk {
     if (task.q - task.p == 1) task.l = partner(task).pieces();
   }
 
-  /// What was looked at last, for people.
+  /// Where the walk was last, for people.
   std::string where() const {
     const std::string others =
         at_.q - at_.p > 1 ? " and " + std::to_string(at_.q - at_.p - 1) + " bodies after it" : "";

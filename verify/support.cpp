@@ -101,8 +101,8 @@ std::uint32_t Geometry::build(std::uint32_t i, std::uint32_t j) {
 }
 
 /// Branch and bound for the most of a direction over the items [i, j). Every value and every bound is less than 3 ulp
-/// too small, so what is left out is at most 3 ulp above `best`, which is at most 3 ulp below its own exact value:
-/// together 6 ulp.
+/// too small. So an item that is left out is at most 3 ulp above `best`. And `best` is at most 3 ulp below its own
+/// exact value: together 6 ulp.
 struct Geometry::Search {
   const Geometry& g;
   const std::uint32_t i, j;

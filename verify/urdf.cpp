@@ -20,8 +20,9 @@ struct Step {
   bool rounded = false;  // the axis is computed: within 2^-52 of what is meant
 };
 
-/// Whether the unit vector along `axis` is one that the element is about: of a coordinate axis this very one, else one
-/// within 2^-50 in each entry of the unit vector along the element's numbers.
+/// Whether the unit vector along `axis` is one that the element is about. For a coordinate axis this is the very
+/// vector. For any other axis it is a vector within 2^-50, in each entry, of the unit vector along the element's
+/// numbers.
 /// @param off  how far that unit vector may be off what is meant, in each entry.
 bool isAlong(const Element& e, const std::array<double, 3>& axis, Fix off) {
   if (isCoordinateAxis(e.axis)) {
@@ -50,7 +51,7 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
   return {{{d(c + k * x * x), d(k * x * y), d(-y)}, {d(k * x * y), d(c + k * y * y), d(x)}}};
 }
 
-/// What a joint adds to the names of its variables.
+/// The endings that a joint adds to the names of its variables.
 std::vector<const char*> endingsOf(const Joint& j) {
   if (j.type == "fixed" || j.mimics) return {};
   if (j.type == "planar") return {"/x", "/y", "/theta"};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Errors as Python has them. What the library throws arrives so: std::invalid_argument as ValueError, and what a file
-// is to blame for as FileNotFoundError or ValueError (guardFiles()).
+// Errors as Python has them. The library's std::invalid_argument arrives as ValueError. An error that a file is to
+// blame for arrives as FileNotFoundError or ValueError (guardFiles()).
 #pragma once
 
 #include <pybind11/pybind11.h>

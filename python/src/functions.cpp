@@ -20,7 +20,7 @@ constexpr struct {
 #include "signatures.inc"
 };
 
-/// What runs any of pybind11's functions, which it knows by the first argument.
+/// The function of pybind11 that runs any of its functions, which it knows by the first argument.
 using Run = PyObject* (*)(PyObject*, PyObject*, PyObject*);
 Run pybind_run = nullptr;
 

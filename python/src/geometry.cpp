@@ -129,7 +129,7 @@ Geometry mesh(py::handle vertices, py::handle faces, bool solid) {
 Geometry convex(py::handle vertices, py::handle faces) {
   const auto points = std::make_shared<std::vector<Vector3d>>(pointsOf(vertices, "vertices"));
   if (points->empty()) valueError("vertices has no row");
-  // What queries take is the hull of the vertices; the faces are for pictures, and for FCL's own queries.
+  // Queries take the hull of the vertices; the faces are for pictures, and for FCL's own queries.
   const Faces triangles = faces.is_none() ? hullFaces(*points) : facesOf(faces, points->size());
   const auto code = std::make_shared<std::vector<int>>();
   for (const auto& f : triangles) {
@@ -179,7 +179,7 @@ Geometry points(py::handle points, py::handle radius) {
   return makeShape<PointCloud>(std::move(places), std::move(radii));
 }
 
-/// What OctoMap's readData() reads of a node: its log-odds, then a bit for each of its eight children, then these.
+/// OctoMap's readData() reads a node as its log-odds, then a bit for each of its eight children, then the children.
 /// Probabilities are not kept, only which cells are occupied: FCL's thresholds can't be read to the last bit.
 void writeNode(const fcl::OcTreed& tree, const octomap::OcTreeNode* node, std::ostream& out) {
   const float log_odds = tree.isNodeOccupied(node) ? 3.5f : -2.0f;

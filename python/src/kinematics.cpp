@@ -256,7 +256,7 @@ Eigen::VectorXd optionalVector(py::handle value, const char* what) {
 }
 
 void bindMotion(py::module_& module) {
-  // What Python makes of the library's own functions: motions without a recipe are nowhere seen.
+  // Python sees the library's own motions, which have no recipe, nowhere.
   py::class_<JointMotion>(module, "_JointMotion");
   py::class_<MadeMotion, JointMotion> motion(module, "JointMotion",
                                              "A motion in joint space over t in [0, 1]: each variable is a polynomial "

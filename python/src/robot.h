@@ -28,7 +28,7 @@ class Input {
   ~Input();
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
-  /// What the loaders read.
+  /// The path that the loaders read.
   const std::string& path() const { return path_; }
   /// Reads, with the errors of guardFiles(); messages call a text "text".
   template <class Read>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What Python has to say while a query runs without the GIL: Ctrl-C and other signals, and the caller's `progress`.
+// Python's interruptions of a query that runs without the GIL: Ctrl-C and other signals, and the caller's `progress`.
 #pragma once
 
 #include <atomic>

@@ -22,7 +22,7 @@ namespace fcl_artic::python {
 /// A world. All members are to be called with the GIL held, but for names(), which a question may call too.
 class World {
  public:
-  /// What stands still, or is carried by a link.
+  /// A body that stands still, or that a link carries.
   struct Body {
     std::string name;
     std::shared_ptr<fcl::CollisionObjectd> object;
@@ -32,7 +32,7 @@ class World {
     std::string shape_of = {};  ///< as Scene::Obstacle::shape_of
     std::vector<std::string> touch_links = {};
   };
-  /// What moves by itself.
+  /// A body that moves by itself.
   struct Mover {
     std::string name;
     std::shared_ptr<fcl::ContinuousCollisionObjectd> object;
@@ -75,7 +75,7 @@ class World {
  private:
   /// The bodies that a name stands for, the object's first shape first.
   std::vector<Body> find(const std::string& name) const;
-  /// What has the object, which the manager has.
+  /// The body that has the object, which the manager has.
   Body& ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object);
   [[noreturn]] void refuseName(const std::string& name) const;
 
@@ -86,7 +86,7 @@ class World {
   std::vector<Mover> movers_;
 };
 
-/// What moves: straight from q0 to q1, a motion, or a trajectory.
+/// The motion of a question: straight from q0 to q1, a motion, or a trajectory.
 using Question = std::variant<JointMotion, JointTrajectory>;
 /// @param q1  None where `motion` is a motion or trajectory itself.
 Question questionOf(const World& world, py::handle motion, py::handle q1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The node part: parameters, the planning scene, error codes, markers. What is decided is decided in certifier.cpp.
+// The node part: parameters, the planning scene, error codes, markers. All decisions are in certifier.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -25,7 +25,7 @@ namespace {
 constexpr const char* kName = "CertifySolution";
 constexpr double kMostBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
 
-/// What the parameters say.
+/// The values of the parameters.
 struct Settings {
   CertifierOptions certifier;
   bool refuse_undecided = true;
@@ -195,7 +195,8 @@ visualization_msgs::msg::Marker redMarker(const std::string& frame, const rclcpp
   return marker;
 }
 
-/// What was shown before goes; of each contact: a ball where it is, an arrow along the normal, the two names.
+/// Removes the markers that were shown before. Each contact gets a ball where it is, an arrow along the normal, and the
+/// two names.
 visualization_msgs::msg::MarkerArray markersOf(const std::vector<Verdict::Contact>& contacts, const std::string& frame,
                                                const rclcpp::Time& now) {
   using visualization_msgs::msg::Marker;

@@ -152,7 +152,7 @@ void requireSenses(const RobotTree& robot, const std::vector<VectorXd>& q) {
   }
 }
 
-/// What MoveIt's joints mean that this library's do not, or the other way round.
+/// Notes and refusals where MoveIt's joints mean something that this library's do not, or the other way round.
 void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, const std::vector<VectorXd>& q,
                  Interpolation kind, const MotionOptions& options) {
   const bool controller = fcl_artic::isController(options.interpolation);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A planner that plans nothing: its plan is the trajectory that the request brings along, so that the services and
-// actions of move_group certify stored trajectories in the scene of the moment.
+// A planner that plans nothing: its plan is the trajectory that the request brings along. So the services and actions
+// of move_group certify stored trajectories in the scene of the moment.
 #include <algorithm>
 #include <memory>
 #include <set>

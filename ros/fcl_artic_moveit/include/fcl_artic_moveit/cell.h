@@ -15,7 +15,7 @@
 
 namespace fcl_artic_moveit {
 
-/// What a body of the manager is in MoveIt.
+/// The body in MoveIt that a body of the manager stands for.
 struct BodyName {
   enum Kind { link, attached, object } kind = object;  ///< a link, an attached body, an object of the world
   std::string id;                                      ///< its name in MoveIt
@@ -23,10 +23,11 @@ struct BodyName {
 
 /// A MoveIt robot and what surrounds it, as a manager.
 ///
-/// What is checked is what MoveIt checks (PlanningScene::checkCollision()), with `padding` the distance that a link and
-/// what it carries have to keep from the world:
-/// - links with geometry against each other, neighbours too; attached bodies against links, except those that they may
-///   touch, and against each other, except on the same link or where one is among the other's touch links; both without
+/// The cell checks what MoveIt checks (PlanningScene::checkCollision()). `padding` is the distance that a link, and
+/// each body that it carries, has to keep from the world:
+/// - links with geometry against each other, neighbours too, without padding;
+/// - attached bodies against links, except those that they may touch, without padding;
+/// - attached bodies against each other, except on the same link or where one is among the other's touch links, without
 ///   padding;
 /// - links and attached bodies against the objects of the world, octomap included, with the link's padding;
 /// - but no pair of which neither body moves with the group, and none that the allowed collision matrix always allows,
@@ -49,8 +50,8 @@ class Cell {
   /// @param state  of which the attached bodies count.
   /// @param group  whose joints move; null: all.
   /// @throws std::invalid_argument naming link or object: another model, a link's scale that is not 1, a padding that
-  ///   is negative or not finite, a shape that toFcl() refuses, an unbounded shape (plane) on a link or in a hand,
-  ///   geometry or a pose that ArticulatedCollisionManager refuses.
+  ///   is negative or not finite, a shape that toFcl() refuses. Also for an unbounded shape (plane) on a link or in a
+  ///   hand, and for geometry or a pose that ArticulatedCollisionManager refuses.
   void update(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
               const moveit::core::RobotState& state, const moveit::core::JointModelGroup* group);
 
@@ -81,7 +82,7 @@ class Cell {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the shape, in the world or in the link's frame
     std::string carrier;                                     ///< link of the tree; empty for an object
   };
-  /// What is registered beside the links, by its name in the manager.
+  /// A body that is registered beside the links, by its name in the manager.
   struct Registered {
     shapes::ShapeConstPtr shape;
     Eigen::Isometry3d pose;
