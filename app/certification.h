@@ -71,7 +71,7 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
 
 /// Two bodies by name, the lesser one first.
 using NamePair = std::pair<std::string, std::string>;
-/// What a plan itself does at its ends, and a detour may do too.
+/// Contacts and near pairs of a plan itself at its ends, which a detour may have too.
 struct MendPairs {
   std::set<NamePair> ignored;  ///< pairs that touch at the start and are ignored
   std::set<NamePair> near;     ///< pairs that are nearer than the clearance, at the start or the goal

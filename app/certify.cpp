@@ -68,8 +68,8 @@ bool isByValues(plans::Interpolation kind) {
          kind == plans::Interpolation::quintic;
 }
 
-/// A certified plan in the words of a format, so that who reads it goes the way that was certified: velocities only
-/// where these counted, turns as they were taken, the values of all other joints.
+/// A certified plan in the words of a format. Whoever reads it goes the way that was certified: it has velocities only
+/// where these counted, turns as they were taken, and the values of all other joints.
 plans::Plan writtenPlan(const KinematicTree& tree, const CertifiedPlan& one, plans::Turns turns, bool degrees,
                         plans::Format format) {
   const plans::PlanMotion& motion = *one.motion;
@@ -192,7 +192,7 @@ std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>
     mended = mended || plan.as_mended;
   }
   for (const std::string& value : o.variables.state) text += " --state " + shellWord(value);
-  // What is mended goes straight.
+  // A mended plan goes straight.
   if (mended && (kind == plans::Interpolation::cubic || kind == plans::Interpolation::quintic)) return "";
   return verifierInterpolation(kind, text);
 }

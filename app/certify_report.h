@@ -11,7 +11,7 @@
 
 namespace fcl_artic::app {
 
-/// What answers are shown with.
+/// The answers, and the settings with which they are shown.
 struct CertifyReport {
   const KinematicTree& tree;
   const CertifiedRequest& request;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs say about a robot: its files, where it stands, what it carries.
+// Options about a robot: its files, where it stands, what it carries.
 #pragma once
 
 #include <string>
@@ -36,7 +36,7 @@ void addAttachOption(CLI::App& verb, RobotOptions& options);
 
 UrdfOptions urdfOptions(const RobotOptions& options);
 /// For scenes and what is carried, whose URDF files look for the same packages.
-/// (Those of WorldOptions are the caller's to add.)
+/// (The caller adds the options of WorldOptions.)
 SceneOptions sceneOptions(const RobotOptions& options);
 
 /// The robot, its allowed pairs and its notes. @throws as loadUrdf() and loadSrdf().

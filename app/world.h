@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs ask questions about: a robot, the pairs of its links that need no check, obstacles, carried objects.
+// The world that verbs ask about: a robot, the pairs of its links that need no check, obstacles, carried objects.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& r
 /// check found again (--auto-srdf /dev/null).
 std::string shellArguments(const WorldOptions& options);
 
-/// The files that the options name as fcl_artic_verify takes them, each word after a space. (Of what links carry it
-/// takes none, and scenes only where it reads all of them.)
+/// The files that the options name as fcl_artic_verify takes them, each word after a space. (It takes no files of
+/// carried bodies, and scenes only where it reads all of them.)
 std::string verifierArguments(const WorldOptions& options);
 /// A word of a shell's command.
 std::string shellWord(const std::string& word);

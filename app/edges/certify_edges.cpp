@@ -49,8 +49,8 @@ std::string duration(double seconds) {
   return s >= 60 ? fmt::format("{} min {} s", s / 60, s % 60) : fmt::format("{} s", s);
 }
 
-/// What is done, its rate and the time that is left, on standard error: on a terminal in place each second, else a line
-/// now and then, as logs of jobs want it.
+/// Shows on standard error how much is done, its rate, and the time that is left. On a terminal it renews one line each
+/// second; elsewhere it writes a line now and then, as logs of jobs want it.
 class EdgeProgress {
  public:
   /// @param rows  of all. @param shown  whether to show anything.
@@ -92,7 +92,7 @@ class EdgeProgress {
   const Clock::time_point begin_ = Clock::now();
 };
 
-/// What the answers depend on, but for the engine.
+/// All that the answers depend on, but for the engine.
 Json describe(const WorldOptions& world, const World& read, const EdgesOptions& o, const EdgeSource& edges,
               const SceneSource& scenes) {
   std::vector<std::string> links;
@@ -284,7 +284,7 @@ class Answerer {
   std::map<std::size_t, std::shared_ptr<const std::string>> worlds_;  ///< of the block's certificates
 };
 
-/// What became of the blocks that a process took.
+/// The fate of the blocks that a process took.
 struct Outcome {
   bool blocks_failed = true, something_else_failed = false;  ///< else: rows are refused, --auto-srdf is not written
 };
@@ -321,7 +321,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
     const auto rows = static_cast<std::int64_t>(cut.count(block));
     if (!cut.scene_of_edge && bad_scenes.count(cut.sceneOf(block))) continue;
     bool is_new = false;
-    // What keeps this block from being computed is reported, and the others are computed all the same.
+    // If this block can't be computed, the reason is reported, and the others are computed all the same.
     try {
       if (const std::optional<Block> finished = folder->readBlock(block)) {
         counts.add(finished->counts);

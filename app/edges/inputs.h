@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What answers that are kept depend on, as a hash of what was read: joints, shapes, places. (Files may have come
-// through a pipe that nobody can read again, or name other files.)
+// A hash of all that answers depend on, as it was read: joints, shapes, places. A kept answer is used again only if the
+// hash is the same. (Files may have come through a pipe that nobody can read again, or name other files.)
 #pragma once
 
 #include <string>

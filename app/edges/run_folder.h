@@ -55,12 +55,12 @@ enum class Read {
 
 class RunFolder {
  public:
-  /// Of a run that begins or goes on.
+  /// A run that begins or goes on.
   /// @param run  what it is about. Its hash marks each block.
   /// @throws std::invalid_argument naming what differs from the run that the folder is of; std::runtime_error naming
   ///   the file.
   RunFolder(std::string folder, const nlohmann::ordered_json& run);
-  /// Of a run that is there.
+  /// A run that is there.
   /// @throws std::runtime_error naming the file.
   explicit RunFolder(std::string folder);
 

@@ -52,7 +52,7 @@ std::vector<Stretch> stretchesOf(const std::vector<double>& times) {
   return out;
 }
 
-/// What holds over two stretches, of what holds over each.
+/// Joins what holds over one stretch with what holds over another.
 void join(const Clearance& more, Clearance& all) {
   all.lower = std::min(all.lower, more.lower);
   if (more.upper < all.upper) {

@@ -30,7 +30,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-// What a browser draws fluently, and what a page of some ten megabytes holds.
+// As much as a browser draws fluently, and as a page of some ten megabytes holds.
 constexpr std::size_t kMostTriangles = 1000000, kMostBalls = 500000;
 constexpr std::size_t kFewestPoses = 360, kMostPoses = 3000, kPosesForPiece = 4;
 
@@ -243,7 +243,7 @@ Json distancesJson(const Distances& distances) {
   return out;
 }
 
-/// What moves, and what it looks like: for the page's script.
+/// The bodies, their motions and their looks, for the page's script.
 Json motionJson(const Report& report, const std::vector<PageBody>& bodies, const Distances& distances) {
   const KinematicTree& tree = report.tree;
   const std::vector<double> times = timesOfPoses(report);

@@ -37,7 +37,7 @@ std::string directionText(const Eigen::Vector3d& direction, int decimals = 6);
 /// The verdict in one sentence.
 std::string headline(const Report& report);
 
-/// What of all pairs a request does not ask about; empty: nothing.
+/// The pairs that a request leaves out; empty: none.
 std::string scopeText(const CertifiedRequest& request);
 
 /// The answer for a reader.
