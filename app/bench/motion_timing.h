@@ -64,7 +64,7 @@ struct TimedRow {
   double slowest() const { return quantile(1); }
 };
 
-/// Number of further passes over the motions, for the 99.9 % and the slowest of a row: one pass in which the machine
+/// Number of further passes over the motions, for the 99.9 % and the slowest of a row. One pass in which the machine
 /// did something else must not look like a slow query.
 constexpr int kPassesOfSlowest = 10;
 
