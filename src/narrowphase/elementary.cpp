@@ -2,21 +2,18 @@
 //
 // Symbols. a_i and x_j are the vertices of A and of B, in A's frame; a'_i = a_(i+1) - a_i and x'_j are their edges, and
 // D_ij = x_j - a_i. Where s vanishes, two features touch if they also meet inside themselves:
-//   vertex x_j on face a     s = (a'_0 x a'_1) . D_0j
-//                            inside: ((a'_0 x a'_1) x a'_i) . D_ij > 0 for i = 0, 1, 2
-//   vertex a_i on face x     s = (x'_0 x x'_1) . -D_i0
-//                            inside: ((x'_0 x x'_1) x x'_j) . -D_ij > 0 for j = 0, 1, 2
-//   edge a'_i on edge x'_j   s = m . D_ij, m = a'_i x x'_j
-//                            inside: U, V, m.m - U, m.m - V > 0 for U = m . (D_ij x x'_j), V = m . (D_ij x a'_i)
-// (A common point a_i + u a'_i = x_j + v x'_j of both edges has u m.m = U and v m.m = V: take the cross product with
-// the other edge, then the dot product with m.) Differences of vertices come first, so the determinants scale with the
-// triangles and not with their distance from the origin.
+//   vertex x_j on face a     s = (a'_0 x a'_1) . D_0j,    inside: ((a'_0 x a'_1) x a'_i) . D_ij > 0 for all i
+//   vertex a_i on face x     s = (x'_0 x x'_1) . -D_i0,   inside: ((x'_0 x x'_1) x x'_j) . -D_ij > 0 for all j
+//   edge a'_i on edge x'_j   s = m . D_ij, m = a'_i x x'_j, U = m . (D_ij x x'_j), V = m . (D_ij x a'_i),
+//                            inside: U, V, m.m - U, m.m - V > 0
+// (A common point a_i + u a'_i = x_j + v x'_j of both edges has u m.m = U and v m.m = V: cross with the other edge, dot
+// with m.) Differences of vertices come first, so the determinants scale with the triangles and not with their distance
+// from the origin.
 //
-// When triangles that are apart come to touch, a vertex of one lies on the other, or two of their edges meet (all of
-// these are closed sets). So if each of the 15 equations is excluded over an interval of time, no first contact is in
-// it. An equation is excluded if its s has no root in the interval, or if a direction keeps its two features apart. The
-// direction stands in for the inside test: it decides even where s vanishes identically (coplanar, parallel and
-// zero-length features).
+// When triangles that are apart come to touch, a vertex of one lies on the other, or two edges meet (all closed sets).
+// So if each of the 15 equations is excluded over an interval of time, no first contact is in it. An equation is
+// excluded if its s has no root, or if a direction keeps its two features apart. The direction stands in for the inside
+// test: it decides even where s vanishes identically (coplanar, parallel and zero-length features).
 #include "narrowphase/elementary.h"
 
 #include <algorithm>
@@ -141,8 +138,7 @@ void removeAlong(const Vector3d& u, Vector3d& v) {
   if (length2 > 0) v -= v.dot(u) / length2 * u;
 }
 
-/// Closest point of a feature, and the feature's directions there, 0 at an end. The way to the point is at right angles
-/// to these.
+/// Closest point of a feature, and the feature's directions there (0 at an end), at right angles to the way.
 struct Foot {
   Vector3d point, e = Vector3d::Zero(), f = Vector3d::Zero();
 };
@@ -153,8 +149,8 @@ struct Nearest {
   Foot foot;
 
   double distance() const { return (x - a).norm(); }
-  /// The direction of x - a. Cancellation turns the difference by an angle of rounding / distance. Its components along
-  /// the features are removed, which restores these digits: so gaps below the root of the rounding error are seen.
+  /// The direction of x - a. Cancellation turns the difference by rounding / distance. Removing its components along
+  /// the features mends that, so gaps below the root of the rounding error are seen.
   Vector3d direction() const {
     Vector3d n = x - a, f = foot.f;
     removeAlong(foot.e, n);
@@ -270,8 +266,7 @@ struct Sweep {
     }
   }
 
-  /// Whether, wherever s has a root, the features meet strictly inside themselves (planes and lines would meet outside,
-  /// too).
+  /// Whether the features meet strictly inside themselves wherever s has a root.
   bool certainlyInside(const Equation& q) const {
     if (q.kind == Equation::edgeEdge) {
       const Vector &e = edge_a[q.i], &f = edge_x[q.j], &w = D[q.i][q.j], m = cross(e, f);
@@ -308,11 +303,10 @@ struct Interval {
 constexpr int kMaxSteps = 1000, kMaxDepth = 64;
 /// An interval in which no vertex moves by more than this many floors (Sweep::floor) is not divided.
 constexpr double kFloors = 4;
-/// Contact points nearer than this many floors count as one point: where features meet at a shallow angle, the point is
-/// uncertain by more than one floor.
+/// Contact points nearer than this many floors are one point: at a shallow angle it is uncertain by more than a floor.
 constexpr double kSamePlace = 1e4;
-/// Directions between features that touch are taken this time before the contact. Meanwhile the bodies turn by 1e-6 of
-/// the motion's rotation, and the gap is far above rounding.
+/// Directions between features that touch are taken this time before the contact: they turn by 1e-6 of the motion's
+/// rotation, and the gap is far above rounding.
 constexpr double kStepBack = 0x1p-20;
 
 class Refinement {
@@ -376,9 +370,8 @@ class Refinement {
     return false;
   }
 
-  /// Proves that a contact exists: in a window a little wider than the root's uncertainty, s changes sign, and the
-  /// features cross each other all the time. The window may start before t_lower: the root lies after t_lower all the
-  /// same.
+  /// Existence: over a window a little wider than the root's uncertainty, s changes sign and the features cross each
+  /// other. The window may start before t_lower: the root lies after t_lower all the same.
   void proveCrossing(const Equation& q, const Interval& first, RefinedContact& out) const {
     const double tm = first.lo + 0.5 * (first.hi - first.lo), half = std::max(first.hi - tm, kUlp);
     const Quadratic f = sweep(tm, half).s(q);
@@ -402,9 +395,8 @@ class Refinement {
     std::copy(s.x, s.x + 3, x);
   }
 
-  /// Two triangles meet in a convex set: at first contact a point, a segment or a polygon. For each triangle the
-  /// smallest feature that holds all of this set is named. At one point it is the intersection of all equations'
-  /// features, over the points it is their union.
+  /// Two triangles meet in a convex set. For each triangle the smallest feature that holds all of it is named: at one
+  /// point the intersection of all equations' features, over several points the union.
   void nameFeatures(int active, bool proven, RefinedContact& out) const {
     struct Place {
       Vector3d point;
