@@ -204,7 +204,7 @@ class Reader {
     if (isStill(a) || isStill(b)) return;  // one of them an obstacle
     checked_.emplace(std::min(a.name, b.name), std::max(a.name, b.name));
     if (a.attached || b.attached) return;
-    // If one joint lies between them, they are neighbours, whom a manager leaves out, unless one is attached.
+    // If one joint lies between them, they are neighbours, whom a manager may leave out, unless one is attached.
     const auto above = [&](LinkId child) { return group(tree_->parentLink(child)); };
     if (above(x) == y) a.attached = true;
     if (above(y) == x) b.attached = true;
