@@ -26,7 +26,7 @@ struct Pair {
     m.until = 0.25;
     motion = m.write(world);
   }
-  /// Of the first root the pair is ignored until the end of the claim, so that any node proves it.
+  /// The pair of the first root is ignored until the end of the claim, so any node proves it.
   mutable std::string last;
   bool shown(int first, int second, double t, const std::string& witness) const {
     const Verdict v =

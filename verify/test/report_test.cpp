@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said to people: all that a claim rests on, and nothing that looks like a verdict and is none.
+// Texts for people name all that a claim rests on, and nothing in them looks like a verdict and is none.
 #include "../report.h"
 
 #include <gtest/gtest.h>

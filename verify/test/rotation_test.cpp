@@ -25,8 +25,8 @@ std::array<Big, 9> nearestOrthogonal(const std::array<double, 9>& R) {
   return X;
 }
 
-// Nine numbers near a rotation's that are read are within 2^-49 of a rotation's, the nearest one's, by which the claim
-// is about something; a writer's, off by the rounding of some products, are all read.
+// If nine numbers are read as a rotation, they are within 2^-49 of a rotation's, the nearest one's, so the claim is
+// about something. A writer's numbers, off by the rounding of some products, are all read.
 TEST(VerifyStatement, WhatIsReadAsARotationIsNearOne) {
   const auto isRead = [](const std::array<double, 9>& R) {
     M m;
