@@ -112,6 +112,9 @@ REACHABLE = {
     "combineScenes": "combine_scenes",
     "unitNotes": "unit_notes",
     "loadMesh": "load_mesh",
+    # query_text.h
+    "readQuery": "replay",
+    "RecordedQuery": "replay",  # answers at once
     # instruction_set.h
     "instructionSet": "instruction_set",
 }
@@ -168,6 +171,7 @@ MEMBERS = {
             "size": "obstacles",
             "empty": "obstacles",
             "continuousCollide": "check",
+            "writeQuery": "dump",
         },
     ),
     "KinematicTree": (
