@@ -374,13 +374,13 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
 
  private:
   struct Impl;
-  struct Aspects;
-  class Some;
+  struct QueryContext;
+  class BatchWithVisibility;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
-  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const Aspects& aspects,
+  void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const QueryContext& context,
                      CertifiedResult& result) const;
-  void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request, const Aspects& aspects,
-                         CertifiedResult& result) const;
+  void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
+                         const QueryContext& context, CertifiedResult& result) const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -24,7 +24,7 @@ using engine::TreeView;
 /// A sign counts as sure from this part of the largest numbers on. The verifier's widened rotations change the numbers
 /// by a thousandth of that.
 constexpr double kSureSign = 1e-11;
-constexpr std::size_t kMostPointsOfPart = 16;  ///< points of a part
+constexpr std::size_t kMaxPointsOfPart = 16;  ///< points of a part
 
 /// The corners of a triangle, a column each.
 Matrix3d cornerColumns(const Geometry& geometry, std::size_t place) {
@@ -112,7 +112,7 @@ class OutsideSearch {
     for (std::size_t place = 0; place < part.size(); ++place) {
       std::vector<std::size_t>& list = places[part[place]];
       if (list.empty()) order.push_back(part[place]);
-      if (list.size() < kMostPointsOfPart) list.push_back(place);
+      if (list.size() < kMaxPointsOfPart) list.push_back(place);
     }
     for (const std::size_t of : order) {
       bool shown = false;

@@ -162,8 +162,8 @@ class CellReader {
     return ShapeTree::fromPieces(std::move(cells));
   }
   /// Calls found(center, half a side) for each cell, until that returns false.
-  template <class Found>
-  void forEach(const Found& found) const {
+  template <class OnCell>
+  void forEach(const OnCell& found) const {
     if (const Node* root = tree_.getRoot()) visit(*root, Eigen::Vector3d::Zero(), root_half_, found);
   }
   /// Centres and half sizes are multiples of a power of two of the root's half size: exact, but for float resolutions'
@@ -173,8 +173,8 @@ class CellReader {
   }
 
  private:
-  template <class Found>
-  bool visit(const Node& node, const Eigen::Vector3d& center, double half, const Found& found) const {
+  template <class OnCell>
+  bool visit(const Node& node, const Eigen::Vector3d& center, double half, const OnCell& found) const {
     for (int k = 0; k < 3; ++k) {
       // The cell's faces are rounded, and two cells that touch must not leave a gap between them.
       const double reach = half + 0x1p-50 * root_half_;
@@ -211,26 +211,31 @@ std::shared_ptr<const ShapeTree> readCloud(const PointCloud& cloud) {
   return ShapeTree::fromPieces(std::move(balls));
 }
 
+/// The tree of a mesh, made once for all geometries with these bytes.
+template <class S>
+std::shared_ptr<const ShapeTree> readCached(const Mesh<S>& mesh, const fcl::CollisionGeometry<S>& geometry) {
+  static_assert(std::is_trivially_copyable<fcl::Triangle>::value && sizeof(fcl::Triangle) == 3 * sizeof(std::size_t) &&
+                    sizeof(fcl::Vector3<S>) == 3 * sizeof(S),
+                "equal bytes are equal meshes, and the other way round");
+  // Never destroyed: a query may come from the destructor of somebody's static object.
+  static MeshCache& cache = *new MeshCache(kMeshCacheBytes);
+  const MeshBytes bytes{&geometry,
+                        mesh.vertices,
+                        mesh.triangles,
+                        mesh.num_vertices * sizeof(fcl::Vector3<S>),
+                        mesh.num_triangles * sizeof(fcl::Triangle),
+                        sizeof(S),
+                        mesh.solid};
+  std::shared_ptr<const ShapeTree> tree = cache.find(bytes);
+  if (!tree) cache.keep(bytes, tree = readMesh(mesh));
+  return tree;
+}
+
 template <class S>
 std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry, bool cached) {
   Mesh<S> mesh;
   if (asMesh(geometry, mesh)) {
-    if (!cached) return readMesh(mesh);
-    static_assert(std::is_trivially_copyable<fcl::Triangle>::value &&
-                      sizeof(fcl::Triangle) == 3 * sizeof(std::size_t) && sizeof(fcl::Vector3<S>) == 3 * sizeof(S),
-                  "equal bytes are equal meshes, and the other way round");
-    // Never destroyed: a query may come from the destructor of somebody's static object.
-    static MeshCache& cache = *new MeshCache(kMeshCacheBytes);
-    const MeshBytes bytes{&geometry,
-                          mesh.vertices,
-                          mesh.triangles,
-                          mesh.num_vertices * sizeof(fcl::Vector3<S>),
-                          mesh.num_triangles * sizeof(fcl::Triangle),
-                          sizeof(S),
-                          mesh.solid};
-    std::shared_ptr<const ShapeTree> tree = cache.find(bytes);
-    if (!tree) cache.keep(bytes, tree = readMesh(mesh));
-    return tree;
+    return cached ? readCached(mesh, geometry) : readMesh(mesh);
   }
   Piece piece;
   switch (geometry.getNodeType()) {

@@ -84,8 +84,8 @@ void requireLength(const Vector3d& v, const N& name, const char* what) {
 /// Does the work of readTransform().
 template <class S, class N>
 RigidTransform readRigid(const fcl::Transform3<S>& M, const N& name) {
-  constexpr double kMost = std::is_same<S, float>::value ? 1e-4 : 1e-6;
-  return requireRigid(Isometry3d(M.template cast<double>()), kMost, [&] { return spelled(name); });
+  constexpr double kMax = std::is_same<S, float>::value ? 1e-4 : 1e-6;
+  return requireRigid(Isometry3d(M.template cast<double>()), kMax, [&] { return spelled(name); });
 }
 
 MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d& velocity) {

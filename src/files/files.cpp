@@ -159,8 +159,8 @@ std::string read(const std::string& path) {
 std::filesystem::path targetOf(const std::filesystem::path& path) {
   std::filesystem::path target = path;
   std::error_code error;
-  constexpr int kMostLinks = 40;  // Linux follows no more
-  for (int k = 0; k < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(target, error)); ++k) {
+  constexpr int kMaxLinks = 40;  // Linux follows no more
+  for (int k = 0; k < kMaxLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(target, error)); ++k) {
     const std::filesystem::path next = std::filesystem::read_symlink(target, error);
     if (error) break;
     target = target.parent_path() / next;

@@ -22,8 +22,8 @@ using engine::PieceKind;
 
 /// Numbers of points that are tried in a mesh, and at least in its smallest part.
 constexpr int kSamples = 400, kFewestSamples = 40;
-/// Parts that get balls: at most kMostParts, none smaller than kLeastPart of the largest.
-constexpr std::size_t kMostParts = 8;
+/// Parts that get balls: at most kMaxParts, none smaller than kLeastPart of the largest.
+constexpr std::size_t kMaxParts = 8;
 constexpr double kLeastPart = 0.1;
 /// Steps by which a ball is moved away from where it touches.
 constexpr int kMoveSteps = 6;
@@ -115,7 +115,7 @@ std::vector<Ball> choose(const EnclosedSpace& space, std::vector<Ball>& samples)
   std::priority_queue<std::pair<double, std::size_t>> queue;
   for (std::size_t i = 0; i < samples.size(); ++i) queue.emplace(weightOf(samples[i]), i);
   std::vector<Ball> chosen;
-  while (!queue.empty() && chosen.size() < static_cast<std::size_t>(InnerBalls::kMost)) {
+  while (!queue.empty() && chosen.size() < static_cast<std::size_t>(InnerBalls::kMax)) {
     const auto [weight, index] = queue.top();
     queue.pop();
     const double now = weightOf(samples[index]);
@@ -234,7 +234,7 @@ std::unique_ptr<const BallsInMesh> BallsInMesh::find(const engine::TreeView& mes
                    [](const Sized& a, const Sized& b) { return a.size.norm() > b.size.norm(); });
   double volume = 0;
   std::size_t kept = 0;
-  while (kept < std::min(kMostParts, sized.size()) && sized[kept].size.norm() >= kLeastPart * sized[0].size.norm()) {
+  while (kept < std::min(kMaxParts, sized.size()) && sized[kept].size.norm() >= kLeastPart * sized[0].size.norm()) {
     volume += sized[kept++].size.prod();
   }
   std::vector<Ball> samples;
@@ -253,7 +253,7 @@ std::unique_ptr<const BallsInMesh> BallsInMesh::find(const engine::TreeView& mes
   InnerBalls& balls = found->balls_;
   balls.count = static_cast<std::int32_t>(chosen.size());
   std::vector<std::int32_t> number(static_cast<std::size_t>(parts.count), -1);
-  for (std::int32_t i = 0; i < InnerBalls::kMost; ++i) {
+  for (std::int32_t i = 0; i < InnerBalls::kMax; ++i) {
     const bool is_one = i < balls.count;
     const Ball ball = is_one ? chosen[static_cast<std::size_t>(i)] : Ball{Vector3d::Zero(), -1e30, -1, 0};
     for (int k = 0; k < 3; ++k) balls.center[k][i] = ball.center[k];

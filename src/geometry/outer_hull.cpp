@@ -55,7 +55,7 @@ class HullDistance {
     body_.pose.c = baseline::Vec3(p.data());
     const Eigen::Vector3d direction = p - sum_ / piece_.num_vertices;
     baseline::GjkResult g;
-    baseline::gjk(body_, baseline::Vec3(direction.data()), 1e-3, enough * (1 - 1e-9), 48, g);
+    baseline::gjk(body_, baseline::Vec3(direction.data()), {1e-3, enough * (1 - 1e-9), 48}, g);
     baseline::originWeights(g.simplex);
     last_ = g.simplex;
     return std::min(guess, distanceOfCombination(p));

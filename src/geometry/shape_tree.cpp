@@ -27,7 +27,7 @@ using engine::Piece;
 using engine::PieceKind;
 
 /// With this number, three coordinates for each point are counted in 32 bits.
-constexpr std::size_t kMostHullPoints = 500000000;
+constexpr std::size_t kMaxHullPoints = 500000000;
 
 /// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
 float roundUpToFloat(double x) {
@@ -230,7 +230,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangle(const Eigen::Vector3d& 
 
 std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) throw std::invalid_argument("it has no vertex");
-  if (points.size() > kMostHullPoints) throw std::invalid_argument("it has too many vertices");
+  if (points.size() > kMaxHullPoints) throw std::invalid_argument("it has too many vertices");
   requirePoints(points);
   auto tree = std::make_shared<ShapeTree>(Private());
   tree->outer_ = tree->hulls_.add(points, 0);

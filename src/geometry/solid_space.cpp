@@ -164,10 +164,10 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
 namespace {
 
 /// One body's points as seen from the other, in the other's tree frame, up to an error.
-class Seen {
+class SeenPoints {
  public:
   /// @param inverse  points of A seen from B.
-  Seen(const PairPose& pose, bool inverse) : inverse_(inverse), error_(pose.error) {
+  SeenPoints(const PairPose& pose, bool inverse) : inverse_(inverse), error_(pose.error) {
     R_ = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.R);
     c_ = Vector3d::Map(pose.c);
   }
@@ -194,7 +194,8 @@ class Seen {
 
 /// Parts of one body whose first points may lie in the box of a solid that they are seen from.
 template <class F>
-void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, const Seen& seen, const F& visit) {
+void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, const SeenPoints& seen,
+                    const F& visit) {
   const std::vector<Node>& tree = points.tree();
   if (tree.empty()) return;
   const Node& root = solid.nodes[0];
@@ -224,7 +225,7 @@ void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, 
 /// @param of_b  the parts are B's and the solid is A.
 void partsWithin(const SurfacePoints& points, const engine::Body& solid, const PairPose& pose, bool of_b,
                  Containment& found) {
-  const Seen seen(pose, !of_b);
+  const SeenPoints seen(pose, !of_b);
   forPartsWithin(points, *solid.tree, seen, [&](const SurfacePoints::Part& part) {
     for (const Vector3d& p : part.points) {
       double error;

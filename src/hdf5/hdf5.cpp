@@ -295,10 +295,10 @@ struct Image::Impl {
     if (std::all_of(dims.begin(), dims.end(), [](hsize_t n) { return n > 0; })) {
       std::vector<hsize_t> chunk = dims;
       // Chunks fit in the cache that HDF5 has for each dataset, 1 MiB.
-      constexpr hsize_t kMostBytes = 1 << 18;
+      constexpr hsize_t kMaxBytes = 1 << 18;
       hsize_t row = sizeof(T);
       for (std::size_t d = 1; d < chunk.size(); ++d) row *= chunk[d];
-      chunk[0] = std::clamp<hsize_t>(kMostBytes / row, 1, chunk[0]);
+      chunk[0] = std::clamp<hsize_t>(kMaxBytes / row, 1, chunk[0]);
       H5Pset_chunk(how.id(), static_cast<int>(chunk.size()), chunk.data());
       H5Pset_shuffle(how.id());
       H5Pset_deflate(how.id(), 1);

@@ -72,7 +72,7 @@ class Gltf {
   }
 
  private:
-  static constexpr std::size_t kMost = std::size_t{1} << 40;  // sums of them do not overflow
+  static constexpr std::size_t kMax = std::size_t{1} << 40;  // sums of them do not overflow
 
   /// The parts of a binary file: JSON, and bytes.
   std::string_view unpack(std::string_view file) {
@@ -166,7 +166,7 @@ class Gltf {
   }
 
   std::size_t countOf(const Json& value, const std::string& what) const {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= kMost) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= kMax) {
       source_.refuse(what + " is no whole number from 0");
     }
     return value.get<std::size_t>();

@@ -97,7 +97,7 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
     if (tried < left && !isEar(at)) {
       at = after[at];
       ++tried;
-      if (compared > kMostCompared) return {};
+      if (compared > kMaxCompared) return {};
       continue;
     }
     triangles.push_back({before[at], at, after[at]});

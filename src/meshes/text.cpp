@@ -57,8 +57,8 @@ bool isOneOrMore(std::string_view word) {
     const bool small = digits[0] == '-';
     digits = withoutSign(digits);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-    constexpr long long kMost = std::numeric_limits<long long>::max() / 2;  // no file has that many digits
-    if (error == std::errc::result_out_of_range || exponent > kMost) exponent = kMost;
+    constexpr long long kMax = std::numeric_limits<long long>::max() / 2;  // no file has that many digits
+    if (error == std::errc::result_out_of_range || exponent > kMax) exponent = kMax;
     if (small) exponent = -exponent;
   }
   return places + exponent > 0;

@@ -58,7 +58,7 @@ void TriangleSoup::addFace(const std::size_t* corners, std::size_t count, const 
   for (const auto& [a, b, c] : cut) triangles.emplace_back(corners[a], corners[b], corners[c]);
 }
 
-void TriangleSoup::tell(const Source& source) const {
+void TriangleSoup::noteSkipped(const Source& source) const {
   if (points > 0) source.note("its points, " + std::to_string(points) + ", have no surface and were left out");
   if (lines > 0) source.note("its lines, " + std::to_string(lines) + ", have no surface and were left out");
   if (uneven > 0) {

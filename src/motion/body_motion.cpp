@@ -275,11 +275,11 @@ void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d
 
   // The number of pieces with which the boxes grow by 1/500 of the path's size, 256 at most. Infinity and NaN choose
   // 256.
-  constexpr int kMostPieces = 256;
+  constexpr int kMaxPieces = 256;
   const double growth = 2e-3 * (std::min(path.speed, path.extent) + (upper - lower).norm());
   const double wanted =
       path.acceleration == 0 ? 1 : std::min(std::sqrt(path.acceleration / (8 * growth)), path.speed / (2 * growth));
-  const int pieces = wanted < kMostPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMostPieces;
+  const int pieces = wanted < kMaxPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMaxPieces;
   const double h = (1 + 0x1p-40) / pieces;  // the times are rounded
   const double remainder = std::min(path.acceleration * h * h / 8, path.speed * h / 2);
   const double numbers = path.terms + motion.after.length() + lower.norm() + upper.norm();

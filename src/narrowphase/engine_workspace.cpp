@@ -20,7 +20,7 @@ namespace {
 using Eigen::Vector3d;
 using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr int kMostIterations = 256;
+constexpr int kMaxIterations = 256;
 /// Least distance, as a part of the size, between points whose direction is sharp: rounding, some 1e-16 of the size,
 /// turns it by 1e-6 rad at most.
 constexpr double kSharp = 1e-10;
@@ -74,7 +74,7 @@ void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, L
   // If the pieces' cores (without their radii) are apart by more than rounding, the normal is the direction between
   // their nearest points.
   baseline::GjkResult cores;
-  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, 0, kMostIterations, cores);
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), {1e-6, 0, kMaxIterations}, cores);
   if (!cores.overlap) cores.n.store(contact.normal);
   const double size = baseline::norm(body.pose.c) + towards.norm();
   if (!cores.overlap && cores.lower > kSharp * size) return;
@@ -87,7 +87,7 @@ void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, L
 void nearestPoints(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
   baseline::GjkResult found;
   const double radii = body.a->radius + body.b->radius;
-  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, radii, kMostIterations, found);
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), {1e-6, radii, kMaxIterations}, found);
   if (found.overlap) return leastDepth(body, towards, contact);
   baseline::originWeights(found.simplex);
   baseline::Vec3 a, b;

@@ -85,8 +85,8 @@ void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
 
 void keepUnits(std::string_view text, int line, Plan& plan) {
   const auto keep = [&](std::string& kept) {
-    constexpr std::size_t kMost = 80;
-    const std::string shown = text::oneLine(text.substr(0, text.find_last_not_of(" \t\r") + 1).substr(0, kMost));
+    constexpr std::size_t kMax = 80;
+    const std::string shown = text::oneLine(text.substr(0, text.find_last_not_of(" \t\r") + 1).substr(0, kMax));
     if (kept.empty()) kept = fmt::format("line {} says '{}'", line, shown);
   };
   if (text::speaksOfOtherAngles(text)) keep(plan.other_angles);

@@ -16,8 +16,8 @@
 #include "fcl_artic/manager.h"
 #include "numerics/assertion.h"
 #include "numerics/shown.h"
-#include "query/aspects.h"
 #include "query/engine_query.h"
+#include "query/query_context.h"
 
 namespace fcl_artic {
 namespace {
@@ -37,13 +37,13 @@ using Pairs = std::vector<engine::PairId>;
 /// The pairs that a query ignores.
 /// @param time  that the query takes.
 /// @param collide  asks it.
-template <class Aspects, class Collide>
+template <class Context, class Collide>
 Pairs pairsIgnored(const TimePart& time, const Collide& collide) {
-  typename Aspects::Details details;
-  Aspects aspects;
-  aspects.time = time;
-  aspects.details = &details;
-  collide(aspects);
+  typename Context::Details details;
+  Context context;
+  context.time = time;
+  context.details = &details;
+  collide(context);
   Pairs pairs;
   for (const engine::Ignored& pair : details.ignored) pairs.push_back(pair.pair);
   return pairs;
@@ -70,7 +70,7 @@ class Search {
 
   Clearance run() {
     if (request_.ignore_initial_contact) ignoreInitialContacts();
-    found_.within_tolerance = query(0) == Found::contact;
+    found_.within_tolerance = query(0) == Verdict::contact;
     double margin = request_.most;
     while (!found_.within_tolerance && decide(margin)) {
       found_.within_tolerance = found_.lower >= request_.most || found_.upper - found_.lower <= tolerance(found_.upper);
@@ -80,7 +80,7 @@ class Search {
   }
 
  private:
-  enum class Found { free, contact, open };
+  enum class Verdict { free, contact, open };
 
   double tolerance(double distance) const {
     return std::max(request_.tolerance_relative * distance, request_.tolerance_distance);
@@ -88,12 +88,12 @@ class Search {
 
   /// Asks with this margin; if the answer is open, with a slightly larger one.
   bool decide(double margin) {
-    return query(margin) != Found::open || query(margin + kOpen * tolerance(margin)) != Found::open;
+    return query(margin) != Verdict::open || query(margin + kOpen * tolerance(margin)) != Verdict::open;
   }
 
   /// Asks with the rest of the budget. If nothing is left of it, sets spent_ and does not ask.
-  template <class Asked>
-  void answer(CertifiedRequest& request, const Asked& ask) {
+  template <class AskQuery>
+  void answer(CertifiedRequest& request, const AskQuery& ask) {
     static_cast<Scope&>(request) = request_;
     if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     if (request_.work_budget) {
@@ -120,28 +120,28 @@ class Search {
     found_.ignored_initial_contacts = result_.ignored_initial_contacts;
   }
 
-  Found query(double margin) {
-    if (spent_) return Found::open;
+  Verdict query(double margin) {
+    if (spent_) return Verdict::open;
     CertifiedRequest request;
     request.margin = margin;
     request.tolerance_time *= duration_;
     request.mode = ContactMode::any;
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
     answer(request, [&] { ask_(request, left_out_, result_); });
-    if (spent_) return Found::open;
+    if (spent_) return Verdict::open;
     if (result_.isFree()) {
       found_.lower = std::max(found_.lower, margin);
-      return Found::free;
+      return Verdict::free;
     }
     const auto proven = std::find_if(result_.contacts.begin(), result_.contacts.end(),
                                      [](const CertifiedContact& contact) { return contact.certain; });
-    if (proven == result_.contacts.end()) return Found::open;
+    if (proven == result_.contacts.end()) return Verdict::open;
     FCL_ARTIC_ASSERT(found_.lower <= margin);
     found_.upper = margin;
     found_.time = proven->t_upper;
     found_.body1 = proven->body1;
     found_.body2 = proven->body2;
-    return Found::contact;
+    return Verdict::contact;
   }
 
   ClearanceRequest request_;
@@ -158,11 +158,11 @@ class Search {
 
 Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, const ClearanceRequest& request) const {
   const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
-    collideMotion(motion, asked, Aspects::ofClearance(left_out), result);
+    collideMotion(motion, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<Aspects>(TimePart(),
-                                 [&](const Aspects& aspects) { collideMotion(motion, asked, aspects, result); });
+    return pairsIgnored<QueryContext>(
+        TimePart(), [&](const QueryContext& context) { collideMotion(motion, asked, context, result); });
   };
   return Search(request, 1, ask, ask_begin).run();
 }
@@ -171,11 +171,11 @@ Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajecto
                                                  const ClearanceRequest& request) const {
   trajectory.requireOf(tree());
   const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
-    collideTrajectory(trajectory, asked, Aspects::ofClearance(left_out), result);
+    collideTrajectory(trajectory, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<Aspects>(partOfTime(trajectory, 0), [&](const Aspects& aspects) {
-      collideMotion(trajectory.piece(0), asked, aspects, result);
+    return pairsIgnored<QueryContext>(partOfTime(trajectory, 0), [&](const QueryContext& context) {
+      collideMotion(trajectory.piece(0), asked, context, result);
     });
   };
   return Search(request, trajectory.endTime() - trajectory.beginTime(), ask, ask_begin).run();

@@ -26,7 +26,7 @@ const T& require(const T* pointer, const char* what) {
 
 /// One of the two bodies, read.
 template <class S>
-struct Body {
+struct FclBody {
   const fcl::CollisionGeometry<S>* geometry;
   std::shared_ptr<const ShapeTree> shape;  ///< of an OcTree: null until readCells()
   BodyMotion motion;
@@ -43,32 +43,32 @@ std::shared_ptr<const ShapeTree> readShape(const fcl::CollisionGeometry<S>* geom
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
+FclBody<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
   return {geometry, readShape(geometry), readMotion(require(motion, "motion"))};
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
-             fcl::CCDMotionType type) {
+FclBody<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin,
+                const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
   return {geometry, readShape(geometry),
           motionBetween(readTransform<S>(begin, "its start"), readTransform<S>(end, "its end"), type)};
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionObject<S>* object, const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
+FclBody<S> read(const fcl::CollisionObject<S>* object, const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
   if (!object) throw std::invalid_argument("it is null");
   return read<S>(object->collisionGeometry().get(), object->getTransform(), end, type);
 }
 
 template <class S>
-Body<S> read(const fcl::ContinuousCollisionObject<S>* object) {
+FclBody<S> read(const fcl::ContinuousCollisionObject<S>* object) {
   if (!object) throw std::invalid_argument("it is null");
   return read<S>(object->collisionGeometry().get(), object->getMotion());
 }
 
 /// Reads object 1 or 2; errors name the number.
 template <class S, class... Args>
-Body<S> body(int number, const Args&... args) {
+FclBody<S> body(int number, const Args&... args) {
   try {
     return read<S>(args...);
   } catch (const std::invalid_argument& e) {
@@ -92,7 +92,7 @@ bool standsStill(const BodyMotion& motion) {
 /// cells are read that the other body can come to: most of a map is far from any one motion.
 /// @param all  all cells: a certificate is about the whole map.
 template <class S>
-void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
+void readCells(FclBody<S>& tree, const FclBody<S>& other, double margin, bool all) {
 #if FCL_HAVE_OCTOMAP
   const auto& octree = static_cast<const fcl::OcTree<S>&>(*tree.geometry);
   Eigen::Vector3d lower, upper;
@@ -117,7 +117,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
 }
 
 template <class S>
-void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
+void answer(FclBody<S>&& body1, FclBody<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
   const double margin = marginsOf(request).largest();
   const bool all = request.certificate;
   if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin, all);
@@ -174,7 +174,7 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
 }
 
 template <class S>
-S answer(Body<S>&& body1, Body<S>&& body2, const fcl::ContinuousCollisionRequest<S>& request,
+S answer(FclBody<S>&& body1, FclBody<S>&& body2, const fcl::ContinuousCollisionRequest<S>& request,
          fcl::ContinuousCollisionResult<S>& result) {
   CertifiedPairResult proven;
   answer(std::move(body1), std::move(body2), certified(request), proven);

@@ -28,8 +28,8 @@ void requireTolerance(double x, const char* name, bool positive) {
 }  // namespace
 
 WorkspaceLoan::WorkspaceLoan() {
-  thread_local Workspace own;
-  if (own.busy_) other_ = std::make_unique<Workspace>();
+  thread_local QueryWorkspace own;
+  if (own.busy_) other_ = std::make_unique<QueryWorkspace>();
   workspace_ = other_ ? other_.get() : &own;
   workspace_->busy_ = true;
 }

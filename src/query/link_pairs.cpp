@@ -79,7 +79,7 @@ class EvenlySpread {
 class Classifier {
  public:
   Classifier(const KinematicTree& tree, const engine::Problem& problem, const Pair& pair,
-             const LinkPairOptions& options, Workspace& workspace)
+             const LinkPairOptions& options, QueryWorkspace& workspace)
       : tree_(tree), problem_(problem), pair_(pair), options_(options), workspace_(workspace) {
     for (const std::size_t number : pair.numbers) {
       proofs_.emplace_back(tree, problem, problem.link_pairs[number], options.margin, workspace.engine);
@@ -178,7 +178,7 @@ class Classifier {
   bool prove(std::uint64_t work, bool balls) {
     for (std::size_t i = 0; i < proofs_.size(); ++i) {
       if (proven_[i] || (balls && proveWithBalls(i, work))) continue;
-      const RangeProof::Finding found = proofs_[i].prove(work);
+      const RangeProof::Result found = proofs_[i].prove(work);
       if (!found.apart) {
         failed_at_ = inOrder(proofs_[i], found.values);
         return false;
@@ -196,7 +196,7 @@ class Classifier {
       RangeProof proof(tree_, problem_, problem_.link_pairs[pair_.numbers[number]], options_.margin, workspace_.engine,
                        cut);
       if (touches(proof)) continue;
-      const RangeProof::Finding found = proof.prove(std::min(left, work / kPartPerCut));
+      const RangeProof::Result found = proof.prove(std::min(left, work / kPartPerCut));
       if (found.apart) return proven_[number] = true;
       left -= std::min(left, found.work);
       if (left == 0) break;
@@ -306,7 +306,7 @@ class Classifier {
   const engine::Problem& problem_;
   const Pair& pair_;
   const LinkPairOptions& options_;
-  Workspace& workspace_;
+  QueryWorkspace& workspace_;
   std::deque<RangeProof> proofs_;  ///< of the links' geometries, each with each
   std::vector<bool> proven_;       ///< which of them are
   std::vector<int> variables_;

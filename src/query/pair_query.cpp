@@ -24,7 +24,7 @@ using engine::PieceKind;
 /// The way from body 1 to body 2: up the one's motion, down the other's.
 /// @param[out] query  gets the variables, kept in the workspace.
 /// @param[out] pair  gets the placements.
-engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace& workspace,
+engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, QueryWorkspace& workspace,
                               engine::Query& query, engine::LinkPair& pair) {
   int degree = 1, variables = 0;
   std::size_t bounded = 0;

@@ -89,7 +89,7 @@ double angleOf(double sine_of_half) {
 }
 
 /// One piece of the tool's motion.
-struct Way {
+struct ToolPiece {
   BodyMotion motion;
   PathBounds bounds;
   double begin, end;  ///< in the trajectory's time
@@ -140,13 +140,13 @@ Circle circleThrough(const Vector3d& p0, const Vector3d& via, const Vector3d& p1
 class ToolPath {
  public:
   /// @throws std::invalid_argument
-  ToolPath(const std::vector<Way>& ways, const std::optional<Vector3d>& via) {
+  ToolPath(const std::vector<ToolPiece>& ways, const std::optional<Vector3d>& via) {
     const BodyMotion& first = ways.front().motion;
     const Isometry3d begin = first.pose(0), end = ways.back().motion.pose(1);
     double ulps = 0, terms = 0;
-    for (const Way& way : ways) {
-      ulps = std::max(ulps, way.bounds.ulps);
-      terms = std::max(terms, way.bounds.terms);
+    for (const ToolPiece& piece : ways) {
+      ulps = std::max(ulps, piece.bounds.ulps);
+      terms = std::max(terms, piece.bounds.terms);
     }
     begin_ = begin.translation();
     const double direct = (end.translation() - begin_).norm();
@@ -190,10 +190,10 @@ class ToolPath {
   double pad() const { return pad_; }
   /// Bound on the height of the arc over its chord between two parts of the path.
   double bowBetween(double a, double b) const { return length_ * length_ * curvature_ * (a - b) * (a - b) / 8 * kRoom; }
-  /// Bound on the rotation that is wanted while the origin goes by `way`, nowhere farther than that from the path.
-  double turnAlong(double way, double distance) const {
+  /// Bound on the rotation that is wanted while the origin goes by `gone`, nowhere farther than that from the path.
+  double turnAlong(double gone, double distance) const {
     if (!(distance < kNear * reach_)) return turned_;
-    return std::min(kRoom * way / (length_ * (1 - curvature_ * distance)), 1.0) * turned_;
+    return std::min(kRoom * gone / (length_ * (1 - curvature_ * distance)), 1.0) * turned_;
   }
 
   Sample sampleAt(const Isometry3d& M) const {
@@ -288,7 +288,7 @@ class ToolPath {
 
 /// Part of a piece.
 struct Stretch {
-  const Way* way;
+  const ToolPiece* piece;
   double begin, end;
   Sample at_begin, at_end;
 };
@@ -317,7 +317,7 @@ class Largest {
   }
   void update(const std::vector<Stretch>& stretches) {
     while (stretches[open_.top().stretch].end != open_.top().end) open_.pop();  // divided
-    const Open& top = open_.top();
+    const StretchBound& top = open_.top();
     upper = top.bound;
     const double gap = upper - lower;
     narrow = gap <= tolerance_;
@@ -327,13 +327,13 @@ class Largest {
   std::size_t widest() const { return open_.top().stretch; }
 
  private:
-  struct Open {
+  struct StretchBound {
     double bound, of_time;
     std::size_t stretch;
     double end;
-    bool operator<(const Open& other) const { return bound < other.bound; }
+    bool operator<(const StretchBound& other) const { return bound < other.bound; }
   };
-  std::priority_queue<Open> open_;
+  std::priority_queue<StretchBound> open_;
   const double tolerance_;
   bool seen_ = false, blind_ = false;
 };
@@ -342,10 +342,10 @@ class ToolSearch {
  public:
   Largest distance, angle;
 
-  ToolSearch(const std::vector<Way>& ways, const ToolPath& path, const ToolLineRequest& request)
+  ToolSearch(const std::vector<ToolPiece>& ways, const ToolPath& path, const ToolLineRequest& request)
       : distance(request.tolerance_distance), angle(request.tolerance_angle), path_(path) {
-    for (const Way& way : ways) {
-      stretches_.push_back({&way, 0, 1, look(way, 0), look(way, 1)});
+    for (const ToolPiece& piece : ways) {
+      stretches_.push_back({&piece, 0, 1, sampleAt(piece, 0), sampleAt(piece, 1)});
       bound(stretches_.size() - 1);
     }
     bool last_distance = false;
@@ -360,29 +360,29 @@ class ToolSearch {
   }
 
  private:
-  Sample look(const Way& way, double t) {
-    const Sample sample = path_.sampleAt(way.motion.pose(t));
+  Sample sampleAt(const ToolPiece& piece, double t) {
+    const Sample sample = path_.sampleAt(piece.motion.pose(t));
     ++looked_;
-    distance.see(std::max(sample.distance - path_.pad(), 0.0), way.time(t));
-    angle.see(sample.angle_lower, way.time(t));
+    distance.see(std::max(sample.distance - path_.pad(), 0.0), piece.time(t));
+    angle.see(sample.angle_lower, piece.time(t));
     if (sample.blind) angle.giveUp();
     return sample;
   }
   void bound(std::size_t number) {
-    const auto& [way, begin, end, a, b] = stretches_[number];
-    const double h = end - begin, gone = way->bounds.speed * h, most = std::max(a.distance, b.distance);
-    const double by_chord = most + way->bounds.acceleration * h * h / 8 + path_.bowBetween(a.part, b.part);
+    const auto& [piece, begin, end, a, b] = stretches_[number];
+    const double h = end - begin, gone = piece->bounds.speed * h, most = std::max(a.distance, b.distance);
+    const double by_chord = most + piece->bounds.acceleration * h * h / 8 + path_.bowBetween(a.part, b.part);
     const double by_speed = 0.5 * (a.distance + b.distance + gone);
     const double distance_bound = (std::min(by_chord, by_speed) + path_.pad()) * kSlack;
     distance.add(distance_bound, distance_bound - (most + path_.pad()), number, end);
-    const double turned = 0.5 * way->bounds.angular_speed * h + path_.turnAlong(0.5 * gone, distance_bound);
+    const double turned = 0.5 * piece->bounds.angular_speed * h + path_.turnAlong(0.5 * gone, distance_bound);
     const double angle_bound = std::min((0.5 * (a.angle_upper + b.angle_upper) + turned) * kSlack, kPiUpper);
     angle.add(angle_bound, angle_bound - std::max(a.angle_upper, b.angle_upper), number, end);
   }
   void divide(std::size_t number) {
     Stretch left = stretches_[number], right = left;
     left.end = right.begin = 0.5 * (left.begin + left.end);
-    left.at_end = right.at_begin = look(*left.way, left.end);
+    left.at_end = right.at_begin = sampleAt(*left.piece, left.end);
     stretches_[number] = left;
     stretches_.push_back(right);
     bound(number);
@@ -405,8 +405,8 @@ LinkId requireLink(const KinematicTree& tree, const LinkRef& link) {
   throw std::out_of_range("toolDeviation: robot '" + tree.name() + "' has no link " + std::to_string(link.id()));
 }
 
-ToolDeviation find(std::vector<Way> ways, const ToolLineRequest& request) {
-  for (Way& way : ways) way.bounds = boundPath(way.motion, way.motion.after.length());
+ToolDeviation find(std::vector<ToolPiece> ways, const ToolLineRequest& request) {
+  for (ToolPiece& piece : ways) piece.bounds = boundPath(piece.motion, piece.motion.after.length());
   const ToolPath path(ways, request.via);
   const ToolSearch found(ways, path, request);
   ToolDeviation out;
@@ -438,7 +438,7 @@ class WayMaker {
     motion.requirePolynomial("toolDeviation()");
     ways.push_back({linkMotion(tree_, motion, link_, tool_), {}, begin, end});
   }
-  std::vector<Way> ways;
+  std::vector<ToolPiece> ways;
 
  private:
   const KinematicTree& tree_;

@@ -23,10 +23,10 @@
 #include "fcl_artic/trajectory.h"
 #include "model/bracket.h"
 #include "model/trajectory_time.h"
-#include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
+#include "query/query_context.h"
 
 namespace fcl_artic {
 namespace {
@@ -52,7 +52,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
                                                     CertifiedResult& result) const {
   const bool none = trajectory.numPieces() == 0;  // moved from, refused below
   const double begin = none ? 0 : trajectory.beginTime(), end = none ? 1 : trajectory.endTime();
-  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, Aspects(), result); });
+  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, QueryContext(), result); });
 }
 
 CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory,
@@ -63,7 +63,7 @@ CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajec
 }
 
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
-                                                    const Aspects& common, CertifiedResult& result) const {
+                                                    const QueryContext& common, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
   trajectory.requireOf(tree());
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
@@ -95,15 +95,15 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
     if (request.work_budget) own.work_budget = request.work_budget - used;
     std::vector<engine::PairId> still_in_contact;
-    Aspects aspects = common;
-    aspects.time = partOfTime(trajectory, k);
-    aspects.may_ignore = k == 0 ? nullptr : &in_contact;
-    aspects.never_apart = &still_in_contact;
-    Aspects::Details details;
-    if (request.certificate) aspects.details = &details;
-    collideMotion(trajectory.piece(k), own, aspects, part);
+    QueryContext context = common;
+    context.time = partOfTime(trajectory, k);
+    context.may_ignore = k == 0 ? nullptr : &in_contact;
+    context.never_apart = &still_in_contact;
+    QueryContext::Details details;
+    if (request.certificate) context.details = &details;
+    collideMotion(trajectory.piece(k), own, context, part);
     if (request.certificate && !contact_found) {
-      impl_->add(trajectory.piece(k), aspects.time, own, part, details, claim);
+      impl_->appendClaim(trajectory.piece(k), context.time, own, part, details, claim);
     }
     add(sum.statistics, part.statistics);
     sum.never_apart_pairs = part.never_apart_pairs;  // so far

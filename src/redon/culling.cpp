@@ -38,7 +38,7 @@ void Culling::begin(const engine::Problem& problem, const engine::Query& query, 
   std::fill(std::begin(chains_set_), std::end(chains_set_), 0);
   movers_.resize(static_cast<std::size_t>(problem_->num_movers));
   for (std::size_t m = 0; m < movers_.size(); ++m) {
-    Mover& mover = movers_[m];
+    LssBoxes& mover = movers_[m];
     std::fill(std::begin(mover.made), std::end(mover.made), 0);
     const Body& body = problem_->bodies[problem_->movers[m]];
     mover.level = 0;
@@ -88,7 +88,7 @@ int Culling::levelOf(int sweep, int step, const double* center, double radius) {
 
 /// Box in the world that holds a mover's line swept sphere over part k of 2^level.
 const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
-  Mover& mover = movers_[static_cast<std::size_t>(number)];
+  LssBoxes& mover = movers_[static_cast<std::size_t>(number)];
   const Body& body = problem_->bodies[problem_->movers[number]];
   if (body.step < 0) level = k = 0;
   mover.boxes[level].resize(std::size_t{1} << level);
@@ -208,12 +208,12 @@ bool Culling::inWorld(const BodyPair& pair) const {
 
 void Culling::start(const std::vector<BodyPair>& pairs) {
   stamp_pair_ = -1;  // boxes of an earlier list of pairs are others
-  for (std::vector<Entry>& entries : waiting_) entries.clear();
-  traversals_.resize(pairs.size());
+  for (std::vector<NodePair>& entries : waiting_) entries.clear();
+  relative_poses_.resize(pairs.size());
   finest_ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const BodyPair& pair = pairs[i];
-    Traversal& t = traversals_[i];
+    RelativePoses& t = relative_poses_[i];
     t.made = 0;
     if (inWorld(pair)) {
       const auto own = [&](std::int32_t body) {
@@ -239,12 +239,12 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const bool free = pairs[i].free_nodes && pairs[i].free_nodes[0] & 1;
-    if (traversals_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, traversals_[i].mask});
+    if (relative_poses_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, relative_poses_[i].mask});
   }
 }
 
 /// B's tree frame in A's over sub-interval k of the pair.
-const IntervalTransform& Culling::relativeOver(const BodyPair& pair, Traversal& t, int k) {
+const IntervalTransform& Culling::relativeOver(const BodyPair& pair, RelativePoses& t, int k) {
   IntervalTransform& relative = t.relative[static_cast<std::size_t>(k)];
   if (t.made >> k & 1) return relative;
   t.made |= 1ull << k;
@@ -262,22 +262,22 @@ const IntervalTransform& Culling::relativeOver(const BodyPair& pair, Traversal& 
 }
 
 /// Puts a pair of boxes where its first sub-interval begins.
-void Culling::wait(const Entry& e) {
-  const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
+void Culling::wait(const NodePair& e) {
+  const int level = relative_poses_[static_cast<std::size_t>(e.pair)].level;
   waiting_[__builtin_ctzll(e.mask) << (finest_ - level)].push_back(e);
 }
 
-const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
+const SweptObb& Culling::swept(const BodyPair& pair, const NodePair& e, int k) {
   if (e.pair != stamp_pair_ || k != stamp_part_) {
     stamp_pair_ = e.pair;
     stamp_part_ = k;
     ++stamp_;
   }
-  Swept& s = cache_[static_cast<std::size_t>(e.b & (kCached - 1))];
+  CachedBox& s = cache_[static_cast<std::size_t>(e.b & (kCached - 1))];
   if (s.node != e.b || s.stamp != stamp_) {
     s.node = e.b;
     s.stamp = stamp_;
-    sweep(relativeOver(pair, traversals_[static_cast<std::size_t>(e.pair)], k),
+    sweep(relativeOver(pair, relative_poses_[static_cast<std::size_t>(e.pair)], k),
           pair.b->nodes()[static_cast<std::size_t>(e.b)], s.box);
   }
   return s.box;
@@ -285,7 +285,7 @@ const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
 
 /// A bit for each pair of boxes that is apart in the pair's sub-interval. If there are enough of them, they are tested
 /// in lanes.
-unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int part) {
+unsigned Culling::apart(const BodyPair& pair, const NodePair* entries, int n, int part) {
   const ObbNode *a[BoxBatch::kPairs], *b[BoxBatch::kPairs];
   for (int i = 0; i < n; ++i) {
     a[i] = &pair.a->nodes()[static_cast<std::size_t>(entries[i].a)];
@@ -293,7 +293,7 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   }
   const BoxBatch& lanes = boxBatch();
   if (n >= lanes.fewest) {
-    return lanes.apart(relativeOver(pair, traversals_[static_cast<std::size_t>(entries[0].pair)], part), a, b, n);
+    return lanes.apart(relativeOver(pair, relative_poses_[static_cast<std::size_t>(entries[0].pair)], part), a, b, n);
   }
   unsigned out = 0;
   for (int i = 0; i < n; ++i) {
@@ -305,9 +305,9 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
 /// Both trees down at once, the larger box first. Boxes that are apart in a sub-interval hold only boxes that are apart
 /// in it: these wait for the next sub-interval.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
-  std::vector<Entry>& stack = waiting_[slot];
+  std::vector<NodePair>& stack = waiting_[slot];
   while (!stack.empty()) {
-    Entry batch[BoxBatch::kPairs];
+    NodePair batch[BoxBatch::kPairs];
     const std::int32_t number = stack.back().pair;
     const int k = __builtin_ctzll(stack.back().mask);
     int n = 0;
@@ -317,11 +317,11 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
       stack.pop_back();
     }
     const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
-    const int level = traversals_[static_cast<std::size_t>(number)].level;
+    const int level = relative_poses_[static_cast<std::size_t>(number)].level;
     const unsigned apart = this->apart(pair, batch, n, k);
     counts_->box_tests += static_cast<std::uint64_t>(n);
     for (int i = 0; i < n; ++i) {
-      Entry& e = batch[i];
+      NodePair& e = batch[i];
       if (apart >> i & 1) {
         e.mask &= e.mask - 1;
         if (e.mask) wait(e);

@@ -132,6 +132,20 @@ bool inside(const IntervalVec3& normal, const IntervalVec3* face, const Interval
   return true;
 }
 
+enum Feature { vertex, edge, face };
+
+/// The vector of a feature in its body's frame: a vertex's place, along an edge, or a face's normal.
+IntervalVec3 vectorOf(const ObbTree& tree, Feature kind, int number) {
+  if (kind == vertex) return at(tree.vertex(number));
+  if (kind == edge) {
+    const ObbEdge& d = tree.edges()[static_cast<std::size_t>(number)];
+    return at(tree.vertex(d.to)) - at(tree.vertex(d.from));
+  }
+  const ObbTriangle& t = tree.triangles()[static_cast<std::size_t>(number)];
+  const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])), at(tree.vertex(t.vertex[2]))};
+  return cross(v[1] - v[0], v[2] - v[1]);
+}
+
 }  // namespace
 
 void EquationSet::clear() {
@@ -140,7 +154,6 @@ void EquationSet::clear() {
 }
 
 void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, const LeafPair* end) {
-  enum { vertex, edge, face };
   while (leaf < end) {
     const std::int32_t number = leaf->pair;
     const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
@@ -157,7 +170,7 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, 
         if (numbers.size() < sizes[kind]) numbers.resize(sizes[kind], -1);
       }
     }
-    const auto element = [&](int body, int kind, int feature) {
+    const auto element = [&](int body, Feature kind, int feature) {
       std::int32_t& n = numbers_[body][kind][static_cast<std::size_t>(feature)];
       if (n >= 0) return n;
       n = static_cast<std::int32_t>(elements_.size());
@@ -167,18 +180,7 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, 
       e.pair = number;
       e.moves = body == 1;
       e.direction = kind != vertex;
-      const ObbTree& tree = *trees[body];
-      if (kind == vertex) {
-        e.own = at(tree.vertex(feature));
-      } else if (kind == edge) {
-        const ObbEdge& d = tree.edges()[static_cast<std::size_t>(feature)];
-        e.own = at(tree.vertex(d.to)) - at(tree.vertex(d.from));
-      } else {
-        const ObbTriangle& t = tree.triangles()[static_cast<std::size_t>(feature)];
-        const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])),
-                                   at(tree.vertex(t.vertex[2]))};
-        e.own = cross(v[1] - v[0], v[2] - v[1]);
-      }
+      e.own = vectorOf(*trees[body], kind, feature);
       e.over = e.middle = e.own;
       e.rate = IntervalVec3(Interval(0.0), Interval(0.0), Interval(0.0));
       return n;

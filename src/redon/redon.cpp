@@ -27,12 +27,12 @@ using engine::Query;
 using Clock = std::chrono::steady_clock;
 
 /// Their equations and elements take some 100 MB at most.
-constexpr std::size_t kMostLeaves = 1 << 15;
+constexpr std::size_t kMaxLeaves = 1 << 15;
 
 /// Without a work budget, the paper's method gives up a query after this much work, in units of workOf(), and the
 /// engine answers it. Bodies that slide on each other are divided down to the narrowest intervals all along their way.
 /// A unit takes 0.1 to 1 us.
-constexpr std::uint64_t kMostWork = 1 << 17;
+constexpr std::uint64_t kMaxWork = 1 << 17;
 
 /// Adds up the time of stages, where it is asked for.
 class StageClock {
@@ -56,7 +56,7 @@ class StageClock {
 struct Workspace::Impl {
   Culling culling;
   SweptVolumes volumes;
-  Solver solver;
+  RootSolver solver;
   std::vector<BodyPair> pairs, one;  ///< that may touch; the one of them that is looked at
   std::vector<LeafPair> leaves;
   EquationSet equations;
@@ -92,10 +92,10 @@ struct Progress {
 /// One query on its way. Each pair asked for has the time up to which it is proven free: 0 at first, and raised by
 /// proofs only (provenFree). The answer is free if that is 1 for all of them, and its t_lower is the least. So a pair
 /// that no stage has come to, for whatever reason, counts as not free.
-class Run {
+class PendingQuery {
  public:
-  Run(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
-      const Options& options, const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
+  PendingQuery(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
+               const Options& options, const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
       : w_(w), engine_(engine), problem_(problem), query_(query), options_(options), treeOf_(treeOf), counts_(counts) {}
 
   void solve(Answer& answer);
@@ -109,9 +109,9 @@ class Run {
   void leaveAll(Answer& answer);
   void solveRest(const Query& query, Answer& answer);
   void findPairs();
-  Found search(const std::vector<BodyPair>& pairs, double limit);
-  Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
-  Found solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
+  SearchOutcome search(const std::vector<BodyPair>& pairs, double limit);
+  SearchOutcome searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
+  SearchOutcome solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
   void keepFirst(std::size_t begin, double bracket);
   void provenFree(PairId pair, double until) {
     FCL_ARTIC_ASSERT(indexOf(pair) < numPairs() && until >= 0 && until <= 1);
@@ -128,14 +128,14 @@ class Run {
   Counts& counts_;
 };
 
-bool Run::asked(PairId pair) const {
+bool PendingQuery::asked(PairId pair) const {
   return (problem_.isScenePair(pair) ? query_.check_scene : query_.check_self) && !problem_.isAllowed(pair);
 }
 
 /// Triangles on both sides, no margin, and a motion by joints. Nor has the pair a margin of its own, as neighbours have
 /// that are checked for touching. The paper checks no neighbours: its boxes are apart at no time where a joint holds
 /// two links together.
-bool Run::ours(PairId pair) const {
+bool PendingQuery::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0 || query_.margins.isOwn(pair)) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
@@ -143,7 +143,7 @@ bool Run::ours(PairId pair) const {
 }
 
 /// @return whether any pair is the paper's.
-bool Run::choosePairs() {
+bool PendingQuery::choosePairs() {
   w_.by_engine.assign(numPairs(), 0);
   w_.free_until.assign(numPairs(), 1);  // of pairs that nobody asks for
   bool any = false;
@@ -161,7 +161,7 @@ bool Run::choosePairs() {
 /// contact is surfaces that cross, and solids that hold others. If a pair can't be proven apart, it goes to the engine.
 /// @return true if all pairs go to the engine: the first contact is asked for and is at t = 0, or it is not known which
 ///   pairs touch.
-bool Run::touchesAtStart(Answer& answer) {
+bool PendingQuery::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
   const std::int32_t degree = query_.half_angles.count > 0 ? 2 : 1;
   w_.still.assign((static_cast<std::size_t>(degree) + 1) * n, 0);
@@ -185,14 +185,14 @@ bool Run::touchesAtStart(Answer& answer) {
 }
 
 /// All pairs are the engine's.
-void Run::leaveAll(Answer& answer) {
+void PendingQuery::leaveAll(Answer& answer) {
   counts_.pairs_by_standard = 0;
   for (const PairId p : problem_.pairs()) counts_.pairs_by_standard += asked(p);
   engine_.solve(problem_, query_, answer);
 }
 
 /// The engine's pairs.
-void Run::solveRest(const Query& query, Answer& answer) {
+void PendingQuery::solveRest(const Query& query, Answer& answer) {
   w_.scene_allowed.assign(static_cast<std::size_t>(problem_.num_scene_pairs), 1);
   w_.link_allowed.assign(static_cast<std::size_t>(problem_.num_link_pairs), 1);
   std::uint64_t left = 0;
@@ -213,7 +213,7 @@ void Run::solveRest(const Query& query, Answer& answer) {
 }
 
 /// Finds the paper's pairs that dynamic BVH culling (Section 4) and then culling by visibility leave.
-void Run::findPairs() {
+void PendingQuery::findPairs() {
   StageClock clock(query_.measure_times);
   const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
   w_.culling.begin(problem_, w_.rest_query, options_, counts_);
@@ -232,15 +232,15 @@ void Run::findPairs() {
 
 /// First contact in [begin, end] of the leaf pairs at hand. All equations are solved at once, but for at most
 /// kMostLeaves pairs, so memory is bounded.
-Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
-  Found all;
+SearchOutcome PendingQuery::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
+  SearchOutcome all;
   all.free_until = end;
-  for (std::size_t first = 0; first < w_.leaves.size(); first += kMostLeaves) {
-    const std::size_t last = std::min(first + kMostLeaves, w_.leaves.size());
+  for (std::size_t first = 0; first < w_.leaves.size(); first += kMaxLeaves) {
+    const std::size_t last = std::min(first + kMaxLeaves, w_.leaves.size());
     w_.equations.clear();
     w_.equations.add(pairs, w_.leaves.data() + first, w_.leaves.data() + last);
     const bool more = last < w_.leaves.size();
-    const Found found =
+    const SearchOutcome found =
         w_.solver.solve(pairs, w_.equations, begin, end, limit, more ? begin : all.free_until, w_.contacts);
     all.contact = all.contact || found.contact;
     all.t_upper = std::min(all.t_upper, found.t_upper);
@@ -257,10 +257,10 @@ Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double 
 
 /// First contact of these pairs: boxes, then the equations of the triangles whose boxes meet, one sub-interval after
 /// the other, from the first to that which holds `limit`.
-Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
+SearchOutcome PendingQuery::search(const std::vector<BodyPair>& pairs, double limit) {
   if (!options_.in_time_order) return searchBoxesFirst(pairs, limit);
   StageClock clock(query_.measure_times);
-  Found found;
+  SearchOutcome found;
   w_.culling.start(pairs);
   w_.leaves.clear();
   for (int slot = 0; slot < w_.culling.numSlots(); ++slot) {
@@ -284,9 +284,9 @@ Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
 
 /// As search(), in the paper's order: all triangles whose boxes meet at any time, then all their equations at once.
 /// Boxes are left out only in sub-intervals that begin after `limit`; for the rest all equations are solved.
-Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
+SearchOutcome PendingQuery::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   StageClock clock(query_.measure_times);
-  Found found;
+  SearchOutcome found;
   w_.culling.start(pairs);
   w_.leaves.clear();
   double end = 0;
@@ -304,7 +304,7 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
 
 /// Keeps, of the contacts from `begin` on that lie within the bracket, the first one of each pair, as many as are asked
 /// for.
-void Run::keepFirst(std::size_t begin, double bracket) {
+void PendingQuery::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
   all.erase(std::remove_if(first, all.end(), [&](const LeafContact& c) { return c.t_lower > bracket; }), all.end());
@@ -325,7 +325,7 @@ void Run::keepFirst(std::size_t begin, double bracket) {
   all.resize(std::min(all.size(), begin + static_cast<std::size_t>(query_.max_contacts)));
 }
 
-void Run::solve(Answer& answer) {
+void PendingQuery::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) return leaveAll(answer);
@@ -343,9 +343,9 @@ void Run::solve(Answer& answer) {
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
   std::optional<RoundUpward> upward(std::in_place);
-  if (query.work_budget == 0) query.work_budget = kMostWork;
+  if (query.work_budget == 0) query.work_budget = kMaxWork;
   w_.solver.begin(problem_, query, options_, counts_);
-  const auto take = [&](const std::vector<BodyPair>& pairs, const Found& found) {
+  const auto take = [&](const std::vector<BodyPair>& pairs, const SearchOutcome& found) {
     for (const BodyPair& pair : pairs) provenFree(pair.index, found.free_until);
     t_upper = std::min(t_upper, found.t_upper);
     contact = contact || found.contact;
@@ -360,12 +360,12 @@ void Run::solve(Answer& answer) {
     for (std::size_t i = 0; i < w_.pairs.size() && !out_of_budget; ++i) {
       const std::size_t before = w_.contacts.size();
       w_.one.assign(1, w_.pairs[i]);
-      const Found found = search(w_.one, engine::kNever);
+      const SearchOutcome found = search(w_.one, engine::kNever);
       take(w_.one, found);
       keepFirst(before, latestBegin(found, query_.tolerance_time));
     }
   }
-  if (out_of_budget && query_.work_budget == 0 && workOf(counts_) > kMostWork) {
+  if (out_of_budget && query_.work_budget == 0 && workOf(counts_) > kMaxWork) {
     upward.reset();
     w_.contacts.clear();
     return leaveAll(answer);
@@ -393,7 +393,7 @@ void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem&
   Query& first = workspace.impl().first;
   first = query;
   first.any = false;  // if any contact would do, the first one is looked for
-  Run(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
+  PendingQuery(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 
 }  // namespace redon

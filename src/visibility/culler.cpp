@@ -65,8 +65,8 @@ std::unique_ptr<Slot> ExecutorLoan::takeIdle(bool own) {
   return nullptr;
 }
 
-ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler, Way way) : culler_(*culler.impl_) {
-  const bool own = way == Way::own && culler_.useFactory();
+ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler, ExecutorKind kind) : culler_(*culler.impl_) {
+  const bool own = kind == ExecutorKind::own && culler_.useFactory();
   slot_ = takeIdle(own);
   if (slot_) return;
   made_ = true;

@@ -123,7 +123,7 @@ void GlExecutor::resizeAtlas(int columns, int rows, int resolution) {
 /// Adds the footprint's polygon as a fan of triangles.
 void GlExecutor::place(const Batch& batch, const Footprint& f, int tile, std::uint32_t id,
                        std::vector<Vertex>& vertices) const {
-  double polygon[kMostCorners][2];
+  double polygon[kMaxCorners][2];
   const int n = clipToTile(f, batch.resolution, polygon);
   // Flat bounds and the tightest of the others.
   int best = 0;
@@ -227,7 +227,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
   ranges_.clear();
   std::vector<std::uint8_t> unusable(static_cast<std::size_t>(end - begin), 0);
   const auto within = [&](std::int32_t window) { return begin <= window && window < end; };
-  for (const Batch::Swept& swept : batch.swept) {
+  for (const Batch::SweptVolume& swept : batch.swept) {
     if (!within(swept.window)) continue;
     for (int view = 0; view < kViews; ++view) {
       const auto outcome = projector_.project(batch, swept.volume,
@@ -262,7 +262,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
     kept[unit] = unusable[static_cast<std::size_t>(window - begin)];
     for (int view = 0; view < kViews; ++view) {
       const auto id = static_cast<std::uint32_t>(kViews * unit) + static_cast<std::uint32_t>(view);
-      Range range;
+      VertexRange range;
       range.first = static_cast<std::int32_t>(objects_.size());
       for (std::size_t i = first; i <= last && !kept[unit]; ++i) {
         const auto outcome = projector_.project(batch, batch.objects[i].volume,

@@ -12,10 +12,10 @@ using engine::SweptLink;
 
 constexpr int kParts = 8;
 /// Objects of a query: some tens of milliseconds of work. Objects beyond this number stay as they are.
-constexpr std::size_t kMostObjects = 20000;
+constexpr std::size_t kMaxObjects = 20000;
 /// Most objects of a pair. If more are left after the 13 directions, they seldom all go, and drawing them costs more
 /// than the solver's search. Measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
-constexpr std::size_t kMostOfPair = 64;
+constexpr std::size_t kMaxObjectsOfPair = 64;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 /// Size of clusters, as a part of the longest side of what is swept.
@@ -108,7 +108,7 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
       work_.moving_pairs += kinds_.back() == Kind::moving;
       const std::size_t objects = batch.objects.size(), points = batch.points.size(), groups = clusters_.size();
       const Bounds reached = reach;
-      collection.most = std::min(first_object_ + kMostObjects, objects + kMostOfPair);
+      collection.most = std::min(first_object_ + kMaxObjects, objects + kMaxObjectsOfPair);
       std::uint32_t met = c.lanes;
       if (!BodyPieces(tree, *c.at, c.margin + tolerance_distance)
                .add(parts, met, least, kCluster * size, window, i, collection, reach)) {

@@ -109,7 +109,7 @@ TEST(OuterHull, HoldsEachPointOfAMesh) {
     for (const Vector3d& p : points) {
       body.pose.c = baseline::Vec3(p.data());
       baseline::GjkResult g;
-      baseline::gjk(body, body.pose.c, 1e-6, 0, 100, g);
+      baseline::gjk(body, body.pose.c, {1e-6, 0, 100}, g);
       const Vector3d u = Vector3d::Map(g.n.k);
       double inside = -INFINITY;
       for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v));

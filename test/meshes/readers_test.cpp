@@ -22,7 +22,7 @@ TriangleSoup read(const Reader& reader, const std::string& content) {
   notes.clear();
   const Source source{"file", content, "file", &notes};
   TriangleSoup soup = reader(source);
-  soup.tell(source);
+  soup.noteSkipped(source);
   return soup;
 }
 

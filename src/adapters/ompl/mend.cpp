@@ -32,9 +32,9 @@ constexpr double kRoom = 1;      // m, that positions of planar and floating joi
 constexpr double kLeast = 0.05;  // s, for a stretch
 
 // A piece that is not free is divided into parts of at most kPart (rad or m, of any joint), but into no more than
-// kMostParts. So a detour begins and ends near the obstacle that it goes around.
+// kMaxParts. So a detour begins and ends near the obstacle that it goes around.
 constexpr double kPart = 0.1;
-constexpr int kMostParts = 64;
+constexpr int kMaxParts = 64;
 // Parts of the clearance, tried one after the other, and for each its part of the remaining time.
 constexpr double kClearances[] = {1, 0.25, 0}, kShares[] = {0.5, 0.5, 1};
 // A planner's way is brought back towards the plan at points at most this far (rad or m) from each other.
@@ -118,7 +118,7 @@ Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTraj
     }
     const bool free = isFree(piece);
     const double step = (end - out.points.back()).lpNorm<Eigen::Infinity>();
-    const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMostParts);
+    const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMaxParts);
     for (int i = 1; i < parts; ++i) {
       const double share = static_cast<double>(i) / parts;
       const VectorXd q = piece.configuration(share);
@@ -300,7 +300,7 @@ class Mender {
     Points fine{points.front()};
     for (std::size_t i = 1; i < points.size(); ++i) {
       const VectorXd step = points[i] - points[i - 1];
-      const int parts = std::clamp(static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / kPull)), 1, kMostParts);
+      const int parts = std::clamp(static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / kPull)), 1, kMaxParts);
       for (int k = 1; k < parts; ++k) fine.push_back(points[i - 1] + static_cast<double>(k) / parts * step);
       fine.push_back(points[i]);
     }

@@ -140,7 +140,7 @@ GeometryPtr makeCone(double radius, double length, const std::string& where) {
 GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid) {
   if (triangles.empty()) fail(where, "has no triangles");
-  const auto tell = [&](std::size_t count, std::size_t all, const std::string& what) {
+  const auto noteLeftOut = [&](std::size_t count, std::size_t all, const std::string& what) {
     if (notes && count > 0) {
       notes->push_back(where + ": " + std::to_string(count) + " of " + std::to_string(all) + " " + what + " left out");
     }
@@ -160,9 +160,10 @@ GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Tri
   }
   if (!has_area) fail(where, "has no triangle with an area");
   const std::size_t all_vertices = vertices.size(), all_triangles = triangles.size();
-  tell(keepUsed(vertices, triangles), all_vertices, "vertices belong to no triangle and were");
+  noteLeftOut(keepUsed(vertices, triangles), all_vertices, "vertices belong to no triangle and were");
   if (!solid) {
-    tell(dropCovered(vertices, triangles), all_triangles, "triangles have no area, lie on edges of others and were");
+    noteLeftOut(dropCovered(vertices, triangles), all_triangles,
+                "triangles have no area, lie on edges of others and were");
   }
   keepUsed(vertices, triangles);
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
@@ -217,7 +218,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   const std::string content = files::read(path);
   const meshes::Source source{path, content, where, notes};
   meshes::TriangleSoup soup = readMesh(source, collada_up_axis, import_meshes);
-  soup.tell(source);
+  soup.noteSkipped(source);
   meshes::noteComments(source);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
   return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);

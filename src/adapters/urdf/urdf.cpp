@@ -455,7 +455,7 @@ class MeshFinder {
       if (dir == dir.parent_path()) break;
     }
     for (const fs::path& folder : foldersOf("ROS_PACKAGE_PATH")) {
-      int left = kMostFolders;
+      int left = kMaxFolders;
       searchBelow(folder, name, kDeepest, left, add);
     }
     for (const fs::path& prefix : foldersOf("AMENT_PREFIX_PATH")) add(prefix / "share" / name);
@@ -485,7 +485,7 @@ class MeshFinder {
     for (const fs::path& next : below) searchBelow(next, name, depth - 1, left, add);
   }
 
-  static constexpr int kDeepest = 12, kMostFolders = 100000;  // a link may lead in a circle
+  static constexpr int kDeepest = 12, kMaxFolders = 100000;  // a link may lead in a circle
   fs::path folder_;
   std::vector<std::string> notes_;
   std::set<std::string> noted_;  ///< URLs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "visibility/together.h"
+#include "visibility/drawing_pass.h"
 
 #include <exception>
 
@@ -8,7 +8,7 @@
 namespace fcl_artic {
 namespace visibility {
 
-void Together::begin(std::size_t n) {
+void DrawingPass::begin(std::size_t n) {
   beginBatch(culler_, loan_->batch);
   if (queries_.size() < n) queries_.resize(n);
   num_queries_ = n;
@@ -16,19 +16,19 @@ void Together::begin(std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) queries_[i].asked = queries_[i].asked_again = queries_[i].drawn = false;
 }
 
-engine::Advisor Together::assume(std::size_t i, double tolerance_distance) {
-  One& one = queries_[i];
+engine::Advisor DrawingPass::assume(std::size_t i, double tolerance_distance) {
+  PassQuery& one = queries_[i];
   one.owner = this;
   one.tolerance_distance = tolerance_distance;
   engine::Advisor advisor;
   advisor.self = &one;
-  advisor.clear = &Together::take;
+  advisor.clear = &DrawingPass::take;
   return advisor;
 }
 
-void Together::take(void* self, const engine::Problem& problem, const engine::SweptLink* links,
-                    engine::CullCandidate* pairs, std::int32_t num_pairs) {
-  One& one = *static_cast<One*>(self);
+void DrawingPass::take(void* self, const engine::Problem& problem, const engine::SweptLink* links,
+                       engine::CullCandidate* pairs, std::int32_t num_pairs) {
+  PassQuery& one = *static_cast<PassQuery*>(self);
   const double begin = steadyMicroseconds();
   one.asked_again = one.asked;
   if (!one.asked) {
@@ -45,12 +45,12 @@ void Together::take(void* self, const engine::Problem& problem, const engine::Sw
   one.collecting_us = steadyMicroseconds() - begin;
 }
 
-bool Together::isFull() const {
+bool DrawingPass::isFull() const {
   const auto side = static_cast<std::size_t>(loan_->batch.resolution);
   return numObjects() >= kManyObjects || kViews * side * side * loan_->batch.windows.size() >= kManyPixels;
 }
 
-void Together::draw() {
+void DrawingPass::draw() {
   Batch& batch = loan_->batch;
   const double begin = steadyMicroseconds();
   try {
@@ -60,7 +60,7 @@ void Together::draw() {
     return;  // nothing is drawn
   }
   for (std::size_t i = 0; i < num_queries_; ++i) {
-    One& one = queries_[i];
+    PassQuery& one = queries_[i];
     if (!one.asked) continue;
     one.volumes.conclude(batch, loan_->may);
     one.volumes.apply(one.candidates.data());
@@ -69,23 +69,23 @@ void Together::draw() {
   drawing_us_ = steadyMicroseconds() - begin;
 }
 
-double Together::drawingMicroseconds(std::size_t i) const {
-  const One& one = queries_[i];
+double DrawingPass::drawingMicroseconds(std::size_t i) const {
+  const PassQuery& one = queries_[i];
   if (!one.drawn || numObjects() == 0) return 0;
   return drawing_us_ * static_cast<double>(one.volumes.work().pieces) / static_cast<double>(numObjects());
 }
 
-engine::Advisor Together::advise(std::size_t i) {
+engine::Advisor DrawingPass::advise(std::size_t i) {
   engine::Advisor advisor;
   advisor.self = &queries_[i];
-  advisor.clear = &Together::repeat;
+  advisor.clear = &DrawingPass::repeat;
   return advisor;
 }
 
 /// A proof about a pair holds for the query's whole motion.
-void Together::repeat(void* self, const engine::Problem& /*problem*/, const engine::SweptLink* /*links*/,
-                      engine::CullCandidate* pairs, std::int32_t num_pairs) {
-  const One& one = *static_cast<const One*>(self);
+void DrawingPass::repeat(void* self, const engine::Problem& /*problem*/, const engine::SweptLink* /*links*/,
+                         engine::CullCandidate* pairs, std::int32_t num_pairs) {
+  const PassQuery& one = *static_cast<const PassQuery*>(self);
   if (!one.drawn) return;
   std::size_t next = 0;  // they come in the same order
   for (std::int32_t i = 0; i < num_pairs; ++i) {

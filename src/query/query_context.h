@@ -25,7 +25,7 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
 }
 
 /// All that queries of other kinds ask of one motion, beyond the request.
-struct ArticulatedCollisionManager::Aspects {
+struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
   bool own_margins = true;  ///< pairs may have margins of their own; false: none has, but neighbours (clearance())
   /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
@@ -43,11 +43,11 @@ struct ArticulatedCollisionManager::Aspects {
   const engine::Advisor* stage2 = nullptr;
 
   /// A query of clearance(): no pair has a margin of its own, but neighbours.
-  static Aspects ofClearance(const std::vector<engine::PairId>& left_out) {
-    Aspects aspects;
-    aspects.own_margins = false;
-    aspects.left_out = &left_out;
-    return aspects;
+  static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {
+    QueryContext context;
+    context.own_margins = false;
+    context.left_out = &left_out;
+    return context;
   }
 };
 

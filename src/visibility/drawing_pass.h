@@ -19,14 +19,14 @@
 namespace fcl_artic {
 namespace visibility {
 
-class Together {
+class DrawingPass {
  public:
   /// Maximum number of objects of a pass, and of pixels in the views of its windows. An executor keeps some ten bytes
   /// of each, so that both take some tens of megabytes.
   static constexpr std::size_t kManyObjects = 200000, kManyPixels = std::size_t{1} << 23;
 
   /// Borrows an executor for as long as this lives.
-  Together(const VisibilityCuller& culler, Way way) : culler_(culler), loan_(culler, way) {}
+  DrawingPass(const VisibilityCuller& culler, ExecutorKind kind) : culler_(culler), loan_(culler, kind) {}
 
   /// Begins a new pass of queries 0 to n - 1.
   void begin(std::size_t n);
@@ -47,7 +47,7 @@ class Together {
   engine::Advisor advise(std::size_t i);
   /// The volumes of query i in the pass; null: nothing was looked at.
   const QueryVolumes* volumes(std::size_t i) const {
-    const One& one = queries_[i];
+    const PassQuery& one = queries_[i];
     return one.asked && one.volumes.work().pairs > 0 ? &one.volumes : nullptr;
   }
   /// Time of query i's volumes and of its part of the drawing, us; and the latter alone, which is by number of pieces.
@@ -59,8 +59,8 @@ class Together {
 
  private:
   /// One of the queries.
-  struct One {
-    Together* owner = nullptr;
+  struct PassQuery {
+    DrawingPass* owner = nullptr;
     double tolerance_distance = 0, collecting_us = 0;
     bool asked = false, asked_again = false, drawn = false;
     std::vector<engine::CullCandidate> candidates;  ///< as they were given, then with what is proven
@@ -76,7 +76,7 @@ class Together {
   ExecutorLoan loan_;
   std::size_t num_queries_ = 0;
   double drawing_us_ = 0;
-  std::vector<One> queries_;  ///< the first num_queries_ of them; the others keep their memory
+  std::vector<PassQuery> queries_;  ///< the first num_queries_ of them; the others keep their memory
 };
 
 }  // namespace visibility
