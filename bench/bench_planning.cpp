@@ -2,7 +2,7 @@
 //
 // What a planner pays for a motion: through the manager, through OMPL's checkMotion() with our validator, and through
 // OMPL's own discrete validator (1 %, the end point first, then bisection) over FCL's check of a state, on the same
-// edges in one run. (Whole plans: `fcl_artic bench planning`.) FCL_ARTIC_DATA names the folder with robots/, problems/ and
+// edges in one run. (Whole plans: `bench_tables planning`.) FCL_ARTIC_DATA names the folder with robots/, problems/ and
 // edges/.
 //
 // Exit status 1 when an edge that was seen to collide is accepted.
