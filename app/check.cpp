@@ -21,7 +21,6 @@
 #include "plan_variables.h"
 #include "progress.h"
 #include "query_options.h"
-#include "redon_options.h"
 #include "render/picture.h"
 #include "replay/query_file.h"
 #include "usage.h"
@@ -309,10 +308,9 @@ void addCheck(CLI::App& program, int& exit_status) {
           [&request](const std::string& name) {
             request.method = name == "redon2004" ? Method::redon2004 : Method::standard;
           },
-          "standard, or redon2004: the paper's own, with the options below")
+          "standard, or redon2004: the paper's own")
       ->check(CLI::IsMember({"standard", "redon2004"}))
       ->group("Query");
-  addRedonOptions(*check, request.redon);
   addVisibilityOptions(*check, o.visibility);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");

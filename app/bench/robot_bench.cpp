@@ -24,7 +24,6 @@
 
 #include "angles.h"
 #include "bench/bars.h"
-#include "bench/step_bench.h"
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"

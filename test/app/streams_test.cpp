@@ -189,8 +189,7 @@ TEST_F(StreamsTest, FullDeviceIsAnErrorOfEveryWriter) {
   writers.push_back("check " + armAndBall() + " --from 0,0 --to 40deg,0 --size 64x64 --image " + full);
 #endif
   for (const char* option : {" --csv", " --svg"}) {
-    writers.push_back("bench table1 --angles 1 --queries 1 --passes 1 --triangles 1000 --executor none" +
-                      std::string(option) + " " + full);
+    writers.push_back("bench robot " + arm() + " --no-fcl --motions 2 --passes 1" + option + " " + full);
   }
   for (const std::string& arguments : writers) {
     const Outcome outcome = run(arguments);

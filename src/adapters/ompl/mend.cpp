@@ -42,7 +42,7 @@ constexpr double kPull = 0.2;
 constexpr int kPulls = 3;
 
 // Small detours, by one or two waypoints off the plan: how far each joint goes at most (rad or m), and how often that
-// is tried. They cost some ms if none is found, and keep mended plans near the plan (bench certify).
+// is tried. They cost some ms if none is found, and keep mended plans near the plan (bench_tables certify).
 constexpr double kNudges[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr int kTries = 48, kShrinks = 5;
 

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/certify_bench.h"
-
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
-#include "bench/averages.h"
+#include "averages.h"
 #include "certification.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "plan_options.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
+#include "tables.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -23,6 +25,11 @@ using namespace planning_data;
 
 constexpr double kCertifyResolution = 0.01;  // OMPL's default, of the space's extent
 constexpr int kPasses = 3;                   // of which the fastest counts
+
+struct CertifyTableOptions : PlanOptions {
+  double mend_seconds = 5;  ///< for mending one
+  std::string plans;  ///< file or folder of another planner's plans, each named ENVIRONMENT/PROBLEM; empty: plan here
+};
 
 struct PlanRow {
   std::string environment;
@@ -38,7 +45,7 @@ struct PlanRow {
 
 class CertifyBench {
  public:
-  explicit CertifyBench(const CertifyBenchOptions& options)
+  explicit CertifyBench(const CertifyTableOptions& options)
       : options_(options), robot_(planning_data::readRobot(options.data, options.robot)) {}
 
   void run() {
@@ -218,20 +225,47 @@ class CertifyBench {
                        median(longer), hidden);
   }
 
-  const CertifyBenchOptions& options_;
+  const CertifyTableOptions& options_;
   Robot robot_;
   std::vector<PlanRow> rows_;
 };
 
-}  // namespace
-
-int benchCertify(CertifyBenchOptions& options) {
-  removeEarlierOutputs({{"--csv", &options.csv}}, {options.plans});
-  CertifyBench bench(options);
+int runCertifyPlans(CertifyTableOptions& o) {
+  removeEarlierOutputs({{"--csv", &o.csv}}, {o.plans});
+  CertifyBench bench(o);
   bench.run();
   fmt::print("{}", bench.table());
-  if (!options.csv.empty()) files::write(options.csv, bench.csv());
+  if (!o.csv.empty()) files::write(o.csv, bench.csv());
   return bench.sound() ? kExitFree : kExitContact;
+}
+
+}  // namespace
+
+void addCertifyPlans(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<CertifyTableOptions>();
+  CertifyTableOptions& o = *options;
+  CLI::App* verb = program.add_subcommand(
+      "certify",
+      "Plans of RRTConnect at OMPL's default resolution, or another planner's: how many collide, what certify\n"
+      "finds and mends");
+  verb->footer(
+      "Every plan is certified, looked at by FCL in steps 100 times finer than OMPL's default, and mended where it\n"
+      "touches. --plans takes plans that any planner made for these problems: each has the name ENVIRONMENT/PROBLEM,\n"
+      "with the problem's index as its file has it, as in the JSON line\n"
+      "{\"name\": \"box/1\", \"waypoints\": [[...], [...]]}\n"
+      "Exit status: 0, 1 a plan certified free is seen to collide, 2 error.");
+  addPlanOptions(*verb, o);
+  verb->add_option("--plans", o.plans,
+                   "Plans of another planner in place of RRTConnect's: a file or folder in a format that certify\n"
+                   "reads; straight between waypoints")
+      ->check(CLI::ExistingPath)
+      ->excludes("--problems")
+      ->excludes("--seeds")
+      ->type_name("FILE");
+  verb->add_option("--mend-time", o.mend_seconds, "Seconds to mend a plan")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->callback([options, &exit_status] { exit_status = runCertifyPlans(*options); });
 }
 
 }  // namespace fcl_artic::app

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/planning_bench.h"
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <ompl/base/ScopedState.h>
+#include <CLI/CLI.hpp>
 
-#include "bench/averages.h"
-#include "bench/bars.h"
+#include "averages.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "plan_options.h"
 #include "planning/fcl_state_check.h"
 #include "planning/plans.h"
 #include "progress.h"
 #include "render/picture.h"
+#include "tables.h"
+#include "usage.h"
 
 namespace fcl_artic::app {
 namespace {
 
-namespace fs = std::filesystem;
 namespace ob = ompl::base;
 using namespace planning_data;
 using planning::PlanningSetup;
@@ -32,6 +32,10 @@ using planning::PlanningSetup;
 constexpr double kResolutions[] = {0.01, 0.001};
 constexpr int kPlanningValidators = 3, kPlanningOurs = 2;
 constexpr const char* kPlanningNames[kPlanningValidators] = {"FCL, OMPL's 1 %", "FCL, 0.1 %", "fcl_artic"};
+
+struct PlanningOptions : PlanOptions {
+  std::string image;  ///< file; empty: none
+};
 
 struct PlanningOutcome {
   std::string environment;
@@ -68,12 +72,12 @@ std::optional<std::pair<std::size_t, CertifiedResult>> firstContact(const Planni
 
 class PlanningBench {
  public:
-  explicit PlanningBench(const PlanningBenchOptions& options)
-      : options_(options), data_(options.data), robot_(planning_data::readRobot(data_, options.robot)) {
+  explicit PlanningBench(const PlanningOptions& options)
+      : options_(options), robot_(planning_data::readRobot(options.data, options.robot)) {
     std::vector<std::string> names = options.environments;
-    if (names.empty()) names = environmentsOf(data_, options.robot);
+    if (names.empty()) names = environmentsOf(options.data, options.robot);
     for (const std::string& name : names) {
-      environments_.push_back(readEnvironment(problemsPath(data_, options.robot, name), *robot_.tree));
+      environments_.push_back(readEnvironment(problemsPath(options.data, options.robot, name), *robot_.tree));
     }
   }
 
@@ -125,24 +129,6 @@ class PlanningBench {
                       o.simplified_sampled, o.simplified_proven);
     }
     return out;
-  }
-
-  std::string plot() const {
-    const auto chart = [&](const std::string& title, const std::string& label, bool logarithmic, const auto& value) {
-      BarChart out{title, label, logarithmic, groups(), {}};
-      for (int v = 0; v < kPlanningValidators; ++v) {
-        out.series.push_back({kPlanningNames[v], {}});
-        for (const std::string& name : out.groups) out.series.back().values.push_back(value(sumOf(name, v)));
-      }
-      return out;
-    };
-    return toSvg(
-        {chart(options_.robot + ": time for a plan, simplified", "mean, ms", true,
-               [](const Sum& s) { return s.plan_ms + s.simplify_ms; }),
-         chart("cost of a valid motion", "median, us", true, [](const Sum& s) { return median(s.valid_us); }),
-         chart("cost of an invalid motion", "median, us", true, [](const Sum& s) { return median(s.invalid_us); }),
-         chart("simplified plans that collide", "percent", false,
-               [](const Sum& s) { return s.solved ? 100.0 * s.simplified_sampled / s.solved : 0; })});
   }
 
   /// @return false: there is nothing to show.
@@ -280,8 +266,7 @@ class PlanningBench {
                        fmt::format("{} / {}", s.simplified_sampled, s.simplified_proven));
   }
 
-  const PlanningBenchOptions& options_;
-  fs::path data_;
+  const PlanningOptions& options_;
   Robot robot_;
   std::vector<Environment> environments_;
   std::vector<PlanningOutcome> outcomes_;
@@ -289,39 +274,36 @@ class PlanningBench {
   Example example_;
 };
 
-bool hasPictures() {
-  try {
-    render::requirePictures();
-  } catch (const std::runtime_error&) {
-    return false;
+int runPlanning(PlanningOptions& o) {
+  if (!o.image.empty()) render::requirePictures();
+  removeEarlierOutputs({{"--csv", &o.csv}, {"--image", &o.image}}, {});
+  PlanningBench bench(o);
+  bench.run();
+  fmt::print("{}", bench.table());
+  if (!o.csv.empty()) files::write(o.csv, bench.csv());
+  if (!o.image.empty() && !bench.picture(o.image)) {
+    fmt::print("no picture: no plan that sampling accepted collides\n");
   }
-  return true;
+  return bench.sound() ? kExitFree : kExitContact;
 }
 
 }  // namespace
 
-int benchPlanning(PlanningBenchOptions& options) {
-  const fs::path out = options.out;
-  if (!options.out.empty()) {
-    fs::create_directories(out);
-    std::string table = out / "planning.txt", rows = out / "planning.csv", plot = out / "planning.svg",
-                picture = out / "planning.png";
-    removeEarlierOutputs({{"--out", &table}, {"--out", &rows}, {"--out", &plot}, {"--out", &picture}}, {});
-  }
-  PlanningBench bench(options);
-  bench.run();
-  fmt::print("{}", bench.table());
-  if (!options.out.empty()) {
-    files::write(out / "planning.txt", bench.table());
-    files::write(out / "planning.csv", bench.csv());
-    files::write(out / "planning.svg", bench.plot());
-    if (!hasPictures()) {
-      fmt::print("no picture: this program was built without the component visibility or libpng\n");
-    } else if (!bench.picture((out / "planning.png").string())) {
-      fmt::print("no picture: no plan that sampling accepted collides\n");
-    }
-  }
-  return bench.sound() ? kExitFree : kExitContact;
+void addPlanning(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<PlanningOptions>();
+  PlanningOptions& o = *options;
+  CLI::App* verb = program.add_subcommand(
+      "planning",
+      "RRTConnect with OMPL's discrete validator over FCL, at its default and ten times finer, and with ours");
+  verb->footer(
+      "Every plan is looked at by FCL in steps 100 times finer than OMPL's default, and its motions are checked with\n"
+      "proof.\n"
+      "Exit status: 0 no plan made with fcl_artic collides, 1 one does, 2 error.");
+  addPlanOptions(*verb, o);
+  verb->add_option("--image", o.image, "Draw a plan that sampling accepted, at the moment of contact, as PNG")
+      ->check(requirePng)
+      ->type_name("FILE");
+  verb->callback([options, &exit_status] { exit_status = runPlanning(*options); });
 }
 
 }  // namespace fcl_artic::app

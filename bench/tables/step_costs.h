@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Shared by `bench table1`, `bench ideas` and `bench depth`: mean times and counts of steps, tables as text and as CSV.
+// Shared by `table1` and `ideas`: mean times and counts of steps, tables as text and as CSV.
 #pragma once
 
 #include <string>

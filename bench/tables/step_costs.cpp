@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/step_bench.h"
+#include "step_costs.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/rigid_bench.h"
-
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <boost/property_tree/ini_parser.hpp>
 #include <boost/property_tree/ptree.hpp>
 
-#include "bench/averages.h"
+#include "averages.h"
 #include "exit_status.h"
 #include "fcl_artic/ompl/planning_setup.h"
 #include "fcl_artic/urdf/urdf.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "plan_options.h"
 #include "planning/plans.h"
 #include "progress.h"
+#include "tables.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -31,6 +33,13 @@ using planning::PlanningSetup;
 
 enum Validator { kDiscrete, kAdvancement, kRigidOurs, kRigidValidators };
 constexpr const char* kRigidNames[kRigidValidators] = {"FCL, OMPL's 1 %", "FCL, as OMPL.app", "fcl_artic"};
+
+struct RigidOptions {
+  std::vector<std::string> problems;  ///< files of OMPL.app (.cfg)
+  int seeds = 3;
+  double seconds = 20;  ///< for a plan, and for its simplification
+  std::string csv;      ///< file of a row for each plan; empty: none
+};
 
 /// A body's way to be planned.
 struct PlanningTask {
@@ -199,7 +208,7 @@ struct RigidOutcome {
 
 class RigidBench {
  public:
-  explicit RigidBench(const RigidBenchOptions& options) : options_(options) {
+  explicit RigidBench(const RigidOptions& options) : options_(options) {
     for (const std::string& path : options.problems) tasks_.push_back(readTask(path));
   }
 
@@ -300,20 +309,38 @@ class RigidBench {
     outcomes_.push_back(std::move(outcome));
   }
 
-  const RigidBenchOptions& options_;
+  const RigidOptions& options_;
   std::vector<PlanningTask> tasks_;
   std::vector<RigidOutcome> outcomes_;
 };
 
-}  // namespace
-
-int benchRigid(RigidBenchOptions& options) {
-  removeEarlierOutputs({{"--csv", &options.csv}}, options.problems);
-  RigidBench bench(options);
+int runRigid(RigidOptions& o) {
+  removeEarlierOutputs({{"--csv", &o.csv}}, o.problems);
+  RigidBench bench(o);
   bench.run();
   fmt::print("{}", bench.table());
-  if (!options.csv.empty()) files::write(options.csv, bench.csv());
+  if (!o.csv.empty()) files::write(o.csv, bench.csv());
   return bench.sound() ? kExitFree : kExitContact;
+}
+
+}  // namespace
+
+void addRigid(CLI::App& program, int& exit_status) {
+  auto options = std::make_shared<RigidOptions>();
+  RigidOptions& o = *options;
+  CLI::App* verb = program.add_subcommand(
+      "rigid", "A mesh among meshes, planned with OMPL's discrete validator over FCL, FCL's continuous one, and ours");
+  verb->footer(
+      "PROBLEM is a file of OMPL.app (resources/3D of its sources): names of two meshes beside it, start, goal and "
+      "the\n"
+      "bounds of the position. Every plan is looked at by FCL in steps 100 times finer than OMPL's default.\n"
+      "Exit status: 0 no plan made with fcl_artic collides, 1 one does, 2 error.");
+  verb->add_option("problems", o.problems, "Files of OMPL.app")
+      ->required()
+      ->check(CLI::ExistingFile)
+      ->type_name("PROBLEM.cfg...");
+  addRunOptions(*verb, o);
+  verb->callback([options, &exit_status] { exit_status = runRigid(*options); });
 }
 
 }  // namespace fcl_artic::app

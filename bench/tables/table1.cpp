@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/table1.h"
+#include "tables.h"
 
 #include <memory>
 #include <stdexcept>
@@ -10,14 +10,12 @@
 #include <CLI/CLI.hpp>
 
 #include "bench/bars.h"
-#include "bench/pipe_steps.h"
-#include "bench/step_bench.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "pipe_steps.h"
 #include "progress.h"
-#include "redon_options.h"
-#include "render/picture.h"
+#include "step_costs.h"
 #include "usage.h"
 #include "visibility_options.h"
 
@@ -56,8 +54,7 @@ struct Table1Options : PipeOptions {
   std::string executor = "cpu";
 #endif
   std::vector<std::string> methods{kAsWritten, kRedon, kStandard};
-  RedonOptions redon;
-  std::string csv, svg, image;
+  std::string csv, svg;
 };
 
 /// A row for each of these and each kind of steps.
@@ -75,7 +72,6 @@ std::vector<Variant> variantsOf(const Table1Options& o) {
     request.tolerance_time = o.tolerance;
     request.check_self = o.self;
     request.method = name == kStandard ? Method::standard : Method::redon2004;
-    request.redon = o.redon;
     if (name == kAsWritten) request.redon = RedonOptions::asWritten();
     if (o.executor != kNoExecutor) {
       request.visibility = VisibilityMode::on;
@@ -180,19 +176,8 @@ std::string svgOf(const std::vector<Group>& groups, const std::vector<Variant>& 
   return toSvg({chart});
 }
 
-/// The robot on its way into a pipe, in a step of the largest angle.
-void drawStep(const PumaInPipes& scenery, const CloseSteps& steps, const std::string& path) {
-  const JointMotion& step = steps.colliding.front();
-  const CertifiedResult result = scenery.manager->continuousCollide(step);
-  render::PictureOptions picture;
-  picture.title = fmt::format("A step of {:g} degrees: free until t = {:.4f}", steps.degrees, result.t_lower);
-  render::writePicture(
-      path, scenery.robot, scenery.pipes.obstacles, [&](double t) { return step.configuration(t); }, result, picture);
-}
-
 int runTable1(Table1Options& o) {
-  if (!o.image.empty()) render::requirePictures();
-  removeEarlierOutputs({{"--csv", &o.csv}, {"--svg", &o.svg}, {"--image", &o.image}}, {});
+  removeEarlierOutputs({{"--csv", &o.csv}, {"--svg", &o.svg}}, {});
   const PumaInPipes scenery = pumaInPipes(o);
   const bool stage2 = o.executor != kNoExecutor;
   const auto culler = makeCuller(stage2 ? o.executor : "cpu");
@@ -220,7 +205,6 @@ int runTable1(Table1Options& o) {
         }
         groups.push_back(group);
       }
-      if (!o.image.empty() && i + 1 == o.angles.size()) drawStep(scenery, steps, o.image);
     }
   }
   const Table table = tableOf(groups, variants);
@@ -241,10 +225,10 @@ int runTable1(Table1Options& o) {
 
 }  // namespace
 
-void addTable1(CLI::App& bench, int& exit_status) {
+void addTable1(CLI::App& program, int& exit_status) {
   auto options = std::make_shared<Table1Options>();
   Table1Options& o = *options;
-  CLI::App* verb = bench.add_subcommand(
+  CLI::App* verb = program.add_subcommand(
       "table1", "Table 1 of Redon et al. 2004: the paper's method, and the library's own, beside the printed times");
   verb->footer(
       "A row of free steps in none of which triangles are compared is refused, with exit status 2: it would not "
@@ -266,10 +250,6 @@ void addTable1(CLI::App& bench, int& exit_status) {
       ->capture_default_str();
   verb->add_option("--csv", o.csv, "Write the table as CSV")->type_name("FILE");
   verb->add_option("--svg", o.svg, "Draw the totals")->type_name("FILE");
-  verb->add_option("--image", o.image, "Draw a colliding step of the last angle, robot, sweep and contact, as PNG")
-      ->check(requirePng)
-      ->type_name("FILE");
-  addRedonOptions(*verb, o.redon);  // as written, boxes come first and validity late, whatever is given
   verb->callback([options, &exit_status] { exit_status = runTable1(*options); });
 }
 

@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "bench/pipe_steps.h"
-#include "bench/step_bench.h"
-#include "bench/table1.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "outputs.h"
+#include "pipe_steps.h"
 #include "progress.h"
+#include "step_costs.h"
+#include "tables.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -24,7 +24,7 @@ struct IdeasOptions : PipeOptions {
   std::string csv;
 };
 
-/// The method with one option, or two, other than by default, as it is typed.
+/// The method with one option, or two, other than by default, as it is written.
 struct Idea {
   std::string name;
   RedonOptions options;
@@ -36,17 +36,17 @@ std::vector<Idea> ideas() {
     all.push_back({name, {}});
     return all.back().options;
   };
-  for (const int level : {0, 3, 6}) add(fmt::format("--refinement {}", level)).refinement_level = level;
-  add("--no-newton").newton = false;
-  add("--late-validity").early_validity = false;
-  RedonOptions& late = add("--late-validity --no-newton");
+  for (const int level : {0, 3, 6}) add(fmt::format("refinement_level {}", level)).refinement_level = level;
+  add("no newton").newton = false;
+  add("no early_validity").early_validity = false;
+  RedonOptions& late = add("no early_validity, no newton");
   late.early_validity = late.newton = false;
-  add("--boxes-first").in_time_order = false;
-  add("--independent").simultaneous = false;
-  add("--links-in-world").links_in_world = true;
-  add("--enclosure chain").enclosure = MotionEnclosure::intervalChain;
-  add("--enclosure taylor").enclosure = MotionEnclosure::taylor;
-  all.push_back({"as written", RedonOptions::asWritten()});
+  add("no in_time_order").in_time_order = false;
+  add("no simultaneous").simultaneous = false;
+  add("links_in_world").links_in_world = true;
+  add("intervalChain").enclosure = MotionEnclosure::intervalChain;
+  add("taylor").enclosure = MotionEnclosure::taylor;
+  all.push_back({"asWritten()", RedonOptions::asWritten()});
   return all;
 }
 
@@ -137,11 +137,11 @@ int runIdeas(IdeasOptions& o) {
 
 }  // namespace
 
-void addIdeas(CLI::App& bench, int& exit_status) {
+void addIdeas(CLI::App& program, int& exit_status) {
   auto options = std::make_shared<IdeasOptions>();
   IdeasOptions& o = *options;
   o.angles = {1, 5, 30};
-  CLI::App* verb = bench.add_subcommand(
+  CLI::App* verb = program.add_subcommand(
       "ideas", "What each idea of Redon et al. 2004 is worth: the paper's method, its options one by one");
   verb->footer("Exit status: 0 all verdicts agree, 1 they don't, 2 error.");
   addPipeOptions(*verb, o);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/pipe_steps.h"
+#include "pipe_steps.h"
 
 #include <filesystem>
 #include <random>
@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "angles.h"
-#include "bench/step_bench.h"
 #include "generator.h"
+#include "step_costs.h"
 #include "usage.h"
 
 namespace fcl_artic::app {

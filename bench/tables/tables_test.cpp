@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The verbs `bench table1`, `bench ideas` and `bench depth`, on a few steps, and `bench planning`, on a single problem.
+// The verbs of bench_tables: on a few steps, and on a single problem.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -7,21 +7,17 @@
 #include <regex>
 #include <vector>
 
-#ifdef FCL_ARTIC_HAS_PLANS
-#include "bench/bars.h"
-#endif
 #include "run_program.h"
 
-namespace bench_test {
+namespace tables_test {
 
 namespace {
 
 // Free steps this close to pipes this coarse compare triangles.
 const std::string kFewSteps = " --queries 2 --passes 1 --angles 5 --triangles 2000 --closeness 0.002";
 
-TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
-  const Outcome run =
-      this->run("bench table1" + kFewSteps + " --csv " + path("table1.csv") + " --svg " + path("table1.svg"));
+TEST_F(ProgramTest, Table1PutsBothMethodsBesideThePrintedTimes) {
+  const Outcome run = this->run("table1" + kFewSteps + " --csv " + path("table1.csv") + " --svg " + path("table1.svg"));
   EXPECT_EQ(run.status, 0) << run.out << run.err;  // the verdicts agree
   expectContains(run.out, "32.37");                // Redon 2004, Table 1: 5 degrees, colliding, total
   expectContains(run.out, "8.0184");
@@ -49,20 +45,20 @@ TEST_F(ProgramTest, BenchTable1PutsBothMethodsBesideThePrintedTimes) {
   EXPECT_TRUE(std::filesystem::exists(path("table1.svg")));
 }
 
-TEST_F(ProgramTest, BenchTable1RefusesStepsThatCompareNoTriangles) {
+TEST_F(ProgramTest, Table1RefusesStepsThatCompareNoTriangles) {
   // Steps of 0.01 degrees at any distance.
-  const Outcome run = this->run(
-      "bench table1 --queries 2 --passes 1 --angles 0.01 --triangles 1000 --closeness 5 --executor none --csv " +
-      path("table1.csv"));
+  const Outcome run =
+      this->run("table1 --queries 2 --passes 1 --angles 0.01 --triangles 1000 --closeness 5 --executor none --csv " +
+                path("table1.csv"));
   EXPECT_EQ(run.status, 2) << run.out;
   expectContains(run.err, "the free steps of 0.01 degrees have no leaf pairs");
   expectContains(read(path("table1.csv")), "0.01,NO-COL,refused,");
   expectContains(read(path("table1.csv")), "0.01,COL,standard,");
 }
 
-TEST_F(ProgramTest, BenchTable1TakesPipesAsOneMeshToo) {
+TEST_F(ProgramTest, Table1TakesPipesAsOneMeshToo) {
   const std::string command =
-      "bench table1 --queries 2 --passes 1 --angles 5 --triangles 10000 --closeness 0.002 --executor none";
+      "table1 --queries 2 --passes 1 --angles 5 --triangles 10000 --closeness 0.002 --executor none";
   const Outcome apart = this->run(command), one = this->run(command + " --one-mesh");
   EXPECT_EQ(apart.status, 0) << apart.err;
   EXPECT_EQ(one.status, 0) << one.err;
@@ -70,12 +66,12 @@ TEST_F(ProgramTest, BenchTable1TakesPipesAsOneMeshToo) {
   expectContains(one.out, "10000 triangles, one mesh");
 }
 
-TEST_F(ProgramTest, BenchIdeasHasARowForEachOption) {
-  const Outcome run = this->run("bench ideas" + kFewSteps + " --csv " + path("ideas.csv"));
+TEST_F(ProgramTest, IdeasHasARowForEachOption) {
+  const Outcome run = this->run("ideas" + kFewSteps + " --csv " + path("ideas.csv"));
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   const std::string csv = read(path("ideas.csv"));
   for (const char* option :
-       {"defaults", "--refinement 0", "--no-newton", "--late-validity", "--boxes-first", "--independent"}) {
+       {"defaults", "refinement_level 0", "no newton", "no early_validity", "no in_time_order", "no simultaneous"}) {
     expectContains(run.out, std::string("\n") + option + " ");
     expectContains(csv, std::string("\n") + option + ",5,COL,0,");
     expectContains(csv, std::string("\n") + option + ",5,NO-COL,0,");
@@ -84,79 +80,32 @@ TEST_F(ProgramTest, BenchIdeasHasARowForEachOption) {
   std::smatch all, single;
   const std::string number = "([0-9.]+)", counts = ",5,COL,0(?:,[0-9.]+){5}," + number + "," + number + "\n";
   ASSERT_TRUE(std::regex_search(csv, all, std::regex("\ndefaults" + counts)));
-  ASSERT_TRUE(std::regex_search(csv, single, std::regex("\n--independent" + counts)));
+  ASSERT_TRUE(std::regex_search(csv, single, std::regex("\nno simultaneous" + counts)));
   EXPECT_LT(std::stod(all[1]), std::stod(all[2]));
   EXPECT_EQ(single[1], single[2]);
 
-  const Outcome short_of_work = this->run("bench ideas" + kFewSteps + " --budget 10 --csv " + path("ideas.csv"));
+  const Outcome short_of_work = this->run("ideas" + kFewSteps + " --budget 10 --csv " + path("ideas.csv"));
   EXPECT_EQ(short_of_work.status, 0) << short_of_work.err;
   expectContains(read(path("ideas.csv")), "\ndefaults,5,COL,2,");  // both undecided
 }
 
-TEST_F(ProgramTest, BenchDepthSolvesBothWays) {
-  const Outcome run = this->run("bench depth --joints 2 8 --queries 2 --passes 1");
-  EXPECT_EQ(run.status, 0) << run.out << run.err;
-  expectContains(run.out, "simultaneous");
-  expectContains(run.out, "independent");
-}
+#ifdef FCL_ARTIC_HAS_PLANS
 
-#ifndef FCL_ARTIC_HAS_PLANS
-
-TEST_F(ProgramTest, BenchPlanningIsNotThereWithoutOmpl) {
-  const Outcome run = this->run("bench planning --data " + path("nowhere"));
-  EXPECT_EQ(run.status, 2);
-  expectContains(run.err, "built without OMPL");
-}
-
-#else
-
-using fcl_artic::app::BarChart;
-using fcl_artic::app::toSvg;
-
-std::vector<double> heightsOfBars(const std::string& svg) {
-  const std::regex bar("width=\"[0-9.]+\" height=\"([0-9.]+)\" fill=\"#");
-  std::vector<double> heights;
-  for (std::sregex_iterator i(svg.begin(), svg.end(), bar), end; i != end; ++i) {
-    if ((*i)[1] != "10") heights.push_back(std::stod((*i)[1]));  // those of the legend
-  }
-  return heights;
-}
-
-TEST(Bars, HeightsAreInProportion) {
-  const BarChart linear = {"title", "percent", false, {"a", "b"}, {{"one", {20, 40}}, {"two", {0, 10}}}};
-  const std::vector<double> h = heightsOfBars(toSvg({linear}));  // a: one, two; b: one, two
-  ASSERT_EQ(h.size(), 4u);
-  EXPECT_NEAR(h[2], 2 * h[0], 0.11);  // printed to a tenth
-  EXPECT_EQ(h[1], 0);
-  EXPECT_NEAR(h[3], h[0] / 2, 0.11);
-  const BarChart logarithmic = {
-      "title", "ms", true, {"a"}, {{"one", {10}}, {"two", {100}}, {"three", {1}}, {"four", {0}}}};
-  const std::vector<double> l = heightsOfBars(toSvg({logarithmic}));
-  ASSERT_EQ(l.size(), 4u);
-  EXPECT_NEAR(l[1], 2 * l[0], 0.11);
-  EXPECT_EQ(l[2], 0);  // the axis begins there
-  EXPECT_EQ(l[3], 0);
-}
-
-TEST_F(ProgramTest, BenchPlanningNamesWhatIsMissing) {
-  const Outcome run = this->run("bench planning --data " + path("nowhere"));
+TEST_F(ProgramTest, PlanningNamesWhatIsMissing) {
+  const Outcome run = this->run("planning --data " + path("nowhere"));
   EXPECT_EQ(run.status, 2);
   expectContains(run.err, "nowhere");
-  EXPECT_EQ(this->run("bench").status, 2);
 }
 
-TEST_F(ProgramTest, BenchPlanningOnOneProblem) {
+TEST_F(ProgramTest, PlanningOnOneProblem) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
   if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
     GTEST_SKIP() << "FCL_ARTIC_DATA does not name a folder with robots/ and problems/";
   }
-  const Outcome run = this->run("bench planning --environment table_pick --problems 1 --out " + path("planning"));
+  const Outcome run = this->run("planning --environment table_pick --problems 1 --csv " + path("planning.csv"));
   ASSERT_EQ(run.status, 0) << run.err;
   for (const char* validator : {"FCL, OMPL's 1 %", "FCL, 0.1 %", "fcl_artic"}) expectContains(run.out, validator);
-  const std::string table = read(path("planning/planning.txt"));
-  ASSERT_FALSE(table.empty());
-  EXPECT_EQ(run.out.rfind(table, 0), 0u) << table;
-  std::istringstream csv(read(path("planning/planning.csv")));
+  std::istringstream csv(read(path("planning.csv")));
   std::string line;
   int rows = 0;
   for (std::getline(csv, line); std::getline(csv, line); ++rows) {
@@ -166,11 +115,10 @@ TEST_F(ProgramTest, BenchPlanningOnOneProblem) {
     }
   }
   EXPECT_EQ(rows, 3);
-  EXPECT_EQ(heightsOfBars(read(path("planning/planning.svg"))).size(), 12u);  // four charts of three bars
 }
 
 /// A wall with a hole in the middle, and a bar that goes through it only straight.
-TEST_F(ProgramTest, BenchRigidPlansABarThroughAHole) {
+TEST_F(ProgramTest, RigidPlansABarThroughAHole) {
   const auto box = [](std::ostream& out, int& vertices, const double(&lo)[3], const double(&hi)[3]) {
     for (int i = 0; i < 8; ++i) {
       out << "v " << (i & 1 ? hi : lo)[0] << " " << (i & 2 ? hi : lo)[1] << " " << (i & 4 ? hi : lo)[2] << "\n";
@@ -200,7 +148,7 @@ TEST_F(ProgramTest, BenchRigidPlansABarThroughAHole) {
       "goal.theta = 0\ngoal.axis.x = 1\ngoal.axis.y = 0\ngoal.axis.z = 0\n";
   std::ofstream(path("hole.cfg")) << problem << "volume.min.x = -1.5\nvolume.min.y = -1.5\nvolume.min.z = -1.5\n"
                                   << "volume.max.x = 1.5\nvolume.max.y = 1.5\nvolume.max.z = 1.5\n";
-  const Outcome run = this->run("bench rigid " + path("hole.cfg") + " --seeds 1 --csv " + path("rigid.csv"));
+  const Outcome run = this->run("rigid " + path("hole.cfg") + " --seeds 1 --csv " + path("rigid.csv"));
   ASSERT_EQ(run.status, 0) << run.out << run.err;
   std::istringstream csv(read(path("rigid.csv")));
   std::string line;
@@ -212,18 +160,18 @@ TEST_F(ProgramTest, BenchRigidPlansABarThroughAHole) {
   EXPECT_EQ(line.substr(line.size() - 4), ",0,0") << line;  // ours, seen to collide neither raw nor simplified
 
   std::ofstream(path("hole.cfg")) << problem;
-  const Outcome unbounded = this->run("bench rigid " + path("hole.cfg"));
+  const Outcome unbounded = this->run("rigid " + path("hole.cfg"));
   EXPECT_EQ(unbounded.status, 2);
   expectContains(unbounded.err, "[problem] has no number 'volume.min.x'");
 }
 
-TEST_F(ProgramTest, BenchCertifyFindsWhatSamplingHides) {
+TEST_F(ProgramTest, CertifyFindsWhatSamplingHides) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
   if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
     GTEST_SKIP() << "FCL_ARTIC_DATA does not name a folder with robots/ and problems/";
   }
   const Outcome run =
-      this->run("bench certify --environment bookshelf_small --problems 3 --mend-time 2 --csv " + path("certify.csv"));
+      this->run("certify --environment bookshelf_small --problems 3 --mend-time 2 --csv " + path("certify.csv"));
   ASSERT_EQ(run.status, 0) << run.out << run.err;  // none that is seen to collide was certified free
   std::istringstream csv(read(path("certify.csv")));
   std::string line;
@@ -236,7 +184,7 @@ TEST_F(ProgramTest, BenchCertifyFindsWhatSamplingHides) {
   EXPECT_GE(touching, 1);
 }
 
-TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
+TEST_F(ProgramTest, CertifyTakesPlansOfAnotherPlanner) {
   const char* data = std::getenv("FCL_ARTIC_DATA");
   if (!data || !std::filesystem::exists(std::filesystem::path(data) / "problems")) {
     GTEST_SKIP() << "FCL_ARTIC_DATA does not name a folder with robots/ and problems/";
@@ -246,8 +194,7 @@ TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
   const std::string into_table = R"({"name": "table_pick/3", "from": [0, -0.785, 0, -2.356, 0, 1.571, 0.785],)"
                                  R"( "to": [0, 1.7, 0, -0.3, 0, 1.571, 0.785]})";
   std::ofstream(path("plans.jsonl")) << table_pick << "\n" << into_table << "\n";
-  const Outcome run =
-      this->run("bench certify --mend-time 1 --plans " + path("plans.jsonl") + " --csv " + path("given.csv"));
+  const Outcome run = this->run("certify --mend-time 1 --plans " + path("plans.jsonl") + " --csv " + path("given.csv"));
   ASSERT_EQ(run.status, 0) << run.out << run.err;
   const std::string csv = read(path("given.csv"));
   expectContains(csv, "panda,table_pick,1,1,2,0,free,");
@@ -255,7 +202,7 @@ TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
 
   std::ofstream(path("plans.jsonl")) << R"({"name": "tabel_pick/1", "from": [0, -0.785, 0, -2.356, 0, 1.571, 0.785],)"
                                      << R"( "to": [0.1, -0.785, 0, -2.356, 0, 1.571, 0.785]})";
-  const Outcome misnamed = this->run("bench certify --plans " + path("plans.jsonl"));
+  const Outcome misnamed = this->run("certify --plans " + path("plans.jsonl"));
   EXPECT_EQ(misnamed.status, 2);
   expectContains(misnamed.err, "1 of 1 plans name no problem of panda's");
 }
@@ -264,4 +211,4 @@ TEST_F(ProgramTest, BenchCertifyTakesPlansOfAnotherPlanner) {
 
 }  // namespace
 
-}  // namespace bench_test
+}  // namespace tables_test
