@@ -3,7 +3,6 @@
 // Two links and the joints between them, apart from the robot that they belong to. A chain holds the engine's problem
 // of this one pair, the whole ranges of its variables, and points that bound both bodies. RangeProof searches these
 // ranges.
-// ranges.
 #pragma once
 
 #include <cstddef>
