@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/compare.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -17,11 +15,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/children.h"
+#include "children.h"
 #include "exit_status.h"
 #include "fcl_artic/continuous_collision.h"
 #include "pairs/random_pairs.h"
 #include "progress.h"
+#include "tables.h"
 
 namespace fcl_artic::app {
 namespace {
