@@ -130,9 +130,9 @@ ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& mot
   // The brackets are narrow against what is allowed: an answer is open only within a hundredth of that.
   constexpr double kPart = 0.01;
   // Some seconds: limits that are narrower still against the motion leave the answer undecided.
-  constexpr std::uint64_t kMostPoses = 1 << 21;
+  constexpr std::uint64_t kMaxPoses = 1 << 21;
   ToolLineRequest request;
-  request.work_budget = kMostPoses;
+  request.work_budget = kMaxPoses;
   request.tool = line.tool;
   request.via = line.via;
   if (line.distance > 0) request.tolerance_distance = kPart * line.distance;
