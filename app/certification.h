@@ -83,7 +83,8 @@ struct MendPairs {
 using ManagerForMending =
     std::function<std::shared_ptr<const ArticulatedCollisionManager>(const MendPairs& pairs, double margin)>;
 
-/// Mends those that touch, and certifies what comes out: not the plan in memory, but what writePlans() writes of it.
+/// Mends the plans that touch, and certifies the mended ones: not as they are in memory, but as writePlans() writes
+/// them.
 /// @param managerFor  null: detours keep the clearance from all, and no pair is ignored.
 void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
              const MendOptions& mending, std::vector<CertifiedPlan>& plans, const ManagerForMending& managerFor = {});

@@ -55,14 +55,14 @@ class World {
   /// @throws as readPairSettings().
   explicit World(const WorldOptions& options);
 
-  /// Reads the robot, proves pairs of links where the request's queries make use of that, and reads the obstacles.
+  /// Reads the robot, proves pairs of links if the request's queries use that, and reads the obstacles.
   /// @throws as the steps below.
   void open(const CertifiedRequest& request);
 
   /// Reads the robot and the pairs that its SRDF allows.
   /// @throws as loadUrdf() and loadSrdf(), and std::invalid_argument for a link that can't be made solid.
   void readRobot();
-  /// Finds proofs of pairs of links that never come within a margin, and notes what they leave open. With --srdf, of
+  /// Finds proofs of pairs of links that never come within a margin, and notes pairs without a proof. With --srdf, of
   /// the pairs that it and --allow allow. Without, of all pairs: those that always touch become allowed, and
   /// --auto-srdf is written.
   /// @param margin  m.

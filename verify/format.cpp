@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The formats: worlds, motions and records, read strictly. No motion is proven free here; but what proofs are told is
-// made here, with its bounds: axes, rotations, closed surfaces, who is ignored until when.
+// The formats: worlds, motions and records, read strictly. No motion is proven free here. But the data on which proofs
+// rest are made here, with their bounds: axes, rotations, closed surfaces, who is ignored until when.
 #include <algorithm>
 
 #include "places.h"
@@ -278,7 +278,7 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
-/// Lines that say nothing: who wrote them meant something else.
+/// Refuses lines without a meaning: whoever wrote them meant something else.
 void refuseUnused(const World& world) {
   std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
   for (const Body& body : world.bodies) {

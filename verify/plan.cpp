@@ -238,7 +238,7 @@ class PlanComparison {
     standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
   }
 
-  /// Coefficients of a piece, and what a writer's rounding of them is measured by.
+  /// Coefficients of a piece, and the size by which a writer's rounding of them is measured.
   struct Spline {
     Long c[6] = {}, size = 0;
   };

@@ -35,8 +35,8 @@ std::string notChecked(const Verdict& verdict);
 /// first, which begins with `begin`, are indented.
 std::string wrapped(const std::string& begin, std::string_view text);
 
-/// Text that may hold names, made safe to print: what is no printing character as \xNN, and no "VERIFIED" in it, so
-/// that no name looks like a verdict.
+/// Text that may hold names, made safe to print. Characters that do not print become \xNN, and "VERIFIED" does not
+/// stand in it, so that no name looks like a verdict.
 std::string shown(std::string_view text);
 
 /// The same as JSON. Numbers that JSON has not, "nan" and infinite ones, are strings.

@@ -87,14 +87,14 @@ std::vector<Obstacle> readScene(const std::string& path, const Packages& package
   return obstacles;
 }
 
-/// A name without #NUMBER at its end, which each of several of that name gets but the first.
+/// A name without #NUMBER at its end. If several have one name, each but the first gets such a number.
 std::string withoutNumber(const std::string& name) {
   const std::size_t at = name.rfind('#');
   const bool number =
       at != name.npos && at + 1 < name.size() && name.find_first_not_of("0123456789", at + 1) == name.npos;
   return number ? name.substr(0, at) : name;
 }
-/// Without any. (A file's names may be taken by another file's.)
+/// A name without any such numbers. (Another file may have taken the names of this one.)
 std::string baseOf(std::string name) {
   for (std::string less = withoutNumber(name); less != name; less = withoutNumber(name)) name = less;
   return name;

@@ -31,7 +31,7 @@ void Geometry::prepare() {
     }
     cells_.push_back(box);
   };
-  // Halves of what is below 2^-1022 are covered by an ulp.
+  // Halves of numbers below 2^-1022 are covered by an ulp.
   if (kind == mesh) pieces_ = static_cast<std::uint32_t>(triangles.size() / 3);
   if (kind == boxes) pieces_ = static_cast<std::uint32_t>(cells.size() / 6);
   for (const double* c = cells.data(); c != cells.data() + cells.size(); c += 6)
@@ -58,7 +58,7 @@ Box Geometry::boxOf(std::uint32_t item) const {
   return box;
 }
 
-// Corners at one place are one: so what is joined does hang together, and edges that meet cancel.
+// Corners at one place are one: so parts that are joined do hang together, and edges that meet cancel.
 bool Geometry::joinSurfaces() {
   std::map<std::array<double, 3>, std::uint32_t> places;
   std::vector<std::uint32_t> same, root;  // of each vertex

@@ -17,7 +17,7 @@ struct Step {
   Element::Kind kind;
   std::array<double, 3> axis;  // of slide and turn
   Driver driver;
-  bool rounded = false;  // the axis is computed: within 2^-52 of what is meant
+  bool rounded = false;  // the axis is computed: within 2^-52 of the one that is meant
 };
 
 /// Whether the unit vector along `axis` is one that the element is about. For a coordinate axis this is the very
@@ -169,7 +169,7 @@ class UrdfComparison {
     const int frame = frameOf(l.name);
     if (frame < 0) return;
     std::vector<int>& bodies = bodies_[static_cast<std::size_t>(frame)];
-    // Most writers keep the file's order; where one does not, each body is looked for.
+    // Most writers keep the file's order. If one does not, each body is searched for.
     std::vector<char> used(bodies.size(), 0);
     std::vector<std::size_t> open;
     for (std::size_t k = 0; k < l.collisions.size(); ++k)
@@ -246,7 +246,7 @@ class UrdfComparison {
       // A writer puts the base's pose into one frame, the root's own.
       if (!base_.empty() && !(up == f ? isAt(placeOf(base_), frame.numbers) : here))
         different("the root link " + inQuotes(name) + " is not where --base says (else at the world's origin)");
-      // Where it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
+      // If it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
       if (!base_.empty() && !frame.elements.empty())
         compareSteps(up == f ? freely("floating_base") : std::vector<Step>(), frame, false, wrong);
       for (const Element& e : frame.elements) {

@@ -144,7 +144,7 @@ class Stage {
         told_(world.scene.notes.begin(), world.scene.notes.end()),
         speaks_(speaks) {}
 
-  /// Has the obstacles of this scene stand there, and no others but the world's own.
+  /// Replaces the obstacles: those of this scene and the world's own stand there, and no others.
   /// @throws naming the scene.
   void enter(std::size_t scene) {
     if (scene_ == static_cast<std::ptrdiff_t>(scene)) return;
@@ -174,7 +174,7 @@ class Stage {
   std::int32_t numberOf(const BodyRef& body) const { return number_of_.at(body.object); }
 
  private:
-  /// Each note once, of so many scenes that nobody would read all of them the first ones.
+  /// Prints each note once. If there are more than anybody would read, prints only the first ones.
   void tellNotes(std::size_t scene, const std::vector<std::string>& notes) {
     constexpr std::size_t kMaxTold = 50;
     for (const std::string& note : notes) {
@@ -394,7 +394,7 @@ int certifyEdges(const WorldOptions& world, EdgesOptions& o) {
     error = thrown.what();
     if (ranks->rank() == 0) fmt::print(stderr, "fcl_artic: error: {}\n", error);
   }
-  // All ranks meet here, whatever became of each: who is away would be waited for for ever.
+  // All ranks meet here, whatever became of each: if one stayed away, the others would wait for ever.
   constexpr int kDone = 0, kFailedInPart = 1, kFailed = 2;
   int first = kDone;
   const int worst = ranks->finish(outcome.blocks_failed           ? kFailed

@@ -14,7 +14,7 @@ namespace fcl_artic::app {
 /// test counts them.)
 constexpr int kErrata = 87;
 
-/// SHA-256 of the obstacles of a scene's file; where all that there is stands in the file itself, of the file.
+/// SHA-256 of the obstacles of a scene's file. If the file itself holds all of them, it is the file's.
 /// @param options  as loadScene() takes them.
 std::string sceneFileHash(const std::string& path, const SceneOptions& options);
 

@@ -81,8 +81,8 @@ class RunFolder {
 
   /// Writes the table of all blocks (table.h5, a virtual one) and summary.json; both name the hash of all rows.
   /// @param partial  blocks that are missing are no error: their rows say so.
-  /// @param what     Read::summary for who has written all blocks or read their rows: the time that one process takes
-  ///   here is time that all ranks wait.
+  /// @param what     Read::summary if the caller has written all blocks or read their rows: all ranks wait while one
+  ///   process is here.
   /// @return the summary.
   /// @throws std::runtime_error naming blocks that are missing or damaged.
   nlohmann::ordered_json merge(bool partial, Read what = Read::rows) const;

@@ -316,7 +316,7 @@ class Composer {
     }
   }
 
-  /// Poses along the motion; only what is elsewhere than at t_lower.
+  /// Adds poses along the motion, but only of bodies that are elsewhere than at t_lower.
   void addGhosts() {
     const double t = result_.t_lower;
     const bool stopped = result_.status != Status::free;

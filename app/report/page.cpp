@@ -47,7 +47,7 @@ std::string base64(const void* data, std::size_t size) {
   return out;
 }
 
-/// Numbers as the page's script takes them: little-endian, which all processors are that this library knows.
+/// Numbers as the page's script takes them: little-endian, as are all processors that this library supports.
 template <class Number>
 std::string base64(const std::vector<Number>& numbers) {
   return base64(numbers.data(), numbers.size() * sizeof(Number));
@@ -70,7 +70,7 @@ struct Shape {
   Vector3d center = Vector3d::Zero();
 };
 
-/// How many of a kind there are to be drawn in all, and so which part of them is.
+/// Counts how many of a kind there are in all, and so says which part of them is drawn.
 class Thinning {
  public:
   explicit Thinning(std::size_t most) : most_(most) {}
@@ -233,7 +233,7 @@ Json distancesJson(const Distances& distances) {
     return std::any_of(distances.steps.begin(), distances.steps.end(),
                        [&](const DistanceStep& s) { return (s.*which).statistics.pairs > 0; });
   };
-  // Each step is a part of one piece, which knows each pair once; a query that guesses a contact first looks at none.
+  // Each step is a part of one piece, which has each pair once. A query that guesses a contact first looks at no pair.
   std::uint64_t pairs = 0;
   for (const DistanceStep& step : distances.steps)
     pairs = std::max(pairs, step.obstacles.statistics.pairs + step.links.statistics.pairs);

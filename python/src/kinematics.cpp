@@ -246,7 +246,7 @@ void bindTree(py::module_& module) {
           [](const Tree& t, py::handle) { return t.own ? treeOfState(treeState(t)) : t; }, py::arg("memo"));
 }
 
-/// The tree alone of what has one: a recipe needs no geometry.
+/// The tree alone of an object that has one: a recipe needs no geometry.
 py::object treeAlone(py::handle value) {
   return py::cast(treeOfRobot(treeOf(value)));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How an object was made, to make it again in another process: bit by bit the same, which its own numbers, rounded as
-// they are, would not do.
+// How an object was made, to make it again in another process, bit by bit the same. (Its own numbers are rounded, so
+// they would not give the same bits.)
 #pragma once
 
 #include <string>

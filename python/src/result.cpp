@@ -28,7 +28,7 @@ py::dict fieldsOf(const Work& work) {
   return fields;
 }
 
-/// Reads back what fieldsOf() has written; what is not there stays 0.
+/// Reads back the fields that fieldsOf() has written; a field that is not there stays 0.
 template <class Work>
 void readFields(const py::dict& fields, Work& work) {
   Work::forEachField([&](const char* name, auto member) {

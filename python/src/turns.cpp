@@ -106,7 +106,7 @@ InLibrary::~InLibrary() {
   wakeWaiting();
 }
 
-/// Forgets threads that only the process had of which this one is a fork.
+/// Forgets threads of the parent process, if this one is a fork.
 void Turns::refresh() const {
   const Common& all = *common();
   if (process_ == all.process) return;

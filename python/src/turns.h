@@ -4,10 +4,10 @@
 // by many, in the order in which they come; a process is forked when no other thread is within the library.
 //
 // Questions ask back: a callback may ask the same manager or others. Such a question does not stand in line after
-// changes that wait, which wait for the question that it is part of. So no thread that holds a turn waits for one that
-// stands in line, and all end.
+// changes that wait: these wait for the question that it is part of. So no thread that holds a turn waits for a thread
+// that stands in line, and all threads come to their end.
 //
-// Nothing here is called with the GIL, but for what says so: whoever holds it waits for nobody.
+// Nothing here is called with the GIL unless its comment says so: a thread that holds the GIL waits for nobody.
 #pragma once
 
 #include <list>
@@ -42,7 +42,7 @@ struct Doings {
   static Doings& here();
 };
 
-/// Has the calling thread, which another one has made, do its part of that one's work in the library.
+/// While it lives, the calling thread does a part of the work in the library of the thread that has made it.
 class PartOf {
  public:
   explicit PartOf(const Doings& doings);
@@ -96,11 +96,11 @@ class Call {
   /// Whether the calls that run are to stop.
   static bool shallStop();
 };
-/// Has the end of a script wait so. With the GIL.
+/// Makes the end of a script wait so. With the GIL.
 void watchEnd();
 
-/// Has fork() wait until no other thread is within the library, and the child begin with no thread but its own. A fork
-/// in a callback does not wait. With the GIL.
+/// Makes fork() wait until no other thread is within the library, and the child begin with no thread but its own. A
+/// fork in a callback does not wait. With the GIL.
 void watchForks();
 
 }  // namespace fcl_artic::python

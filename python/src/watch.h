@@ -27,8 +27,8 @@ class Watch {
     }
   }
 
-  /// Whether to go on. Takes the GIL only where the last time is long enough ago. From one thread at a time, without
-  /// the GIL.
+  /// Whether to go on. Takes the GIL only if the last time is long enough ago. From one thread at a time, without the
+  /// GIL.
   bool goOn(double fraction) {
     const auto now = Clock::now();
     if (now < next_) return true;

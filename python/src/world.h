@@ -49,13 +49,13 @@ class World {
   std::vector<std::string> names() const;
   AllowedCollisionMatrix allowed() const;
 
-  /// Copies the geometry's reference, so that the scene may go and its objects stay as they are.
+  /// Copies references to the geometries, so the scene may be destroyed, and its objects stay as they are.
   void addScene(const Scene& scene);
   /// Puts a scene in place of all obstacles that stand still and are not carried.
   void replaceScene(const Scene& scene);
   void add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose);
   void addMoving(const std::string& name, const Geometry& geometry, const Motion& motion);
-  /// Members that take a name of an object with several shapes do for all of them what they do for one.
+  /// If a member gets the name of an object with several shapes, it acts on all of them.
   void remove(const std::string& name);
   void move(const std::string& name, const Eigen::Isometry3d& pose);
   void attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
@@ -93,7 +93,7 @@ Question questionOf(const World& world, py::handle motion, py::handle q1);
 
 /// Asks, and tells `progress` of the request and Ctrl-C meanwhile.
 CertifiedResult answer(const World& world, const Question& question, Request request);
-/// @throws ValueError for a result that can't be of this question: its links stand elsewhere at t_lower, or are others.
+/// @throws ValueError for a result of another question: its links stand elsewhere at t_lower, or are other links.
 void requireAnswerOf(const World& world, const Question& question, const CertifiedResult& result);
 
 void bindWorld(py::module_& module);

@@ -77,8 +77,8 @@ class Emitter {
 
   // ---- what a task's sets are, seen from a frame
 
-  /// Partners that are checked somewhere in the task's time: of a pair that touched at the beginning nothing is claimed
-  /// before its time.
+  /// Whether a partner is checked somewhere in the task's time. (A pair that touched at the beginning is checked only
+  /// after its own time.)
   bool counts(const ProofTask& task, int partner) const {
     for (const Motion::Ignored& pair : moving_.motion().ignored) {
       if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
@@ -260,7 +260,7 @@ class Emitter {
 
   bool separate(const ProofTask& task) {
     for (const DirectionFrame seen : {DirectionFrame::world, DirectionFrame::partner, DirectionFrame::body}) {
-      // Frames in which nothing else moves: of obstacles the world's, of one link that link's.
+      // A frame in which the partners stand still: the world's for obstacles, a link's own for one link.
       const bool scene = moving_.body(partners_[task.first]).frame == 0;
       if (seen == (scene ? DirectionFrame::partner : DirectionFrame::world)) continue;
       for (const bool exact : {false, true}) {
@@ -279,7 +279,7 @@ class Emitter {
     }
     return false;
   }
-  /// Nobody asks for any of its pairs at these times: any direction does.
+  /// Whether no pair of the task is checked at these times: then any direction will do.
   bool isEmpty(const ProofTask& task) const {
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (counts(task, partners_[p])) return false;

@@ -24,7 +24,7 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// A word of a statement: what is no printing character, and what would end the word, as two hexadecimal digits.
+/// A word of a statement. Characters that do not print, or would end the word, become two hexadecimal digits.
 std::string word(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -286,7 +286,7 @@ std::string elementText(const Element& element) {
          "\n";
 }
 
-/// Balls anywhere: a form of text and a verifier that have no list of them cannot state it.
+/// Whether the geometry is a list of balls. Neither the text nor the verifier has such lists, so no world can state it.
 bool isCloud(const Geometry& geometry) {
   const TreeView& tree = geometry.shape->view();
   return tree.num_pieces > 0 && tree.pieces[0].kind == PieceKind::point &&
@@ -411,8 +411,8 @@ class ManagedWorld {
     }
     return nullptr;
   }
-  /// A world leaves out all bodies of two names: of links whose housings overlap it says nothing of their other parts
-  /// either, which the query checks.
+  /// A world leaves out all bodies of two names. So if two links' housings overlap, it leaves out their other parts
+  /// too, which the query checks.
   bool isPartOfLeftOut(const ManagedBody& a, const ManagedBody& b) const {
     if (a.attached || b.attached || !registry_.neighbours()) return false;
     const NeighbourFindings::Pair* const pair = registry_.neighbours()->find(a.link, b.link);

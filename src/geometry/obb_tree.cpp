@@ -75,7 +75,7 @@ class BoxAxes {
   /// The coordinate axes.
   BoxAxes() : BoxAxes(Matrix3d::Identity()) {}
   /// @param axes  its columns, of unit length.
-  /// @return none where they are not orthonormal to single precision, or not finite.
+  /// @return none if they are not orthonormal to single precision, or not finite.
   static std::optional<BoxAxes> within21Bits(const Matrix3d& axes) {
     const BoxAxes stored(axes);
     // Products of floats are exact, and their sums to 2^-51.
@@ -220,7 +220,8 @@ void ObbTree::readFeatures(const TreeView& body) {
   }
 }
 
-/// Top down: split at the mean across the longest axis, at the median where that parts nothing (Gottschalk 1996).
+/// Top down: split at the mean across the longest axis, or at the median if the mean separates nothing (Gottschalk
+/// 1996).
 void ObbTree::buildNodes() {
   const std::size_t n = triangles_.size();
   std::vector<Vector3d> corners(3 * n), middles(n);

@@ -49,7 +49,7 @@ std::size_t toIndex(std::string_view word, std::size_t before, std::size_t count
                std::to_string(number < 0 ? before : count));
 }
 
-/// Without part in the surface: normals, textures, materials, groups, and how it is shown.
+/// Lines that do not change the surface: normals, textures, materials, groups, and how it is shown.
 constexpr std::string_view kUnused[] = {"vt",       "vn",         "vp",        "g",      "s",    "o",     "mg",
                                         "usemtl",   "mtllib",     "usemap",    "maplib", "lod",  "bevel", "c_interp",
                                         "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech"};

@@ -111,7 +111,7 @@ VariableBounds boundVariable(const MotionElement& element) {
   return bounds;
 }
 
-// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product says what it costs. For a rotation
+// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product has its own cost. For a rotation
 // about an axis or by a vector: sine and cosine, the products that make its entries, and the axis's own rounding cost
 // less than 40. Its product with the rotations before it costs 9. Its angle is off by less than 3 * degree + 3 = 18
 // times the sum of its terms (Horner's scheme, and the norm of the vector).
@@ -161,7 +161,7 @@ PathBounds boundPath(const BodyMotion& motion, double reach) {
   }
   addSegment(reach, 0, 0);
   path.terms += reach;
-  // That D1 and D2 are rounded themselves is less than this part of them.
+  // The rounding of D1 and D2 themselves is less than this part of them.
   const double slack = 1 + 0x1p-40;
   path.speed *= slack;
   path.angular_speed = a * slack;
@@ -179,7 +179,7 @@ int MotionElement::degree() const {
 }
 
 Isometry3d BodyMotion::pose(double t) const {
-  // Products with the identity are left out: they change nothing, and most constant transforms are it.
+  // Products with the identity are left out: they change nothing, and most constant transforms are the identity.
   Matrix3d R = Matrix3d::Identity();
   Vector3d p = Vector3d::Zero();
   bool turned = false;

@@ -77,7 +77,7 @@ bool isRowOfNumbers(const std::vector<std::string_view>& fields) {
   return std::all_of(fields.begin(), fields.end(), [&](std::string_view field) { return cellOf(field, degrees); });
 }
 
-/// The name without one of the endings; empty where it has none of them.
+/// The name without one of the endings; empty if it has none of them.
 std::string without(const std::string& name, const std::vector<std::string>& endings) {
   for (const std::string& ending : endings) {
     if (name.size() > ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
@@ -168,7 +168,7 @@ std::optional<Meaning> exactMeaning(const KinematicTree& tree, const std::string
   return std::nullopt;
 }
 
-/// Paths, as /joint_states/JOINT/position: the part before the last is a variable.
+/// The meaning of a path such as /joint_states/JOINT/position: the part before the last is a variable.
 std::optional<Meaning> pathMeaning(const KinematicTree& tree, const std::string& name) {
   static const std::map<std::string, Quantity> kQuantities{{"position", Quantity::position},
                                                            {"positions", Quantity::position},
@@ -185,7 +185,7 @@ std::optional<Meaning> pathMeaning(const KinematicTree& tree, const std::string&
   if (last == std::string::npos) return std::nullopt;
   const auto quantity = kQuantities.find(lowered(name.substr(last + 1)));
   if (quantity == kQuantities.end()) return std::nullopt;
-  // Names of variables may hold these signs too: the longest end that is one.
+  // Names of variables may hold these signs too, so the longest end of the path that is such a name counts.
   const std::string path = name.substr(0, last);
   for (std::size_t at = 0;;) {
     if (isVariable(tree, path.substr(at))) return Meaning{quantity->second, path.substr(at)};
@@ -214,7 +214,7 @@ std::optional<std::pair<std::string, int>> numberedName(const std::string& name)
   return std::make_pair(text, number);
 }
 
-/// Numbered columns, by what they are numbers of: as many as there are joints, from 0 or 1 on.
+/// Gives numbered columns their meanings: those that count from 0 or 1 on and are as many as the joints.
 void addNumbered(const std::vector<std::string>& columns, const std::vector<std::string>& joints,
                  std::vector<std::optional<Meaning>>& meanings) {
   static const std::vector<std::pair<Quantity, std::vector<std::string>>> kFamilies{
@@ -351,7 +351,7 @@ std::vector<std::string> namesInComment(const KinematicTree& tree, const Table& 
   return names;
 }
 
-/// "time = Time, hinge = q1; left out: gripper": what is not in the robot's own words.
+/// "time = Time, hinge = q1; left out: gripper": the columns whose names are not the robot's own.
 std::string takenText(const KinematicTree& tree, const Table& table,
                       const std::vector<std::optional<Meaning>>& meanings) {
   std::string taken, left;
@@ -484,7 +484,7 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
   plan.velocities = take(table, velocities, plan.joints, "velocity");
   plan.accelerations = take(table, accelerations, plan.joints, "acceleration");
   if (!times.empty()) {
-    // A clock's seconds since 1970 say nothing of a motion, and leave few digits for it.
+    // Times above this are a clock's seconds since 1970: they leave few digits for a motion.
     constexpr double kClock = 1e8;
     const double first = table.rows.empty() ? 0 : table.rows[0][times[0]], begin = first >= kClock ? first : 0;
     for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]] - begin);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Many motions over threads: queries share nothing but the set-up, so that all that is left is to hand them out; and
-// where stage 2 takes part, the drawing (doc/VISIBILITY.md, "Batches").
+// Many motions over threads. Queries share nothing but the set-up, so this file only hands them out. If stage 2 takes
+// part, it also draws for many motions at once (doc/VISIBILITY.md, "Batches").
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -23,7 +23,7 @@ using visibility::ExecutorKind;
 using visibility::ExecutorLoan;
 using visibility::TrialPermit;
 
-/// Motions of a pass of drawing, and of one that is a trial.
+/// Most motions in a pass of drawing, and in a trial.
 constexpr std::size_t kMaxMotions = 256, kMotionsOfTrial = 64;
 
 /// Whether stage 2 takes part in such queries, and draws for many at once.
@@ -34,7 +34,7 @@ bool drawsTogether(const CertifiedRequest& request) {
   return request.visibility == VisibilityMode::atOnce || request.work_budget == 0;
 }
 
-/// Adds what another solve of the same query took.
+/// Adds the work of another solve of the same query.
 void addSolve(const QueryStatistics& first, QueryStatistics& sum) {
   addWork(first, sum);
   sum.total_us += first.total_us;
@@ -75,7 +75,7 @@ class ArticulatedCollisionManager::BatchWithVisibility {
     const TrialPermit trial = choice.mayTry(made, static_cast<double>(n));
     ExecutorKind kind = choice.best();
     if (kind == ExecutorKind::own && !made)
-      kind = ExecutorKind::none;  // a second context saves no time: contexts take turns
+      kind = ExecutorKind::none;  // a second OpenGL context saves no time: contexts take turns
     if (trial.given()) {
       answerBothWays(trial, kind, begin, n, results);
       return n;

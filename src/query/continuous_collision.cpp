@@ -66,7 +66,7 @@ FclBody<S> read(const fcl::ContinuousCollisionObject<S>* object) {
   return read<S>(object->collisionGeometry().get(), object->getMotion());
 }
 
-/// Reads object 1 or 2; what is wrong with it is said with that number.
+/// Reads object 1 or 2; errors name the number.
 template <class S, class... Args>
 FclBody<S> body(int number, const Args&... args) {
   try {
@@ -149,8 +149,8 @@ void reset(CertifiedPairResult& result) {
   result = CertifiedPairResult();
 }
 
-/// Runs a query; a result that it can't give is reset. Not before: the input may lie in the result, where someone goes
-/// on from the poses of the last query.
+/// Runs a query. If it throws, the result is reset. It is not reset before: the input may lie in the result, if a
+/// caller goes on from the poses of the last query.
 template <class Result, class Query>
 auto answering(Result& result, Query&& query) {
   return resetUnlessAnswered([&] { reset(result); }, query);
@@ -164,8 +164,8 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
   // A bracket narrower than this takes no more time. A wider one takes more, as more of the bodies is looked at in a
-  // wider interval (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within
-  // what is asked for.
+  // wider interval (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower bracket satisfies
+  // the request, too.
   constexpr double kCoarsest = 1e-4;
   CertifiedPairRequest certified;
   certified.tolerance_time = std::min(std::max(tolerance, kFinest), kCoarsest);

@@ -54,12 +54,13 @@ engine::Query makeQuery(const CertifiedPairRequest& request) {
   query.tolerance_distance = request.tolerance_distance;
   query.margins = margins;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  // The paper's method looks for the first contact; the pairs that it leaves to the standard one then take part in
-  // that.
+  // The paper's method looks for the first contact, so the pairs that it leaves to the standard one are asked for
+  // theirs, too.
   query.any = request.mode == ContactMode::any && request.method == Method::standard;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
-  // A link may have several geometries: more than one contact is chosen when all are known (keepFirstOfEachPair).
+  // A link may have several geometries. So if more than one contact is asked for, all are found, and
+  // keepFirstOfEachPair() chooses.
   query.max_contacts = request.max_contacts <= 1 ? static_cast<std::int32_t>(request.max_contacts) : 1 << 20;
   query.work_budget = request.work_budget;
   if (request.progress) {

@@ -56,7 +56,7 @@ struct TableAdvice {
   }
 };
 
-/// The motion's variables, then those of the moving obstacles.
+/// Gives the query the motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
 /// @param time  of the obstacles' motions.
 /// @param memory  for them, when there are both.
@@ -81,7 +81,7 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
   query.degree = static_cast<std::int32_t>(columns) - 1;
 }
 
-/// Leaves the link pairs that the request asks for. Pairs of a link and a moving obstacle count as the scene's, though
+/// Keeps the link pairs that the request asks for. Pairs of a link and a moving obstacle count as the scene's, though
 /// they stand in the list of link pairs.
 void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::Problem& problem,
                    engine::Margins& margins) {

@@ -119,9 +119,9 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   }
   result = CertifiedPairResult();
   result.certificate = none;
-  // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
-  // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then
-  // anything may follow: that is left open, as a contact that is not certain.
+  // They never separate if one holds the other all along. Nor do they if they are parallel at single instants at most,
+  // as along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are parallel,
+  // and then anything may follow: the answer is left open, as a contact that is not certain.
   const bool never_apart = (alike && stay_parallel) || ((!parallel || alike) && heading1.analytic && heading2.analytic);
   result.ignored_initial_contact = request.ignore_initial_contact && never_apart;
   result.never_apart = result.ignored_initial_contact;

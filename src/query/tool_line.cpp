@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far a tool leaves its path: bisection of the time, for the distance and for the angle together.
+// Finds how far a tool leaves its path, by bisection of the time, for the distance and for the angle together.
 //
 // A path is the way of a pose over its part s in [0, 1]. The origin p(s) goes straight, or about an axis by the angle
 // phi, at the constant speed L. On an arc the axes turn with the origin. They also turn by w, the shortest rotation
@@ -72,7 +72,7 @@ constexpr double kPi = 3.1415926535897932, kPiUpper = 3.1415926535897936;
 constexpr double kToolDefect = 1e-9;    ///< as of other poses that callers give
 constexpr double kShortest = 1e-6;      ///< of a path, and of a triangle of an arc's points, m
 constexpr double kFlattestArc = 1e3;    ///< radius over the longest side of that triangle
-constexpr double kSteep = 0.95;         ///< sine of half of the largest angle (2.5 rad) told from pi
+constexpr double kSteep = 0.95;         ///< sine of half of the largest angle (2.5 rad) that does not count as pi
 constexpr double kAngleFactor = 2.3;    ///< 2 / sqrt(1 - kSteep^2) / (2 sqrt(2)), rounded up
 constexpr double kSlack = 1 + 0x1p-40;  ///< for the rounding of sums and products of bounds
 constexpr double kFinest = 0x1p-40;     ///< intervals of time are not divided below this
@@ -241,9 +241,9 @@ class ToolPath {
     turn.kind = MotionElement::Kind::turn;
     turn.before = before;
   }
-  /// The rotation that is left at the end.
+  /// Sets the rotation that is left at the end.
   /// @param ulps  of a pose of the tool.
-  /// @param swing  what the frame that goes along the path may be off by, rad.
+  /// @param swing  error of the frame that goes along the path, rad.
   void setTurn(const Isometry3d& end, double ulps, double swing) {
     const Matrix3d carried = wanted_.pose(1).linear();
     const double sine = sineOfHalf(carried, end.linear());
@@ -261,7 +261,7 @@ class ToolPath {
     angle_pad_ = (of_rotations + 2 * end_gap + swing + 0x1p-48) * kSlack;
   }
 
-  /// From the arc's begin about its axis, in [0, 2 pi).
+  /// The angle from the arc's begin to x about the arc's axis, in [0, 2 pi).
   double anglePast(const Vector3d& x) const {
     const Vector3d from = begin_ - center_, to = x - center_;
     return fullAngle(from.dot(to), axis_.dot(from.cross(to)));
@@ -293,7 +293,8 @@ struct Stretch {
   Sample at_begin, at_end;
 };
 
-/// The largest value over all time, of what samples and stretches of time bound: one of those that a search is for.
+/// Brackets the largest value over all time: samples give lower bounds, stretches of time upper ones. A search has one
+/// of these for the distance and one for the angle.
 class Largest {
  public:
   double lower = 0, upper = 0, time = 0;
@@ -307,10 +308,10 @@ class Largest {
     lower = value;
     time = t;
   }
-  /// No sample tells more.
+  /// Says that no sample can raise the lower bound.
   void giveUp() { blind_ = true; }
   /// @param bound  over stretch number `stretch`.
-  /// @param of_time  what of it narrower stretches lessen: the rest is rounding.
+  /// @param of_time  the part of the bound that narrower stretches lessen: the rest is rounding.
   void add(double bound, double of_time, std::size_t stretch, double end) {
     open_.push({bound, of_time, stretch, end});
   }
@@ -420,7 +421,7 @@ ToolDeviation find(std::vector<ToolPiece> ways, const ToolLineRequest& request) 
   return out;
 }
 
-/// Adds motions of the tool, one after the other.
+/// Makes the tool's motions, one after the other.
 class WayMaker {
  public:
   WayMaker(const KinematicTree& tree, const LinkRef& link, const ToolLineRequest& request)

@@ -78,11 +78,12 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     CertifiedRequest own = request;
     own.tolerance_time = std::min(1.0, std::max(request.tolerance_time / clock.duration(), 0x1p-1000));
     own.ignore_initial_contact = k == 0 ? request.ignore_initial_contact : !in_contact.empty();
-    // With every pair asked for, pieces after the first contact are searched too: they prove nothing more of it all.
+    // If every pair is asked for, pieces after the first contact are searched too: they do not raise the time until
+    // which all is proven free.
     const auto provenUntil = [&](double t) { return contact_found ? sum.t_lower : t; };
     if (request.progress) own.progress = [&](double s) { return request.progress(provenUntil(clock.lower(s))); };
     const std::uint64_t used = countedWork(sum.statistics);
-    // A piece may be free without a single test: between pieces, too, the budget is looked at and the caller is asked.
+    // A piece may be free without a single test. So the budget is checked and the caller is asked between pieces, too.
     const bool spent = request.work_budget && used >= request.work_budget;
     if (spent || (k > 0 && request.progress && !request.progress(provenUntil(clock.begin())))) {
       sum.status = Status::undecided;
@@ -125,7 +126,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
   }
   if (sum.contacts.size() > request.max_contacts) sum.contacts.resize(request.max_contacts);
-  // A pair counts once, whichever of the pieces leaves its proof.
+  // A pair counts once, whichever piece leaves the range of its proof.
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
   impl_->countUnchecked(pieces.data(), pieces.size(), request, common.own_margins, sum);

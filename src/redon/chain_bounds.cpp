@@ -27,7 +27,7 @@ using interval_chain::StepBounds;
 
 namespace {
 
-/// Turns over an interval, summed over a chain in rad, from which on interval products cut something off the Taylor
+/// Sum of a chain's turns over an interval, in rad. From this sum on, interval products cut something off the Taylor
 /// enclosure, whose remainder grows with the third power (doc/REDON2004.md, "Enclosures").
 constexpr double kSmallTurn = 3;
 
@@ -70,8 +70,8 @@ struct Variable {
   Interval q, q1, q2;
 };
 
-/// A polynomial over T, from its Taylor coefficients at the middle of T: what powers of T - tm lose by the dependency
-/// between them shrinks with the square of T.
+/// A polynomial over T, from its Taylor coefficients at the middle of T. Powers of T - tm depend on each other, and the
+/// width that this costs shrinks with the square of T.
 Variable evaluatePolynomial(const Interval* coefficients, int degree, Interval T) {
   if (degree == 1) return {coefficients[0] + coefficients[1] * T, coefficients[1], Interval(0.0)};
   const double middle = T.middle();
@@ -392,7 +392,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
     f.o = g ? g->o + r : r;
     if (!moving) continue;
 
-    // Without a frame before it nothing carries this one.
+    // If there is no frame before this one, nothing carries it.
     f.w = g ? g->w : zero();
     f.v = g ? g->v + cross(g->w, r) : zero();
     if (twice) {

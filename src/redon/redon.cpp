@@ -67,10 +67,10 @@ struct Workspace::Impl {
   std::vector<double> free_until;       ///< by pair of the problem: proven free before
   std::vector<std::uint8_t> scene_allowed, link_allowed;
   std::vector<double> still;  ///< coefficients of a motion that rests at t = 0
-  // The engine's part of the problem, and what it is asked: both stay for its pairMotion().
+  // The engine's part of the problem, and its query: both stay for its pairMotion().
   Problem rest;
   Query first;       ///< the query, for the first contact
-  Query rest_query;  ///< the same with progress no later than what is known of all pairs
+  Query rest_query;  ///< the same; its progress is no later than the time up to which all pairs are known to be free
 };
 
 Workspace::Workspace() : impl_(std::make_unique<Impl>()) {}
@@ -78,7 +78,7 @@ Workspace::~Workspace() = default;
 
 namespace {
 
-/// Passes progress on, no later than what is proven of the pairs that the solver at work knows nothing of.
+/// Passes progress on, but no later than the proven time of the pairs that the solver at work does not have.
 struct Progress {
   bool (*tell)(void* context, double t_lower);
   void* context;
@@ -90,8 +90,8 @@ struct Progress {
 };
 
 /// One query on its way. Each pair asked for has the time up to which it is proven free: 0 at first, and raised by
-/// proofs only (provenFree). The answer is free when that is 1 for all of them, and its t_lower is the least. So what
-/// no stage has come to, for whatever reason, counts as not free.
+/// proofs only (provenFree). The answer is free if that is 1 for all of them, and its t_lower is the least. So a pair
+/// that no stage has come to, for whatever reason, counts as not free.
 class PendingQuery {
  public:
   PendingQuery(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
@@ -157,10 +157,10 @@ bool PendingQuery::choosePairs() {
   return any;
 }
 
-/// The paper starts without contact. The certificate, at rest at t = 0, decides whether that is so: surfaces that
-/// cross, and solids that hold others. A pair of which it can't be proven is the engine's.
-/// @return true when all pairs are: there is contact at t = 0 where the first one is asked for, or it is not known
-///   which pairs touch.
+/// The paper starts without contact. The certificate, with all bodies at rest at t = 0, decides whether that is so;
+/// contact is surfaces that cross, and solids that hold others. If a pair can't be proven apart, it goes to the engine.
+/// @return true if all pairs go to the engine: the first contact is asked for and is at t = 0, or it is not known which
+///   pairs touch.
 bool PendingQuery::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
   const std::int32_t degree = query_.half_angles.count > 0 ? 2 : 1;
@@ -173,8 +173,8 @@ bool PendingQuery::touchesAtStart(Answer& answer) {
   still.progress = nullptr;
   still.describe_contacts = false;
   still.num_advisors = 0;  // they know of the motion itself
-  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
-  // When they part is no question at rest, nor is any time finer than all of it.
+  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut. At rest
+  // there is no time at which they part, and no finer time than all of it.
   still.every_pair = false;
   still.ignore_initial = query_.every_pair || query_.ignore_initial;
   if (still.ignore_initial) still.tolerance_time = 1;
@@ -212,7 +212,7 @@ void PendingQuery::solveRest(const Query& query, Answer& answer) {
   }
 }
 
-/// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
+/// Finds the paper's pairs that dynamic BVH culling (Section 4) and then culling by visibility leave.
 void PendingQuery::findPairs() {
   StageClock clock(query_.measure_times);
   const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
@@ -230,8 +230,8 @@ void PendingQuery::findPairs() {
   }
 }
 
-/// First contact in [begin, end] of the leaf pairs at hand: all equations at once, but of no more than kMaxLeaves
-/// pairs, so that memory is bounded.
+/// First contact in [begin, end] of the leaf pairs at hand. All equations are solved at once, but for at most
+/// kMaxLeaves pairs, so memory is bounded.
 SearchOutcome PendingQuery::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
   SearchOutcome all;
   all.free_until = end;
@@ -282,8 +282,8 @@ SearchOutcome PendingQuery::search(const std::vector<BodyPair>& pairs, double li
   return found;
 }
 
-/// The same as the paper has it: all triangles whose boxes meet at any time, then all their equations at once. Boxes
-/// are left out only in sub-intervals that begin after `limit`; of the rest all equations are solved.
+/// As search(), in the paper's order: all triangles whose boxes meet at any time, then all their equations at once.
+/// Boxes are left out only in sub-intervals that begin after `limit`; for the rest all equations are solved.
 SearchOutcome PendingQuery::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   StageClock clock(query_.measure_times);
   SearchOutcome found;
@@ -392,7 +392,7 @@ void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem&
            Counts& counts) {
   Query& first = workspace.impl().first;
   first = query;
-  first.any = false;  // where any contact would do, the first one is looked for
+  first.any = false;  // if any contact would do, the first one is looked for
   PendingQuery(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 

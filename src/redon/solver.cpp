@@ -39,7 +39,7 @@ void RootSolver::setInterval(double begin, double end) {
   ++stamp_;
 }
 
-/// Once per interval and pair, whatever number of equations ask.
+/// Computed once per interval and pair, however many equations ask.
 const PairBounds& RootSolver::motionOf(std::int32_t index) {
   const auto i = static_cast<std::size_t>(index);
   PairBounds& m = motions_[i];
@@ -91,7 +91,7 @@ SearchOutcome RootSolver::solve(const std::vector<BodyPair>& pairs, EquationSet&
                                 double limit, double free_else, std::vector<engine::LeafContact>& contacts) {
   pairs_ = &pairs;
   set_ = &equations;
-  free_else_ = options_->simultaneous ? free_else : 0;  // an equation by itself says nothing of the others
+  free_else_ = options_->simultaneous ? free_else : 0;  // an equation solved by itself proves nothing about the others
   motions_.resize(pairs.size());
   motion_stamps_.assign(pairs.size(), -1);
   const std::size_t n = equations.equations().size();
@@ -101,8 +101,8 @@ SearchOutcome RootSolver::solve(const std::vector<BodyPair>& pairs, EquationSet&
     for (std::size_t i = 0; i < n; ++i) active_.push_back({static_cast<std::int32_t>(i), begin, end});
     return search(0, begin, end, limit, contacts);
   }
-  // The paper's baseline: each by itself, up to the first root found so far. Before all are looked at nothing more is
-  // proven of the pairs than that they enter without contact.
+  // The paper's baseline: each equation by itself, up to the first root found so far. Until all are solved, it is only
+  // proven that the pairs enter without contact.
   SearchOutcome outcome;
   outcome.free_until = begin;
   double least = end;
@@ -203,7 +203,7 @@ Interval RootSolver::valueAt(const Equation& q, double t) {
   return value(q, set_->elements().data(), &Element::over);
 }
 
-/// A window round [begin, end] in which the function changes its sign, its features meeting all the while.
+/// Finds a window around [begin, end] in which the function changes its sign while its features meet.
 bool RootSolver::certify(const Equation& q, double begin, double end, double& t_upper) {
   const double room = query_->tolerance_time - (end - begin);
   for (const double part : {0x1p-16, 0x1p-8, 0x1p-2, 0.0}) {
@@ -239,7 +239,7 @@ bool RootSolver::settle(const OpenInterval& interval, std::size_t end, SearchOut
     const Equation& q = set_->equations()[static_cast<std::size_t>(active.equation)];
     setInterval(interval.begin, interval.end);
     boundElements(q);
-    double gap, known = 0;  // in the middle, and what positions there are known to
+    double gap, known = 0;  // in the middle, and the error of positions there
     if (certainlyApart(q, set_->elements().data(), Interval(interval.begin, interval.end) - Interval(mid_), gap))
       continue;
     active_[kept++] = active;
@@ -257,7 +257,7 @@ bool RootSolver::settle(const OpenInterval& interval, std::size_t end, SearchOut
   active_.resize(kept);
   if (roots.empty()) return false;
   outcome.contact = true;
-  outcome.free_until = first_lo;  // of those that are no contact, too: they are not decided
+  outcome.free_until = first_lo;  // roots that are no contact count, too: they are not decided
   for (const Root& root : roots) {
     if (root.certain) outcome.t_upper = std::min(outcome.t_upper, root.t_upper);
     report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo),

@@ -117,7 +117,7 @@ void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>&
     link_pairs_.push_back(pair);
   });
   num_link_sweeps_ = sweeps_.size();
-  // Large links first: they are the likeliest to touch, where any contact will do.
+  // Large links first: they are the likeliest to touch, which helps queries for any contact.
   const auto size = [&](const engine::LinkPair& pair) {
     const auto radius = [&](std::int32_t body) {
       return bodies_[static_cast<std::size_t>(body)].tree->nodes[0].radius;

@@ -32,7 +32,7 @@ Vector3d movedBack(const engine::SweepStep& step, double variable, const Vector3
   return moved(back, variable, x);
 }
 
-/// Where in the range a step brings b, after it, nearest to a, before it.
+/// The value in the range at which a step brings b (after the step) nearest to a (before it).
 double best(const engine::SweepStep& step, const ValueRange& within, const Vector3d& a, const Vector3d& b,
             double otherwise) {
   if (step.multiplier == 0) return otherwise;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links and the joints between them, apart from the robot that they belong to. A chain holds the engine's problem of
-// this one pair, the whole ranges of its variables, and points that bound both bodies. RangeProof searches these ranges.
+// Two links and the joints between them, apart from the robot that they belong to. A chain holds the engine's problem
+// of this one pair, the whole ranges of its variables, and points that bound both bodies. RangeProof searches these
+// ranges.
 #pragma once
 
 #include <cstddef>

@@ -155,7 +155,8 @@ void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch)
 
   const bool cut = random.uniform() < 0.2 && gap == 0;
   const auto w = static_cast<std::int32_t>(batch.windows.size());
-  batch.windows.push_back(windowAround(std::vector<Vector3d>(swept, swept + swept_count), radius, cut ? &on_swept : nullptr, random));
+  batch.windows.push_back(
+      windowAround(std::vector<Vector3d>(swept, swept + swept_count), radius, cut ? &on_swept : nullptr, random));
   batch.swept.push_back({addVolume(swept, swept_count, radius, batch), w});
   batch.objects.push_back({addVolume(object, object_count, 0, batch), w, batch.num_groups++});
 }

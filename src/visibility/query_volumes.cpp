@@ -13,8 +13,8 @@ using engine::SweptLink;
 constexpr int kParts = 8;
 /// Objects of a query: some tens of milliseconds of work. Objects beyond this number stay as they are.
 constexpr std::size_t kMaxObjects = 20000;
-/// Objects of a pair. Where more are left after the 13 directions they seldom all go, and drawing them costs more than
-/// the solver's search: measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
+/// Most objects of a pair. If more are left after the 13 directions, they seldom all go, and drawing them costs more
+/// than the solver's search. Measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
 constexpr std::size_t kMaxObjectsOfPair = 64;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;

@@ -5,7 +5,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace contact_test {
 
 constexpr double kX = 0.125;  // where the first body is at t = 1/2
 
@@ -237,5 +237,5 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   EXPECT_FALSE(judge(self, m.write(self), sep({1, 0, 0}) + contact(0, 1, 0, 0.5, in)).verified);
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace verify::test

@@ -9,7 +9,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace plan_test {
 
 class VerifyPlan : public VerifyFiles {
  protected:
@@ -289,5 +289,5 @@ TEST_F(VerifyPlan, WhatIsNotInAPlanIsRefused) {
   EXPECT_NE(said(m, "a\n0.1\n").find("two waypoints"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace verify::test

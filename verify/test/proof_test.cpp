@@ -8,7 +8,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace proof_test {
 
 void expectRefused(const Verdict& v, const std::string& words) {
   EXPECT_FALSE(v.verified);
@@ -839,5 +839,5 @@ TEST(VerifyStatement, Sha256) {
   EXPECT_EQ(hexOf(sha256(two)), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
-}  // namespace
+}  // namespace proof_test
 }  // namespace verify::test

@@ -6,7 +6,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace rotation_test {
 
 /// The orthogonal matrix nearest to R: Newton's iteration X = (X + X^-T) / 2, which doubles the digits each time.
 std::array<Big, 9> nearestOrthogonal(const std::array<double, 9>& R) {
@@ -76,5 +76,5 @@ TEST(VerifyStatement, WhatIsReadAsARotationIsNearOne) {
   EXPECT_FALSE(isRead({1e9, 0, 0, 0, 1, 0, 0, 0, 1e-9}));
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace verify::test

@@ -3,7 +3,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace scene_test {
 
 class VerifyScene : public VerifyFiles {
  protected:
@@ -185,5 +185,5 @@ TEST_F(VerifyScene, TheRobotsRootStandsWhereTheBaseSays) {
   EXPECT_THROW(readBase("1,2deg,3"), BadInput);
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace verify::test

@@ -6,7 +6,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace urdf_test {
 
 using VerifyUrdf = VerifyFiles;
 
@@ -524,5 +524,5 @@ TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
   EXPECT_NE(answer("<disable_default_collisions link='a' except='b'/>").find("except"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace urdf_test
 }  // namespace verify::test

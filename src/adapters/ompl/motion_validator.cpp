@@ -12,7 +12,7 @@ namespace {
 namespace ob = ::ompl::base;
 using ManagerPtr = std::shared_ptr<const ArticulatedCollisionManager>;
 
-/// Where answers go: memory only, nothing is read from the last one.
+/// Memory for answers: nothing is read from the last one.
 CertifiedResult& scratch() {
   thread_local CertifiedResult result;
   return result;
@@ -99,7 +99,8 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
       any_(asked(request, ContactMode::any)),
       first_(asked(request, ContactMode::first)),
       apart_(askedOfState(request)) {
-  // Twice what a state must have: the state is the motion's up to roundings, and a query may leave the last half open.
+  // Twice the room that a state must have: the state is the motion's up to roundings, and a query may leave the last
+  // half open.
   first_.added_margin += 2 * request.tolerance_distance;
   apart_.added_margin += request.tolerance_distance;
   apart_.tolerance_distance *= 0.5;
@@ -137,9 +138,9 @@ bool ContinuousMotionValidator::provenFree(const JointMotion& motion, const ob::
   return result.isFree() && (!any_.ignore_initial_contact || roomAt(s2));
 }
 
-/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
-/// leaves, and that no proof separates from contact. So the time is asked for with more margin; the verdict is not.
-/// A pair that is ignored because it is within the larger margin at the start must still not touch without that margin.
+/// The gap at the first contact's t_lower may be tiny: planners would go on from a state that no motion can leave, and
+/// that no proof separates from contact. So the time, but not the verdict, is asked for with a larger margin. A pair
+/// that is ignored because it is within the larger margin at the start must still not touch without that margin.
 /// @return a time up to which the motion is proven free; 1: all of it.
 double ContinuousMotionValidator::timeWithRoom(const JointMotion& motion, bool ignoring) const {
   CertifiedResult& result = scratch();

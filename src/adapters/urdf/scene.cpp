@@ -208,8 +208,8 @@ class MoveItSceneReader {
   SceneBuilder& builder_;
 };
 
-/// Cells of an OctoMap as boxes: the occupied ones, and, where they are asked for, the unknown ones within the box of
-/// all that is known.
+/// Cells of an OctoMap as boxes: the occupied ones and, if they are asked for, the unknown ones within the box of all
+/// known cells.
 template <class Tree>
 class CellCollector {
  public:
@@ -298,7 +298,7 @@ OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title, cons
 }
 
 /// Walks over the bytes of an OctoMap's nodes. OctoMap's own readers go as deep as the file says, though a tree has 16
-/// levels, and stop where they think that they are done.
+/// levels, and do not check that the file ends there.
 class OctoMapNodes {
  public:
   /// @param node_bytes  of a full tree: those of a node but for its children's; 0: a binary tree.

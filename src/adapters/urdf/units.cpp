@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lengths in other units than metres: geometries multiplied, and what gives them away.
+// Lengths in other units than metres: multiplies geometries, and finds signs of such units.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cone.h>

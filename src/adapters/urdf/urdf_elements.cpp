@@ -162,7 +162,7 @@ class Strict {
         refuse(e, "the attribute '" + name + "' has bytes that are no UTF-8; save the file as UTF-8");
       }
       if (name == "xmlns" || name.rfind("xmlns:", 0) == 0) continue;
-      // Another vocabulary's word for it, such as drake:acceleration, is passed over as ours is.
+      // A word of another vocabulary, such as drake:acceleration, is passed over like the word itself.
       if (of.passed_over_attributes.count(name.substr(name.find(':') + 1))) continue;
       // Some writers give an axis angles, all of them 0: these mean nothing.
       if (std::strcmp(e.Name(), "axis") == 0 && name == "rpy" && isZero(a->Value())) continue;

@@ -36,8 +36,8 @@ struct BodyName {
 /// A mimic joint that the group does not move stands where the state has it, also where its master would have it
 /// elsewhere: MoveIt keeps what was measured.
 ///
-/// update() takes over a scene; what is the same as before is kept with all that was computed of it. A Cell whose
-/// update() threw is of no further use. One thread at a time may use a Cell.
+/// update() takes over a scene. Bodies that are the same as before are kept, with all data that were computed from
+/// them. A Cell whose update() threw is of no further use. One thread at a time may use a Cell.
 class Cell {
  public:
   /// Shares ownership of the model.
@@ -62,9 +62,9 @@ class Cell {
   /// The same, to be kept until the next update().
   std::shared_ptr<const fcl_artic::ArticulatedCollisionManager> sharedManager() const { return manager_; }
   const moveit::core::RobotModelConstPtr& model() const { return model_; }
-  /// Who a body of an answer is in MoveIt.
+  /// The body in MoveIt that a body of an answer stands for.
   const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
-  /// The distance that the links' padding has two bodies of an answer keep, m.
+  /// The distance that two bodies of an answer have to keep because of the links' padding, m.
   double paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const;
   /// How often the robot was read: 1 as long as nothing asked for another tree.
   int robotsRead() const { return robots_read_; }
@@ -116,7 +116,7 @@ class Cell {
   std::map<std::string, Registered> registered_;
   std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
   std::map<std::string, double> body_margins_;
-  /// Pairs of what links carry that have to be checked; those that no joint moves are the library's to judge.
+  /// Pairs of carried bodies that have to be checked. (The library judges pairs that no joint moves.)
   std::set<std::pair<std::string, std::string>> wanted_;
 };
 

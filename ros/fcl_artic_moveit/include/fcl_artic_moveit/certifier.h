@@ -52,7 +52,7 @@ struct Verdict : fcl_artic::Bracket {
     double padding = 0;                                ///< m, that the links' padding has the two keep
   };
   /// The first contact, and those of all other pairs of bodies that touch between the same two waypoints, each pair's
-  /// first. Empty where there is none. Only the first one's time is proven to be free of contact before.
+  /// first. Empty where there is none. Only before the first one's time it is proven that nothing touches.
   std::vector<Contact> contacts;
   std::size_t waypoint = 0;  ///< that is at or before the first contact
   /// Values of the group's joint variables at the first contact, with their names, rad or m.
@@ -70,7 +70,7 @@ struct RepairOptions {
   double acceleration_scaling = 1;
 };
 
-/// A way around what a trajectory touches, certified free.
+/// A way around the obstacles that a trajectory touches, certified free.
 struct Repair {
   robot_trajectory::RobotTrajectoryPtr trajectory;
   Verdict verdict;

@@ -43,7 +43,7 @@ struct Motion {
 /// joints too where the tree lets them stand. A single waypoint stands still, from 0 to 1.
 /// @param trajectory  of the model that `robot` was made of.
 /// @throws std::invalid_argument, naming waypoint and joint: no waypoint, a joint outside the group that moves, values
-///   that are not finite, times that do not increase, mimic joints not where their masters have them. Also for
+///   that are not finite, times that do not increase. Also for mimic joints not where their masters have them. Also for
 ///   waypoints of which only some have velocities or accelerations, an interpolation for which these or the times are
 ///   missing, and a step of half a turn (Turns::ask). Also for a floating joint that moves by another curve than linear
 ///   or by a controller's. Also for a planar joint with differential drive that moves, unless the interpolation is
