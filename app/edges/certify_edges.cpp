@@ -176,11 +176,11 @@ class Stage {
  private:
   /// Prints each note once. If there are more than anybody would read, prints only the first ones.
   void tellNotes(std::size_t scene, const std::vector<std::string>& notes) {
-    constexpr std::size_t kMostTold = 50;
+    constexpr std::size_t kMaxTold = 50;
     for (const std::string& note : notes) {
-      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMostTold) continue;
+      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMaxTold) continue;
       fmt::print(stderr, "fcl_artic: note: scene {} ('{}'): {}\n", scene, scenes_.name(scene), text::oneLine(note));
-      if (num_told_ == kMostTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
+      if (num_told_ == kMaxTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
     }
   }
 
@@ -309,9 +309,9 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const Cut cut = folder->cut();
   EdgeProgress progress(ranks.share() * static_cast<double>(cut.rows()), speaks);
   std::vector<std::string> errors;  // each once, whatever the number of blocks that meet it
-  std::set<std::string> told;
-  const auto tell = [&](const char* error) {
-    if (told.insert(error).second) errors.emplace_back(error);
+  std::set<std::string> noted;
+  const auto noteError = [&](const char* error) {
+    if (noted.insert(error).second) errors.emplace_back(error);
   };
   std::set<std::size_t> bad_scenes;
   Counts counts;
@@ -331,11 +331,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
         counts.add(answerer.rows());
       }
     } catch (const SceneError& error) {
-      tell(error.what());
+      noteError(error.what());
       if (!cut.scene_of_edge) bad_scenes.insert(cut.sceneOf(block));
       continue;
     } catch (const std::runtime_error& error) {
-      tell(error.what());
+      noteError(error.what());
       continue;
     }
     if (is_new) {
