@@ -9,13 +9,13 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "bench/bars.h"
 #include "bench/step_bench.h"
 #include "bench/table1.h"
 #include "exit_status.h"
 #include "files/files.h"
 #include "generator.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "redon_options.h"
 

@@ -9,9 +9,9 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "bench/step_bench.h"
 #include "generator.h"
+#include "kinematics/angles.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
