@@ -153,7 +153,7 @@ def test_plans_are_pickled(shared_world, robot, tmp_path):
 
 
 def test_no_note_gets_lost(robot, tmp_path):
-    """Of units that a comment speaks of: a plan's, one that is wrong, and their copies."""
+    """Units that a comment speaks of are noted: for a plan, for one that is wrong, and for their copies."""
     for last, wrong in ((ASIDE, False), ([100.0] + ASIDE[1:], True)):
         rows = [",".join(robot.tree.variables)] + [",".join(map(str, q)) for q in (FROM, last)]
         (tmp_path / "a.csv").write_text("# angles in degrees, lengths in mm\n" + "\n".join(rows) + "\n")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What mend() does not take: the caller's mistakes, before anything is looked for. (Mended plans: test/plans.)
+// mend() refuses the caller's mistakes before it looks for anything. (Mended plans: test/plans.)
 #include "fcl_artic/ompl/mend.h"
 
 #include <gtest/gtest.h>
