@@ -9,8 +9,8 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "generator.h"
+#include "kinematics/angles.h"
 #include "step_costs.h"
 #include "usage.h"
 

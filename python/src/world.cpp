@@ -14,6 +14,7 @@
 #include "options.h"
 #include "replay/query_file.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 #include "watch.h"
 
@@ -635,8 +636,9 @@ void bindWorld(py::module_& module) {
       .def("__repr__", [](const World& w) {
         std::size_t carried = 0;
         for (const World::Body& b : w.bodies()) carried += b.carrier >= 0;
-        return py::str("<World: robot {!r} with {} variables, {} obstacles, {} moving, {} attached>")
-            .format(w.tree()->name(), w.tree()->dof(), w.bodies().size() - carried, w.movers().size(), carried);
+        return py::str("<World: robot {!r} with {}, {}, {} moving, {} attached>")
+            .format(w.tree()->name(), text::counted(w.tree()->dof(), "variable"),
+                    text::counted(w.bodies().size() - carried, "obstacle"), w.movers().size(), carried);
       });
   bindChanges(world);
   bindQueries(world);
