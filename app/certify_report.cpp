@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the plans come to.
+/// Totals over the plans.
 struct Sum {
   std::size_t free = 0, contact = 0, undecided = 0, wrong = 0;
   std::size_t mended = 0;     ///< of those in contact: free, as mended
@@ -70,7 +70,7 @@ std::string verdictText(const CertifiedPlan& plan) {
   return out.str();
 }
 
-/// What the columns of plans without names are taken for: the same for all of them, so that it is said once. Empty
+/// The meaning that the columns of plans without names have. It is the same for all of them, so it is said once. Empty
 /// where all have names.
 std::string columnsText(const CertifyReport& r) {
   std::size_t unnamed = 0;

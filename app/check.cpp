@@ -336,7 +336,8 @@ void addCheck(CLI::App& program, int& exit_status) {
       throw CLI::RequiresError("--interpolation " + options->interpolation.name, "--trajectory or --lines");
     }
     const plans::Interpolation kind = options->interpolation.kind();
-    // Both say which way round a joint goes. (Of others with waypoints the readers of plans know it.)
+    // Both say which way round a joint goes. (For other interpolations with waypoints, the readers of plans check
+    // this.)
     if (options->shortest && (kind == plans::Interpolation::tangentHalfAngle || kind == plans::Interpolation::jtc)) {
       throw CLI::ExcludesError("--shortest", "--interpolation " + options->interpolation.name);
     }

@@ -85,8 +85,8 @@ Shape shapeOf(const LinkGeometry& g, const std::string& robot) {
 std::vector<std::string> unitWarnings(const Robot& robot, const std::vector<std::pair<LinkId, Shape>>& shapes) {
   const double reach = reachUpper(*robot.tree);
   if (!(reach > 0) || shapes.empty()) return {};
-  // A mesh in millimetres is a thousand times too large, one in inches 39 times. What robots have, a wide base or a
-  // long tool, is a few times as long as all joints' distances in a row at most.
+  // A mesh in millimetres is a thousand times too large, one in inches 39 times. A wide base or a long tool is at most
+  // a few times as long as all joints' distances in a row.
   constexpr double kFarLarger = 20, kFarSmaller = 0.01;
   std::vector<std::string> warnings;
   std::size_t meshes = 0, large = 0;

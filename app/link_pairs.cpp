@@ -124,7 +124,7 @@ std::string pictureOf(const std::string& folder, const std::string& link1, const
   return folder + "/" + name;
 }
 
-/// Those of an earlier run, of any pair of the robot's links.
+/// Removes the pictures of an earlier run, of any pair of the robot's links.
 void removePictures(const KinematicTree& tree, const std::string& folder) {
   for (LinkId a = 0; a < tree.numLinks(); ++a) {
     for (LinkId b = 0; b < tree.numLinks(); ++b) {

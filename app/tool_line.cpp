@@ -127,9 +127,9 @@ nlohmann::ordered_json ToolLineAnswer::json() const {
 }
 
 ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& motion, const ToolLine& line) {
-  // The brackets are narrow against what is allowed: an answer is open only within a hundredth of that.
+  // The brackets are narrow: an answer is open only within this part of the allowed deviation.
   constexpr double kPart = 0.01;
-  // Some seconds: limits that are narrower still against the motion leave the answer undecided.
+  // Work of some seconds. If a limit is so narrow against the motion that this is not enough, the answer is undecided.
   constexpr std::uint64_t kMostPoses = 1 << 21;
   ToolLineRequest request;
   request.work_budget = kMostPoses;

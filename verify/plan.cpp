@@ -144,7 +144,7 @@ class PlanComparison {
  private:
   using Long = long double;
 
-  /// Of a waypoint: its own, or its number.
+  /// The time of a waypoint: the file's, or the waypoint's number.
   double time(std::size_t k) const {
     return columns_.time == Columns::kNone ? static_cast<double>(k) : plan_.rows[k][columns_.time];
   }
@@ -238,7 +238,7 @@ class PlanComparison {
     standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
   }
 
-  /// Coefficients of a piece, and what a writer's rounding of them is measured by.
+  /// Coefficients of a piece, and the size by which a writer's rounding of them is measured.
   struct Spline {
     Long c[6] = {}, size = 0;
   };
@@ -270,8 +270,8 @@ class PlanComparison {
     return out;
   }
 
-  /// Second derivatives at the waypoints of the spline of cubics through them that is at rest at its first and last
-  /// one, and the largest slope from one to the next.
+  /// The spline of cubics through the waypoints that is at rest at its first and last one: its second derivatives at
+  /// the waypoints. And the largest slope from one waypoint to the next.
   struct Rest {
     std::vector<Long> bend;
     Long slope = 0;

@@ -87,14 +87,14 @@ std::vector<Obstacle> readScene(const std::string& path, const Packages& package
   return obstacles;
 }
 
-/// A name without #NUMBER at its end, which each of several of that name gets but the first.
+/// A name without #NUMBER at its end. If several have one name, each but the first gets such a number.
 std::string withoutNumber(const std::string& name) {
   const std::size_t at = name.rfind('#');
   const bool number =
       at != name.npos && at + 1 < name.size() && name.find_first_not_of("0123456789", at + 1) == name.npos;
   return number ? name.substr(0, at) : name;
 }
-/// Without any. (A file's names may be taken by another file's.)
+/// A name without any such numbers. (Another file may have taken the names of this one.)
 std::string baseOf(std::string name) {
   for (std::string less = withoutNumber(name); less != name; less = withoutNumber(name)) name = less;
   return name;
@@ -152,10 +152,10 @@ class SceneComparison {
            shapes_.same(o.shape, {o.name, b.name}, body);
   }
 
-  /// Where one pose places it, to the very bit. Where several do, a writer multiplies them in doubles, so that what the
-  /// claim is about may be off the file: each R t + t' by less than 8 u of all lengths so far, u = 2^-53 (3 u in each
-  /// entry of R, which is made of sines, and 3 u of the sum). Of four of them that is 32 u = 2^-48; a longer chain of a
-  /// writer may be refused.
+  /// Whether an obstacle is where the file has it: to the very bit where one pose places it. Where several poses place
+  /// it, a writer multiplies them in doubles, so the claim may be about a place that is off the file's. Each R t + t'
+  /// is off by less than 8 u of all lengths so far, u = 2^-53: 3 u in each entry of R, which is made of sines, and 3 u
+  /// of the sum. For four of them that is 32 u = 2^-48; a longer chain of a writer may be refused.
   bool isThere(const Obstacle& o, const double* t) const {
     const Tm scale = exactly(scale_);
     Fix sum;

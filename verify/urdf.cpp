@@ -17,11 +17,12 @@ struct Step {
   Element::Kind kind;
   std::array<double, 3> axis;  // of slide and turn
   Driver driver;
-  bool rounded = false;  // the axis is computed: within 2^-52 of what is meant
+  bool rounded = false;  // the axis is computed: within 2^-52 of the one that is meant
 };
 
-/// Whether the unit vector along `axis` is one that the element is about: of a coordinate axis this very one, else one
-/// within 2^-50 in each entry of the unit vector along the element's numbers.
+/// Whether the unit vector along `axis` is one that the element is about. For a coordinate axis this is the very
+/// vector. For any other axis it is a vector within 2^-50, in each entry, of the unit vector along the element's
+/// numbers.
 /// @param off  how far that unit vector may be off what is meant, in each entry.
 bool isAlong(const Element& e, const std::array<double, 3>& axis, Fix off) {
   if (isCoordinateAxis(e.axis)) {
@@ -50,7 +51,7 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
   return {{{d(c + k * x * x), d(k * x * y), d(-y)}, {d(k * x * y), d(c + k * y * y), d(x)}}};
 }
 
-/// What a joint adds to the names of its variables.
+/// The endings that a joint adds to the names of its variables.
 std::vector<const char*> endingsOf(const Joint& j) {
   if (j.type == "fixed" || j.mimics) return {};
   if (j.type == "planar") return {"/x", "/y", "/theta"};
@@ -168,7 +169,7 @@ class UrdfComparison {
     const int frame = frameOf(l.name);
     if (frame < 0) return;
     std::vector<int>& bodies = bodies_[static_cast<std::size_t>(frame)];
-    // Most writers keep the file's order; where one does not, each body is looked for.
+    // Most writers keep the file's order. If one does not, each body is searched for.
     std::vector<char> used(bodies.size(), 0);
     std::vector<std::size_t> open;
     for (std::size_t k = 0; k < l.collisions.size(); ++k)
@@ -245,7 +246,7 @@ class UrdfComparison {
       // A writer puts the base's pose into one frame, the root's own.
       if (!base_.empty() && !(up == f ? isAt(placeOf(base_), frame.numbers) : here))
         different("the root link " + inQuotes(name) + " is not where --base says (else at the world's origin)");
-      // Where it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
+      // If it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
       if (!base_.empty() && !frame.elements.empty())
         compareSteps(up == f ? freely("floating_base") : std::vector<Step>(), frame, false, wrong);
       for (const Element& e : frame.elements) {

@@ -22,7 +22,7 @@
 namespace fcl_artic::app {
 namespace {
 
-/// What parent and children share: the results, and how far the children have come.
+/// Memory that parent and children share: the results, and how far the children have come.
 class SharedResults {
  public:
   explicit SharedResults(std::size_t count) : bytes_(sizeof(Head) + count * sizeof(TaskResult)) {

@@ -7,7 +7,7 @@
 
 namespace fcl_artic::app {
 
-/// What became of one task that ran in a child process. Copied as bytes.
+/// The fate of one task that ran in a child process. Copied as bytes.
 struct TaskResult {
   enum class End { answered, refused, crashed, timed_out };
   End end = End::crashed;
@@ -19,7 +19,7 @@ struct TaskResult {
 };
 
 /// Runs tasks 0 .. count - 1 in child processes, in order. A child goes on to the next task until one kills it; the
-/// next child goes on from there. What a task throws is `refused`; children print nothing.
+/// next child goes on from there. A task that throws is `refused`; children print nothing.
 /// @param limit_s  time that one task may take.
 /// @param done     called with the number of tasks finished, now and then.
 /// @throws std::runtime_error when no child can be made.

@@ -31,7 +31,7 @@ using pairs::Bodies;
 using pairs::Judge;
 using pairs::PairQuery;
 
-// What counts as right; printed in the help text. FCL's own tolerances are 1e-5 and 1e-4 m.
+// Limits within which an answer is right; printed in the help text. FCL's own tolerances are 1e-5 and 1e-4 m.
 constexpr double kLate = 1e-4;       ///< in t
 constexpr double kEarly = 1e-3;      ///< in t
 constexpr double kNear = 1e-4;       ///< m
@@ -155,7 +155,7 @@ std::vector<TaskResult> runWay(const FclWay& way, const std::vector<PairQuery>& 
       done);
 }
 
-/// What is known of one query.
+/// Facts about one query.
 struct Known {
   bool hit = false;
   double time = 1;
@@ -163,7 +163,7 @@ struct Known {
 };
 
 /// Sampled truth. A contact that the library shows and the samples have passed over counts too, if the judge finds the
-/// bodies in contact at the time it names; the library's word alone counts nothing.
+/// bodies in contact at the time it names. The library's word alone counts nothing.
 Known know(const PairQuery& query, const TaskResult& certified, std::size_t& added) {
   const Judge judge(query);
   const pairs::Truth truth = judge.firstContact();

@@ -15,7 +15,7 @@
 
 namespace fcl_artic::app {
 
-/// What is asked: scene and steps.
+/// Scene and steps of a question.
 struct PipeOptions {
   std::size_t triangles = 100000;
   bool one_mesh = false;                     ///< All pipes are one obstacle; else each is one of its own.
@@ -50,10 +50,9 @@ struct CloseSteps {
   std::string refusal() const;
 };
 
-/// Takes steps from trajectories: each goes straight through joint space from a random free configuration in a random
-/// direction, in steps in which the joint that moves most moves by the angle, until a step hits something or would
-/// leave the joints' limits.
-/// The same angle has the same steps, whatever other angles are asked for.
+/// Takes steps from trajectories. Each goes straight through joint space, from a random free configuration in a random
+/// direction. In each step the joint that moves most moves by the angle. The trajectory ends when a step hits something
+/// or would leave the joints' limits. The same angle has the same steps, whatever other angles are asked for.
 /// @throws std::runtime_error when the scene has no such steps.
 CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, double degrees);
 

@@ -65,7 +65,7 @@ std::optional<double> residentKilobytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1024;
 }
 
-/// What the robot and its scene consist of, and what it took to set them up.
+/// Contents of the robot and its scene, and the cost of setting them up.
 struct Setup {
   std::size_t links_with_geometry = 0, robot_triangles = 0, scene_triangles = 0;
   std::size_t checked_pairs = 0, pairs_apart = 0, pairs_allowed = 0;
@@ -104,7 +104,7 @@ class Asked {
 
   const Setup& setup() const { return setup_; }
   VisibilityMode visibility() const { return request_.visibility; }
-  /// What stage 2 did in all of the manager's queries for first or any contacts.
+  /// The work of stage 2 in all of the manager's queries for first or any contacts.
   const QueryStatistics& stage2() const { return stage2_; }
   const World& world() const { return world_; }
   std::vector<std::string> notes() const { return world_.notes(*manager_); }

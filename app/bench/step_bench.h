@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What `bench table1`, `bench ideas` and `bench depth` share: mean times and counts of steps, tables as text and as
-// CSV.
+// Shared by `bench table1`, `bench ideas` and `bench depth`: mean times and counts of steps, tables as text and as CSV.
 #pragma once
 
 #include <string>

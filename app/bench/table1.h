@@ -5,8 +5,8 @@
 
 namespace fcl_artic::app {
 
-/// The verbs `bench table1`, the paper's Table 1 measured anew, `bench ideas`, what each option of its method is worth,
-/// and `bench depth`: its two ways to solve equations as chains get deeper.
+/// The verb `bench table1` measures the paper's Table 1 anew, `bench ideas` the worth of each option of its method.
+/// `bench depth` compares its two ways to solve equations as chains get deeper.
 void addTable1(CLI::App& bench, int& exit_status);
 void addIdeas(CLI::App& bench, int& exit_status);
 void addDepth(CLI::App& bench, int& exit_status);

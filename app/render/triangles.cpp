@@ -59,7 +59,7 @@ void addBox(Triangles& out, const Vector3d& center, const Vector3d& size) {
   }
 }
 
-/// Of each point as much as a few pixels show.
+/// Each point as an octahedron, as much as a few pixels show.
 Triangles octahedra(const PointCloud& cloud) {
   Triangles out;
   for (std::size_t i = 0; i < cloud.points().size(); ++i) {

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a link carries has a name that is not its own; no obstacle or attached object has that of a link.
+/// A body that a link carries has a name other than the link's; no obstacle or attached object has the name of a link.
 bool isAttached(const KinematicTree& tree, const BodyRef& body) {
   return body.link >= 0 && body.name != tree.linkName(body.link);
 }
@@ -200,7 +200,7 @@ Json posesJson(const Report& r) {
 }  // namespace
 
 std::string placeText(const Eigen::Vector3d& place, int digits) {
-  // What the rounding of sines and cosines, some 1e-16 each, leaves of a coordinate that is 0.
+  // The rounding of sines and cosines, some 1e-16 each, leaves this much of a coordinate that is 0.
   const double noise = 1e-15 * std::max(1.0, place.cwiseAbs().maxCoeff());
   const auto text = [&](double x) { return fmt::format("{:.{}g}", std::abs(x) <= noise ? 0.0 : x, digits); };
   return fmt::format("({}, {}, {})", text(place.x()), text(place.y()), text(place.z()));

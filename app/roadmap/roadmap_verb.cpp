@@ -88,7 +88,7 @@ void judgeLimits(const KinematicTree& tree, const char* what, std::size_t count,
   for (const std::string& note : limits.notes()) fmt::print(stderr, "fcl_artic: note: of {}: {}\n", what, note);
 }
 
-/// What a file of an earlier run must not be taken for.
+/// Removes files of an earlier run, which must not be taken for this run's.
 void removeEarlier(RoadmapVerb& o) {
   requireRoadmapEnding(o.out);
   std::vector<std::string> inputs = inputsOf(o.world);
@@ -131,7 +131,8 @@ int certify(RoadmapVerb& o) {
   tellNotes(world, manager);
   bool proven = false;  // something of all edges, before
   if (o.request.check_self) {
-    // What was proven when the roadmap was made holds for every scene: of this robot, and no larger a margin.
+    // The proof from when the roadmap was made holds for every scene, if the robot is the same and the margin no
+    // larger.
     const bool same = roadmap.robot == robotHash(world);
     const bool holds = roadmap.self_proven && same && o.request.margin <= roadmap.self_margin;
     if (!holds) {

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What Python adds to a query: the same motions asked from C++ and from Python, in one process, on one world.
+"""The time that Python adds to a query: the same motions asked from C++ and from Python, in one process, on one world.
 
     PYTHONPATH=build/release/python python3 python/bench/overhead.py
 
-Prints the time of check() beside C++'s for free motions of the bundled arm, motions per second of check_many() beside
-C++'s on one and two threads, and the time that `import fcl_artic` takes. Passes alternate, and the fastest of each
-counts: other programs on the machine only slow down.
+Prints the time of check() beside C++'s for free motions of the bundled arm. Then it prints motions per second of
+check_many() beside C++'s on one and two threads, and the time that `import fcl_artic` takes. Passes alternate, and the
+fastest of each counts: other programs on the machine only slow down.
 """
 import argparse
 import pathlib
@@ -100,7 +100,7 @@ def main():
 
     print(f"fcl_artic {fcl_artic.__version__}, Python {sys.version.split()[0]}, NumPy {np.__version__}")
     print(f"{len(q0)} motions of {robot.name} by at most 0.1 rad: {answers}")
-    # What Python adds is seen beside a cheap query only.
+    # The time that Python adds can be seen beside a cheap query only.
     in_cpp, in_python = measure_check(cheap_world(), q0[:300], q1[:300], 20 * passes)
     good &= in_python - in_cpp <= 2
     print(f"check, free        C++ {in_cpp:8.2f} us   Python {in_python:8.2f} us   more {in_python - in_cpp:6.2f} us (at most 2)")

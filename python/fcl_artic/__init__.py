@@ -13,7 +13,7 @@ does::
         ...
 
 Lengths are in metres, angles in radians, poses are 4x4 matrices (or a position of three numbers), time runs from 0 to
-1 or is a trajectory's own. What cannot be proven is never called free.
+1 or is a trajectory's own. A motion that cannot be proven free is never called free.
 """
 from ._enums import (
     ContactMode,

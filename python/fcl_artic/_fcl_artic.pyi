@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Types of the extension module. What a class or function is for, its docstring tells.
+# Types of the extension module. The docstring of a class or function says what it is for.
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Protocol, TypeAlias, overload

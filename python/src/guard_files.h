@@ -11,8 +11,8 @@
 
 namespace fcl_artic::python {
 
-/// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
-/// else that is wrong with a file's content a ValueError. To be called with the GIL held.
+/// Runs a function that reads or writes files. A missing file becomes a FileNotFoundError, other trouble of the system
+/// an OSError, a fault in a file's content a ValueError. To be called with the GIL held.
 /// @param path  of the file that the caller named.
 template <class Read>
 auto guardFiles(const std::string& path, Read&& read) {

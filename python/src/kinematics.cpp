@@ -246,7 +246,7 @@ void bindTree(py::module_& module) {
           [](const Tree& t, py::handle) { return t.own ? treeOfState(treeState(t)) : t; }, py::arg("memo"));
 }
 
-/// The tree alone of what has one: a recipe needs no geometry.
+/// The tree alone of an object that has one: a recipe needs no geometry.
 py::object treeAlone(py::handle value) {
   return py::cast(treeOfRobot(treeOf(value)));
 }
@@ -256,7 +256,7 @@ Eigen::VectorXd optionalVector(py::handle value, const char* what) {
 }
 
 void bindMotion(py::module_& module) {
-  // What Python makes of the library's own functions: motions without a recipe are nowhere seen.
+  // Python sees the library's own motions, which have no recipe, nowhere.
   py::class_<JointMotion>(module, "_JointMotion");
   py::class_<MadeMotion, JointMotion> motion(module, "JointMotion",
                                              "A motion in joint space over t in [0, 1]: each variable is a polynomial "

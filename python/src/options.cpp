@@ -51,7 +51,7 @@ py::object shownAs(const T& value) {
   }
 }
 
-// Where an option's member is: in the options themselves, or in the request that they hold.
+// The object that has an option's member: the options themselves, or the request that they hold.
 constexpr auto kItself = [](auto& options) -> auto& {
   return options;
 };

@@ -39,7 +39,7 @@ struct LoadedPlan {
   }
 };
 
-/// What pickle keeps: all that the motion is made of.
+/// The state that pickle keeps: all that the motion is made of.
 py::tuple planState(const LoadedPlan& p) {
   std::vector<std::pair<std::string, std::string>> carried;
   for (const plans::Carried& one : p.plan.carried) carried.emplace_back(one.name, one.link);

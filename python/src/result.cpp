@@ -28,7 +28,7 @@ py::dict fieldsOf(const Work& work) {
   return fields;
 }
 
-/// Reads back what fieldsOf() has written; what is not there stays 0.
+/// Reads back the fields that fieldsOf() has written; a field that is not there stays 0.
 template <class Work>
 void readFields(const py::dict& fields, Work& work) {
   Work::forEachField([&](const char* name, auto member) {
@@ -55,7 +55,7 @@ py::object pieceOf(std::intptr_t piece) {
   return piece < 0 ? py::object(py::none()) : py::int_(piece);
 }
 
-// What a pickled result holds: all but the caller's own objects, which Python does not see.
+// Pickled results hold all but the caller's own objects, which Python does not see.
 
 py::tuple state(const BodyRef& body) {
   return py::make_tuple(body.link, body.name, body.moving != nullptr);
@@ -216,7 +216,7 @@ CertifiedPairResult pairResultOfState(const py::tuple& s) {
   return r;
 }
 
-/// What all results with contacts have of them.
+/// Members of all results that have contacts.
 template <class Result>
 void bindContacts(py::class_<Result>& bound) {
   bound

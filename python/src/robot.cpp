@@ -221,7 +221,7 @@ void bindRobot(py::module_& module) {
           "classify_link_pairs",
           [](const Robot& robot, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
              py::object progress) {
-            // Of a copy: another thread may change the robot meanwhile.
+            // The library gets a copy: another thread may change the robot meanwhile.
             return classifyWatched(only, margin, work, samples, threads, std::move(progress), [robot](const auto& run) {
               const GilReleased released;
               const InLibrary within;

@@ -16,7 +16,7 @@
 namespace fcl_artic::python {
 namespace {
 
-/// What all threads share. A child of a fork has one of its own.
+/// State that all threads share. A child of a fork has one of its own.
 struct Common {
   std::mutex mutex;
   std::condition_variable moved;
@@ -34,7 +34,7 @@ Common*& common() {
 
 using Lock = std::unique_lock<std::mutex>;
 
-/// What Python says to a thread that waits. Without the mutex.
+/// Handles Python's signals in a thread that waits. Without the mutex.
 void askPython() {
   const GilHeld held;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -106,7 +106,7 @@ InLibrary::~InLibrary() {
   tell();
 }
 
-/// Forgets threads that only the process had of which this one is a fork.
+/// Forgets threads of the parent process, if this one is a fork.
 void Turns::refresh() const {
   const Common& all = *common();
   if (process_ == all.process) return;

@@ -31,8 +31,8 @@ enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
 constexpr int kMostTimeCuts = 40;  ///< of one root: 1e-12 of the motion
 constexpr int kMostSearchSteps = 40;
 
-/// What a node is about: A's pieces below `node`, partners [first, last) of its list, of a single one the pieces below
-/// `partner_node`, and times [begin, end].
+/// The subject of a node, with the pieces below `partner_node` if there is a single partner: A's pieces below `node`,
+/// partners [first, last) of its list, and times [begin, end].
 struct Task {
   int body;
   std::int32_t node = 0;
@@ -77,8 +77,8 @@ class Emitter {
 
   // ---- what a task's sets are, seen from a frame
 
-  /// Partners that are checked somewhere in the task's time: of a pair that touched at the beginning nothing is claimed
-  /// before its time.
+  /// Whether a partner is checked somewhere in the task's time. (A pair that touched at the beginning is checked only
+  /// after its own time.)
   bool counts(const Task& task, int partner) const {
     for (const Motion::Ignored& pair : moving_.motion().ignored) {
       if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
@@ -261,7 +261,7 @@ class Emitter {
 
   bool separate(const Task& task) {
     for (const Seen seen : {Seen::inWorld, Seen::byPartner, Seen::byBody}) {
-      // Frames in which nothing else moves: of obstacles the world's, of one link that link's.
+      // A frame in which the partners stand still: the world's for obstacles, a link's own for one link.
       const bool scene = moving_.body(partners_[task.first]).frame == 0;
       if (seen == (scene ? Seen::byPartner : Seen::inWorld)) continue;
       for (const bool exact : {false, true}) {
@@ -280,7 +280,7 @@ class Emitter {
     }
     return false;
   }
-  /// Nobody asks for any of its pairs at these times: any direction does.
+  /// Whether no pair of the task is checked at these times: then any direction will do.
   bool isEmpty(const Task& task) const {
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (counts(task, partners_[p])) return false;
@@ -337,7 +337,7 @@ class Emitter {
       return;
     }
     if (isEmpty(task)) return putEmpty();
-    // (Of partners that are not mixed all are unbounded or none.)
+    // Partners that are not mixed are all unbounded, or none of them is.
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded;
     if (wall && task.size() == 1) {
       if (separateWall(task)) return;

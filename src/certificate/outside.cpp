@@ -21,8 +21,8 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// Signs count from this part of the largest numbers on: what the verifier's widened rotations make of them is a
-/// thousandth of it.
+/// A sign counts as sure from this part of the largest numbers on. The verifier's widened rotations change the numbers
+/// by a thousandth of that.
 constexpr double kSureSign = 1e-11;
 constexpr std::size_t kMostPointsOfPart = 16;  ///< points of a part
 
@@ -38,8 +38,8 @@ bool hasInside(const Geometry& geometry) {
   return geometry.shape->space() != nullptr;
 }
 
-/// How often the surface winds around x, by the half-line to that side; none where a sign is not sure. (The verifier
-/// has the formula, solid.cpp.)
+/// How often the surface winds around x, by the half-line to that side; none if a sign is not sure. (The verifier has
+/// the formula, solid.cpp.)
 std::optional<int> windsAround(const Geometry& solid, const Vector3d& x, int side) {
   const int k = side % 3, i = (k + 1) % 3, j = (k + 2) % 3;
   int number = 0;

@@ -24,8 +24,8 @@ using engine::PieceKind;
 using engine::TreeView;
 
 constexpr int kContact = 0x20, kCross = 0, kInside = 2, kNear = 4;
-/// Witnesses are so far from failing, in m: the first, if there is one. What a verifier's poses are off by grows with
-/// the chain, to some 1e-12 m after thirty joints.
+/// Least distance of a witness from failing, in m. The second one is tried if no witness has the first. The error of a
+/// verifier's poses grows with the chain, to some 1e-12 m after thirty joints.
 constexpr double kSure[] = {1e-9, 1e-11};
 
 /// One of the two pieces.
@@ -96,7 +96,7 @@ NamedPoint nameCore(const Side& side, const std::vector<std::pair<Vec3, double>>
   return named;
 }
 
-/// How far inside the piece x is, about; below 0: outside. Of pieces with an inequality.
+/// How far inside the piece x is, about; below 0: outside. Only for pieces that an inequality defines.
 double depthIn(const Piece& piece, const Vector3d& x) {
   const double* e = piece.size;
   const Vector3d d = x - Vector3d::Map(piece.center);
@@ -236,7 +236,7 @@ CorePoints nearestPoints(const Side& a, const Side& b) {
   return points;
 }
 
-/// About, and not more than half of it where it is known.
+/// About the piece's inradius; if it is known, not more than half of it.
 double inradius(const Side& side) {
   double least = side.piece.radius > 0 ? side.piece.radius : INFINITY;
   for (const double size : side.piece.size) {
@@ -250,16 +250,16 @@ NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
   if (side.hasVertices()) return core;
   const Vector3d d = towards - core.x;
   if (side.piece.radius > 0 && d.norm() > 0) core.x += d * std::min(1.0, side.piece.radius / d.norm());
-  // The point is off by what its numbers are rounded by, for the verifier to 2^-64 m. Next to a cone's tip, where the
-  // sides of its inequality are small squares, that shows much sooner.
+  // The verifier rounds the point's numbers to 2^-64 m. Next to a cone's tip the sides of the inequality are small
+  // squares, so this rounding matters much sooner.
   const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-18 / inradius(side));
   const Vector3d centre = Vector3d::Map(side.piece.center);
   core.x = centre + (core.x - centre) * (1 - inwards);
   return core;
 }
 
-/// One piece against another one that is a little smaller than it is, both with their rounding: a point that these have
-/// in common is well within the larger one.
+/// One piece and another piece, the latter made a little smaller, both with their rounding radii. A common point of the
+/// two is well within the other piece as it is.
 struct Shrunk {
   const Side &own, &other;
   Pose other_in_own;
@@ -283,7 +283,7 @@ struct Shrunk {
   void subtract(baseline::DifferencePoint&) const {}
 };
 
-/// A point of the one piece that is well within the other one; none is found where they don't overlap enough.
+/// A point of one piece that is well within the other; none if they don't overlap enough.
 std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double sure) {
   Vector3d centre = Vector3d::Map(other.piece.center);
   if (other.hasVertices()) {
@@ -291,7 +291,7 @@ std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double
     centre.setZero();
     for (const Vec3& v : vertices) centre += toEigen(v) / static_cast<double>(vertices.size());
   }
-  // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
+  // A cone's inequality is squared: a point that near to its tip is lost in the verifier's last digits, 2^-64.
   const double less = (other.piece.kind == PieceKind::cone ? 1e-6 : 10 * sure / std::max(sure, inradius(other)));
   const Shrunk body{own, other, own.pose.inverse() * other.pose, centre, 1 - std::min(0.5, less)};
   baseline::GjkResult found;

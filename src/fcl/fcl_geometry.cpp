@@ -39,7 +39,7 @@ using engine::PieceKind;
 template <class S>
 using Mesh = MeshArrays<S>;
 
-/// A mesh that is a SolidMesh. (Most are BVHModels themselves, which one comparison shows.)
+/// Whether a mesh is a SolidMesh. (Most are plain BVHModels: one comparison of types shows that.)
 template <class BV>
 bool isSolid(const fcl::CollisionGeometry<typename BV::S>& geometry) {
   return typeid(geometry) != typeid(fcl::BVHModel<BV>) && dynamic_cast<const SolidMark*>(&geometry);
@@ -112,7 +112,8 @@ double requireSize(double x, const char* what) {
   return x;
 }
 
-/// Halfspace and Plane: FCL's constructors normalise, but n and d are anybody's to set, and float's norm is float's.
+/// Reads a Halfspace or Plane. FCL's constructors normalise n, but anybody may set n and d afterwards, and a float's
+/// norm is rounded to float.
 template <class Shape>
 std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<typename Shape::S>& geometry,
                                                PieceKind kind) {
@@ -121,7 +122,7 @@ std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<type
   double d = shape.d;
   const std::optional<UnitVector> unit = UnitVector::within3Ulps(n);
   if (!unit) throw std::invalid_argument("its normal is zero or not finite");
-  if (unit->vector() != n) {  // its length, by way of the largest entry, as squares may vanish
+  if (unit->vector() != n) {  // divided by n's length, by way of the largest entry, as squares may vanish
     const double largest = n.cwiseAbs().maxCoeff();
     d = d / largest / (n / largest).norm();
     n = *unit;
@@ -175,7 +176,7 @@ class CellReader {
   template <class Found>
   bool visit(const Node& node, const Eigen::Vector3d& center, double half, const Found& found) const {
     for (int k = 0; k < 3; ++k) {
-      // The cell's faces carry a rounding: those of two cells that touch must not leave a gap.
+      // The cell's faces are rounded, and two cells that touch must not leave a gap between them.
       const double reach = half + 0x1p-50 * root_half_;
       if (center[k] - reach > upper_[k] || center[k] + reach < lower_[k]) return true;
     }

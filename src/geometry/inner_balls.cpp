@@ -20,7 +20,7 @@ using engine::InnerBalls;
 using engine::Node;
 using engine::PieceKind;
 
-/// Points looked at in a mesh, and in its smallest part at least.
+/// Numbers of points that are tried in a mesh, and at least in its smallest part.
 constexpr int kSamples = 400, kFewestSamples = 40;
 /// Parts that get balls: at most kMostParts, none smaller than kLeastPart of the largest.
 constexpr std::size_t kMostParts = 8;
@@ -43,7 +43,8 @@ struct Ball {
   double weight;  ///< of the space around its centre
 };
 
-/// Points spread through what a part encloses: where a grid's lines along its longest axis run inside.
+/// Adds points spread through the space that a part encloses: on lines of a grid along its longest axis, where they run
+/// inside.
 void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& lo, const Vector3d& size, double count,
                 std::vector<Ball>& samples) {
   int axis;
@@ -76,7 +77,7 @@ void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& l
   }
 }
 
-/// Moves a ball away from where it touches as long as that makes it larger by half of the way at least.
+/// Moves a ball away from the point where it touches, as long as that makes it larger by at least half of the way.
 void enlarge(const EnclosedSpace& space, Ball& ball) {
   Vector3d nearest;
   ball.radius = space.clearance(ball.part, ball.center, nearest);
@@ -109,8 +110,8 @@ std::vector<Ball> choose(const EnclosedSpace& space, std::vector<Ball>& samples)
     }
     return sum;
   };
-  // What a ball would add only ever gets less: the first in the queue, weighed anew, is the best when it stays the
-  // first.
+  // The gain of a ball only ever decreases. So if the first ball in the queue, weighed anew, stays first, it is the
+  // best.
   std::priority_queue<std::pair<double, std::size_t>> queue;
   for (std::size_t i = 0; i < samples.size(); ++i) queue.emplace(weightOf(samples[i]), i);
   std::vector<Ball> chosen;

@@ -26,7 +26,7 @@ using engine::Node;
 using engine::Piece;
 using engine::PieceKind;
 
-/// So that three coordinates each are counted in 32 bits.
+/// With this number, three coordinates for each point are counted in 32 bits.
 constexpr std::size_t kMostHullPoints = 500000000;
 
 /// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
@@ -82,7 +82,7 @@ class Builder {
   }
 
  private:
-  /// Median split across the longest side: as good as a surface area heuristic here (measured) and balanced, so that
+  /// Median split across the longest side. It is as good as a surface area heuristic here (measured), and balanced, so
   /// recursion is shallow whatever the input.
   void build(std::size_t me, std::size_t begin, std::size_t end) {
     if (end - begin == 1) {
@@ -298,7 +298,8 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
   return tree;
 }
 
-/// One piece around a body of many: a hull of few vertices, grown so far that it holds all points.
+/// If the body has several pieces, makes one piece around it: a hull of few vertices, grown so far that it holds all
+/// points.
 void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
   if (pieces_.size() == 1) {
     view_.outer = pieces_.data();

@@ -15,7 +15,7 @@
 namespace fcl_artic::hdf5 {
 namespace {
 
-/// What HDF5 says of its last error, the innermost reason.
+/// The innermost reason of HDF5's last error.
 std::string reason() {
   std::string text;
   H5Ewalk2(
@@ -133,7 +133,7 @@ struct File::Impl {
 
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error("'" + path + "': " + what); }
 
-  /// Stays open, with its cache of chunks: many read a few rows after the other.
+  /// The dataset stays open, with its cache of chunks: many callers read a few rows after the other.
   const Handle& open(const std::string& dataset) const {
     const auto known = open_.find(dataset);
     if (known != open_.end()) return known->second;

@@ -28,7 +28,7 @@ void addRowsOf(const Eigen::Quaterniond& orientation, std::vector<double>& rows)
   }
 }
 
-/// Refuses values beyond 1e5; of mimic joints, whose multiples and offsets may cancel, the sum of both.
+/// Refuses values beyond 1e5. A mimic joint's multiple and offset may cancel, so the sum of their sizes counts.
 /// @param sizes  of each variable, sums of absolute numbers.
 void requireSizes(const KinematicTree& tree, const Eigen::VectorXd& sizes, const std::string& what) {
   const auto refuse = [&](const std::string& size, const std::string& joint) {
@@ -142,7 +142,7 @@ JointMotion JointMotion::shortest(const KinematicTree& tree, const Eigen::Vector
     if (!joint.mimics || !wrapped[tree.jointVariable(j)]) continue;
     const double m = joint.mimic.multiplier;
     const bool turns = joint.type != JointType::prismatic;
-    if (m == 0 || (turns && m == std::round(m))) continue;  // whole turns of the master are whole turns of this one
+    if (m == 0 || (turns && m == std::round(m))) continue;  // whole turns of its master turn this joint by whole turns
     throw std::invalid_argument("joint '" + joint.name + "' mimics the continuous joint '" + joint.mimic.master +
                                 "', which cannot take the shorter way: '" + joint.name +
                                 "' would end in another pose than that of q1");
@@ -193,7 +193,7 @@ JointMotion JointMotion::tangentHalfAnglePolynomial(const KinematicTree& tree, c
   return motion;
 }
 
-/// What was checked of polynomials holds for mimic joints' angles too: these are within pi of the reference.
+/// The checks of polynomials hold for mimic joints' angles too: an angle is within pi of its reference.
 void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorXd& reference) {
   half_angles_.assign(static_cast<std::size_t>(tree.dof()), 0);
   references_.setZero(tree.dof());
@@ -209,7 +209,8 @@ void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorX
     sizes[v] = std::abs(reference[v]) + kTwoPi / 2;
   }
   requireSizes(tree, sizes, "reference");
-  // The bounds of such a law differ from time to time, as those of polynomials of the second degree on.
+  // The bounds of such a law change with time, as those of polynomials of degree 2 and more: so it is stored with that
+  // degree.
   const Eigen::Index columns = variables_.cols();
   if (columns < 3) {
     variables_.conservativeResize(Eigen::NoChange, 3);

@@ -17,7 +17,7 @@
 namespace fcl_artic {
 namespace {
 
-/// How far from 1 the length of a quaternion may be: numbers typed or printed with three digits.
+/// How far from 1 the length of a quaternion may be: enough for numbers typed or printed with three digits.
 constexpr double kQuaternionLength = 1e-3;
 
 std::vector<const char*> variableEndings(JointType type) {
@@ -38,7 +38,7 @@ std::vector<const char*> variableEndings(JointType type) {
 }  // namespace
 
 void Fingerprint::add(std::uint64_t number) {
-  // Each step is a bijection of the number, and of what was there before: no single change goes unseen.
+  // Each step is a bijection of the number, and of the hash before it: no single change goes unseen.
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15u;  // 2^64 / golden ratio
   std::uint64_t x = (value_ ^ number) + kOdd;
   x = (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;  // R. Muegge's mixing step: an odd factor between two shifts
@@ -147,7 +147,7 @@ JointId KinematicTree::addJoint(const Joint& joint) {
     variable = joint_variable_[master];
     if (variable < 0) refuse("mimics joint '" + joint.mimic.master + "', which is fixed");
     if (numVariables(master) > 1) refuse("mimics joint '" + joint.mimic.master + "', which has more than one variable");
-    if (joints_[master].mimics) {  // its own mimic is one of the joint at the end of the chain already
+    if (joints_[master].mimics) {  // its own mimic already names the joint at the end of the chain
       const Mimic& next = joints_[master].mimic;
       followed = {next.master, joint.mimic.multiplier * next.multiplier,
                   joint.mimic.multiplier * next.offset + joint.mimic.offset};
@@ -250,8 +250,8 @@ LinkId KinematicTree::parentLink(LinkId link) const {
   return joint < 0 ? -1 : joint_parent_[joint];
 }
 
-/// Breadth first, from the roots on; roots and the children of a link by number. Robots of thousands of links are
-/// sorted after each of their joints: nothing is allocated for a link.
+/// Sorts links breadth first, from the roots on; roots, and the children of a link, by number. This runs after each
+/// joint that is added, also to robots of thousands of links, so nothing is allocated per link.
 void KinematicTree::sortLinks() {
   const std::size_t roots = link_names_.size();
   std::vector<LinkId> first(roots + 1, -1), next(roots, -1);  // of each link's children, and among its parent's

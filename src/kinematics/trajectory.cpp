@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Between two pieces a difference up to this, rad or m, and this part of the values is rounding.
+/// A difference between two pieces of up to kJump (rad or m) and kJumpPart of the values counts as rounding.
 constexpr double kJump = 1e-9, kJumpPart = 1e-12;
 
 std::string number(std::size_t k) {
@@ -36,7 +36,7 @@ void requireTimes(const std::vector<double>& times) {
                                   " is not later than times[" + number(k - 1) + "] = " + shown(times[k - 1]));
     }
   }
-  // Parts of the whole are what obstacles that move go by.
+  // Moving obstacles go by parts of the whole time, so it must be finite.
   if (times.size() > 1 && !std::isfinite(times.back() - times.front())) {
     throw std::invalid_argument("trajectory: the time from " + shown(times.front()) + " to " + shown(times.back()) +
                                 " is not finite");
@@ -87,7 +87,7 @@ void refuseQuaternions(const KinematicTree& tree, const char* what) {
                               "' turns by a quaternion, which " + what + " cannot describe");
 }
 
-/// A quaternion that stands still needs no words on how it turns: its rates are 0, its coefficients vanish.
+/// A quaternion that stands still is accepted without a curve: its rates are 0, its coefficients vanish.
 void requireStillQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& waypoints,
                              const std::vector<VectorXd>& velocities, const std::vector<VectorXd>& accelerations) {
   for (const JointId j : tree.quaternionJoints()) {

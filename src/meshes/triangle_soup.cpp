@@ -10,8 +10,9 @@
 namespace fcl_artic::meshes {
 namespace {
 
-/// Whether a corner is farther from the plane through their middle than decimals of six digits may leave it: these move
-/// a coordinate by up to 5e-6 of its size, so a corner by 9e-6 of the largest, and the plane by as much.
+/// Whether a corner is farther from the plane through the corners' middle than decimals of six digits may leave it.
+/// Such decimals move a coordinate by up to 5e-6 of its size, so a corner by 9e-6 of the largest, and the plane by as
+/// much.
 bool isUneven(const std::vector<Eigen::Vector3d>& corners) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   double size = 0;

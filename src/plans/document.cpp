@@ -21,7 +21,7 @@ constexpr int kDeepestMessage = 20;  // messages within messages
 constexpr double kFlat = 1e-6;       // of a planar joint's pose: m out of its plane, and part of the quaternion
 constexpr double kIdentity = 1e-9;   // a pose that nobody has to know of
 
-/// Of a message's start state.
+/// The start state in a message.
 struct Start {
   std::map<std::string, double> state;
   std::vector<Carried> carried;
@@ -37,7 +37,7 @@ std::string shown(const Json& value) {
 constexpr std::initializer_list<const char*> kInner{"trajectory", "planned_trajectory", "goal", "msg"};
 constexpr const char* kRecorded = "executed_trajectory";  // of a move_group's result: no plan
 
-/// The first of the keys that an object has; null where it has none.
+/// The value of the first of the keys that an object has; null if it has none.
 const Json* find(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     const auto found = object.find(key);
@@ -62,7 +62,7 @@ bool holdsPlan(const Json& value) {
   return std::any_of(value.begin(), value.end(), holdsPlan);
 }
 
-/// Which of an object's keys have plans, or are parts of one; parts of one plan count once, by the first of them.
+/// The keys of an object that have plans, or are parts of one. The parts of one plan count once, by the first of them.
 std::vector<std::string> plansIn(const Json& object) {
   static const std::set<std::string> kParts{"joint_trajectory", "multi_dof_joint_trajectory"},
       kEnds{"waypoints", "from", "start", "to", "goal"}, kLists{"trajectory", "planned_trajectory", "msg", "plans"},
@@ -102,7 +102,7 @@ double numberOf(const Json& value, const std::string& where) {
   refuse(fmt::format("{}: {} is not a number", where, shown(value)));
 }
 
-/// Refuses keys that are neither read nor surely no place or motion: a slip, a unit, another message's.
+/// Refuses keys that are not read and may be a place or motion: a slip, a unit, a key of another message.
 /// @param known  both of them.
 void requireKnown(const Json& object, const std::string& where, const std::vector<std::string_view>& known) {
   for (const auto& item : object.items()) {
@@ -111,7 +111,7 @@ void requireKnown(const Json& object, const std::string& where, const std::vecto
   }
 }
 
-/// Keys that say the same: whoever gives two of them means one.
+/// Refuses two keys that mean the same: whoever gives both means one.
 void refuseTwo(const Json& value, std::initializer_list<const char*> keys) {
   const char* first = nullptr;
   for (const char* key : keys) {
@@ -150,7 +150,7 @@ double secondsOf(const Json& duration, const std::string& where) {
   return numberOf(*whole, where) + 1e-9 * nanoseconds;
 }
 
-/// Of a joint: the values of a pose, x, y, z and a quaternion x, y, z, w.
+/// A pose as the values of a joint: x, y, z and a quaternion x, y, z, w.
 std::vector<double> poseOf(const Json& transform, const std::string& where) {
   const auto part = [&](const char* key, std::initializer_list<const char*> entries, std::vector<double>& out) {
     const Json* values = transform.is_object() ? find(transform, {key}) : nullptr;
@@ -194,8 +194,8 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
                   where, tree.name(), name));
 }
 
-/// Poses are those of a joint against the link that it hangs on. A frame_id is that link's, or, as in MoveIt's
-/// messages, the root's. (MoveIt would take them over from another frame by what it knows of where that stands.)
+/// Poses are those of a joint against its parent link. A frame_id must be that link's, or, as in MoveIt's messages, the
+/// root's. (MoveIt transforms poses from other frames, as it knows where these stand.)
 void requireFrame(const KinematicTree& tree, const Json& message, const PoseJoint& joint, const std::string& name,
                   const std::string& where) {
   const Json* header = find(message, {"header"});
@@ -231,7 +231,7 @@ bool isJoint(const KinematicTree& tree, const std::string& name) {
   return false;
 }
 
-/// Mimic joints stand where those that they follow have them, here and all along the plan.
+/// Checks that mimic joints stand where the joints that they follow have them, here and all along the plan.
 void requireFollowing(const KinematicTree& tree, const std::map<std::string, double>& followers, const Start& start,
                       const std::string& where) {
   Eigen::VectorXd q = tree.neutralConfiguration();
@@ -320,7 +320,7 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
   return start;
 }
 
-/// Rows of velocities or accelerations: all points have them, or none has.
+/// Adds a row of velocities or accelerations: all points must have them, or none.
 void addRates(const Json& point, const char* key, std::size_t k, std::size_t joints, Plan::Rows& rows) {
   const std::string where = fmt::format("waypoint {}", k);
   const std::vector<double> values = numbersOf(listOf(point, key, where), fmt::format("{}, {}", where, key));
@@ -414,7 +414,7 @@ void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
   }
 }
 
-/// A message whose times are all 0 is one that nobody has timed.
+/// Forgets times that are all 0: nobody has timed such a message.
 void forgetNoTimes(Plan& plan) {
   const bool none = std::all_of(plan.times.begin(), plan.times.end(), [](double t) { return t == 0; });
   if (plan.times.size() < 2 || !none) return;
@@ -468,7 +468,8 @@ class Reader {
     plan.error = error;
   }
 
-  /// A message that holds one with a motion. Beside it may stand what is no place and no motion of this plan.
+  /// Reads a message that holds one with a motion. Other keys beside it are accepted if they are no place and no motion
+  /// of this plan.
   void readOuter(const Json& value, const std::string& label, const Start& start, int depth) {
     refuseTwo(value, {"trajectory", "planned_trajectory", "goal", "msg"});
     refuseTwo(value, {"trajectory_start", "start_state"});
@@ -531,7 +532,8 @@ class Reader {
     for (std::size_t i = 0; i < list.size(); ++i) read(list[i], fmt::format("{}[{}]", label, i), start, depth + 1);
   }
 
-  /// One message or several, carried out one after the other: each begins where the one before has left the robot.
+  /// Reads one message, or several that are carried out one after the other: each begins where the one before has left
+  /// the robot.
   void readParts(const Json& message, const std::string& label, const Start& start, int depth) {
     if (!message.is_array() || message.size() == 1) {
       return read(message.is_array() ? message[0] : message, label, start, depth);
@@ -613,8 +615,8 @@ class Reader {
     plan.name += (plan.name.empty() ? "" : " ") + text;
   }
 
-  /// Reads rows of a plan: lists, or objects by name. Lists are in the order of the plan's joints; where it names none,
-  /// in the robot's, and nobody knows in which one beside objects.
+  /// Reads rows of a plan: lists, or objects by name. Lists are in the order of the plan's joints. If the plan names no
+  /// joints, lists are in the robot's order; then lists and objects must not be mixed.
   class Rows {
    public:
     explicit Rows(Plan& plan) : plan_(plan), ordered_(!plan.joints.empty()) {}

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Cosine of half the angle between two quaternions, below which no sense of rotation is sure: of two senses the
-// rounding of a file decides, 1e-6 with the six digits that OMPL and ROS print.
+// Cosine of half the angle between two quaternions, below which no sense of rotation is sure. There the rounding of a
+// file, 1e-6 with the six digits that OMPL and ROS print, decides between two senses.
 constexpr double kNearHalfTurn = 2e-6;
 
 std::string plural(std::size_t n, const std::string& what) {
@@ -59,7 +59,7 @@ PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionO
   return out;
 }
 
-/// Values of all variables that the plan does not name.
+/// The values of all variables that the plan does not name.
 VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options, const PlanColumns& columns,
                 std::vector<std::string>& notes) {
   VectorXd q = tree.neutralConfiguration();
@@ -93,7 +93,7 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
     if (!known[static_cast<std::size_t>(v)]) unnamed.push_back(tree.variableName(v));
   }
   if (!unnamed.empty()) refuseUnnamed(unnamed, "the plan");
-  // A quaternion of which only parts are known is nobody's wish, but has a length that is looked at.
+  // A joint that the plan does not name may stand beyond its limits: a note says so.
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
     const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
@@ -133,7 +133,7 @@ void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
 
 constexpr double kLengthTolerance = 0.1;  // m for a rad, of a tolerance of limits
 
-/// By how much a value is beyond a joint's limits; 0 within.
+/// How far a value is beyond a joint's limits; 0 within them.
 double beyondLimits(const Joint& joint, double value) {
   return hasLimits(joint) ? std::max({joint.lower - value, value - joint.upper, 0.0}) : 0;
 }
@@ -150,7 +150,7 @@ bool areDegrees(const KinematicTree& tree, const Plan& plan, const PlanColumns& 
   return true;
 }
 
-/// One note for each joint: by how much, and from which waypoint to which.
+/// Adds one note for each joint that is beyond its limits: by how much, and from which waypoint to which.
 void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns& columns, const MotionOptions& options,
                  std::vector<std::string>& notes) {
   for (std::size_t j = 0; j < columns.names.size(); ++j) {
@@ -184,8 +184,8 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns&
   }
 }
 
-/// A controller goes from the start state to the first waypoint; if that is another place, nobody has asked about the
-/// way.
+/// Notes a start state that is not the first waypoint: the controller goes from one to the other, and this way is not
+/// checked.
 void noteStart(const Plan& plan, const PlanColumns& columns, std::vector<std::string>& notes) {
   for (std::size_t j = 0; j < columns.names.size(); ++j) {
     const auto start = plan.state.find(columns.names[j]);
@@ -217,7 +217,7 @@ JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, 
   return JointTrajectory::Unwrap::no;
 }
 
-/// The shorter way round is no way where both are as long; which one a planner or controller takes is its own rule.
+/// Refuses steps of half a turn: both ways are as long, and planners and controllers differ in the one that they take.
 void requireSenses(const KinematicTree& tree, const std::vector<VectorXd>& q) {
   for (JointId j = 0; j < tree.numJoints(); ++j) {
     const int v = tree.quaternionVariable(j);

@@ -46,7 +46,7 @@ struct Array {
   }
 };
 
-/// What stands after 'key': in the header.
+/// The text that stands after 'key': in the header.
 std::string_view valueOf(std::string_view header, const std::string& key, const std::string& name) {
   const std::size_t at = header.find("'" + key + "':");
   if (at == std::string_view::npos) refuse(fmt::format("'{}': its header has no '{}'", name, key));

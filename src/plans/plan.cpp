@@ -146,7 +146,7 @@ std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content
       break;
   }
   if (format == Format::csv || format == Format::yaml) keepUnitsOfComments(content, out);
-  // Of these a part may be whole: the last number may have lost digits.
+  // A part of a file in these formats may look whole, though its last number has lost digits.
   const bool text = format == Format::csv || format == Format::yaml || format == Format::ompl;
   if (text && !content.empty() && std::string_view("\n]}").find(content.back()) == std::string_view::npos) {
     for (Plan& plan : out) plan.notes.emplace_back("the last line has no line end: the file may be cut short");

@@ -17,8 +17,8 @@ constexpr std::uint32_t kEnd = 0x06054b50, kDirectory = 0x02014b50, kLocal = 0x0
 constexpr std::size_t kEndSize = 22, kDirectorySize = 46, kLocalSize = 30;
 constexpr std::uint32_t kElsewhere = 0xffffffff;  // zip64: the number stands in another record
 constexpr std::size_t kMostPerByte = 1032;        // deflate makes at most this much of a byte
-// Of all files of an archive together, unpacked: plans are some thousand numbers each, and a small archive may be made
-// to take all memory.
+// Most bytes of all files of an archive together, unpacked. Plans are some thousand numbers each, and a small archive
+// may be made to take all memory.
 constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
 
 [[noreturn]] void refuseArchive(const std::string& what) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Many motions over threads: queries share nothing but the set-up, so that all that is left is to hand them out; and
-// where stage 2 takes part, the drawing (doc/VISIBILITY.md, "Batches").
+// Many motions over threads. Queries share nothing but the set-up, so this file only hands them out. If stage 2 takes
+// part, it also draws for many motions at once (doc/VISIBILITY.md, "Batches").
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -23,7 +23,7 @@ using visibility::Leave;
 using visibility::Together;
 using visibility::Way;
 
-/// Motions of a pass of drawing, and of one that is a trial.
+/// Most motions in a pass of drawing, and in a trial.
 constexpr std::size_t kMostMotions = 256, kMotionsOfTrial = 64;
 
 /// Whether stage 2 takes part in such queries, and draws for many at once.
@@ -34,7 +34,7 @@ bool drawsTogether(const CertifiedRequest& request) {
   return request.visibility == VisibilityMode::atOnce || request.work_budget == 0;
 }
 
-/// Adds what another solve of the same query took.
+/// Adds the work of another solve of the same query.
 void addSolve(const QueryStatistics& first, QueryStatistics& sum) {
   addWork(first, sum);
   sum.total_us += first.total_us;
@@ -73,7 +73,7 @@ class ArticulatedCollisionManager::Some {
     std::size_t n = std::min(left, kMotionsOfTrial);
     const Leave trial = choice.mayTry(made, static_cast<double>(n));
     Way way = choice.best();
-    if (way == Way::own && !made) way = Way::without;  // a second context saves no time: contexts take turns
+    if (way == Way::own && !made) way = Way::without;  // a second OpenGL context saves no time: contexts take turns
     if (trial.given()) {
       answerBothWays(trial, way, begin, n, results);
       return n;
@@ -144,7 +144,8 @@ class ArticulatedCollisionManager::Some {
     manager_.collideMotion(motions_[motion], alone_, aspects, result);
   }
 
-  /// Of motion i of the pass: the answer that was found on a condition, where that holds; else another one.
+  /// Answers motion i of the pass: with the answer that was found on a condition if the condition holds, else with
+  /// another one.
   void settle(Together& together, std::size_t i, std::size_t motion, CertifiedResult& result) {
     CertifiedResult& conditional = conditional_[i];
     const bool at_once = request_.visibility == VisibilityMode::atOnce;
@@ -180,7 +181,7 @@ class ArticulatedCollisionManager::Some {
   CertifiedRequest alone_;  ///< the same without stage 2
   Stage2& stage2_;
   double making_us_ = 0;  ///< of executors
-  // Of the motions of a pass. What is in `conditional_` is no answer before settle() has looked at it.
+  // One entry for each motion of a pass. An entry of `conditional_` is no answer before settle() has looked at it.
   std::vector<CertifiedResult> conditional_;
   std::vector<Aspects::Details> details_;
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The clearance of a motion by queries with margins. One that is free proves that nothing comes nearer than its margin;
-// a pose proven in contact shows a pair and a time with no more than that between them. The margin goes down by kStep
-// until a query is free, then halves the bracket (by ratio: the tolerance is relative). Measured on a planner's
-// motions: looking at single poses in between, for a tighter upper bound, costs as much as it saves.
+// The clearance of a motion, by queries with margins. A free query proves that nothing comes nearer than its margin. A
+// pose proven in contact shows a pair and a time with no more than the margin between the two bodies. The margin is
+// divided by kStep until a query is free; then each query halves the bracket (by ratio, as the tolerance is relative).
+// Measured on a planner's motions: looking at single poses in between, for a tighter upper bound, costs as much as it
+// saves.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -21,10 +22,10 @@
 namespace fcl_artic {
 namespace {
 
-/// While nothing is proven free.
+/// Factor between margins while no query is free.
 constexpr double kStep = 4;
-/// A query may leave open what is nearer to its margin than this part of the tolerance. (The margin is at least half
-/// the tolerance below `upper`, so that as much more is below it too.)
+/// A query may leave open pairs that are nearer to its margin than this part of the tolerance. (The margin is at least
+/// half the tolerance below `upper`, so a margin larger by this part is below `upper`, too.)
 constexpr double kOpen = 1.0 / 8;
 
 void require(bool good, const char* name, double value, const char* what) {
@@ -85,12 +86,12 @@ class Search {
     return std::max(request_.tolerance_relative * distance, request_.tolerance_distance);
   }
 
-  /// Asks whether anything comes so near; where that stays open, whether it comes a little less near.
+  /// Asks with this margin; if the answer is open, with a slightly larger one.
   bool decide(double margin) {
     return query(margin) != Found::open || query(margin + kOpen * tolerance(margin)) != Found::open;
   }
 
-  /// Asks, with what is left of the budget. Sets spent_ where nothing is, and the answer is none.
+  /// Asks with the rest of the budget. If nothing is left of it, sets spent_ and does not ask.
   template <class Asked>
   void answer(CertifiedRequest& request, const Asked& ask) {
     static_cast<Scope&>(request) = request_;
@@ -108,8 +109,8 @@ class Search {
     spent_ = result_.status == Status::undecided;
   }
 
-  /// (Which pairs these are is known before the search begins, so that a contact does not end it too soon: with
-  /// ContactMode::first all pairs are looked at as they begin.)
+  /// Finds the pairs whose initial contacts are ignored, before the search begins. A contact does not end this query
+  /// too soon: with ContactMode::first all pairs are looked at at their begin.
   void ignoreInitialContacts() {
     CertifiedRequest request;
     request.margin = request_.ignored_margin;

@@ -66,7 +66,7 @@ Body<S> read(const fcl::ContinuousCollisionObject<S>* object) {
   return read<S>(object->collisionGeometry().get(), object->getMotion());
 }
 
-/// Reads object 1 or 2; what is wrong with it is said with that number.
+/// Reads object 1 or 2; errors name the number.
 template <class S, class... Args>
 Body<S> body(int number, const Args&... args) {
   try {
@@ -88,8 +88,8 @@ bool standsStill(const BodyMotion& motion) {
                      [](const MotionElement& element) { return !element.bounded && element.degree() == 0; });
 }
 
-/// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
-/// body can come to, as most of a map is far from any one motion.
+/// Reads an OcTree's cells. If the other body is an OcTree too, it has been read. If the tree stands still, only those
+/// cells are read that the other body can come to: most of a map is far from any one motion.
 /// @param all  all cells: a certificate is about the whole map.
 template <class S>
 void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
@@ -104,7 +104,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
     RigidTransform& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
     first = tree.motion.poseWithError(0).inverse() * first;
     enclosePath(seen, other.shape->lower(), other.shape->upper(), lower, upper);
-    // What the path's own pads do not know of: these sums.
+    // The path's own pads do not include the rounding of these sums.
     const double size = (upper - lower).norm() + lower.norm();
     const double pad = margin + 0x1p-40 * (first.length() + size + margin);
     lower.array() -= pad;
@@ -136,7 +136,7 @@ float roundedDown(double t, float) {
   return static_cast<double>(rounded) > t ? std::nextafter(rounded, 0.0f) : rounded;
 }
 
-/// What FCL's result says while nothing is proven.
+/// Sets FCL's result to the values that it has while nothing is proven.
 template <class S>
 void reset(fcl::ContinuousCollisionResult<S>& result) {
   result.is_collide = true;
@@ -149,8 +149,8 @@ void reset(CertifiedPairResult& result) {
   result = CertifiedPairResult();
 }
 
-/// Runs a query; a result that it can't give is reset. Not before: the input may lie in the result, where someone goes
-/// on from the poses of the last query.
+/// Runs a query. If it throws, the result is reset. It is not reset before: the input may lie in the result, if a
+/// caller goes on from the poses of the last query.
 template <class Result, class Query>
 auto answering(Result& result, Query&& query) {
   return resetUnlessAnswered([&] { reset(result); }, query);
@@ -163,8 +163,9 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
-  // Narrower brackets than these are no dearer, wider ones are: more of the bodies is looked at in a wider interval
-  // (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked for.
+  // A bracket narrower than this takes no more time. A wider one takes more, as more of the bodies is looked at in a
+  // wider interval (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower bracket satisfies
+  // the request, too.
   constexpr double kCoarsest = 1e-4;
   CertifiedPairRequest certified;
   certified.tolerance_time = std::min(std::max(tolerance, kFinest), kCoarsest);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the manager says of pairs that no query checks: neighbours that touch throughout, and bodies that stand still
+// The manager's notes on pairs that no query checks: neighbours that touch throughout, and bodies that stand still
 // against each other.
 #include <map>
 #include <set>
@@ -25,7 +25,7 @@ std::vector<LinkPairFinding> ArticulatedCollisionManager::neighbours() const {
 
 namespace {
 
-/// Pairs that stand still against each other (Registry::standStill()) and touch, or can't be told apart, by names.
+/// Names of pairs that stand still against each other (Registry::standStill()) and touch, or can't be proven apart.
 std::set<std::pair<std::string, std::string>> touchingStill(const Registry& registry) {
   const KinematicTree& tree = *registry.tree();
   FrameSweep sweep = FrameSweep::fromWorld(tree);

@@ -19,7 +19,7 @@
 namespace fcl_artic {
 namespace {
 
-/// What tables of two links know of a motion, as the solver's advisor.
+/// Gives the solver, as its advisor, all knowledge about a motion that the tables of two links have.
 struct TableAdvice {
   const LinkTables& tables;
   const ProvenPairs& proven;
@@ -56,7 +56,7 @@ struct TableAdvice {
   }
 };
 
-/// The motion's variables, then those of the moving obstacles.
+/// Gives the query the motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
 /// @param time  of the obstacles' motions.
 /// @param memory  for them, when there are both.
@@ -81,8 +81,8 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
   query.degree = static_cast<std::int32_t>(columns) - 1;
 }
 
-/// Leaves the link pairs that the request asks for. Those with moving obstacles are the scene's, though they stand with
-/// those of two links.
+/// Keeps the link pairs that the request asks for. Pairs of a link and a moving obstacle count as the scene's, though
+/// they stand in the list of link pairs.
 void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::Problem& problem,
                    engine::Margins& margins) {
   const std::int32_t num_self_pairs = setup.numSelfPairs(), num_self_rows = setup.numSelfRows();
@@ -117,7 +117,7 @@ void leaveOut(const std::vector<engine::PairId>& pairs, Workspace& workspace, en
   problem.link_allowed = links.data();
 }
 
-/// What a solver says, with its stage 2.
+/// A solver's answer, and the reports of stage 2 and of the paper's method.
 struct Solved {
   engine::Answer answer;
   visibility::Report stage;

@@ -27,7 +27,7 @@ using interval_chain::StepBounds;
 
 namespace {
 
-/// Turns over an interval, summed over a chain in rad, from which on interval products cut something off the Taylor
+/// Sum of a chain's turns over an interval, in rad. From this sum on, interval products cut something off the Taylor
 /// enclosure, whose remainder grows with the third power (doc/REDON2004.md, "Enclosures").
 constexpr double kSmallTurn = 3;
 
@@ -70,8 +70,8 @@ struct Variable {
   Interval q, q1, q2;
 };
 
-/// A polynomial over T, from its Taylor coefficients at the middle of T: what powers of T - tm lose by the dependency
-/// between them shrinks with the square of T.
+/// A polynomial over T, from its Taylor coefficients at the middle of T. Powers of T - tm depend on each other, and the
+/// width that this costs shrinks with the square of T.
 Variable evaluatePolynomial(const Interval* coefficients, int degree, Interval T) {
   if (degree == 1) return {coefficients[0] + coefficients[1] * T, coefficients[1], Interval(0.0)};
   const double middle = T.middle();
@@ -150,8 +150,8 @@ IntervalVec3 vectorWithin(const double* x, double part) {
   return o;
 }
 
-/// What the author of a motion states, over T: its state at the middle and how far bounds let that go; or the inverse
-/// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
+/// The factor that a motion's author states, over T: its state at the middle, and how far the bounds let that go. Or
+/// the inverse (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
 void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
   const double middle = T.middle();
   double x[24], bound[6];
@@ -374,7 +374,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
     f.o = g ? g->o + r : r;
     if (!moving) continue;
 
-    // Without a frame before it nothing carries this one.
+    // If there is no frame before this one, nothing carries it.
     f.w = g ? g->w : zero();
     f.v = g ? g->v + cross(g->w, r) : zero();
     if (twice) {
@@ -394,7 +394,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
   }
 }
 
-/// What a frame's motion means for its pose and the derivatives of that.
+/// Writes the pose of a moving frame, and as many of the pose's derivatives as are asked for.
 void write(const Frame& f, Derivatives derivatives, FrameBounds& out) {
   out.pose = {f.R, f.o};
   if (derivatives == Derivatives::none) return;

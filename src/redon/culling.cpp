@@ -15,7 +15,8 @@ namespace {
 /// (doc/REDON2004.md).
 constexpr double kMotionPerSize = 0.125;
 constexpr int kCached = 2048;
-/// Between the whole motion and a link's own level: what meets no obstacle in an eighth is not divided further there.
+/// A level between the whole motion and a link's own. If a link meets no obstacle in an eighth of the motion, that
+/// eighth is not divided further.
 constexpr int kCoarse = 3;
 
 using engine::Body;
@@ -108,7 +109,8 @@ const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
   return box;
 }
 
-/// Of the parts of these 2^level, divided into 2^finer: those in which the mover's box meets this one.
+/// Divides the parts of `mask`, of 2^level, into parts of 2^finer. @return the parts in which the mover's box meets
+/// this one.
 std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask, int finer, const double* lo,
                               const double* hi) {
   std::uint64_t out = 0;
@@ -118,7 +120,7 @@ std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask,
   return out;
 }
 
-/// Of 2^level parts, no fewer than either mover's own level asks for: those in which their boxes meet.
+/// The parts in which two movers' boxes meet, of 2^level parts: `level` is no lower than either mover's own.
 std::uint64_t Culling::meetingParts(std::int32_t a, std::int32_t b, int level) {
   const int own_a = movers_[static_cast<std::size_t>(a)].level, own_b = movers_[static_cast<std::size_t>(b)].level;
   std::uint64_t mask = 1;
@@ -281,7 +283,8 @@ const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
   return s.box;
 }
 
-/// A bit for each pair of boxes that is apart in the pair's sub-interval: in lanes where there are enough of them.
+/// A bit for each pair of boxes that is apart in the pair's sub-interval. If there are enough of them, they are tested
+/// in lanes.
 unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int part) {
   const ObbNode *a[BoxBatch::kPairs], *b[BoxBatch::kPairs];
   for (int i = 0; i < n; ++i) {
@@ -299,8 +302,8 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   return out;
 }
 
-/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait
-/// for the next one.
+/// Both trees down at once, the larger box first. Boxes that are apart in a sub-interval hold only boxes that are apart
+/// in it: these wait for the next sub-interval.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
   std::vector<Entry>& stack = waiting_[slot];
   while (!stack.empty()) {

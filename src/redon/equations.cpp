@@ -25,14 +25,14 @@ void removeAlong(const Vector3d& u, Vector3d& v) {
   if (length2 > 0) v -= v.dot(u) / length2 * u;
 }
 
-/// Closest points of two features, and the features' own directions there. They are only where to look: what is found
-/// is checked in interval arithmetic.
+/// Closest points of two features, and the features' own directions there. They only say where to look: every claim is
+/// checked in interval arithmetic.
 struct Nearest {
   Vector3d a, x, e = Vector3d::Zero(), f = Vector3d::Zero();
 
   double distance() const { return (x - a).norm(); }
-  /// From A to B. The difference of near points has lost digits; that it is at right angles to the features brings them
-  /// back.
+  /// From A to B. The difference of near points has lost digits. It is at right angles to the features, and this
+  /// restores them.
   Vector3d direction() const {
     Vector3d n = x - a, g = f;
     removeAlong(e, n);
@@ -42,7 +42,7 @@ struct Nearest {
   }
 };
 
-/// Of a point and an edge. @param[out] along  whether the foot lies between the ends.
+/// The foot of a point on an edge. @param[out] along  whether the foot lies between the ends.
 Vector3d footOnEdge(const Vector3d& p, const Vector3d& from, const Vector3d& to, bool& along) {
   const Vector3d e = to - from;
   const double length2 = e.squaredNorm(), s = length2 > 0 ? e.dot(p - from) / length2 : 0;
@@ -263,8 +263,8 @@ Interval derivativeOver(const Equation& q, const Element* e) {
   }
 }
 
-/// For each vertex x of B: n . x over T, as it is and by the mean value theorem, n . x(m) + h (n . x'), whichever is
-/// tighter; the same n, to the last bit, for all.
+/// For each vertex x of B: n . x over T. It is taken as it is, or by the mean value theorem, n . x(m) + h (n . x'),
+/// whichever is tighter. All vertices have the same n, to the last bit.
 bool certainlyApart(const Equation& q, const Element* elements, Interval h, double& gap) {
   const Nearest nearest = nearestInMiddle(q, elements);
   gap = nearest.distance();

@@ -29,8 +29,9 @@ using Clock = std::chrono::steady_clock;
 /// Their equations and elements take some 100 MB at most.
 constexpr std::size_t kMostLeaves = 1 << 15;
 
-/// Without a work budget a query by the paper's method ends here, in units of workOf(), and is the engine's: bodies
-/// that slide on each other are divided down to the narrowest intervals all along their way. A unit takes 0.1 to 1 us.
+/// Without a work budget, the paper's method gives up a query after this much work, in units of workOf(), and the
+/// engine answers it. Bodies that slide on each other are divided down to the narrowest intervals all along their way.
+/// A unit takes 0.1 to 1 us.
 constexpr std::uint64_t kMostWork = 1 << 17;
 
 /// Adds up the time of stages, where it is asked for.
@@ -66,10 +67,10 @@ struct Workspace::Impl {
   std::vector<double> free_until;       ///< by pair of the problem: proven free before
   std::vector<std::uint8_t> scene_allowed, link_allowed;
   std::vector<double> still;  ///< coefficients of a motion that rests at t = 0
-  // The engine's part of the problem, and what it is asked: both stay for its pairMotion().
+  // The engine's part of the problem, and its query: both stay for its pairMotion().
   Problem rest;
   Query first;       ///< the query, for the first contact
-  Query rest_query;  ///< the same with progress no later than what is known of all pairs
+  Query rest_query;  ///< the same; its progress is no later than the time up to which all pairs are known to be free
 };
 
 Workspace::Workspace() : impl_(std::make_unique<Impl>()) {}
@@ -77,7 +78,7 @@ Workspace::~Workspace() = default;
 
 namespace {
 
-/// Passes progress on, no later than what is proven of the pairs that the solver at work knows nothing of.
+/// Passes progress on, but no later than the proven time of the pairs that the solver at work does not have.
 struct Progress {
   bool (*tell)(void* context, double t_lower);
   void* context;
@@ -89,8 +90,8 @@ struct Progress {
 };
 
 /// One query on its way. Each pair asked for has the time up to which it is proven free: 0 at first, and raised by
-/// proofs only (provenFree). The answer is free when that is 1 for all of them, and its t_lower is the least. So what
-/// no stage has come to, for whatever reason, counts as not free.
+/// proofs only (provenFree). The answer is free if that is 1 for all of them, and its t_lower is the least. So a pair
+/// that no stage has come to, for whatever reason, counts as not free.
 class Run {
  public:
   Run(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
@@ -132,8 +133,8 @@ bool Run::asked(PairId pair) const {
 }
 
 /// Triangles on both sides, no margin, and a motion by joints. Nor has the pair a margin of its own, as neighbours have
-/// that are checked for touching: the paper checks none, and its boxes are apart at no time where a joint holds two
-/// links together.
+/// that are checked for touching. The paper checks no neighbours: its boxes are apart at no time where a joint holds
+/// two links together.
 bool Run::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0 || query_.margins.isOwn(pair)) return false;
@@ -156,10 +157,10 @@ bool Run::choosePairs() {
   return any;
 }
 
-/// The paper starts without contact. The certificate, at rest at t = 0, decides whether that is so: surfaces that
-/// cross, and solids that hold others. A pair of which it can't be proven is the engine's.
-/// @return true when all pairs are: there is contact at t = 0 where the first one is asked for, or it is not known
-///   which pairs touch.
+/// The paper starts without contact. The certificate, with all bodies at rest at t = 0, decides whether that is so;
+/// contact is surfaces that cross, and solids that hold others. If a pair can't be proven apart, it goes to the engine.
+/// @return true if all pairs go to the engine: the first contact is asked for and is at t = 0, or it is not known which
+///   pairs touch.
 bool Run::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
   const std::int32_t degree = query_.half_angles.count > 0 ? 2 : 1;
@@ -172,8 +173,8 @@ bool Run::touchesAtStart(Answer& answer) {
   still.progress = nullptr;
   still.describe_contacts = false;
   still.num_advisors = 0;  // they know of the motion itself
-  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
-  // When they part is no question at rest, nor is any time finer than all of it.
+  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut. At rest
+  // there is no time at which they part, and no finer time than all of it.
   still.every_pair = false;
   still.ignore_initial = query_.every_pair || query_.ignore_initial;
   if (still.ignore_initial) still.tolerance_time = 1;
@@ -211,7 +212,7 @@ void Run::solveRest(const Query& query, Answer& answer) {
   }
 }
 
-/// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
+/// Finds the paper's pairs that dynamic BVH culling (Section 4) and then culling by visibility leave.
 void Run::findPairs() {
   StageClock clock(query_.measure_times);
   const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
@@ -229,8 +230,8 @@ void Run::findPairs() {
   }
 }
 
-/// First contact in [begin, end] of the leaf pairs at hand: all equations at once, but of no more than kMostLeaves
-/// pairs, so that memory is bounded.
+/// First contact in [begin, end] of the leaf pairs at hand. All equations are solved at once, but for at most
+/// kMostLeaves pairs, so memory is bounded.
 Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
   Found all;
   all.free_until = end;
@@ -281,8 +282,8 @@ Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// The same as the paper has it: all triangles whose boxes meet at any time, then all their equations at once. Boxes
-/// are left out only in sub-intervals that begin after `limit`; of the rest all equations are solved.
+/// As search(), in the paper's order: all triangles whose boxes meet at any time, then all their equations at once.
+/// Boxes are left out only in sub-intervals that begin after `limit`; for the rest all equations are solved.
 Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   StageClock clock(query_.measure_times);
   Found found;
@@ -301,7 +302,8 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// Of the contacts from `begin` on those within the bracket, the first one of each pair, as many as are asked for.
+/// Keeps, of the contacts from `begin` on that lie within the bracket, the first one of each pair, as many as are asked
+/// for.
 void Run::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
@@ -327,7 +329,7 @@ void Run::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) return leaveAll(answer);
-  // Of the paper's pairs nothing is known while the engine looks at its own.
+  // Nothing is known of the paper's pairs while the engine looks at its own.
   Progress progress{query_.progress, query_.progress_context};
   Query& query = w_.rest_query;
   query = query_;
@@ -390,7 +392,7 @@ void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem&
            Counts& counts) {
   Query& first = workspace.impl().first;
   first = query;
-  first.any = false;  // where any contact would do, the first one is looked for
+  first.any = false;  // if any contact would do, the first one is looked for
   Run(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 

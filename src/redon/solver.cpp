@@ -38,7 +38,7 @@ void Solver::setInterval(double begin, double end) {
   ++stamp_;
 }
 
-/// Once per interval and pair, whatever number of equations ask.
+/// Computed once per interval and pair, however many equations ask.
 const PairBounds& Solver::motionOf(std::int32_t index) {
   const auto i = static_cast<std::size_t>(index);
   PairBounds& m = motions_[i];
@@ -90,7 +90,7 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
                     double free_else, std::vector<engine::LeafContact>& contacts) {
   pairs_ = &pairs;
   set_ = &equations;
-  free_else_ = options_->simultaneous ? free_else : 0;  // an equation by itself says nothing of the others
+  free_else_ = options_->simultaneous ? free_else : 0;  // an equation solved by itself proves nothing about the others
   motions_.resize(pairs.size());
   motion_stamps_.assign(pairs.size(), -1);
   const std::size_t n = equations.equations().size();
@@ -100,8 +100,8 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
     for (std::size_t i = 0; i < n; ++i) active_.push_back({static_cast<std::int32_t>(i), begin, end});
     return search(0, begin, end, limit, contacts);
   }
-  // The paper's baseline: each by itself, up to the first root found so far. Before all are looked at nothing more is
-  // proven of the pairs than that they enter without contact.
+  // The paper's baseline: each equation by itself, up to the first root found so far. Until all are solved, it is only
+  // proven that the pairs enter without contact.
   Found found;
   found.free_until = begin;
   double least = end;
@@ -147,7 +147,7 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
     }
     ++counts_->intervals;
     setInterval(task.begin, task.end);
-    // What stays active moves up; the task's own entries are spent by then.
+    // Equations that stay active move up; the task's own entries are spent by then.
     const bool validity = options_->early_validity;
     std::size_t kept = task.first;
     double lo = task.end, hi = task.begin;
@@ -202,7 +202,7 @@ Interval Solver::valueAt(const Equation& q, double t) {
   return value(q, set_->elements().data(), &Element::over);
 }
 
-/// A window round [begin, end] in which the function changes its sign, its features meeting all the while.
+/// Finds a window around [begin, end] in which the function changes its sign while its features meet.
 bool Solver::certify(const Equation& q, double begin, double end, double& t_upper) {
   const double room = query_->tolerance_time - (end - begin);
   for (const double part : {0x1p-16, 0x1p-8, 0x1p-2, 0.0}) {
@@ -220,7 +220,7 @@ bool Solver::certify(const Equation& q, double begin, double end, double& t_uppe
   return false;
 }
 
-/// The last interval: are the roots of the task's equations contacts? Those whose features are apart are dropped.
+/// The last interval: are the roots of the task's equations contacts? Roots whose features are apart are dropped.
 /// @return true when contact is found; else what is left is to be divided on.
 bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector<engine::LeafContact>& contacts) {
   const bool narrowest = task.end - task.begin <= kNarrowest;
@@ -237,7 +237,7 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
     const Equation& q = set_->equations()[static_cast<std::size_t>(active.equation)];
     setInterval(task.begin, task.end);
     boundElements(q);
-    double gap, known = 0;  // in the middle, and what positions there are known to
+    double gap, known = 0;  // in the middle, and the error of positions there
     if (certainlyApart(q, set_->elements().data(), Interval(task.begin, task.end) - Interval(mid_), gap)) continue;
     active_[kept++] = active;
     first_lo = std::min(first_lo, active.lo);
@@ -254,7 +254,7 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
   active_.resize(kept);
   if (roots.empty()) return false;
   found.contact = true;
-  found.free_until = first_lo;  // of those that are no contact, too: they are not decided
+  found.free_until = first_lo;  // roots that are no contact count, too: they are not decided
   for (const Root& root : roots) {
     if (root.certain) found.t_upper = std::min(found.t_upper, root.t_upper);
     report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo),

@@ -29,7 +29,8 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   std::vector<std::size_t> pairs, unknown;  // unknown: into both
   std::size_t next = 0;
   while (next < num_self_pairs && num_tables_ < kMost) {
-    // Some pairs, then what is made of them on all cores: the same pairs get tables whatever was known before.
+    // Takes a block of pairs, then makes their tables on all cores. So the same pairs get tables, whatever was known
+    // before.
     const std::size_t begin = made_.size();
     unknown.clear();
     for (; next < num_self_pairs && made_.size() < begin + kBlock; ++next) {
@@ -106,7 +107,7 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
       if (likely_[grid.first + grid.axes.cell(of_ranges)]) found.push_back({grid.link_pair, part});
     }
   };
-  // Motions that meet something mostly still do at their end.
+  // Most motions that meet something still touch it at their end.
   evaluate(kLast, parts[0]);
   look(kLast, parts[0]);
   evaluate(0, parts[1]);

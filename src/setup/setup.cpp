@@ -42,7 +42,7 @@ void Setup::listMovers() {
 }
 
 void Setup::readSolids(const Registry& registry) {
-  // Asked of pairs with a solid mesh only; where there is none queries know nothing of it.
+  // Insides are asked about only for pairs with a solid mesh. If there is none, queries skip that.
   solids_ = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].space = registry.body(static_cast<std::int32_t>(i)).shape->space();

@@ -18,7 +18,8 @@
 namespace fcl_artic {
 namespace {
 
-/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that they move amid it.
+/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that the links move within
+/// it.
 const engine::TreeView& viewOf(const ManagedBody& obstacle, const std::vector<ManagedBody>& links) {
   const bool large = std::all_of(links.begin(), links.end(),
                                  [&](const ManagedBody& link) { return 2 * link.size() < obstacle.size(); });

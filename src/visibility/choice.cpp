@@ -8,13 +8,13 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// How fast old trials are forgotten; the least advantage that counts (the second of two runs finds its data in the
-/// caches); trials before anything is chosen.
+/// The rate at which old trials are forgotten. The least advantage that counts (the second of two runs finds its data
+/// in the caches). And the number of trials before anything is chosen.
 constexpr double kForget = 0.9, kAdvantage = 0.8;
 constexpr int kLeastTrials = 6;
 /// The least time that drawing by OpenGL and reading back takes, us. (On a processor it takes 30 and more.)
 constexpr double kLeastDrawing = 20;
-/// Trials with twice the time and more: far from paying. Then they get this part of the share.
+/// If trials take this many times as long, the stage is far from paying. Then trials get this part of the share.
 constexpr double kFar = 2, kWhenFar = 0.25;
 /// The part of the share for trials of the culler's own executor, where that may pay, its making included.
 constexpr double kForOwn = 0.75;
@@ -33,7 +33,7 @@ bool Choice::Known::isFarFromPaying() const {
   return trials >= kLeastTrials && on_us > kFar * off_us;
 }
 
-/// Would the culler's own executor save time if it drew as fast as any?
+/// Whether the culler's own executor would save time if it drew as fast as any.
 bool Choice::ownMayPay() const {
   return cpu_.trials >= kLeastTrials && cpu_.off_us - (cpu_.on_us - cpu_.stage_us) > kLeastDrawing * cpu_.n;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr float kNothing = 3e38f;
 /// Growth::eta of this executor: nothing is snapped, and rounding is far less.
 constexpr double kEta = 1.0 / 64;
-/// A side flatter than this decides no column of a row: as if it were not there (or the row as a whole is beyond it).
+/// A side flatter than this cuts no column off a row. It is ignored, unless the row as a whole is beyond it.
 constexpr double kFlat = 1e-6;
 
 /// Ends of a footprint in one row of pixels; empty where begin > end. The rounding of this is some 1e-8 pixels, which

@@ -9,9 +9,9 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// Of a handful of roundings in double, in any rounding mode; and of five in float.
+/// Bounds on a handful of roundings in double, in any rounding mode, and on five in float.
 constexpr double kDouble = 0x1p-48, kFloat = 0x1p-20;
-/// Beyond this nothing is computed: products of three such numbers are still finite.
+/// Nothing is computed with numbers above this: products of three such numbers are still finite.
 constexpr double kLargest = 1e24;
 /// Steeper bounds, in windows per pixel, bound nothing.
 constexpr double kSteepest = 4;
@@ -67,8 +67,8 @@ void Projector::addBounds(double a, double b, Footprint& f) const {
                               up(upper + evaluation + kFloat * std::abs(upper))};
 }
 
-/// Slopes worth trying: those of the plane through three far points, and, for what is round, those along the longest
-/// edge and tilted about it.
+/// Adds the slopes that are worth trying: those of the plane through three far points and, for round volumes, those
+/// along the longest edge and tilted about it.
 void Projector::addSlopes(Footprint& f) const {
   addBounds(0, 0, f);
   if (count_ < 2) return;

@@ -82,7 +82,7 @@ engine::Advisor Together::advise(std::size_t i) {
   return advisor;
 }
 
-/// What is proven of a pair holds for the query's whole motion.
+/// A proof about a pair holds for the query's whole motion.
 void Together::repeat(void* self, const engine::Problem& /*problem*/, const engine::SweptLink* /*links*/,
                       engine::CullCandidate* pairs, std::int32_t num_pairs) {
   const One& one = *static_cast<const One*>(self);

@@ -220,7 +220,8 @@ TEST_F(CertifyProgramTest, WhatIsNoPlanStopsTheRun) {
   EXPECT_EQ(run("certify " + plan + " " + armAndBall() + " --scene " + second).status, 0);
 }
 
-/// What this run did not write was written by no run: a plan that collides is not left under the name of a free one.
+/// A run leaves no earlier file under a name that it does not write: a plan that collides must not stand there as a
+/// free one.
 TEST_F(CertifyProgramTest, FilesOfEarlierRunsAreNotLeft) {
   const std::string free = "hinge,rail\n0,0\n0.5,0\n", touching = "hinge,rail\n0,0\n1.5,0\n";
   const std::string out = path("safe.csv"), csv = path("rows.csv"), proof = path("proof.fac");
@@ -302,7 +303,7 @@ TEST_F(CertifyProgramTest, OutputsAreNoInputs) {
     EXPECT_EQ(read(file), plan);
     EXPECT_TRUE(std::filesystem::exists(ball()));
   }
-  // Of a folder of plans, too.
+  // The same holds for a folder of plans.
   write("folder/way.csv", plan);
   EXPECT_EQ(certify(path("folder"), " --out " + path("folder/way.csv")).status, 2);
   EXPECT_EQ(read(path("folder/way.csv")), plan);
@@ -405,7 +406,7 @@ TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
   EXPECT_GE(mended.at("deviation"), 0.24);
   EXPECT_GT(mended.at("length_ratio"), 1.05);
   EXPECT_LT(mended.at("length_ratio"), 3);
-  // What was written: it begins and ends as the plan does, and no point of it touches.
+  // The plan that was written begins and ends as the given one does, and no point of it touches.
   std::istringstream rows(read(out));
   std::string line;
   std::getline(rows, line);
@@ -430,7 +431,7 @@ TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
       ASSERT_GT(std::hypot(dx, dy), 0.205) << "at " << x << ", " << y;
     }
   }
-  // What was written is free for the plain path too.
+  // The plan that was written is free for the plain path too.
   EXPECT_EQ(this->run("certify " + out + " " + gantry()).status, 0);
   EXPECT_EQ(
       this->run("certify " + path("way.csv") + " " + gantry() + " --mend --margin 0.05 --out " + path("wide.json"))
@@ -489,7 +490,7 @@ TEST_F(CertifyProgramTest, APlanAndWhatItIsMendedToAreShown) {
   EXPECT_NE(run.out.find("through, and what it is mended to in " + mended), std::string::npos) << run.out;
   EXPECT_NE(read(page).find("first contact at t = "), std::string::npos);
   EXPECT_NE(read(mended).find("free: proven for the whole motion"), std::string::npos);
-  // What this run does not write is not left.
+  // A file that this run does not write is removed.
   ASSERT_EQ(this->run("certify " + plans + " " + gantry() + " --html " + page).status, 1);
   EXPECT_FALSE(std::filesystem::exists(mended));
 #ifdef FCL_ARTIC_HAS_PICTURES

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What happens when files can't be read to their end or written: an error that names the file, and never a verdict.
+// If files can't be read to their end or written, the program gives an error that names the file, and never a verdict.
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -33,7 +33,7 @@ class StreamsTest : public ProgramTest {
  protected:
   std::string motion() const { return " --from 0,0 --to 90deg,0"; }
 
-  /// Of each format one; the hinge meets what is last in the file, at 60°.
+  /// One file of each format; the hinge meets the last thing in the file, at 60°.
   std::vector<Input> inputs() const {
     std::vector<Input> all;
     const auto add = [&](const std::string& name, const std::string& content, const std::string& before,
@@ -116,7 +116,7 @@ TEST_F(StreamsTest, ReadErrorIsNoEndOfAFile) {
 TEST_F(StreamsTest, FileThatIsCutShortIsNeverFree) {
   for (const Input& input : inputs()) {
     const std::string whole = read(input.file), ending = fs::path(input.file).extension();
-    // What is left of these is a file too, of which nobody can tell that it is not whole: tests of their own.
+    // A part of such a file is a file too, and nobody can tell that it is not whole: these have tests of their own.
     if (ending == ".obj" || ending == ".csv") continue;
     for (const double part : {0.1, 0.5, 0.9, 0.99}) {
       // At the end of a line, where a reader is least likely to see it.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What bounds a geometry holds it: boxes, line swept spheres, outer hulls.
+// Bounds of a geometry hold it: boxes, line swept spheres, outer hulls.
 #include "geometry/shape_tree.h"
 
 #include <cmath>

@@ -61,7 +61,7 @@ TEST(PlanLogsTest, UsualLayoutsAreTakenAndSaid) {
                true,
                "its columns are taken so: time = __time, rail = /joint_states/rail/position, hinge = "
                "/joint_states/hinge/position; left out: /joint_states/hinge/effort");
-  // What is in the robot's own words needs no word.
+  // Columns that have the robot's own names need no note.
   EXPECT_EQ(read(tree, "time,hinge,rail\n0,0,0\n5,1.25,0.5\n").notes.size(), 0u);
 }
 
@@ -134,7 +134,7 @@ TEST(PlanLogsTest, JointsThatStayNeedNoColumn) {
             Eigen::Vector2d(0.25, 0.5));
 }
 
-// What may be one thing or another is asked for.
+// If a value has two possible meanings, the reader asks.
 TEST(PlanLogsTest, NothingIsGuessed) {
   const KinematicTree tree = armTree();
   expectContains(refusedWith(tree, "q1,q2,q3\n0,0,0\n1,0,0\n"), "no joint 'q1'");  // more than there are joints

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One plan in every format: the same numbers. What is wrong with a file names waypoint and joint.
+// One plan in every format: the same numbers. An error in a file names waypoint and joint.
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -304,7 +304,7 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
   expectContains(refusalOf(arm, message(turned), Format::json), "robot 'arm' has no planar or floating joint 'drive'");
 }
 
-/// What is certified is all that an object holds, for the robot that it names.
+/// All that an object holds is certified, for the robot that it names.
 TEST(PlanReadersTest, AClocksTimesAreCountedFromTheFirst) {
   const KinematicTree tree = armTree();
   const Plan plan = parsePlans(tree, "time,hinge,rail\n1700000000.5,0,0\n1700000002,1,0\n", Format::csv).at(0);
@@ -390,7 +390,7 @@ TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
   EXPECT_EQ(carried[0].link, "arm");
 }
 
-/// What follows another joint in the tree stands elsewhere in the message: the plan is of another robot than the tree.
+/// If a joint that follows another one stands elsewhere in the message, the plan is of another robot than the tree.
 TEST(PlanReadersTest, MimicJointsOfTheStartStandWhereTheirMastersHaveThem) {
   const KinematicTree tree = gripperTree();
   const auto message = [](const std::string& names, const std::string& positions) {
@@ -578,7 +578,7 @@ TEST(PlanReadersTest, WhatIsWrittenIsReadAgain) {
     ASSERT_EQ(back.times.size(), 3u);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(back.times[k], plan.times[k], format == Format::csv ? 0 : 5.1e-10);
   }
-  // What other joints keep comes along.
+  // Values of other joints come along.
   Plan part = plan;
   part.joints = {"hinge"};
   part.positions = part.velocities = part.accelerations = {{0}, {0.5}, {1}};

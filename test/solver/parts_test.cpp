@@ -523,7 +523,8 @@ TEST(StageOne, TakesWhatAdvisorsClear) {
   EXPECT_EQ(world.open.size(), 0);
 }
 
-/// Of two bodies that move the advisor is given what B sweeps where A stands still: a ball that goes straight along z.
+/// For two bodies that move, the advisor is given the volume that B sweeps in a frame in which A stands still: a ball
+/// that goes straight along z.
 TEST(StageOne, OffersPairsThatBothMoveWhereOneStandsStill) {
   TwoBalls world(-2, 2);
   world.asPair();

@@ -243,7 +243,7 @@ TEST_F(UrdfTest, FindsPackagesAsRosDoes) {
   expectContains(missing, "no such file in '" + path("catkin/group/right_hand") + "'");
   expectContains(missing, ", '" + path("opt/share/hand") + "'; also searched for 'hand'");
   expectContains(missing, "below ROS_PACKAGE_PATH '" + path("none") + "::" + path("catkin") + "'");
-  // What the caller names is not looked for.
+  // A package that the caller names is not looked for.
   UrdfOptions named;
   named.packages["hand"] = path("ws");
   const std::string refused = messageOf([&] { loadUrdf(path("ws/src/arm/urdf/r.urdf"), named); });
@@ -381,7 +381,8 @@ TEST_F(UrdfTest, NotesWhatIsUnusual) {
   EXPECT_EQ(half.tree->joint(0).upper, 0);
 }
 
-// What a set-up does for each link does not grow with those above it. (It took 8 s, with the cube of the links.)
+// The set-up's work for a link does not grow with the number of links above it. (It took 8 s, with the cube of the
+// links.)
 TEST_F(UrdfTest, ChainsOfThousandsOfLinksAreSetUpAtOnce) {
   constexpr int kLinks = 3000;
   std::string body = linkWith(collision("<sphere radius='0.01'/>"));

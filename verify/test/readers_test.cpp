@@ -4,7 +4,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace readers_test {
 
 using VerifyReaders = VerifyFiles;
 
@@ -322,5 +322,5 @@ TEST_F(VerifyReaders, AllowedPairsAreInTheSrdf) {
   EXPECT_THROW(compareWithSrdf(readWorld(g), write("b.srdf", "<robot")), BadInput);
 }
 
-}  // namespace
+}  // namespace readers_test
 }  // namespace verify::test

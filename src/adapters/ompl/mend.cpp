@@ -31,18 +31,18 @@ constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kRoom = 1;      // m, that positions of planar and floating joints have beyond the plan's own
 constexpr double kLeast = 0.05;  // s, for a stretch
 
-// Pieces that are not free are divided, so that a detour begins and ends near what it goes around: parts of no more
-// than this, rad or m, of any joint, but no more parts than that.
+// A piece that is not free is divided into parts of at most kPart (rad or m, of any joint), but into no more than
+// kMostParts. So a detour begins and ends near the obstacle that it goes around.
 constexpr double kPart = 0.1;
 constexpr int kMostParts = 64;
-// Parts of the clearance that are tried, one after the other, and of the time that is left for each.
+// Parts of the clearance, tried one after the other, and for each its part of the remaining time.
 constexpr double kClearances[] = {1, 0.25, 0}, kShares[] = {0.5, 0.5, 1};
-// A planner's way is brought back towards the plan at points of no more than this, rad or m, from each other.
+// A planner's way is brought back towards the plan at points at most this far (rad or m) from each other.
 constexpr double kPull = 0.2;
 constexpr int kPulls = 3;
 
-// Small detours, by one waypoint or two off the plan: how far each joint goes at most, rad or m, and how often it is
-// tried. They cost some ms where none is found, and keep what they mend near the plan (bench certify).
+// Small detours, by one or two waypoints off the plan: how far each joint goes at most (rad or m), and how often that
+// is tried. They cost some ms if none is found, and keep mended plans near the plan (bench certify).
 constexpr double kNudges[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr int kTries = 48, kShrinks = 5;
 
@@ -96,7 +96,7 @@ struct Straight {
   }
 };
 
-/// @param isFree  of a piece: those that are not are divided.
+/// @param isFree  whether a piece is free: other pieces are divided.
 template <class IsFree>
 Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTrajectory::Unwrap unwrap,
                     const IsFree& isFree) {
@@ -110,7 +110,7 @@ Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTraj
   add(way.piece(0).configuration(0), given.times[0], true);
   for (std::size_t k = 0; k < way.numPieces(); ++k) {
     const JointMotion& piece = way.piece(k);
-    // As the next piece begins: there are the plan's own numbers. At the goal they are the plan's but for whole turns.
+    // The next piece begins with the plan's own numbers. At the goal they are the plan's but for whole turns.
     VectorXd end = k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : piece.configuration(1);
     if (k + 1 == way.numPieces()) {
       const VectorXd& goal = given.positions.back();
@@ -243,14 +243,14 @@ class Mender {
     }
   }
 
-  /// (Limits of the plan's own points have been judged: a sensor's may be a little beyond them.)
+  /// (The plan's own points have been judged: a sensor's may be a little beyond the limits.)
   bool valid(std::size_t k) const {
     CertifiedRequest any = request_;
     any.max_contacts = 0;
     return manager_->collide(way_.points[k], any).isFree();
   }
 
-  /// Finds a way around what the piece from waypoint k on touches.
+  /// Finds a way around the obstacles that the piece from waypoint k on touches.
   /// @return the waypoint where it ends.
   std::size_t replace(std::size_t k, Clock::time_point begin) {
     const std::size_t last = way_.points.size() - 1;
@@ -294,7 +294,7 @@ class Mender {
             way_.points.begin() + static_cast<std::ptrdiff_t>(b) + 1};
   }
 
-  /// Brings inner points of a way nearer to what it replaces, as far as all stays free.
+  /// Brings inner points of a way nearer to the stretch that it replaces, as far as all stays free.
   void pullBack(const Points& before, Points& points) const {
     if (hasRotations() || points.back() != before.back()) return;  // the latter by whole turns
     Points fine{points.front()};
@@ -336,7 +336,7 @@ class Mender {
     return true;
   }
 
-  /// Where on the stretch, as a share of its length, something is met first from its begin, or from its end.
+  /// Share of the stretch's length at which something is met first, from its begin or from its end.
   double meets(const Points& points, bool from_end) const {
     CertifiedRequest request = request_;
     request.mode = ContactMode::first;
@@ -356,7 +356,7 @@ class Mender {
     return 0.5;
   }
 
-  /// Tries ways from waypoint a to b that leave the plan by a little, around what is met on them.
+  /// Tries ways from waypoint a to b that leave the plan by a little, around the obstacles on it.
   std::optional<Points> nudge(std::size_t k, std::size_t a, std::size_t b) {
     if (hasRotations()) return std::nullopt;
     const Points before = stretch(a, b);

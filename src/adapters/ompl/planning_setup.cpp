@@ -39,7 +39,7 @@ bool answerable(double value) {
   return std::abs(value) <= 1e5;
 }
 
-/// It has one value only, which is that of the joints that are not planned for.
+/// Whether the joint has one value only: then it stands with the joints that are not planned for.
 bool standsStill(const Joint& joint) {
   return hasLimits(joint) && joint.lower == joint.upper;
 }
@@ -55,7 +55,7 @@ const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
                               text::didYouMean(name, variableNames(tree)));
 }
 
-/// The space of a joint that is no number within limits.
+/// The space of a joint whose value is not one number within limits.
 ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& options) {
   const auto bounds = [&](unsigned dimensions) {
     ob::RealVectorBounds b(dimensions);
@@ -183,7 +183,7 @@ void PlanningSetup::setState(ob::State* state, const std::vector<double>& values
 
 std::vector<double> PlanningSetup::values(const ob::State* state) const {
   std::vector<double> values;
-  // OMPL gives addresses of a state that may be written to; it is not.
+  // OMPL gives only addresses that may be written to; this does not write.
   forEachPart(*space, const_cast<ob::State*>(state), [&](const ob::StateSpace& part, ob::State* values_of_part) {
     for (unsigned i = 0; const double* value = part.getValueAddressAtIndex(values_of_part, i); ++i) {
       values.push_back(*value);

@@ -21,7 +21,7 @@ namespace scene_graph = ::tesseract::scene_graph;
 using TesseractId = ::tesseract::common::LinkId;
 using ::tesseract::common::LinkIdPair;
 
-/// All states name the joints that the first one names, and what no state names has a value of its own.
+/// All states must name the joints that the first one names, and other joints must have a value of their own.
 void requireAllNamed(const KinematicTree& tree, const std::vector<bool>& named, const std::vector<bool>& named_first,
                      std::size_t state, bool others) {
   const std::string where = "state " + std::to_string(state) + ": ";
@@ -82,7 +82,7 @@ class Reader {
   }
 
   void readJoints() {
-    // From the root on, so that the variables' order is the robot's; who mimics comes after whom it mimics.
+    // From the root on, so that the variables' order is the robot's. A joint that mimics another comes after it.
     std::deque<TesseractId> links{graph_.getRoot()};
     std::deque<std::shared_ptr<const scene_graph::Joint>> followers;
     tree_->addLink(graph_.getRoot().name());
@@ -204,7 +204,7 @@ class Reader {
     if (isStill(a) || isStill(b)) return;  // one of them an obstacle
     checked_.emplace(std::min(a.name, b.name), std::max(a.name, b.name));
     if (a.attached || b.attached) return;
-    // One joint between them: neighbours, whom a manager leaves out, unless one is attached.
+    // If one joint lies between them, they are neighbours, whom a manager may leave out, unless one is attached.
     const auto above = [&](LinkId child) { return group(tree_->parentLink(child)); };
     if (above(x) == y) a.attached = true;
     if (above(y) == x) b.attached = true;

@@ -8,9 +8,9 @@
 namespace fcl_artic {
 namespace {
 
-/// What a part's matrix says, with the names of all robots together.
-/// @param spelt_out  whether what a complete matrix says of neighbours has to be said pair by pair, as the matrix of
-///   all robots is not complete.
+/// Adds the pairs of a part's matrix to the matrix of all robots, under the names that the links have there.
+/// @param spelt_out  whether a complete matrix's rule for neighbours must be written pair by pair, as the matrix of all
+///   robots is not complete.
 void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix& all) {
   const AllowedCollisionMatrix& own = part.robot->allowed;
   if (spelt_out && own.complete()) {
@@ -37,8 +37,8 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
     if (!part.robot || !part.robot->tree) throw std::invalid_argument("combineRobots: a robot is null");
     const KinematicTree& own = *part.robot->tree;
     const auto named = [&](const std::string& own_name) { return part.prefix + own_name; };
-    // A mount of its own for each root: robots that stand side by side are no neighbours of each other, also those
-    // that were combined before.
+    // Each root gets a mount of its own: robots that stand side by side, also those that were combined before, are no
+    // neighbours of each other.
     std::vector<LinkId> roots;
     for (LinkId l = 0; l < own.numLinks(); ++l) {
       if (own.parentJoint(l) < 0) roots.push_back(l);
@@ -70,7 +70,7 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
     }
     for (LinkGeometry geometry : part.robot->geometry) {
       geometry.link = link[static_cast<std::size_t>(geometry.link)];
-      // An object for each, as one robot may be there twice; what they show is shared.
+      // Each gets an object of its own, as one robot may be there twice; the geometry is shared.
       const fcl::CollisionObjectd& object = *geometry.object;
       geometry.object = std::make_shared<fcl::CollisionObjectd>(
           std::const_pointer_cast<fcl::CollisionGeometryd>(object.collisionGeometry()), object.getTransform());

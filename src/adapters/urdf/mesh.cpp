@@ -58,18 +58,18 @@ std::size_t keepUsed(std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Tr
 }
 
 using Place = std::array<double, 3>;
-using Segment = std::array<Place, 2>;  ///< The smaller end first; both are one of a point.
+using Segment = std::array<Place, 2>;  ///< The smaller end first; a point has both ends in one place.
 
 Segment segmentOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Place p{a[0] + 0.0, a[1] + 0.0, a[2] + 0.0}, q{b[0] + 0.0, b[1] + 0.0, b[2] + 0.0};  // -0 becomes 0
   return {std::min(p, q), std::max(p, q)};
 }
 
-/// Drops triangles that are a segment or a point, as two of their corners are in one place, where that is an edge or a
-/// corner of a triangle that stays: nothing of the surface is lost. @return how many.
+/// Drops triangles that are a segment or a point, as two of their corners are in one place. Each must be an edge or a
+/// corner of a triangle that stays. Nothing of the surface is lost. @return how many.
 std::size_t dropCovered(const std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Triangle>& triangles) {
   const auto corner = [&](const fcl::Triangle& t, int k) -> const Eigen::Vector3d& { return vertices[t[k % 3]]; };
-  // The corner before the two that are in one place; 3 of other triangles.
+  // The corner before the two that are in one place; 3 for other triangles.
   const auto apexOf = [&](const fcl::Triangle& t) {
     int k = 0;
     while (k < 3 && corner(t, k + 1) != corner(t, k + 2)) ++k;
@@ -169,7 +169,7 @@ GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Tri
   bool built =
       model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) == fcl::BVH_OK &&
       model->addSubModel(vertices, triangles) == fcl::BVH_OK;
-  // FCL has copies, and needs much memory for its tree.
+  // Freed here: FCL has copies, and needs much memory for its tree.
   vertices = {};
   triangles = {};
   built = built && model->endModel() == fcl::BVH_OK;

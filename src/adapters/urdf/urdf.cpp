@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using detail::fail;
 
-/// Catches what urdfdom has to say while it lives: urdfdom prints its reasons, and returns only null.
+/// Catches urdfdom's messages while it lives: urdfdom prints its reasons, and returns only null.
 class ParserMessages : public console_bridge::OutputHandler {
  public:
   ParserMessages() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
@@ -55,8 +55,9 @@ class ParserMessages : public console_bridge::OutputHandler {
   std::vector<std::string> warnings_, errors_;
 };
 
-/// What urdfdom does not report: the order of the file (it sorts by name), and what the file holds in collision
-/// geometry (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
+/// Facts about the file that urdfdom does not report. One is the order of its elements: urdfdom sorts them by name. The
+/// other is the collision geometry: urdfdom goes on without an element that it cannot read, and a robot without that
+/// geometry would pass as free.
 struct Document {
   struct Link {
     std::string name;
@@ -82,7 +83,7 @@ Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) 
   return link;
 }
 
-/// A limit of which one end is missing: urdfdom takes it for 0, as URDF's rules say, which seldom is what was meant.
+/// Notes a limit with one end missing: urdfdom takes that end for 0, by URDF's rules, which is seldom meant.
 void noteLimit(const tinyxml2::XMLElement& joint, std::vector<std::string>& notes) {
   const char* const type = joint.Attribute("type");
   const tinyxml2::XMLElement* const limit = joint.FirstChildElement("limit");
@@ -107,7 +108,7 @@ Document readDocument(const std::string& where, const std::string& file) {
       noteLimit(*e, document.notes);
     }
   }
-  // (Of visual elements only, and so of no concern here.)
+  // A material belongs to visual elements only, so it is dropped.
   while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
@@ -173,7 +174,7 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
   return out;
 }
 
-/// The direction of an axis, which is brought near 1 before it is squared: it may be of any length. 0 stays 0.
+/// The direction of an axis of any length. The axis is scaled near 1 before it is squared; 0 stays 0.
 Eigen::Vector3d directionOf(const Eigen::Vector3d& axis) {
   const double largest = axis.cwiseAbs().maxCoeff();
   return largest > 0 ? Eigen::Vector3d((axis / largest).normalized()) : axis;
@@ -308,14 +309,15 @@ std::vector<fs::path> foldersOf(const char* variable) {
   return folders;
 }
 
-/// Where a URDF's relative paths begin: its own folder; the present one for what a shell passes on, as `<(xacro ...)`.
+/// The folder from which a URDF's relative paths begin: its own, or the present one if a shell passes the file on, as
+/// `<(xacro ...)`.
 fs::path folderOf(const std::string& urdf_path) {
   const auto begins = [&](const char* with) { return urdf_path.rfind(with, 0) == 0; };
   const bool passed_on = urdf_path == "/dev/stdin" || begins("/dev/fd/") || begins("/proc/");
   return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path();
 }
 
-/// The same folder by a path that can be gone up: what ".." is above a link, only the disk knows.
+/// The same folder, by a path whose parents can be read off it: only the disk knows the folder above a symbolic link.
 fs::path withoutDots(const fs::path& folder) {
   if (std::find(folder.begin(), folder.end(), "..") == folder.end()) return folder.lexically_normal();
   std::error_code error;
@@ -323,7 +325,7 @@ fs::path withoutDots(const fs::path& folder) {
   return error ? folder : there;
 }
 
-/// The name that a folder's package.xml gives; empty where it has none that can be read.
+/// The name that a folder's package.xml gives; empty if it has none that can be read.
 std::string packageName(const fs::path& folder) {
   std::error_code error;
   const fs::path file = folder / "package.xml";
@@ -344,7 +346,7 @@ class MeshFinder {
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
       : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
-  /// What is unusual about the paths that were found, one line each.
+  /// Notes on unusual paths that were found, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
 
   std::string find(const std::string& where, const std::string& uri) {
@@ -406,7 +408,7 @@ class MeshFinder {
                     listed("AMENT_PREFIX_PATH") + ". Say where it is: --package " + name +
                     "=DIR (C++: UrdfOptions::packages, Python: packages={'" + name + "': 'DIR'})");
   }
-  /// A package that stands in several folders: which one is meant is not known where they differ.
+  /// Notes a package that stands in several folders, if the folders' files differ: it is not known which one is meant.
   void noteOther(const std::string& uri, const std::vector<std::string>& there) {
     if (!noted_.insert(uri).second) return;
     const std::string first = contentOf(there.front());
@@ -458,7 +460,7 @@ class MeshFinder {
 
   /// Looks for a package in a folder and those below it, as rospack does: not within packages, nor where a file says
   /// that there are none.
-  /// @param[in,out] left  folders that may yet be looked at: a path may lead to all of a disk.
+  /// @param[in,out] left number of folders that may yet be looked at: a path may lead to all of a disk.
   template <typename Add>
   static void searchBelow(const fs::path& folder, const std::string& name, int depth, int& left, const Add& add) {
     if (--left < 0) return;
@@ -493,8 +495,8 @@ class GeometryFactory {
   GeometryFactory(MeshFinder finder, const UrdfOptions& options, std::vector<std::string>& notes)
       : finder_(std::move(finder)), options_(options), notes_(notes) {}
 
-  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. What is wrong with one
-  /// is said when it is asked for.
+  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. If a mesh has a fault,
+  /// the exception comes when the mesh is asked for.
   void readMeshes(const urdf::ModelInterface& model) {
     for (const auto& [name, link] : model.links_) {
       for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
@@ -572,7 +574,7 @@ class GeometryFactory {
   std::map<Key, Mesh> meshes_;
 };
 
-/// A sphere of radius 0, by which makers of robots give simulators a point of contact.
+/// Whether it is a sphere of radius 0, by which makers of robots give simulators a point of contact.
 bool isPoint(const urdf::Geometry& geometry) {
   return geometry.type == urdf::Geometry::SPHERE && static_cast<const urdf::Sphere&>(geometry).radius == 0;
 }
@@ -581,7 +583,7 @@ bool isPoint(const urdf::Geometry& geometry) {
 
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
   if (!tree) throw std::invalid_argument("Robot::addTo: the robot has no tree");
-  // Geometries go by numbers of links: of another robot these are other links.
+  // Geometries go by numbers of links, which mean other links in another robot.
   const KinematicTree& other = manager.tree();
   for (LinkId link = 0; link < tree->numLinks(); ++link) {
     if (link < other.numLinks() && tree->linkName(link) == other.linkName(link)) continue;
