@@ -129,8 +129,10 @@ int runCheck(CheckVerb& options) {
     return world.unwritten.exitStatus(status);
   }
   if (!options.dump.empty()) {  // before it is answered: it may be asked again whatever happens then
-    files::write(options.dump,
-                 trajectory ? manager.writeQuery(*trajectory, request) : manager.writeQuery(*motion, request));
+    world.unwritten.attempt([&] {
+      files::write(options.dump,
+                   trajectory ? manager.writeQuery(*trajectory, request) : manager.writeQuery(*motion, request));
+    });
   }
   CertifiedResult result;
   {
