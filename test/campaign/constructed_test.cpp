@@ -62,8 +62,7 @@ TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
     truth.hit = truth.pairs[0].hit;
     truth.time = truth.pairs[0].time;
     EXPECT_GE(truth.time, c.time - kFloor) << "the construction, or the oracle, is wrong";
-    for (const Finding& f : examine(c.scene, oracle, truth, answer))
-      ADD_FAILURE() << faultName(f.fault) << ": " << f.text;
+    for (const Finding& f : examine(c.scene, oracle, truth, answer)) ADD_FAILURE() << f.fault << ": " << f.text;
   }
   EXPECT_GE(certain, kCasesEach / 2);
   RecordProperty("certain", certain);
